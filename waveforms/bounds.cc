@@ -9,9 +9,9 @@
 namespace softland::internal {
 namespace {
 
-/// A term with polynomials of any degree that its first four derivatives have.
+/// A term whose polynomials may have the degree of its first four derivatives.
 struct Differentiated {
-  static constexpr std::size_t size = 8;  // a sweep raises the degree by one each time
+  static constexpr std::size_t size = 8;  // a frequency sweep raises the degree by one for each derivative
   std::array<double, size> cosine = {}, sine = {};
   double decay = 0, angular_frequency = 0, sweep = 0;
 
@@ -35,7 +35,7 @@ struct Differentiated {
     cosine = c, sine = s;
   }
 
-  /// True for a sine of constant size, whose bound is the same at all times.
+  /// Returns true for a sine of constant amplitude, whose bound does not depend on time.
   [[nodiscard]] bool is_steady() const {
     bool is_constant = decay == 0;
     for (std::size_t k = 1; k < size; ++k) is_constant = is_constant && cosine[k] == 0 && sine[k] == 0;
@@ -84,7 +84,7 @@ class DerivativeBound {
   std::vector<Differentiated> others_;
 };
 
-/// Returns the sum of the largest sizes of all parts of the voltage, or of its rate.
+/// Returns the sum of the largest absolute values of all parts of the voltage, or of dV/dt.
 double size_of(const SignalPieceOf<double>& piece, bool of_rate, double from, double to) {
   double sum = 0;
   for (const TermOf<double>& term : piece.terms) {
@@ -107,7 +107,7 @@ double time_of_maximum(Function function, const Curvature& curvature, double fro
   };
   std::vector<Interval> open{{from, to, function(from), function(to)}};
   double place = open[0].at_begin >= open[0].at_end ? from : to, best = std::max(open[0].at_begin, open[0].at_end);
-  constexpr long most_values = 10'000'000;  // a waveform that needs more has no significant digit left in its angles
+  constexpr long most_values = 10'000'000;  // with more values, the angles of the waveform have no significant digit left
   for (long values = 0; !open.empty() && values < most_values; ++values) {
     const Interval i = open.back();
     open.pop_back();
@@ -141,7 +141,7 @@ void append_extrema_of_terms(std::vector<double>& times, const SignalPieceOf<dou
 }
 
 double duration_of_terms(const SignalPieceOf<double>& piece) {
-  constexpr double time_constants = 50;  // exp(-50) is 2e-22, and a cubic grows by 1e5 meanwhile
+  constexpr double time_constants = 50;  // exp(-50) is 2e-22; a cubic polynomial grows by 1e5 in this time
   double longest = 0;
   for (const TermOf<double>& term : piece.terms) longest = std::max(longest, time_constants / term.decay);
   return longest;

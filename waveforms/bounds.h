@@ -1,4 +1,4 @@
-// Bounds on the derivatives of a piece, and the extrema that follow from them without a closed form.
+// Bounds on the derivatives of a piece of a signal, and extrema found from these bounds where there is no closed form.
 #pragma once
 
 #include <vector>
@@ -11,9 +11,9 @@ namespace softland::internal {
 /// order 0 the bound of the terms and the sine alone.
 [[nodiscard]] double derivative_bound(const SignalPieceOf<double>& piece, int order, double from, double to);
 
-/// Appends times in [from, to] at which the voltage (`of_rate`: its rate) of a piece with terms comes close to its largest and
-/// to its smallest value there: within 1e-9 of the size of its parts. Intervals are halved until their ends and the bound on
-/// the curvature between them leave nothing to gain.
+/// Appends times in [from, to] at which the voltage of a piece with terms (`of_rate`: its dV/dt) is within 1e-9 of its largest
+/// and of its smallest value, relative to the size of its parts. Intervals are halved until the values at their ends and the
+/// bound on the curvature exclude a larger value between the ends.
 void append_extrema_of_terms(std::vector<double>& times, const SignalPieceOf<double>& piece, bool of_rate, double from,
                              double to);
 

@@ -1,5 +1,6 @@
-// B-spline: a cubic spline with continuous curvature, defined by levels that it need not reach: it stays between the smallest
-// and the largest of them. With n levels and knots at the n - 2 times that divide the duration evenly, fourfold at both ends:
+// B-spline: a cubic spline with continuous curvature. Its control levels need not be reached; the voltage stays between the
+// smallest and the largest level. With n levels and knots at the n - 2 times that divide the duration evenly, fourfold at both
+// ends:
 //
 //   V(t) = sum over i of levels_i B_i(t) on [0, duration], B_i the cubic B-splines of these knots (de Boor, A Practical Guide to
 //   Splines, 1978, chapter IX)
@@ -28,8 +29,8 @@ template <>
 struct FamilyOf<BSpline> {
   static constexpr std::string_view name = "bspline";
   static constexpr auto parameters = std::to_array<Parameter<BSpline>>({
-      {"levels", ParameterKind::level, &BSpline::levels, true, "four or more that draw the curve; the last is held for ever"},
-      {"duration", ParameterKind::time, &BSpline::duration, true, "of the curve"},
+      {"levels", ParameterKind::level, &BSpline::levels, true, "four or more control levels of the curve; the last one is held"},
+      {"duration", ParameterKind::time, &BSpline::duration, true, "duration of the curve"},
   });
   [[nodiscard]] static BSpline example() { return {.levels = {1, -2, 0.5, 3, 0.7}, .duration = 7}; }
 };
@@ -40,7 +41,7 @@ namespace internal {
 /// that has passed, coefficients in rising order. The first one belongs to level j.
 [[nodiscard]] std::array<std::array<double, 4>, 4> bsplines_of_span(std::size_t j, std::size_t n);
 
-/// True when the knots about span j are evenly spaced: the B-splines of all such spans are the same.
+/// Returns true if the knots around span j are evenly spaced; the B-splines of all such spans are equal.
 [[nodiscard]] constexpr bool has_even_knots(std::size_t j, std::size_t n) { return j >= 3 && j + 7 <= n; }
 
 /// Returns knot `i` of the n + 4 knots of a spline of n levels, in spans.

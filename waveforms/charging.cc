@@ -42,13 +42,13 @@ std::vector<double> turning_times(const SignalPiece& piece, double begin, double
 }  // namespace
 
 double charging(const Signal& signal, double end) {
-  require(end >= 0 && std::isfinite(end), "the time until which charging is counted must be finite and at least 0 s");
+  require(end >= 0 && std::isfinite(end), "the end of the charging must be finite and at least 0 s");
   double sum = 0, last = signal.before();
   const auto reach = [&](double volts) {
     sum += std::max(0.0, volts * volts - last * last) / 2;
     last = volts;
   };
-  // A jump through 0 V first discharges.
+  // A jump that crosses 0 V discharges the capacitor before it charges.
   const auto jump = [&](double volts) {
     if (last * volts < 0) reach(0);
     reach(volts);

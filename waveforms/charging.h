@@ -1,13 +1,13 @@
-// The energy needed to charge a capacitor with a drive voltage again and again.
+// The energy that a source supplies when a drive voltage charges a capacitor repeatedly.
 #pragma once
 
 #include "waveforms/signal.h"
 
 namespace softland {
 
-/// Returns half the sum of all rises of V^2 on [0, end], a jump at t = 0 included [V^2]. It is the energy per capacitance from
-/// a source that takes none back when the voltage falls: 1/2 V^2 for a rise from 0 V to V. It is good to 1e-9 of its value for
-/// straight pieces, sines and terms alike. Throws InvalidInput unless end >= 0 is finite.
+/// Returns half the sum of all rises of V^2 on [0, end], including a jump at t = 0 [V^2]. This is the energy per capacitance from
+/// a source that recovers none when the voltage falls: 1/2 V^2 for a rise from 0 V to V. The relative error is 1e-9. Throws
+/// InvalidInput unless end >= 0 is finite.
 [[nodiscard]] double charging(const Signal& signal, double end);
 
 }  // namespace softland

@@ -20,10 +20,13 @@ Signal signal(const Chirp& chirp, double before) {
              [&] { return fmt::format("decay_time of a chirp is {} s; it must be > 0", chirp.decay_time); });
   if (!std::isfinite(chirp.end)) {
     require_of("frequency_ratio", ratio == 1, [&] {
-      return fmt::format("frequency_ratio of a chirp is {}; without an end the frequency must stay the same, 1", ratio);
+      return fmt::format(
+          "frequency_ratio of a chirp is {}; it must be 1 for a chirp without an end, "
+          "whose frequency is constant",
+          ratio);
     });
     require_of("decay_time", std::isfinite(chirp.decay_time),
-               "a chirp has neither an end nor a decay_time; it must have one of them (a harmonic goes on for ever)");
+               "a chirp must have an end or a decay_time; a sine without either is a harmonic");
   }
   if (chirp.amplitude == 0) return Signal::piecewise_linear({{0, before}, {chirp.rise_time, chirp.base}}, before);
   return Signal(pieces(chirp, before), before);

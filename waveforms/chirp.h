@@ -1,4 +1,4 @@
-// Chirp: a dither on a step whose frequency changes steadily, or which dies away, or both.
+// Chirp: a sine on a step. Its frequency changes linearly in time, or its amplitude decays, or both.
 //
 //   V(t) = b(t) + amplitude e(t) exp(-s / decay_time) sin(phase + angular_frequency s + sweep s^2 / 2),  s = t - start
 //
@@ -37,10 +37,10 @@ template <>
 struct FamilyOf<Chirp> {
   static constexpr std::string_view name = "chirp";
   static constexpr auto parameters = std::to_array<Parameter<Chirp>>({
-      {"base", ParameterKind::level, &Chirp::base, false, "what the sine swings about"},
+      {"base", ParameterKind::level, &Chirp::base, false, "mean level of the sine"},
       {"rise_time", ParameterKind::time, &Chirp::rise_time, false, "linear rise of the base, from 0 V or `before`"},
       {"amplitude", ParameterKind::swing, &Chirp::amplitude, true,
-       "at the start; or a percentage of the base; for the piezo, of the main hold level"},
+       "amplitude at the start, or a percentage of the base; for the piezo, of the hold voltage of the main electrode"},
       {"angular_frequency", ParameterKind::angular_frequency, &Chirp::angular_frequency, true, "of the sine at the start"},
       {"frequency_ratio", ParameterKind::ratio, &Chirp::frequency_ratio, false, "frequency at the end over that at the start"},
       {"phase", ParameterKind::angle, &Chirp::phase, false, "of the sine at the start"},
@@ -48,7 +48,7 @@ struct FamilyOf<Chirp> {
       {"end", ParameterKind::end_time, &Chirp::end, false, "when the sine ends; absent: never"},
       {"fade", ParameterKind::time, &Chirp::fade, false, "linear fade in after start and out before end"},
       {"decay_time", ParameterKind::end_time, &Chirp::decay_time, false,
-       "in which the amplitude falls by 1/e; absent: it does not"},
+       "time in which the amplitude falls by 1/e; absent: constant amplitude"},
   });
   [[nodiscard]] static Chirp example() {
     return {.base = 1,
@@ -68,7 +68,7 @@ struct FamilyOf<Chirp> {
 template <class P>
 [[nodiscard]] Pieces<P> pieces(const ChirpOf<P>& chirp, const P& before = P(0)) {
   using std::cos, std::exp, std::sin;
-  // Base and envelope are those of a harmonic, whose sine becomes a term.
+  // Make base and envelope as for a harmonic; its sine becomes a term.
   Pieces<P> all = pieces(HarmonicOf<P>{.base = chirp.base,
                                        .rise_time = chirp.rise_time,
                                        .amplitude = chirp.amplitude,

@@ -50,7 +50,7 @@ std::vector<Exponential> exponentials_of(const SignalPiece& piece) {
 
 /// Returns the steady response of T dV/dt + V = input.
 Exponential answer(const Exponential& input, double time_constant) {
-  // The response grows in proportion to time first where the input decays as the filter does.
+  // If the input decays at the rate of the filter, the response has a factor proportional to time.
   constexpr double same = 1e-6;
   const Complex factor = 1.0 + input.exponent * time_constant;
   Exponential out{.polynomial = {}, .exponent = input.exponent};
@@ -67,7 +67,7 @@ Exponential answer(const Exponential& input, double time_constant) {
   return out;
 }
 
-/// Returns the same function, counted from a later time.
+/// Returns the same function with s counted from a later time.
 Exponential later(const Exponential& e, double by) {
   Exponential moved{.polynomial = {}, .exponent = e.exponent};
   const auto& p = e.polynomial;
@@ -100,17 +100,18 @@ SignalPiece piece_of(double begin, const std::vector<Exponential>& parts) {
   return piece;
 }
 
-/// True when a piece is one voltage, as a held sample is.
+/// Returns true if a piece is constant, as a held sample is.
 bool is_held_level(const SignalPiece& piece) { return piece.slope == 0 && !piece.oscillates() && piece.terms.empty(); }
 
-/// Returns the response of the filter to a level, with the rest of the output before it [V].
+/// Returns the response of the filter to a constant level; `left` is the difference between output and level at its beginning
+/// [V].
 SignalPiece answer_to_level(const SignalPiece& level, double time_constant, double left) {
   SignalPiece piece{.begin = level.begin, .value = level.value};
   if (left != 0) piece.terms.push_back({.cosine = {left}, .decay = 1 / time_constant});
   return piece;
 }
 
-/// Replaces pieces with a sweep by cubics that match their values and rates.
+/// Replaces pieces with a frequency sweep by cubics that match the values and slopes at their ends.
 std::vector<SignalPiece> without_sweeps(const std::vector<SignalPiece>& pieces) {
   constexpr double tolerance = 1e-6;  // relative to the largest size of the terms
   std::vector<SignalPiece> all;
@@ -125,7 +126,7 @@ std::vector<SignalPiece> without_sweeps(const std::vector<SignalPiece>& pieces) 
     const double fourth = internal::derivative_bound(piece, 4, piece.begin, end);
     const double count = std::max(1.0, std::ceil((end - piece.begin) * std::pow(fourth / (384 * tolerance * size), 0.25)));
     constexpr double most = 1e6;
-    require(count <= most, fmt::format("a chirp takes {} cubics to be filtered; it may take {}", count, most));
+    require(count <= most, fmt::format("a chirp needs {} cubics to be filtered; it must need at most {}", count, most));
     for (double k = 0; k < count; ++k) {
       const double from = piece.begin + (end - piece.begin) * (k / count),
                    to = piece.begin + (end - piece.begin) * ((k + 1) / count);
@@ -162,7 +163,8 @@ Signal sampled(const Signal& told, double rate, std::optional<int> bits, const D
   };
   const double count = std::ceil(until * rate);
   constexpr double most = 1e7;
-  require(count <= most, fmt::format("a waveform of {} s takes {} samples at {} Hz; it may take {}", until, count, rate, most));
+  require(count <= most,
+          fmt::format("a waveform of {} s has {} samples at {} Hz; it must have at most {}", until, count, rate, most));
   std::vector<SignalPiece> pieces;
   const auto hold = [&](double time, double voltage) {
     if (pieces.empty() || pieces.back().value != voltage) pieces.push_back({.begin = time, .value = voltage});
@@ -201,7 +203,7 @@ Signal filtered(const Signal& input, double time_constant) {
   double output = input.before();
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const double begin = pieces[i].begin, end = i + 1 < pieces.size() ? pieces[i + 1].begin : infinite;
-    // A sampled waveform has thousands of these.
+    // Held levels have a faster path, because a sampled waveform has thousands of them.
     if (is_held_level(pieces[i])) {
       const double left = begin + over * time_constant;
       const bool settles = output != pieces[i].value;

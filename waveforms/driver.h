@@ -7,9 +7,9 @@
 //   bandwidth f_b      T dV/dt + V = input, T = 1 / (2 pi f_b): the amplitude of a sine of this frequency falls by 3 dB
 //   source_resistance  the same with T = R (C + Cp), C the load, Cp the parallel_capacitance beside it
 //
-// in this order, each where it is given. All of them are exact: held samples through a filter are exponentials. Only a signal
-// of changing frequency (a chirp) is filtered as cubics, within 1e-6 of its amplitude. The output stays between the smallest
-// and the largest input and 0 V. The rest of an exponential after 40 time constants, 4e-18 of it, is dropped.
+// The stages apply in this order, each if it is given, and are exact: filtered held samples are exponentials. Only a signal of
+// changing frequency (a chirp) is filtered as cubics, with an error of 1e-6 of its amplitude. The output stays within the range
+// of the input and 0 V. An exponential is dropped after 40 time constants, at 4e-18 of its initial value.
 #pragma once
 
 #include <optional>
@@ -28,27 +28,27 @@ struct DriverModel {
   double parallel_capacitance = 0;               ///< capacitance of leads and instruments, behind the resistance [F], >= 0
   double load = 0;                               ///< capacitance that the source charges in addition [F], >= 0
 
-  /// Returns the T with which the source charges both through its resistance [s]; 0 without a resistance.
+  /// Returns the time constant with which the source charges load and parallel capacitance [s]; 0 without a resistance.
   [[nodiscard]] double charging_time() const { return source_resistance.value_or(0) * (load + parallel_capacitance); }
-  /// True when the applied voltage equals the commanded voltage.
+  /// Returns true if the applied voltage equals the commanded voltage.
   [[nodiscard]] bool is_ideal() const { return !sample_rate && !bandwidth && !source_resistance; }
 };
 
-/// Returns the samples that the converter holds, each until the next. Returns the commanded signal for a source without
-/// samples, and for one commanded to 0 V at all times. A sine that never ends is sampled up to `end` [s], and its mean value
-/// holds from there. Throws InvalidInput when it would take more than 1e7 samples.
+/// Returns the samples that the converter holds, each until the next. Returns the commanded signal for a source without samples,
+/// and for a signal of 0 V at all times. A sine without an end is sampled up to `end` [s]; from there its mean value is held.
+/// Throws InvalidInput for more than 1e7 samples.
 [[nodiscard]] Signal held(const Signal& told, const DriverModel& model, const DriverLimits& limits, double end);
 
-/// Returns the samples for a generator or a file. The voltage before t = 0 is not rounded as long as the signal stays there, so
-/// that nothing jumps when the samples are commanded.
+/// Returns the samples for a generator or a file. While the signal stays at its voltage before t = 0, the samples are not
+/// rounded, so that the voltage does not jump at t = 0.
 [[nodiscard]] Signal told_samples(const Signal& told, const DriverModel& model, const DriverLimits& limits, double end);
 
-/// Returns the limits that a table must keep: rounded samples may rise by one step of the converter more from one to the next
-/// than the waveform that they were taken from.
+/// Returns the driver limits for a table of samples. By rounding, the change between two samples may exceed that of the waveform
+/// by one step of the converter.
 [[nodiscard]] DriverLimits limits_of_samples(DriverLimits limits, const DriverModel& model);
 
-/// Returns the applied voltage of the source, whose gain, offset and delay change what its converter gives; throws as held(). A
-/// source commanded to 0 V at all times gives its offset; before t = 0 it gives the commanded voltage.
+/// Returns the applied voltage of the source: the output of its converter with gain, offset and delay. Throws as held(). A source
+/// commanded to 0 V at all times applies its offset; before t = 0 it applies the commanded voltage.
 [[nodiscard]] Signal driven(const Signal& told, const DriverModel& model, const DriverLimits& limits, double end,
                             const SourceErrors& errors = {});
 

@@ -14,11 +14,11 @@
 namespace softland {
 namespace {
 
-/// Largest distance of the polyline from a sine, relative to the signal's peak: below the step of a 12-bit generator.
+/// Largest deviation of the polyline from a sine, relative to the peak of the signal: less than a step of 12 bits.
 constexpr double sine_tolerance = 1e-4;
 
 void require_signals(const std::map<std::string, Signal>& signals) {
-  require(!signals.empty(), "there is no waveform to export; there must be at least one");
+  require(!signals.empty(), "must have at least one waveform to export");
 }
 
 void require_end(double end) {
@@ -27,25 +27,25 @@ void require_end(double end) {
 }
 
 const std::string& column_name(const std::string& drive) {
-  require(
-      !drive.empty() && drive.find_first_of(",\"\r\n#") == std::string::npos,
-      fmt::format("the name of a drive is \"{}\"; in a CSV file it must not be empty nor hold a comma, quote, hash or line break",
-                  drive));
+  require(!drive.empty() && drive.find_first_of(",\"\r\n#") == std::string::npos,
+          fmt::format(
+              "the name of a drive is \"{}\"; for a CSV file it must not be empty or contain a comma, quote, hash or line break",
+              drive));
   return drive;
 }
 
-/// Returns the number of the sample that is held for ever.
+/// Returns the number of the last sample, which is held without end.
 double last_sample(const Signal& held, double rate) { return std::round(held.pieces().back().begin * rate); }
 
 constexpr double most_chords = 1e7;
 
 void require_few(double chords, double tolerance) {
-  require(chords <= most_chords, fmt::format("a polyline within {} V of this waveform needs {} points; it may have at most {}",
+  require(chords <= most_chords, fmt::format("a polyline within {} V of this waveform needs {} points; it must have at most {}",
                                              tolerance, chords, most_chords));
 }
 
-/// Appends the points of a piece with terms, whose curvature may change along it: intervals are halved until chords are near
-/// enough.
+/// Appends the points of a piece with terms. Intervals are halved until straight lines are within the tolerance, because the
+/// curvature changes along the piece.
 void append_halved(std::vector<std::pair<double, double>>& points, const SignalPiece& piece, double begin, double end,
                    double tolerance) {
   std::vector<double> ends{end};
@@ -69,7 +69,7 @@ void append_halved(std::vector<std::pair<double, double>>& points, const SignalP
 void append_inside(std::vector<std::pair<double, double>>& points, const SignalPiece& piece, double begin, double end,
                    double tolerance) {
   if (piece.is_straight() || !(end > begin)) return;
-  // A spline of equal levels is a line but for rounding: no share of its range can be a tolerance.
+  // A spline of equal levels deviates from a line by rounding only, so that its range cannot define a tolerance.
   constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
   const double size = std::max(std::abs(piece.voltage(begin)), std::abs(piece.voltage(end))), length = end - begin;
   if (!piece.terms.empty() && length * length / 8 * internal::derivative_bound(piece, 2, begin, end) <= rounding * size) return;
@@ -92,7 +92,7 @@ void append_inside(std::vector<std::pair<double, double>>& points, const SignalP
 std::vector<std::pair<double, double>> polyline(const Signal& signal, double end, double tolerance, double jump_time) {
   require_end(end);
   require(jump_time >= 0 && std::isfinite(jump_time), fmt::format("jump_time is {} s; it must be finite and >= 0", jump_time));
-  // A jump must end well before the next corner; otherwise it would cut that off.
+  // A jump must end well before the next breakpoint, which it would otherwise hide.
   constexpr double share_of_interval = 1e-3;
   const std::vector<SignalPiece>& pieces = signal.pieces();
   std::vector<std::pair<double, double>> points;
@@ -148,13 +148,13 @@ std::string csv(const std::map<std::string, Signal>& signals, double end, const 
 }
 
 std::string codes(const std::map<std::string, Coded>& drives) {
-  require(!drives.empty(), "there are no samples to export; there must be a drive that has some");
+  require(!drives.empty(), "must have at least one drive with samples to export");
   const double rate = drives.begin()->second.sample_rate;
   double last = 0;
   std::string text = "index";
   for (const auto& [drive, coded] : drives) {
-    require(coded.sample_rate == rate, fmt::format("drive '{}' takes samples at {} Hz, and drive '{}' at {} Hz; samples of one "
-                                                   "file must have one rate",
+    require(coded.sample_rate == rate, fmt::format("drive '{}' has samples at {} Hz, and drive '{}' at {} Hz; "
+                                                   "all samples of a file must have the same rate",
                                                    drive, coded.sample_rate, drives.begin()->first, rate));
     text += "," + column_name(drive);
     last = std::max(last, last_sample(coded.held, rate));
@@ -171,7 +171,7 @@ std::string codes(const std::map<std::string, Coded>& drives) {
   return text;
 }
 
-// SPICE reads names without regard to case and knows letters, digits and underscores everywhere.
+// Names in SPICE ignore case; letters, digits and underscores are valid in all simulators.
 std::string spice_name(const std::string& drive) {
   std::string name;
   for (const char c : drive) {
@@ -183,18 +183,18 @@ std::string spice_name(const std::string& drive) {
 
 std::string spice_pwl(const std::map<std::string, Signal>& signals, double end, std::string_view about) {
   require_signals(signals);
-  // The jump time is far below any time constant of a switch, and resolved by the 17 digits of a time of a second.
+  // The jump time is far below any time constant of a switch, but still resolved by 17 digits at a time of 1 s.
   const double jump_time = std::min(1e-12, 1e-7 * end);
   std::string text = fmt::format("* {}\n", about);
   std::set<std::string> names;
   for (const auto& [drive, signal] : signals) {
     const std::string name = "softland_" + spice_name(drive);
     require(names.insert(name).second,
-            fmt::format("the name of a drive is \"{}\"; another one has the same SPICE name {}", drive, name));
+            fmt::format("the name of a drive is \"{}\"; it must not have the SPICE name of another drive, {}", drive, name));
     fmt::format_to(std::back_inserter(text), ".subckt {} plus minus\nVdrive plus minus PWL(\n", name);
     double last = -1;
     for (const auto& [time, voltage] : polyline(signal, end, sine_tolerance * signal.peak(), jump_time)) {
-      // Only jumps a rounding error apart can coincide here; SPICE requires increasing times.
+      // SPICE requires increasing times; only jumps within a rounding error coincide here.
       if (!(time > last)) continue;
       fmt::format_to(std::back_inserter(text), "+ {} {}\n", time, voltage);
       last = time;

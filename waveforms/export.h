@@ -1,4 +1,4 @@
-// Waveform files for other programs.
+// Writes waveforms to files of other programs.
 #pragma once
 
 #include <map>
@@ -13,8 +13,8 @@ namespace softland {
 
 /// Returns breakpoints [s, V] whose straight connections stay within `tolerance` [V] of the signal on [0, end]; pulses and
 /// steps come out exact. A jump at t becomes points at t and at t + jump_time [s], or a thousandth of the interval after t if
-/// that is shorter; with jump_time = 0 both have the time t. The 0 V before t = 0 count: a signal that starts above them starts
-/// with a jump. The last point is at `end`, or one jump_time later. Throws InvalidInput unless end and jump_time are finite and
+/// that is shorter; with jump_time = 0 both have the time t. A signal that does not start at its 0 V before t = 0 starts with a
+/// jump. The last point is at `end`, or one jump_time later. Throws InvalidInput unless end and jump_time are finite and
 /// >= 0, the tolerance of a curve > 0, and the points of a piece at most 1e7.
 [[nodiscard]] std::vector<std::pair<double, double>> polyline(const Signal& signal, double end, double tolerance,
                                                               double jump_time);
@@ -25,8 +25,8 @@ namespace softland {
 /// together with other drives its ramps are split at their breakpoints, to rounding. Throws InvalidInput when there is no
 /// signal, a name does not fit into a header, or `end` is not finite and >= 0.
 ///
-/// `sample_rates`: rates of the drives that are samples, held from k / rate on until the next [Hz]. Each sample has a row, up
-/// to the one that is held for ever, and reading the file gives the same samples.
+/// `sample_rates` are the sample rates of the drives that consist of held samples [Hz]. Each sample at k / rate has a row, up to
+/// the last one, which is held without end. Reading the file gives the same samples.
 [[nodiscard]] std::string csv(const std::map<std::string, Signal>& signals, double end,
                               const std::map<std::string, double>& sample_rates = {});
 
@@ -34,11 +34,11 @@ namespace softland {
 struct Coded {
   Signal held;                      ///< samples, each held until the next
   double sample_rate = 0;           ///< [Hz]
-  int bits = 0;                     ///< 0 to 2^bits - 1 ...
-  double minimum = 0, maximum = 0;  ///< ... stand for these voltages [V]
+  int bits = 0;                     ///< number of bits; codes are 0 to 2^bits - 1
+  double minimum = 0, maximum = 0;  ///< voltages of the smallest and of the largest code [V]
 };
-/// Writes CSV with a header `index,<drive>,<drive>...` and a row for each sample k / rate, up to the one from which on all are
-/// held. Throws InvalidInput without drives, and when their rates differ.
+/// Writes CSV with a header `index,<drive>,<drive>...` and a row for each sample at k / rate, up to the last change of any drive.
+/// Throws InvalidInput without drives, and when their rates differ.
 [[nodiscard]] std::string codes(const std::map<std::string, Coded>& drives);
 
 /// Returns the name of a drive in SPICE: letters become lower case, and other characters than letters and digits an underscore.

@@ -31,12 +31,13 @@ template <>
 struct FamilyOf<Harmonic> {
   static constexpr std::string_view name = "harmonic";
   static constexpr auto parameters = std::to_array<Parameter<Harmonic>>({
-      {"base", ParameterKind::level, &Harmonic::base, false, "what the sine swings about"},
+      {"base", ParameterKind::level, &Harmonic::base, false, "mean level of the sine"},
       {"rise_time", ParameterKind::time, &Harmonic::rise_time, false, "linear rise of the base, from 0 V or `before`"},
       {"amplitude", ParameterKind::swing, &Harmonic::amplitude, true,
-       "or a percentage of the base; for the piezo, of the main hold level"},
-      {"angular_frequency", ParameterKind::angular_frequency, &Harmonic::angular_frequency, true, "of the sine"},
-      {"phase", ParameterKind::angle, &Harmonic::phase, false, "of the sine at t = 0"},
+       "amplitude, or a percentage of the base; for the piezo, of the hold voltage of the main electrode"},
+      {"angular_frequency", ParameterKind::angular_frequency, &Harmonic::angular_frequency, true,
+       "angular frequency of the sine"},
+      {"phase", ParameterKind::angle, &Harmonic::phase, false, "phase of the sine at t = 0"},
       {"start", ParameterKind::time, &Harmonic::start, false, "when the sine begins"},
       {"end", ParameterKind::end_time, &Harmonic::end, false, "when the sine ends; absent: never"},
       {"fade", ParameterKind::time, &Harmonic::fade, false, "linear fade in after start and out before end"},
@@ -74,7 +75,7 @@ template <class P>
   const std::vector<internal::Stretch<P>> envelope = internal::envelope(h);
   std::vector<P> begins;
   for (const internal::Stretch<P>& stretch : envelope) begins.push_back(stretch.begin);
-  // Compute in volts and by one division: a ramp whose slope is rounded twice ends beside the base, which would count as a
+  // Compute in volts with one division: a ramp whose slope is rounded twice does not end on the base, which would count as a
   // jump.
   std::vector<internal::Stretch<P>> straight_line{{.begin = P(0), .value = h.base}};
   if (!(internal::vanishes(h.base) && internal::vanishes(before)) && internal::decided(h.rise_time > 0)) {
@@ -89,7 +90,7 @@ template <class P>
     const internal::Stretch<P>& straight = internal::stretch_at(straight_line, begin);
     const internal::Stretch<P>& swing = internal::stretch_at(envelope, begin);
     all.push_back({.begin = begin, .value = straight.at(begin), .slope = straight.slope});
-    // The sine is left out of a stretch in which the envelope is 0.
+    // A stretch in which the envelope is 0 has no sine.
     if (!internal::decided(swing.value > 0) && !internal::decided(swing.slope > 0)) continue;
     all.back().amplitude = h.amplitude * swing.at(begin);
     all.back().amplitude_slope = h.amplitude * swing.slope;

@@ -19,8 +19,8 @@ std::string violation(const Signal& signal, const DriverLimits& limits) {
   if (!(minimum >= limits.min_voltage - slack)) {
     return fmt::format("the voltage reaches {}{}, below the driver's min_voltage of {}", engineering(minimum, "V"),
                        minimum != signal.before() ? ""
-                       : minimum == 0             ? " (where every drive starts)"
-                                                  : " (where it stands before)",
+                       : minimum == 0             ? " (the voltage of every drive before t = 0)"
+                                                  : " (its voltage before t = 0)",
                        engineering(limits.min_voltage, "V"));
   }
   if (std::isinf(limits.max_slew)) return {};

@@ -8,16 +8,16 @@
 
 namespace softland {
 
-/// Limits of a source: hard bounds of every search.
+/// Limits of a source, which no searched waveform exceeds.
 struct DriverLimits {
   double min_voltage = 0;                                     ///< [V]
   double max_voltage = 0;                                     ///< [V]
   double max_slew = std::numeric_limits<double>::infinity();  ///< [V/s]
 };
 
-/// Returns an empty text when the signal stays inside the limits for ever (to 1e-12 relative), else one sentence with the value
-/// and the limit. The 0 V every signal starts from count, so that a min_voltage above 0 V is always violated. A limit that is
-/// NaN is violated.
+/// Returns an empty text if the signal keeps the limits at all times (to 1e-12 relative), else one sentence with the value and
+/// the limit. The voltage before t = 0 counts, so that a min_voltage above 0 V is violated by a signal that starts at 0 V. A
+/// limit of NaN is violated.
 [[nodiscard]] std::string violation(const Signal& signal, const DriverLimits& limits);
 
 }  // namespace softland

@@ -12,12 +12,12 @@ namespace softland {
 namespace {
 
 constexpr int most_halvings = 40;
-// Extreme points of Chebyshev polynomials of degree 3 and 2, as parts of a piece. A cubic interpolates at the former; the
-// latter check it against the waveform.
+// Points of a piece as shares of its length. A cubic interpolates the waveform at `nodes`, the extreme points of the Chebyshev
+// polynomial of degree 3; its error is checked at `checks`.
 constexpr std::array nodes{0.0, 0.25, 0.75, 1.0};
 constexpr std::array checks{0.1, 0.5, 0.9};
 
-// Returns Newton's form through the nodes, as coefficients in rising order of the part of the piece.
+// Returns the coefficients of the cubic through the values at the nodes, in rising order of powers of the share of the piece.
 std::array<double, 4> cubic_through(std::array<double, 4> values) {
   for (std::size_t order = 1; order < 4; ++order) {
     for (std::size_t k = 3; k >= order; --k) values[k] = (values[k] - values[k - 1]) / (nodes[k] - nodes[k - order]);
@@ -32,7 +32,7 @@ std::array<double, 4> cubic_through(std::array<double, 4> values) {
 
 double at(const std::array<double, 4>& c, double part) { return c[0] + part * (c[1] + part * (c[2] + part * c[3])); }
 
-// Builds the pieces of one waveform, in its own volts and seconds.
+// Approximates a waveform of a program by cubic pieces, in its own units of voltage and time.
 class Following {
  public:
   explicit Following(const Own& own) : own_(own) {}
@@ -43,7 +43,7 @@ class Following {
     const double held = voltage(times.back());
     largest_ = std::max(largest_, std::abs(held));
     for (std::size_t k = 0; k + 1 < times.size(); ++k) {
-      // A stretch at whose end the waveform jumps ends on the value before the jump.
+      // If the waveform jumps at the end of a stretch, the stretch ends on the value before the jump.
       constexpr double rounding = 1e-12;
       const double end = times[k + 1], before = voltage(std::nextafter(end, times[k])), after = voltage(end);
       const double ends_on = std::abs(after - before) > rounding * largest_ ? before : after;
@@ -69,8 +69,8 @@ class Following {
     if (given.empty()) check_constant();
     for (const double time : given) {
       require(std::isfinite(time) && time >= times.back(), [&] {
-        return named(fmt::format("its breakpoint at {} s comes after that at {} s; they must be finite and increase from 0", time,
-                                 times.back()));
+        return named(fmt::format("its breakpoint at {} s follows that at {} s; breakpoints must be finite and increase from 0",
+                                 time, times.back()));
       });
       if (times.size() > 1 && internal::coincide(time, times.back())) times.pop_back();
       if (time > times.back()) times.push_back(time);
@@ -78,8 +78,7 @@ class Following {
     return times;
   }
 
-  // A waveform without breakpoints stands at its voltage at t = 0 for ever: that is meant only where it is constant, and not 0
-  // V.
+  // Checks a waveform without breakpoints, which keeps its voltage at t = 0: it must be constant and not 0 V.
   void check_constant() const {
     constexpr double first = 1e-12, last = 1e3;  // [s]
     constexpr int looks = 300;
@@ -91,13 +90,13 @@ class Following {
     }
     require(begin != 0 && when == 0, [&] {
       return named(
-          fmt::format("it has no breakpoints, so that it would stand at its voltage at t = 0 s, {} V, for ever{}; its "
-                      "breakpoints are the times at which it kinks or jumps, the last one that from which on it stays",
+          fmt::format("it has no breakpoints, so that it would keep its voltage at t = 0 s, {} V{}; "
+                      "breakpoints are the times at which it kinks or jumps, and the last one is its end",
                       begin, when > 0 ? fmt::format(", and it is {} V at {:.3g} s", voltage(when), when) : ""));
     });
   }
 
-  // Measures how large the waveform is, as far as it is known before it is followed.
+  // Samples the waveform in an interval to find its largest absolute voltage, to which the accuracy is relative.
   void see(double begin, double end) {
     constexpr int instants = 64;
     for (int k = 0; k < instants; ++k)
@@ -128,7 +127,7 @@ class Following {
     } else {
       const double middle = begin + duration / 2;
       require(halvings < most_halvings && begin < middle && middle < end && pieces_.size() < most_own_pieces, [&] {
-        return named(fmt::format("it is not smooth at {:.9g} s: where it kinks or jumps, there must be a breakpoint", middle));
+        return named(fmt::format("it is not smooth at {:.9g} s: it must have a breakpoint at every kink or jump", middle));
       });
       follow(until, begin, middle, halvings + 1);
       follow(until, middle, end, halvings + 1);
@@ -144,7 +143,7 @@ void check(const Own& own) {
   require(own.waveform != nullptr, "an own waveform is null");
   const std::size_t due = own.waveform->parameters().size();
   require(own.x.size() == due,
-          [&] { return fmt::format("{}: has {} parameters, and {} values are given", described(own), due, own.x.size()); });
+          [&] { return fmt::format("{}: has {} parameters, but {} values are given", described(own), due, own.x.size()); });
 }
 
 }  // namespace
@@ -158,8 +157,10 @@ Own own(std::shared_ptr<const OwnWaveform> waveform) {
   require(made.waveform != nullptr, "an own waveform is null");
   for (const OwnParameter& p : made.waveform->parameters()) {
     require(!p.name.empty() && std::isfinite(p.lower) && std::isfinite(p.upper) && p.lower <= p.start && p.start <= p.upper, [&] {
-      return fmt::format("{}: its parameter '{}' from {} to {} begins at {}; it must have a name, and begin within finite bounds",
-                         described(made), p.name, p.lower, p.upper, p.start);
+      return fmt::format(
+          "{}: its parameter '{}' from {} to {} begins at {}; "
+          "it must have a name, and begin within finite bounds",
+          described(made), p.name, p.lower, p.upper, p.start);
     });
     made.x.push_back(p.start);
   }

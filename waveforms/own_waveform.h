@@ -1,12 +1,11 @@
-// A user's own waveform: a class from outside softland that gives voltage against time.
+// A waveform that a program defines: a class that returns voltage against time.
 //
-// It becomes a Signal like every other waveform: between two of its breakpoints the voltage is followed by cubic polynomials,
-// as many as needed, each within own_waveform_accuracy of the waveform's largest voltage. Everything that accepts a signal
-// accepts it: closings, sources with their limits and errors, devices in lanes, tables for generators. No scene file can hold
-// it.
+// The waveform becomes a Signal: between two breakpoints, cubic polynomials approximate the voltage with an error of at most
+// own_waveform_accuracy times its largest voltage. It can be used wherever a signal can: in closings, in sources with limits and
+// errors, in lanes of devices, in tables for generators. A scene file cannot hold it.
 //
-// Smoothness: between two breakpoints the voltage has four continuous derivatives, or the cubics become many. A kink or a jump
-// must be a breakpoint.
+// Between two breakpoints the voltage should have four continuous derivatives; otherwise many cubics are needed. Every kink and
+// every jump must be a breakpoint.
 #pragma once
 
 #include <array>
@@ -21,7 +20,7 @@
 
 namespace softland {
 
-/// Largest error of the cubics of an own waveform, over its largest |V|.
+/// Largest error of the cubics of an own waveform, relative to its largest |V|.
 inline constexpr double own_waveform_accuracy = 1e-7;
 /// Largest number of cubics.
 inline constexpr std::size_t most_own_pieces = 20'000;

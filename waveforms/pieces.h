@@ -22,7 +22,7 @@ namespace softland {
 
 namespace internal {
 
-/// True when a number is 0 for good. A number with slopes, or a lane, is not: it may be a parameter whose value is 0.
+/// Returns true if a number is the constant 0. A dual number or a lane is not constant, even if its value is 0.
 template <class P>
 [[nodiscard]] bool vanishes(const P& x) {
   if constexpr (std::is_same_v<P, double>) {
@@ -87,15 +87,15 @@ struct SignalPieceOf {
   P amplitude_slope = 0;              ///< [V/s]
   P angular_frequency = 0;            ///< [rad/s]
   P phase = 0;                        ///< [rad]; the sine's argument is angular_frequency t + phase with t from 0, not from begin
-  std::vector<TermOf<P>> terms = {};  ///< their times count from begin
-  /// True when the terms are a Fourier series: sines and cosines of 1, 2, 3 ... times the first one's angular frequency, of
-  /// fixed sizes. They are found by rotation, with one sine and cosine for all.
+  std::vector<TermOf<P>> terms = {};  ///< terms, whose time s counts from begin
+  /// True if the terms are a Fourier series: sines and cosines of constant amplitude, with angular frequencies of 1, 2, 3 ...
+  /// times that of the first term. They are then evaluated by rotation from a single sine and cosine.
   bool is_series = false;
 
   [[nodiscard]] bool oscillates() const { return !internal::vanishes(amplitude) || !internal::vanishes(amplitude_slope); }
-  /// True for a straight line and nothing else.
+  /// Returns true if the piece is a straight line, without sine and terms.
   [[nodiscard]] bool is_straight() const { return !oscillates() && terms.empty(); }
-  /// True when the piece stays at its value.
+  /// Returns true if the voltage of the piece is constant.
   [[nodiscard]] bool is_level() const { return internal::vanishes(slope) && is_straight(); }
   /// Returns the voltage [V]. The formula continues past both ends of the piece, so that an integrator may step a little beyond
   /// a breakpoint.
@@ -156,21 +156,20 @@ using Pieces = std::vector<SignalPieceOf<P>>;
 
 namespace internal {
 
-/// True when a condition on a waveform's times holds. Throws InvalidInput where it holds for some devices of a lane only: their
-/// signals do not have the same pieces.
+/// Returns true if a condition on the times of a waveform holds. Throws InvalidInput if it holds for only some devices of a lane,
+/// because their signals then have different pieces.
 template <class Condition>
 [[nodiscard]] bool decided(const Condition& condition) {
   if constexpr (std::is_same_v<Condition, bool>) {
     return condition;
   } else {
-    require(all_of(condition) || none_of(condition), "the signals of a lane of devices do not have the same pieces");
+    require(all_of(condition) || none_of(condition), "the signals of the devices of a lane must have the same pieces");
     return all_of(condition);
   }
 }
 
-/// Returns true for two times [s] that differ by no more than the rounding of one sum and of their decimal text. A user means
-/// such times to be one: an edge that ends where the next one begins. A piece between them would be shorter than any integrator
-/// can step.
+/// Returns true for two times [s] that differ only by rounding, of a sum or of their decimal text. Such times are meant to be
+/// equal, as where one edge ends and the next begins. A piece between them would be too short for any integrator.
 template <class P>
 [[nodiscard]] bool coincide(const P& time, const P& other) {
   using std::abs;
@@ -178,7 +177,7 @@ template <class P>
   return !decided(abs(time - other) > roundings * epsilon * abs(other));
 }
 
-/// Returns straight connections of points [s, V], times in order; two points of the same time are a jump.
+/// Returns the pieces of straight lines between points [s, V], in order of time; two points of the same time are a jump.
 template <class P>
 [[nodiscard]] Pieces<P> straight_pieces(const std::vector<std::pair<P, P>>& points) {
   Pieces<P> pieces;
@@ -192,7 +191,7 @@ template <class P>
   return pieces;
 }
 
-/// One stretch of a broken line: it holds until the next one begins.
+/// One stretch of a piecewise linear function; it ends where the next one begins.
 template <class P>
 struct Stretch {
   P begin = 0;  ///< [s]

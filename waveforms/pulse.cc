@@ -9,7 +9,7 @@ namespace internal {
 void require_levels_and_edges(std::string_view what, const std::vector<double>& levels, const std::vector<double>& times,
                               double edge) {
   const std::size_t count = levels.size();
-  require_of("levels", count >= 1, [&] { return fmt::format("levels of {} are empty; there must be at least one", what); });
+  require_of("levels", count >= 1, [&] { return fmt::format("levels of {} must not be empty", what); });
   require_of("times", times.size() + 1 == count, [&] {
     return fmt::format("times of {} are {} for {} levels; there must be one fewer than levels", what, times.size(), count);
   });
@@ -27,7 +27,7 @@ void require_levels_and_edges(std::string_view what, const std::vector<double>& 
                [&] { return fmt::format("time {} of {} is {} s; it must be finite", k + 1, what, time); });
     const bool meets = coincide(edge_end, time);
     require_of("times", meets || time > edge_end, [&] {
-      return fmt::format("time {} of {} is {} s; it must be at least {} s, where the edge before it ends", k + 1, what, time,
+      return fmt::format("time {} of {} is {} s; it must be at least {} s, when the edge before it ends", k + 1, what, time,
                          edge_end);
     });
     edge_end = time + edge;

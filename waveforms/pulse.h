@@ -25,7 +25,7 @@ template <>
 struct FamilyOf<Pulse> {
   static constexpr std::string_view name = "pulse";
   static constexpr auto parameters = std::to_array<Parameter<Pulse>>({
-      {"levels", ParameterKind::level, &Pulse::levels, true, "n levels; the last is held for ever"},
+      {"levels", ParameterKind::level, &Pulse::levels, true, "n levels; the last one is held"},
       {"times", ParameterKind::time, &Pulse::times, false, "n - 1 times at which the edge to the next level begins"},
       {"edge", ParameterKind::time, &Pulse::edge, false, "duration of every linear edge"},
   });

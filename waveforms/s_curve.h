@@ -28,7 +28,7 @@ template <>
 struct FamilyOf<SCurve> {
   static constexpr std::string_view name = "s-curve";
   static constexpr auto parameters = std::to_array<Parameter<SCurve>>({
-      {"levels", ParameterKind::level, &SCurve::levels, true, "n levels; the last is held for ever"},
+      {"levels", ParameterKind::level, &SCurve::levels, true, "n levels; the last one is held"},
       {"times", ParameterKind::time, &SCurve::times, false, "n - 1 times at which the edge to the next level begins"},
       {"edge", ParameterKind::time, &SCurve::edge, false, "duration of every edge, half a cosine"},
   });

@@ -13,9 +13,9 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-/// Returns the end value [V] whose straight connection from (piece.begin, piece.value) has the piece's slope bit for bit, if
-/// one exists; `favourite` is tried first. A table that jumps after a ramp, and its export, need it: value + slope * duration
-/// has a rounding error.
+/// Returns the end value [V] for which the straight line from (piece.begin, piece.value) has exactly the slope of the piece, if
+/// one exists; `favourite` is tried first. A table that jumps after a ramp, and its export, need this value, because
+/// value + slope * duration has a rounding error.
 double end_of_straight(const SignalPiece& piece, double end, double favourite) {
   const double duration = end - piece.begin;
   if (piece.slope == 0) return piece.value;
@@ -23,7 +23,7 @@ double end_of_straight(const SignalPiece& piece, double end, double favourite) {
   if (has_the_slope(favourite)) return favourite;
   const double rise = piece.slope * duration;
   const double computed = piece.value + rise;
-  // Roundings separate the original end value from `rise`; one step has been enough in 2e7 random ramps, two leave room.
+  // The exact end value differs from `rise` by rounding. In 2e7 random ramps it was at most one step away; two are tried.
   constexpr int reach = 2;
   double rise_up = rise, rise_down = rise, value_up = computed, value_down = computed;
   for (int i = 0; i <= reach; ++i) {
@@ -38,7 +38,7 @@ double end_of_straight(const SignalPiece& piece, double end, double favourite) {
   return computed;
 }
 
-/// Returns the largest rounding error between the end of a piece and the value it was meant to end on [V].
+/// Returns a bound of the rounding error of the voltage at the end of a piece [V].
 double rounding_at_end(const SignalPiece& piece, double end) {
   constexpr double roundings = 16;
   const double duration = end - piece.begin;
@@ -55,7 +55,7 @@ double rounding_at_end(const SignalPiece& piece, double end) {
     }
     of_terms += size * (1 + std::abs(term.angular_frequency) * duration + std::abs(term.sweep) * duration * duration);
   }
-  // The times of both ends are rounded as well, the more the later they are.
+  // The times of both ends are rounded as well; their rounding grows with time.
   return roundings * epsilon *
          (rate * end + straight + swing * (1 + piece.angular_frequency * end + std::abs(piece.phase)) + of_terms);
 }
@@ -76,7 +76,7 @@ void append_root(std::vector<double>& times, Function function, double low, doub
   times.push_back(0.5 * (low + high));
 }
 
-/// Appends times in [low, high] among which are all extrema of voltage and rate there; low and high are among them.
+/// Appends times in [low, high] that include low, high and all extrema of the voltage and of dV/dt between them.
 ///
 /// With A = amplitude + amplitude_slope (t - begin): V'' ~ 2 A' cos - A w sin. Inside a quarter period in which A keeps its
 /// sign this is either of one sign or monotone, so it has one root at most; between such roots V' is monotone and has one root
@@ -155,8 +155,8 @@ void check_term(const SignalTerm& term, std::size_t piece) {
 }  // namespace
 
 Signal::Signal(std::vector<SignalPiece> pieces, double before) : pieces_(std::move(pieces)), before_(before) {
-  require(std::isfinite(before), fmt::format("a signal stands at {} V before t = 0; that must be finite", before));
-  require(!pieces_.empty(), "a signal has no pieces; it must have at least one");
+  require(std::isfinite(before), fmt::format("the voltage of a signal before t = 0 is {} V; it must be finite", before));
+  require(!pieces_.empty(), "a signal must have at least one piece");
   require(pieces_.front().begin == 0,
           fmt::format("the first piece of a signal begins at {} s; it must begin at 0 s", pieces_.front().begin));
   // Measured tables have very many pieces: a message is composed only when it is needed.
@@ -181,17 +181,17 @@ Signal::Signal(std::vector<SignalPiece> pieces, double before) : pieces_(std::mo
     }
   }
   const SignalPiece& last = pieces_.back();
-  require(last.slope == 0,
-          fmt::format("slope of the last piece of a signal is {} V/s; it lasts for ever and must be level", last.slope));
+  require(
+      last.slope == 0,
+      fmt::format("slope of the last piece of a signal is {} V/s; the last piece has no end and must be constant", last.slope));
   require(last.amplitude_slope == 0,
-          fmt::format("amplitude_slope of the last piece of a signal is {} V/s; it lasts for ever and must be 0",
+          fmt::format("amplitude_slope of the last piece of a signal is {} V/s; it must be 0, because the last piece has no end",
                       last.amplitude_slope));
   for (const SignalTerm& term : last.terms) {
-    require(
-        term.decay > 0 && term.sweep == 0,
-        fmt::format("a term of the last piece of a signal has the decay {} 1/s and the sweep {} rad/s^2; it lasts for ever, and "
-                    "must decay without sweep",
-                    term.decay, term.sweep));
+    require(term.decay > 0 && term.sweep == 0,
+            fmt::format("a term of the last piece of a signal has the decay {} 1/s and the sweep {} rad/s^2; "
+                        "it must decay without sweep, because the last piece has no end",
+                        term.decay, term.sweep));
   }
 }
 
@@ -200,7 +200,7 @@ Signal Signal::constant(double voltage, double before) { return Signal({SignalPi
 Signal Signal::standing(double voltage) { return constant(voltage, voltage); }
 
 Signal Signal::piecewise_linear(const std::vector<std::pair<double, double>>& points, double before) {
-  require(!points.empty(), "a piecewise linear signal has no points; it must have at least one");
+  require(!points.empty(), "a piecewise linear signal must have at least one point");
   std::size_t count = points.size();
   while (count > 1 && points[count - 2].second == points[count - 1].second) --count;
   for (std::size_t i = 1; i < count; ++i) {
@@ -292,7 +292,7 @@ double Signal::peak_slew(double end) const {
 }
 
 double Signal::resolving_step(double time) const {
-  // The step resolves every oscillation for a controller of order 2 and more, yet leaves the step length to the error test.
+  // The step resolves every oscillation for an integrator of order 2 or higher, whose error test still sets the step length.
   constexpr double steps_per_period = 20;
   const std::size_t at = piece_at(time);
   const SignalPiece& piece = pieces_[at];

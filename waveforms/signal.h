@@ -1,5 +1,5 @@
-// A drive voltage against time, compiled from a waveform family into pieces that are smooth inside (pieces.h). Before t = 0 it
-// stands at one voltage, 0 V unless another is given: a run starts at rest under it. Time integration stops at every
+// A drive voltage against time, compiled from a waveform family into pieces that are smooth inside (pieces.h). Before t = 0 the
+// voltage is constant, 0 V by default, and a simulation starts at rest under it. Time integration stops at every
 // breakpoint, so that no step crosses a corner or a jump.
 #pragma once
 
@@ -19,7 +19,7 @@ using SignalTerm = TermOf<double>;
 
 class Signal {
  public:
-  /// Creates a signal of 0 V for ever.
+  /// Creates a signal of 0 V at all times.
   Signal() : pieces_{SignalPiece{}} {}
   /// Throws InvalidInput unless the pieces start at 0, begins strictly increase, every number is finite, the angular frequency
   /// is positive where there is an amplitude, and no term grows. The last piece lasts for ever: it must have no slope, no
@@ -29,15 +29,15 @@ class Signal {
   static Signal constant(double voltage, double before = 0);
   /// Returns the same voltage [V] at all times, before t = 0 too.
   static Signal standing(double voltage);
-  /// Returns straight connections of points [s, V]; the last value holds for ever. Two points of the same time are a jump. The
-  /// breakpoints are the times of the points, less those at the end that only repeat the held value. Throws InvalidInput unless
-  /// there is a point, times start at 0 and do not decrease, and every number is finite.
+  /// Returns the signal of straight lines between points [s, V]; the last value is held. Two points of the same time are a jump.
+  /// The breakpoints are the times of the points, less those at the end that only repeat the held value. Throws InvalidInput
+  /// unless there is a point, times start at 0 and do not decrease, and every number is finite.
   static Signal piecewise_linear(const std::vector<std::pair<double, double>>& points, double before = 0);
 
   /// Returns the voltage for time < 0 [V].
   [[nodiscard]] double before() const { return before_; }
   [[nodiscard]] const std::vector<SignalPiece>& pieces() const { return pieces_; }
-  /// Returns the piece that holds on [time, time + something): at a breakpoint the later one.
+  /// Returns the number of the piece that contains a time; at a breakpoint, that of the later piece.
   [[nodiscard]] std::size_t piece_at(double time) const;
   /// Returns the voltage [V]; at a jump the value after it.
   [[nodiscard]] double voltage(double time) const;
@@ -47,9 +47,9 @@ class Signal {
   [[nodiscard]] double voltage_before(double time) const;
   /// Returns the beginnings of all pieces, 0 included [s].
   [[nodiscard]] std::vector<double> breakpoints() const;
-  /// Returns the value the signal ends on or tends to [V]; for a sine that never ends, its mean value.
+  /// Returns the final value of the signal, or its limit [V]; for a sine without an end, its mean value.
   [[nodiscard]] double hold_level() const;
-  /// True when the signal is 0 V at all times.
+  /// Returns true if the signal is 0 V at all times.
   [[nodiscard]] bool is_zero() const;
 
   struct Range {
@@ -69,7 +69,7 @@ class Signal {
   [[nodiscard]] double resolving_step(double time) const;
 
  private:
-  /// Returns voltage_before at the beginning of piece `next`.
+  /// Returns voltage_before() at the beginning of piece `next`.
   [[nodiscard]] double left_limit(std::size_t next) const;
 
   std::vector<SignalPiece> pieces_;
@@ -83,10 +83,11 @@ class Signal {
 /// Returns the time at which the last piece of any signal begins [s].
 [[nodiscard]] double last_breakpoint(std::span<const Signal> signals);
 
-/// Returns the signal until `time` [s], held from then on at its voltage just before; for 0 s that is the voltage before t = 0.
+/// Returns the signal until `time` [s]; from then on its voltage just before `time` is held. For 0 s that is the voltage before
+/// t = 0.
 [[nodiscard]] Signal held_from(const Signal& signal, double time);
-/// Returns the part after a breakpoint [s] of a signal that stands still before it, with time counted from there; it stands at
-/// `before` [V] until then.
+/// Returns the part of a signal after a breakpoint [s], before which the signal must be constant. Time counts from the
+/// breakpoint, and the voltage before is `before` [V].
 [[nodiscard]] Signal part_from(const Signal& signal, double time, double before = 0);
 
 /// Returns the signal times a factor, a finite number.

@@ -17,7 +17,7 @@ bool have_same_pieces(const std::vector<Signal>& a, const std::vector<Signal>& b
   });
 }
 
-// Sums of durations reproduce the end of a waveform up to rounding, at some points and not at others.
+// Two times or values are equal up to rounding, because a sum of durations has a rounding error.
 bool are_equal(double a, double b) {
   constexpr double roundings = 16 * std::numeric_limits<double>::epsilon();
   return std::abs(a - b) <= roundings * std::max(std::abs(a), std::abs(b));
@@ -41,7 +41,7 @@ bool is_polynomial(const SignalPiece& piece) {
                                             [](const SignalTerm& term) { return !term.turns() && term.decay == 0; });
 }
 
-// Returns the coefficients of a polynomial piece about another time.
+// Returns the coefficients of a polynomial piece in powers of the time from `origin`.
 std::array<double, 4> cubic_about(const SignalPiece& piece, double origin) {
   std::array<double, 4> c{piece.value, piece.slope};
   for (const SignalTerm& term : piece.terms) {
@@ -51,8 +51,7 @@ std::array<double, 4> cubic_about(const SignalPiece& piece, double origin) {
   return {c[0] + by * (c[1] + by * (c[2] + by * c[3])), c[1] + by * (2 * c[2] + by * 3 * c[3]), c[2] + 3 * by * c[3], c[3]};
 }
 
-// Returns the derivative of a piece whose sizes alone change, with the terms that do; none where its times or angles change
-// too.
+// Returns the derivative of a piece as a piece if only its amplitudes change; none if its times or angles change as well.
 std::shared_ptr<const SignalPiece> derivative(const SignalPiece& above, const SignalPiece& below, double step) {
   const auto turns_alike = [](const SignalTerm& a, const SignalTerm& b) {
     return a.decay == b.decay && a.angular_frequency == b.angular_frequency && a.sweep == b.sweep;
@@ -89,12 +88,12 @@ double inner_time(const std::vector<SignalPiece>& pieces, std::size_t k) {
 
 }  // namespace
 
-// A point with its bounds.
+// A point in the space of parameters, with the bounds of the parameters.
 struct SignalSlopes::Neighbourhood {
   const SignalsOf& signals;
   std::span<const double> x, lower, upper;
 
-  // Returns the parameter after `share` of the step that differences are taken over.
+  // Returns the value of parameter k moved by `share` of the difference step.
   [[nodiscard]] double beside(std::size_t k, double share) const {
     return std::clamp(x[k] + share * share_of_range * (upper[k] - lower[k]), lower[k], upper[k]);
   }
@@ -127,7 +126,7 @@ SignalSlopes::SignalSlopes(const SignalsOf& signals, std::span<const double> x, 
   find_one_by_one(near, here);
 }
 
-// Returns whether this number of groups takes fewer differences than the parameters: one more is needed for the check.
+// Returns true if this number of groups needs fewer differences than the parameters do, including one for the check.
 bool SignalSlopes::saves(std::size_t groups) const { return groups + 1 < parameters_; }
 
 void SignalSlopes::find_one_by_one(const Neighbourhood& near, const Signals& here) {
@@ -168,7 +167,8 @@ bool SignalSlopes::find_in_groups(const Neighbourhood& near, const Signals& here
 }
 
 bool SignalSlopes::holds_along_all(const Neighbourhood& near, const Signals& here) const {
-  constexpr double tolerance = 1e-5;  // relative to the largest change; a missed parameter is wrong by all of its own
+  constexpr double tolerance =
+      1e-5;  // relative to the largest change; a parameter in a wrong group has an error of its whole change
   const auto share = [](std::size_t k) {
     const double golden = std::fmod(0.618033988749895 * static_cast<double>(k + 1), 1.0);
     return (k % 2 == 0 ? 1 : -1) * (0.5 + golden / 2);

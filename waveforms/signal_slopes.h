@@ -1,9 +1,9 @@
-// Derivatives of the signals of all drives by the parameters that they are made from: central differences of the closed forms
-// of their pieces. A parameter moves the beginnings of pieces, and the voltage within them.
+// Derivatives of the signals of all drives by the parameters of their waveforms, as central differences of the pieces of the
+// signals. A parameter changes the beginnings of pieces, and the voltage within them.
 //
-// Parameters that move no piece in common share one difference: the levels of a spline take four, however many they are
-// (Curtis, Powell and Reid 1974). The groups are found at one point and may be different at another. So every use of them is
-// checked against a difference along a direction in which all parameters change at once, each by a share of its own.
+// Parameters that change no common piece form a group and share one difference: the levels of a spline need four groups, however
+// many there are (Curtis, Powell and Reid 1974). Groups are found at one point and may be wrong at another. Every use of groups
+// is therefore checked against a difference in a direction in which all parameters change, each by a different share.
 #pragma once
 
 #include <array>
@@ -18,10 +18,10 @@
 
 namespace softland {
 
-/// A group of parameters that move no piece in common.
+/// A group of parameters that change no common piece.
 struct ParameterGroup {
   std::vector<std::size_t> parameters;
-  std::vector<std::vector<std::optional<std::size_t>>> movers;  ///< parameter that moves the piece, by drive and piece
+  std::vector<std::vector<std::optional<std::size_t>>> movers;  ///< parameter that changes a piece, by drive and piece
 };
 
 class SignalSlopes {
@@ -47,9 +47,9 @@ class SignalSlopes {
 
   /// Step to either side of a parameter, as a share of its range.
   static constexpr double share_of_range = 1e-6;
-  /// `signals` gives one signal per drive for x, and is also called for neighbours of x from `lower` to `upper`. Parameters
-  /// without room between these have no slopes. `groups` were found at another x: where they hold here they give the same
-  /// numbers for fewer signals.
+  /// `signals` returns one signal per drive for x; it is also called for points near x between `lower` and `upper`. A parameter
+  /// without room between these bounds has no slopes. `groups` were found at another x; if they are valid here, they give the
+  /// same numbers with fewer signals.
   using SignalsOf = std::function<std::vector<Signal>(std::span<const double>)>;
   SignalSlopes(const SignalsOf& signals, std::span<const double> x, std::span<const double> lower, std::span<const double> upper,
                const std::vector<ParameterGroup>& groups = {});
@@ -57,13 +57,13 @@ class SignalSlopes {
   SignalSlopes& operator=(SignalSlopes&&) = default;
 
   [[nodiscard]] std::size_t parameters() const { return parameters_; }
-  /// Returns the slopes by the parameters that move a piece of a drive.
+  /// Returns the derivatives of a piece of a drive by the parameters that change it.
   [[nodiscard]] const std::vector<Slope>& at(std::size_t drive, std::size_t piece) const { return slopes_[drive][piece]; }
-  /// Returns the parameters without derivative: on either side of their value the signals have different pieces.
+  /// Returns the parameters without a derivative: the signals have different pieces on either side of their value.
   [[nodiscard]] const std::vector<std::size_t>& kinks() const { return kinks_; }
-  /// Returns all parameters in few groups; none where groups would save nothing.
+  /// Returns groups of all parameters; none if groups would not save signals.
   [[nodiscard]] std::vector<ParameterGroup> groups() const;
-  /// True when the groups that were given hold here.
+  /// Returns true if the given groups are valid at this point.
   [[nodiscard]] bool are_grouped() const { return are_grouped_; }
 
  private:
@@ -74,7 +74,7 @@ class SignalSlopes {
   void find_one_by_one(const Neighbourhood& near, const Signals& here);
   [[nodiscard]] bool find_in_groups(const Neighbourhood& near, const Signals& here, const std::vector<ParameterGroup>& groups);
   [[nodiscard]] bool holds_along_all(const Neighbourhood& near, const Signals& here) const;
-  /// `mover` gives the parameter that moves a piece, and its step from below to above. Returns false where it gives none for a
+  /// `mover` returns the parameter that changes a piece, and its step from below to above. Returns false if it returns none for a
   /// piece that has changed.
   template <class Mover>
   bool add(Mover&& mover, Signals above, Signals below);

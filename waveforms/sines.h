@@ -1,4 +1,4 @@
-// Sines: a band-limited signal on a step, a sum of sines that are all 0 where they begin and where they end.
+// Sines: a band-limited signal on a step, the sum of sines that are all 0 at their common start and end.
 //
 //   V(t) = b(t) + sum over k = 1 ... N of amplitudes_k sin(k pi (t - start) / duration)
 //
@@ -31,12 +31,13 @@ template <>
 struct FamilyOf<Sines> {
   static constexpr std::string_view name = "sines";
   static constexpr auto parameters = std::to_array<Parameter<Sines>>({
-      {"base", ParameterKind::level, &Sines::base, false, "what the sines swing about"},
+      {"base", ParameterKind::level, &Sines::base, false, "mean level of the sines"},
       {"rise_time", ParameterKind::time, &Sines::rise_time, false, "linear rise of the base, from 0 V or `before`"},
       {"amplitudes", ParameterKind::swing, &Sines::amplitudes, true,
-       "of the sines of 1, 2, 3 ... half waves; or percentages of the base; for the piezo, of the main hold level"},
+       "amplitudes of the sines of 1, 2, 3 ... half waves, or percentages of the base; "
+       "for the piezo, of the hold voltage of the main electrode"},
       {"start", ParameterKind::time, &Sines::start, false, "when the sines begin"},
-      {"duration", ParameterKind::time, &Sines::duration, true, "of the sines"},
+      {"duration", ParameterKind::time, &Sines::duration, true, "duration of the sines"},
   });
   [[nodiscard]] static Sines example() {
     return {.base = 1, .rise_time = 0.5, .amplitudes = {2, 0, -1}, .start = 0.3, .duration = 6};
@@ -47,7 +48,7 @@ struct FamilyOf<Sines> {
 template <class P>
 [[nodiscard]] Pieces<P> pieces(const SinesOf<P>& sines, const P& before = P(0)) {
   const P end = sines.start + sines.duration;
-  // The base is that of a harmonic.
+  // Make the base as for a harmonic.
   Pieces<P> all = pieces(HarmonicOf<P>{.base = sines.base,
                                        .rise_time = sines.rise_time,
                                        .amplitude = P(1),

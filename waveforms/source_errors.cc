@@ -12,12 +12,12 @@ namespace {
 constexpr double no_bound = std::numeric_limits<double>::infinity();
 constexpr double most_of_gap = 0.49;  // largest move of an edge towards its neighbour, as a share of the time between them
 
-/// Breakpoints that move together.
+/// An edge: breakpoints that a delay of the edge moves together.
 struct Edge {
   std::size_t first, last;
 };
 
-/// True when nothing but a carrier moves.
+/// Returns true if the piece is a constant level, or a sine of constant amplitude on it.
 bool is_level(const SignalPiece& piece) { return piece.slope == 0 && piece.amplitude_slope == 0 && piece.terms.empty(); }
 
 std::vector<Edge> edges_of(const Signal& signal) {
@@ -33,7 +33,7 @@ std::vector<Edge> edges_of(const Signal& signal) {
   return edges;
 }
 
-/// Returns the times at which the pieces begin [s]; that of a first piece that is not an edge means nothing.
+/// Returns the times at which the pieces begin [s]. The time of a first piece that is not an edge is not used.
 std::vector<double> begins(const std::vector<SignalPiece>& pieces, const std::vector<Edge>& edges, const SourceErrors& errors) {
   std::vector<double> all;
   for (const SignalPiece& piece : pieces) all.push_back(piece.begin + errors.delay);
@@ -95,7 +95,7 @@ Signal with_errors(const Signal& given, const SourceErrors& errors, double origi
   if (begin[0] > 0) all.push_back({.value = signal.before() + errors.offset});
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const double end = i + 1 < pieces.size() ? begin[i + 1] : no_bound;
-    // A piece that is late by much more than it lasts may have lost its duration to rounding.
+    // A piece whose delay is much larger than its duration may have no duration after rounding.
     if (end > begin[i]) all.push_back(moved(signal, i, begin[i], end, errors.offset, errors.delay - origin));
   }
   return Signal(std::move(all), given.before());

@@ -19,7 +19,7 @@ template <>
 struct FamilyOf<Step> {
   static constexpr std::string_view name = "step";
   static constexpr auto parameters = std::to_array<Parameter<Step>>({
-      {"level", ParameterKind::level, &Step::level, true, "held for ever"},
+      {"level", ParameterKind::level, &Step::level, true, "level after the rise, which is held"},
       {"rise_time", ParameterKind::time, &Step::rise_time, false, "linear rise, from 0 V or `before`"},
   });
   [[nodiscard]] static Step example() { return {.level = 3, .rise_time = 1}; }

@@ -14,9 +14,10 @@ namespace softland {
 
 Signal signal(const Table& table, double before) {
   const std::size_t count = table.time.size();
-  require(count == table.voltage.size(),
-          fmt::format("a table has {} times and {} voltages; there must be as many of both", count, table.voltage.size()));
-  require(count >= 1, "a table has no rows; there must be at least one");
+  require(
+      count == table.voltage.size(),
+      fmt::format("a table has {} times and {} voltages; it must have as many times as voltages", count, table.voltage.size()));
+  require(count >= 1, "a table must have at least one row");
   require(table.time.front() == 0, fmt::format("the time of the first row of a table is {} s; it must be 0", table.time.front()));
   for (std::size_t i = 0; i < count; ++i) {
     if (!(std::isfinite(table.time[i]) && (i == 0 || table.time[i] >= table.time[i - 1]))) {
@@ -45,8 +46,10 @@ Table parse_table(std::string_view content, const std::string& file, const std::
                  return fmt::format("{}: time_s is {} s; it must not be before the {} s of the row above", place(), time, before);
                });
                require(!(time > before) || std::isfinite((voltage - from) / (time - before)), [&] {
-                 return fmt::format("{}: {} is {} V, {} s after the {} V of the row above; the slope between them must be finite",
-                                    place(), drive, voltage, time - before, from);
+                 return fmt::format(
+                     "{}: {} is {} V, {} s after the {} V of the row above; "
+                     "the slope between them must be finite",
+                     place(), drive, voltage, time - before, from);
                });
              }
              table.time.push_back(time);

@@ -1,4 +1,4 @@
-// Table: measured or exported voltages, linear between rows, the last value held for ever. Two rows of the same time are a jump.
+// Table: measured or exported voltages, linear between rows; the last value is held. Two rows of the same time are a jump.
 #pragma once
 
 #include <array>
@@ -25,8 +25,8 @@ struct FamilyOf<Table> {
   static constexpr std::string_view name = "table";
   static constexpr bool from_file = true;
   static constexpr auto parameters = std::to_array<Parameter<Table>>({
-      {"times", ParameterKind::time, &Table::time, true, "of the rows, from 0 s on"},
-      {"voltages", ParameterKind::level, &Table::voltage, true, "of the rows; linear between them"},
+      {"times", ParameterKind::time, &Table::time, true, "times of the rows, from 0 s on"},
+      {"voltages", ParameterKind::level, &Table::voltage, true, "voltages of the rows, linear between them"},
   });
   [[nodiscard]] static Table example() { return {.time = {0, 1, 1, 2}, .voltage = {1, 2, 3, -1}}; }
 };
@@ -50,7 +50,7 @@ template <class P>
 /// line and rule.
 [[nodiscard]] Table read_table(const std::string& file, const std::string& drive);
 
-/// Reads the content of such a file; `file` stands for it in messages.
+/// Reads the content of a CSV file as read_table() does; `file` names it in messages.
 [[nodiscard]] Table parse_table(std::string_view content, const std::string& file, const std::string& drive);
 
 }  // namespace softland

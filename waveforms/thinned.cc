@@ -9,7 +9,7 @@
 namespace softland {
 namespace {
 
-/// Finds the farthest row to which a straight line may lead.
+/// Finds the last row to which a straight line may be drawn from a given row.
 class Thinning {
  public:
   Thinning(const Table& table, double limit) : time_(table.time), voltage_(table.voltage), limit_(limit) {
@@ -18,7 +18,7 @@ class Thinning {
       area_[i] = area_[i - 1] + (voltage_[i - 1] + voltage_[i]) / 2 * (time_[i] - time_[i - 1]);
   }
 
-  /// Returns the row after `from`, and continues the integral of the difference.
+  /// Returns the next row to keep after `from`, and updates the integral of the difference.
   std::size_t next(std::size_t from) {
     constexpr std::size_t growth = 4, least_window = 8;
     const std::size_t farthest = std::min(from + growth * last_length_ + least_window, jump_after(from));
@@ -52,7 +52,7 @@ class Thinning {
   }
   bool stays_within(std::size_t i, std::size_t j) {
     const double slope = (voltage_[j] - voltage_[i]) / (time_[j] - time_[i]);
-    double before = 0, largest = 0;  // difference at the row before; largest integral so far
+    double before = 0, largest = 0;  // difference at the previous row; largest integral so far
     for (std::size_t k = i + 1; k <= j; ++k) {
       const double line = voltage_[i] + slope * (time_[k] - time_[i]), difference = line - voltage_[k];
       double excess = excess_ + (voltage_[i] + line) / 2 * (time_[k] - time_[i]) - (area_[k] - area_[i]);

@@ -24,19 +24,20 @@
 namespace softland {
 
 using Waveform = std::variant<Step, Harmonic, Pulse, Table, SCurve, Chirp, BSpline, Sines, Own>;
-/// Waveforms by the name of their drive, for some of a scene's drives or for all.
+/// Waveforms by the name of the drive, for some or all drives of a scene.
 using DriveWaveforms = std::map<std::string, Waveform>;
 /// Number of families that a scene can hold: all but the own waveform, which is the last.
 inline constexpr std::size_t families_of_scenes = std::variant_size_v<Waveform> - 1;
 
-/// Returns the waveform from t = 0 on, and `before` until then [V]; an edge at its beginning starts there. Throws InvalidInput
-/// naming the parameter, its value and the rule.
+/// Returns the signal of a waveform from t = 0 on; the voltage before is `before` [V], from which a first edge rises. Throws
+/// InvalidInput with the parameter, its value and the rule.
 [[nodiscard]] Signal signal(const Waveform& waveform, double before = 0);
 [[nodiscard]] std::vector<Signal> signals_of(const std::vector<Waveform>& waveforms);
-/// Returns the limits of a driver for the signal of a waveform. They are wider by own_waveform_accuracy for an own waveform,
-/// which is followed to that accuracy, and its slew by 1e-3.
+/// Returns the limits of a driver for the signal of a waveform. For an own waveform, which is approximated, the voltage limits
+/// are wider by own_waveform_accuracy, and the slew limit by 1e-3.
 [[nodiscard]] DriverLimits limits_for(const Waveform& waveform, DriverLimits limits);
-/// Returns the waveform with its voltages times `volts` and its times times `time` (frequencies over it), both positive.
+/// Returns the waveform with its voltages multiplied by `volts`, its times multiplied by `time`, and its frequencies divided by
+/// `time`; both factors are positive.
 [[nodiscard]] Waveform scaled(Waveform waveform, double volts, double time);
 /// Returns step | harmonic | pulse | table | s-curve | chirp | bspline | sines; for an own waveform its name.
 [[nodiscard]] std::string_view family(const Waveform& waveform);
