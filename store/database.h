@@ -1,4 +1,4 @@
-// SQLite behind values: connections, statements, and its error codes as the exceptions of this program.
+// Wraps SQLite: connections, statements, transactions, and error codes as exceptions of this program.
 #pragma once
 
 #include <sqlite3.h>
@@ -24,7 +24,7 @@ class DamagedStore : public InvalidInput {
   using InvalidInput::InvalidInput;
 };
 
-/// Thrown for a statement that a sound store accepts and this one does not, or that fails at one of its rows.
+/// Thrown if a statement that any sound store accepts fails, for the whole store or at one of its rows.
 class StatementFailed : public DamagedStore {
  public:
   StatementFailed(const std::string& message, std::string reason) : DamagedStore(message), reason_(std::move(reason)) {}
@@ -38,27 +38,27 @@ class StatementFailed : public DamagedStore {
 /// The mode in which a database is opened.
 enum class Access {
   write,      ///< change an existing database
-  create,     ///< the same, and create a missing one
-  recover,    ///< read, from a writable place: the unfinished work of a process that died is put in order
-  read_only,  ///< read, from a place that is not writable
-  immutable   ///< read, from a place that nobody writes to, without a log: nothing is locked
+  create,     ///< change a database, and create a missing one
+  recover,    ///< read, in a writable folder: an unfinished transaction of a process that died is rolled back
+  read_only,  ///< read, in a folder that is not writable
+  immutable   ///< read a file that no process writes to, without a log and without locks
 };
 
 /// Device and inode, which identify a file under any name; none where the file does not exist.
 using FileNumber = std::pair<unsigned long long, unsigned long long>;
 [[nodiscard]] std::optional<FileNumber> number_of(const std::filesystem::path& file);
 
-/// Remembers that this process has the file open. SQLite's locks belong to the process and vanish when it closes any other
-/// descriptor of the file, so nobody may look into a file that is open.
+/// Records that this process has a file open. The locks of SQLite belong to the process and are lost when it closes any other
+/// descriptor of the file. A file that is open must therefore not be opened again to look at its content.
 class OpenFile {
  public:
   explicit OpenFile(const std::filesystem::path& file);
   ~OpenFile();
   OpenFile(const OpenFile&) = delete;
   OpenFile& operator=(const OpenFile&) = delete;
-  /// True when an OpenFile remembers this file.
+  /// Returns true if this process has the file open.
   [[nodiscard]] static bool is_open(const std::filesystem::path& file);
-  /// True when this is the file at the path.
+  /// Returns true if this is the file at the path.
   [[nodiscard]] bool is(const std::filesystem::path& file) const { return number_ && number_ == number_of(file); }
 
  private:
@@ -69,22 +69,22 @@ class Statement;
 
 class Database {
  public:
-  /// Throws as every function here: OutputLost where data does not reach the disk, DamagedStore, Interrupted, or InvalidInput;
-  /// `shown` names the file in messages.
+  /// Opens the database; `shown` names it in messages. All functions of the class throw OutputLost if data cannot be written to
+  /// the disk, DamagedStore, Interrupted, or InvalidInput.
   Database(const std::filesystem::path& file, Access access, std::string shown);
 
-  /// Runs statements that return nothing of interest.
+  /// Runs SQL statements and ignores their results.
   void run(const std::string& sql) const;
   [[nodiscard]] Statement prepare(const std::string& sql) const;
-  /// Returns the first column of the first row.
+  /// Returns the first column of the first row of a query, as text.
   [[nodiscard]] std::string text_of(const std::string& sql) const;
   [[nodiscard]] std::int64_t number_of(const std::string& sql) const;
-  /// Throws the exception that belongs to a result code.
+  /// Throws the exception for a result code of SQLite.
   [[noreturn]] void fail(int code) const;
 
-  /// True when the file at this path is the open one: somebody may have removed, moved or replaced it.
+  /// Returns true if the file at this path is still the open file, not removed, moved or replaced.
   [[nodiscard]] bool is_at(const std::filesystem::path& path) const;
-  /// Leaves the log where it is when the database is closed: the file of that name then belongs to another database.
+  /// Keeps the write-ahead log when the database is closed, because the file with its name belongs to another database by then.
   void leave_log() const;
   /// Writes the whole content into a new file, which must be empty or missing.
   void copy_to(const std::filesystem::path& file) const;
@@ -111,10 +111,10 @@ class Statement {
   Statement& bind(int parameter, double value);  ///< NaN becomes NULL
   Statement& bind(int parameter, std::string_view value);
   Statement& bind(int parameter, std::span<const unsigned char> value);
-  /// Binds without a copy: the value must live until the statement has been run.
+  /// Binds a text without a copy; the text must live until the statement has been run.
   Statement& lend(int parameter, std::string_view value);
   Statement& lend(int parameter, std::span<const unsigned char> value);
-  /// Returns true when there is a row; after false the statement can be bound and run again.
+  /// Goes to the next row; returns false if there is none, after which the statement can be bound and run again.
   bool step();
   void reset();
 
@@ -136,7 +136,7 @@ class Statement {
   std::unique_ptr<sqlite3_stmt, Finalize> handle_;
 };
 
-/// While it lives statements end with Interrupted when the watch is asked to stop.
+/// During its lifetime, statements throw Interrupted when the watch is asked to stop.
 class StopWatched {
  public:
   StopWatched(const Database& database, const Watch& watch);
@@ -149,7 +149,7 @@ class StopWatched {
   const Watch& watch_;
 };
 
-/// A transaction: changes that were not committed are rolled back.
+/// A transaction. Its destructor rolls back changes that were not committed.
 class Transaction {
  public:
   explicit Transaction(const Database& database) : database_(database) { database_.run("BEGIN IMMEDIATE"); }
@@ -164,7 +164,7 @@ class Transaction {
   const Database& database_;
 };
 
-/// While it lives all reads see the same moment, whoever writes.
+/// During its lifetime, all reads see one state of the database, even if another process writes.
 class Snapshot {
  public:
   explicit Snapshot(const Database& database) : database_(database), begun_(sqlite3_get_autocommit(database.handle()) != 0) {

@@ -27,7 +27,7 @@ class Part {
   explicit Part(const fs::path& path) : database_(open_to_read(path)) {
     check_schema(*database_);
     current_ = current_plan(*database_);
-    database_->run("PRAGMA cache_size = -64");  // there may be a thousand parts
+    database_->run("PRAGMA cache_size = -64");  // a small cache, because there may be a thousand parts
   }
   [[nodiscard]] const StoredPlan& plan() const { return current_.plan; }
   [[nodiscard]] const StoredRow& row() const { return rows_->row(); }
@@ -46,7 +46,7 @@ class Part {
 
 using Parts = std::vector<std::unique_ptr<Part>>;
 
-// Raises the limit of open files: every part is one, or three where its writer was killed.
+// Raises the limit of open files. Every part needs one file, or three if its writer was killed.
 void allow_files(std::size_t parts) {
   rlimit limit{};
   const rlim_t needed = 4 * parts + 64;
@@ -61,11 +61,10 @@ Parts opened(const std::vector<fs::path>& paths) {
   std::set<fs::path> seen;
   for (const fs::path& path : paths) {
     parts.push_back(std::make_unique<Part>(path));
-    require(seen.insert(fs::canonical(path)).second, fmt::format("{}: is named twice", path.string()));
+    require(seen.insert(fs::canonical(path)).second, fmt::format("{}: must not be given twice", path.string()));
     const StoredPlan &first = parts.front()->plan(), &plan = parts.back()->plan();
-    require(
-        plan.text == first.text && plan.columns == first.columns && plan.points == first.points,
-        fmt::format("{}: holds another plan than {}; only parts of one plan are merged", path.string(), paths.front().string()));
+    require(plan.text == first.text && plan.columns == first.columns && plan.points == first.points,
+            fmt::format("{}: must have the same plan as {}", path.string(), paths.front().string()));
   }
   return parts;
 }
@@ -85,7 +84,7 @@ void add_missing_parts(std::vector<std::string>& notes, const Parts& parts) {
     if (!given.contains(index)) names.push_back(fmt::format("{}/{}", index, count));
   }
   if (missing > names.size()) names.push_back(fmt::format("and {} more", missing - names.size()));
-  notes.push_back(fmt::format("no part was given of {}", fmt::join(names, ", ")));
+  notes.push_back(fmt::format("no part was given for {}", fmt::join(names, ", ")));
 }
 
 // Returns notes on points that no part holds, listed by the parts of the plan that they belong to.
@@ -110,7 +109,7 @@ std::vector<std::string> notes_on(const Parts& parts, const StoredPlan& plan, st
 // Writes the rows of all parts in the order of their points.
 std::int64_t write_rows(const Database& database, std::int64_t number, Parts& parts, const StoredPlan& plan, std::int64_t session,
                         const Watch& watch) {
-  // Rows of the same point are taken in the order in which their parts were named.
+  // Rows of the same point are read in the order in which the parts are given.
   const auto later = [&](std::size_t a, std::size_t b) {
     return std::pair(parts[a]->row().point, a) > std::pair(parts[b]->row().point, b);
   };
@@ -134,8 +133,8 @@ std::int64_t write_rows(const Database& database, std::int64_t number, Parts& pa
     const StoredRow& row = part.row();
     const bool again = last && last->point == row.point;
     const std::string other = again ? difference(*last, row, plan.columns) : "";
-    require(other.empty(),
-            fmt::format("{} and {} hold point {} with different bits: {}", last_name, part.database().shown(), row.point, other));
+    require(other.empty(), fmt::format("{} and {} must hold the same row for point {}, but differ in {}", last_name,
+                                       part.database().shown(), row.point, other));
     if (!again && writer.write(row)) {
       ++rows;
       ++by_status[row.status];
@@ -152,7 +151,7 @@ std::int64_t write_rows(const Database& database, std::int64_t number, Parts& pa
 
 Merged merge_studies(const std::vector<fs::path>& paths, const fs::path& out, const StoredOrigin& origin,
                      const MergeOptions& options) {
-  require(!paths.empty(), "a merge needs one part at least");
+  require(!paths.empty(), "a merge needs at least one part");
   std::error_code ignored;
   require(!fs::exists(fs::symlink_status(out, ignored)), fmt::format("{}: exists already; it is not replaced", out.string()));
   Parts parts = opened(paths);
@@ -163,7 +162,7 @@ Merged merge_studies(const std::vector<fs::path>& paths, const fs::path& out, co
   const UnnamedStore made(out);
   {
     const Database database(made.path(), Access::create, out.string());
-    // Nobody reads the file before it has its name, and a failure leaves nothing.
+    // The file has no name yet and is removed after a failure, so that it needs no safe journal.
     database.run("PRAGMA journal_mode = MEMORY; PRAGMA synchronous = OFF");
     create_tables(database, merged.plan.columns);
     Transaction transaction(database);

@@ -42,7 +42,7 @@ bool has_content(const fs::path& file) {
   return fs::file_size(file, error) > 0 && !error;
 }
 
-// Returns the first bytes; nothing where the file is shorter or cannot be read.
+// Returns the first bytes of a file; none if the file is shorter or cannot be read.
 std::optional<Header> header_of(const fs::path& path) {
   Header header{};
   std::ifstream in(path, std::ios::binary);
@@ -60,13 +60,13 @@ std::uint32_t big_endian(const Header& header, std::size_t place) {
 std::string fault_of(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) return "there is no such file";
+  if (status.type() == fs::file_type::not_found) return "the file does not exist";
   if (error) return error.message();
   if (fs::is_directory(status)) return "is a folder, not a store";
-  if (!fs::is_regular_file(status)) return "is no regular file, so it is not opened";
+  if (!fs::is_regular_file(status)) return "must be a regular file";
   if (OpenFile::is_open(path)) return {};
   if (::access(path.c_str(), R_OK) != 0) return std::generic_category().message(errno);
-  if (fs::file_size(path, error) == 0 && !error) return "is empty (0 bytes), not a store; remove it or name another file";
+  if (fs::file_size(path, error) == 0 && !error) return "is empty (0 bytes); remove it or name another file";
   errno = 0;
   const std::optional<Header> header = header_of(path);
   if (!header && errno != 0) {
@@ -74,8 +74,8 @@ std::string fault_of(const fs::path& path) {
     return fmt::format("cannot be read: {}{}", std::generic_category().message(errno), more);
   }
   if (!header || std::memcmp(header->data(), magic.data(), magic.size()) != 0)
-    return "is no store of softland, or its beginning is damaged: it does not begin as a database of SQLite does";
-  if (big_endian(*header, application_id) != store_application) return "is a database of SQLite, but no store of softland";
+    return "is not a store of softland, or its beginning is damaged: it must begin as a database of SQLite";
+  if (big_endian(*header, application_id) != store_application) return "is a database of SQLite, but not a store of softland";
   return {};
 }
 
@@ -97,7 +97,7 @@ bool same_bytes(const fs::path& a, const fs::path& b) {
   return one.eof() && other.eof();
 }
 
-// Returns true when the content of a file or folder is on the disk.
+// Writes the content of a file or folder to the disk; returns false if that fails.
 bool synced(const fs::path& path, int flags) {
   const int descriptor = ::open(path.c_str(), flags | O_CLOEXEC);
   if (descriptor < 0) return false;
@@ -122,8 +122,7 @@ void require_room(const fs::path& path) {
     std::error_code ignored;
     require(!fs::exists(fs::symlink_status(companion, ignored)), [&] {
       return fmt::format(
-          "{}: a store would take {} for its own and replace it, which is of one that is gone, or something else; move "
-          "it or name another store",
+          "{}: the file {}, left by a removed store or another program, would be replaced; move it or name another store",
           path.string(), companion.string());
     });
   }
@@ -133,7 +132,7 @@ fs::path lock_of(const fs::path& path) { return beside(path, ".lock"); }
 
 std::unique_ptr<const LockFile> lock_store(const fs::path& path, const std::string& command) {
   return std::make_unique<LockFile>(
-      lock_of(path), LockedPlace{path.string(), "folder of the store", "another run writes into this store"}, command);
+      lock_of(path), LockedPlace{path.string(), "folder of the store", "another run writes to this store"}, command);
 }
 
 std::unique_ptr<const Database> open_to_read(const fs::path& path) {
@@ -142,11 +141,10 @@ std::unique_ptr<const Database> open_to_read(const fs::path& path) {
   mark_as_database(path);
   const fs::path real = beside(path, "");
   if (writable(path)) return std::make_unique<Database>(real, Access::recover, path.string());
-  require(
-      !has_content(beside(path, "-journal")),
-      fmt::format("{}: was left unfinished and cannot be put in order where it cannot be written to; copy it with its -journal "
-                  "to a folder that can",
-                  path.string()));
+  require(!has_content(beside(path, "-journal")),
+          fmt::format("{}: has an unfinished transaction, and its folder is not writable; "
+                      "copy it with its -journal to a writable folder",
+                      path.string()));
   const bool has_log = has_content(beside(path, "-wal"));
   const std::optional<Header> header = has_log ? std::nullopt : header_of(real);
   const bool still = header && (*header)[version_for_reading] == write_ahead;
@@ -154,7 +152,7 @@ std::unique_ptr<const Database> open_to_read(const fs::path& path) {
     return std::make_unique<Database>(real, still ? Access::immutable : Access::read_only, path.string());
   } catch (const InvalidInput& error) {
     if (!has_log) throw;
-    throw InvalidInput(fmt::format("{}; copy it with its -wal to a folder that can be written to", error.what()));
+    throw InvalidInput(fmt::format("{}; copy it with its -wal to a writable folder", error.what()));
   }
 }
 
@@ -191,16 +189,16 @@ std::string kept_copy(const fs::path& path) {
     copy = real.string() + (k == 1 ? ".damaged" : fmt::format(".damaged-{}", k));
     std::error_code error;
     if (!fs::exists(copy, error)) break;
-    if (same_bytes(real, copy)) return fmt::format("it is left as it is, and {} is a copy of it", copy.string());
+    if (same_bytes(real, copy)) return fmt::format("it was not changed, and {} is a copy", copy.string());
   }
   std::error_code error;
   fs::copy_file(real, copy, error);
-  if (error) return fmt::format("it is left as it is; a copy of it could not be made: {}", error.message());
+  if (error) return fmt::format("it was not changed; a copy could not be made: {}", error.message());
   for (const char* ending : {"-wal", "-journal"}) {
     std::error_code none;
     if (has_content(real.string() + ending)) fs::copy_file(real.string() + ending, copy.string() + ending, none);
   }
-  return fmt::format("it is left as it is, and {} is a copy of it", copy.string());
+  return fmt::format("it was not changed, and {} is a copy", copy.string());
 }
 
 fs::path copied_to_rescue(const Database& database, const fs::path& path, const std::string& said) {
@@ -219,7 +217,7 @@ fs::path copied_to_rescue(const Database& database, const fs::path& path, const 
       reasons += fmt::format("; {}", error.what());
     }
   }
-  throw OutputLost(fmt::format("{}, and what it held could not be rescued{}", said, reasons));
+  throw OutputLost(fmt::format("{}, and its content could not be saved to another file{}", said, reasons));
 }
 
 UnnamedStore::UnnamedStore(fs::path name) : name_(std::move(name)), path_(fmt::format("{}.{}.new", name_.string(), ::getpid())) {
@@ -239,15 +237,15 @@ void UnnamedStore::give_name() const {
   const auto taken = [&] { return InvalidInput(fmt::format("{}: exists already; it is not replaced", name_.string())); };
   if (!synced(path_, O_RDONLY)) throw failed("be written");
   int code = ::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, name_.c_str(), RENAME_NOREPLACE);
-  if (code != 0 &&
-      (errno == EINVAL || errno == ENOSYS)) {  // not supported by this file system; the lock keeps other runs off the name
+  if (code != 0 && (errno == EINVAL ||
+                    errno == ENOSYS)) {  // not supported by this file system; the lock prevents other runs from using the name
     std::error_code ignored;
     if (fs::exists(fs::symlink_status(name_, ignored))) throw taken();
     code = ::rename(path_.c_str(), name_.c_str());
   }
   if (code != 0 && errno == EEXIST) throw taken();
-  if (code != 0) throw failed("be given its name");
-  // A failure is ignored: not every file system supports this, and the name is already given.
+  if (code != 0) throw failed("be renamed");
+  // A failure is ignored, because not every file system supports this, and the file has its name already.
   static_cast<void>(synced(fs::absolute(name_).parent_path(), O_RDONLY | O_DIRECTORY));
 }
 

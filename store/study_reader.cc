@@ -18,7 +18,7 @@ using namespace internal;
 
 namespace {
 
-// Functions that an expression may call: they change nothing and take no time.
+// Functions that an expression may call; they have no side effects and are fast.
 constexpr std::array<std::string_view, 26> harmless{
     "abs",   "acos", "asin", "atan",  "atan2", "ceil", "coalesce", "cos",    "exp", "floor", "glob", "ifnull", "iif",
     "instr", "like", "ln",   "log10", "lower", "max",  "min",      "nullif", "pow", "round", "sin",  "sqrt",   "upper"};
@@ -76,13 +76,12 @@ std::string columns_of(const StoredPlan& plan) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-// Checks an expression before it becomes part of a statement.
+// Checks the expression of --where before it becomes part of an SQL statement.
 void check_where(const Database& database, const StoredPlan& plan, const std::string& where) {
-  require_where(is_closed(where), where,
-                "is no expression over the columns: parentheses and quotes have to be closed, and nothing follows it");
+  require_where(is_closed(where), where, "must be a single expression of columns, with closed parentheses and quotes");
   const std::string words = lower(where);
   for (const char* word : {"select", "pragma", "attach"})
-    require_where(!has_word(words, word), where, fmt::format("an expression over the columns is expected, without {}", word));
+    require_where(!has_word(words, word), where, fmt::format("must be an expression of columns, without {}", word));
   sqlite3_stmt* statement = nullptr;
   const std::string sql = "SELECT 1 FROM results WHERE (" + where + "\n)";
   sqlite3_set_authorizer(database.handle(), authorize, nullptr);
@@ -92,8 +91,8 @@ void check_where(const Database& database, const StoredPlan& plan, const std::st
   sqlite3_finalize(statement);
   sqlite3_set_authorizer(database.handle(), nullptr, nullptr);
   if ((code & 0xFF) == SQLITE_CORRUPT) database.fail(code);
-  require_where(code == SQLITE_OK, where, fmt::format("{}; the columns are {}", reason, columns_of(plan)));
-  require_where(parameters == 0, where, "\"?\", \":\", \"@\" and \"$\" stand for nothing here");
+  require_where(code == SQLITE_OK, where, fmt::format("{}; choose from the columns {}", reason, columns_of(plan)));
+  require_where(parameters == 0, where, "must not contain \"?\", \":\", \"@\" or \"$\"");
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ Shard shard_from(std::string_view text) {
     const auto [last, second] = std::from_chars(slash + 1, end, shard.count);
     valid = second == std::errc() && last == end && shard.index >= 1 && shard.index <= shard.count;
   }
-  require(valid, fmt::format("\"{}\" is no part of a study: i/N with 1 <= i <= N is expected, 3/8 for the third of eight",
+  require(valid, fmt::format("\"{}\" must be a part i/N of a study with 1 <= i <= N, such as 3/8 for the third of eight",
                              shortened(text)));
   return shard;
 }
@@ -63,8 +63,9 @@ constexpr std::uintmax_t checked_size = std::uintmax_t{64}
 void require_only_name(const fs::path& path) {
   struct stat found {};
   const bool linked = ::stat(path.c_str(), &found) == 0 && found.st_nlink > 1;
-  require(!linked, fmt::format("{}: has another name as well (a hard link), under which its log would not be found; copy it",
-                               path.string()));
+  require(!linked,
+          fmt::format("{}: must not have a second name (hard link), under which its log would not be found; copy the file",
+                      path.string()));
 }
 
 void create_store(const fs::path& path, const StoredPlan& plan, const StoredOrigin& origin) {
@@ -83,14 +84,14 @@ void create_store(const fs::path& path, const StoredPlan& plan, const StoredOrig
 void require_same_columns(const Database& database, const StoredPlan& there, const StoredPlan& plan) {
   std::string other;
   for (std::size_t i = 0; i < std::max(there.columns.size(), plan.columns.size()) && other.empty(); ++i) {
-    if (i >= there.columns.size()) other = fmt::format("it has none for {}", plan.columns[i].key);
+    if (i >= there.columns.size()) other = fmt::format("it lacks {}", plan.columns[i].key);
     if (i >= plan.columns.size()) other = fmt::format("it also has {}", there.columns[i].key);
     if (other.empty() && there.columns[i] != plan.columns[i])
       other = fmt::format("it has {} where this study has {}", there.columns[i].key, plan.columns[i].key);
   }
-  require(other.empty(), fmt::format("{}: holds a study of other columns ({}); name another file", database.shown(), other));
+  require(other.empty(), fmt::format("{}: holds a study with other columns ({}); name another file", database.shown(), other));
   const auto words = [](const Shard& shard) { return fmt::format("{}/{}", shard.index, shard.count); };
-  require(there.shard == plan.shard, fmt::format("{}: holds the part {} of a study, not {}; name another file", database.shown(),
+  require(there.shard == plan.shard, fmt::format("{}: holds part {} of a study, not {}; name another file", database.shown(),
                                                  words(there.shard), words(plan.shard)));
 }
 
@@ -135,18 +136,17 @@ class StudyStore::Implementation {
 
   std::optional<RowWriter> rows_;
   std::optional<SessionTally> tally_;
-  fs::path log_;  // log of the database; empty where it has none
+  fs::path log_;  // path of the write-ahead log; empty if there is none
   std::optional<FileNumber> log_number_;
-  std::string
-      rescued_;  // where everything went from a store that no longer exists, in words; owned by the writer until it has ended
+  std::string rescued_;  // message with the file to which the rows of a removed store were saved; only the writing thread uses it
 
   std::mutex mutex_;
   std::condition_variable for_writer_, for_callers_;
   std::vector<StoredRow> waiting_;
   std::chrono::steady_clock::time_point due_;
   bool committing_ = false, hurried_ = false, stopping_ = false;
-  std::exception_ptr failure_;        // failure to write rows, which still wait
-  std::exception_ptr contradiction_;  // contradiction of a row, which was left out
+  std::exception_ptr failure_;        // failure to write rows; these rows wait to be written again
+  std::exception_ptr contradiction_;  // error about a row that contradicts the store and was not written
   std::string lost_;                  // copy of rescued_ for callers
   std::thread writer_;
 };
@@ -167,7 +167,7 @@ StudyStore::Implementation::Implementation(const fs::path& path, const StoredPla
   else
     require_room(path);
   lock_ = lock_store(path, origin.command);
-  const bool resumed = is_there();  // another run may have created it meanwhile
+  const bool resumed = is_there();  // another run may have created the store since the first check
   if (!resumed) create_store(path, plan, origin);
   try {
     open();
@@ -212,7 +212,7 @@ void StudyStore::Implementation::start_session(const StoredOrigin& origin, bool 
   prepare_finding();
 }
 
-// Runs before anything is written: a damaged store is left as it is.
+// Reads which points are done. It runs before anything is written, so that a damaged store is not changed.
 void StudyStore::Implementation::read_done() {
   done_.resize(static_cast<std::size_t>(plan_.points));
   if (number_ == 0) return;
@@ -239,7 +239,7 @@ void StudyStore::Implementation::prepare_finding() {
 StudyStore::Implementation::~Implementation() {
   try {
     close();
-  } catch (...) {  // close() reports errors to a caller that asks for them
+  } catch (...) {  // errors are reported by close(), which the caller should call
   }
 }
 
@@ -251,7 +251,8 @@ void StudyStore::Implementation::let_go() {
   database_.reset();
 }
 
-// A removed file is still writable, and is lost when it is closed. Move its content, and later rows, to another file.
+// Saves the content of a removed file, and later rows, to another file. A removed file is writable until it is closed, and then
+// lost.
 void StudyStore::Implementation::keep_in_place() {
   if (!rescued_.empty()) return;
   if (!database_->is_at(path_)) {
@@ -272,10 +273,10 @@ void StudyStore::Implementation::move_to_rescue(const std::string& what) {
   tally_.reset();
   database_ = std::move(rescued);
   begin_writing();
-  rescued_ = fmt::format("{}; all that the store held and what was computed since is in {}, a store", said, rescue.string());
+  rescued_ = fmt::format("{}; all of its rows, and those computed since, are in the store {}", said, rescue.string());
 }
 
-// Reports to the caller errors since the last call; the waiting rows are tried again afterwards.
+// Throws errors that have occurred since the last call. Waiting rows are written again afterwards.
 void StudyStore::Implementation::throw_told() {
   for (std::exception_ptr* told : {&failure_, &contradiction_}) {
     if (!*told) continue;
@@ -338,13 +339,13 @@ void StudyStore::Implementation::close() {
   if (failure) std::rethrow_exception(failure);
 }
 
-// Leaves one file, which is known to be at its place.
+// Merges the write-ahead log into the file, so that the store is a single file.
 void StudyStore::Implementation::end_log() {
   const bool was_told = !rescued_.empty();
   if (rows_) keep_in_place();
   find_.reset();
   earlier_.reset();
-  // A reader keeps the log until it has finished.
+  // If another process is reading, that process removes the log when it ends.
   sqlite3_busy_timeout(database_->handle(), 0);
   sqlite3_exec(database_->handle(), "PRAGMA journal_mode = DELETE", nullptr, nullptr, nullptr);
   log_.clear();
@@ -352,7 +353,7 @@ void StudyStore::Implementation::end_log() {
   if (!was_told && !rescued_.empty()) throw OutputLost(rescued_);
 }
 
-// The writing thread. After a failure it waits for the next call, which reports the failure.
+// Runs the writing thread. After a failure it waits for the next call of the caller, which reports the failure.
 void StudyStore::Implementation::work() {
   std::unique_lock lock(mutex_);
   for (;;) {
@@ -395,7 +396,7 @@ void StudyStore::Implementation::commit_batch(std::unique_lock<std::mutex>& lock
   for_callers_.notify_all();
 }
 
-// Rows that contradict the store are left out and reported; all others are written.
+// Writes rows. A row that contradicts the store is not written, and is reported.
 void StudyStore::Implementation::commit(const std::vector<StoredRow>& rows) {
   std::optional<Contradiction> contradiction;
   std::map<std::string, std::int64_t> by_status;

@@ -1,12 +1,12 @@
-// A study that survives a power cut: one file that holds a plan, its completed points, and who computed them.
+// A store: one file that holds the plan of a study, the rows of its computed points, and the program that computed each row. It
+// survives a power cut.
 //
 // The file is a database of SQLite 3 and is readable on every machine. It has one writer at a time, which holds FILE.lock while
 // it works, and any number of readers at any time. Rows become durable in batches of `rows_per_commit` or `seconds_per_commit`,
-// whichever comes first. Whatever happens to process or machine, at most the rows of that last second are lost, and the rest of
-// the store is whole.
+// whichever comes first. If the process or the machine fails, at most the rows of the last second are lost.
 //
-// A row belongs to a point of a plan by its number, and to a computation by its content: the key of the resolved scene. A study
-// may continue with another plan of the same columns, a finer grid or a larger sample. find() then gives the rows that the
+// A row has the number of its point in the plan, and a content key, which identifies the resolved scene that was computed. A
+// study may continue with another plan of the same columns, a finer grid or a larger sample. find() then gives the rows that the
 // earlier plans hold for equal content, so that no point is computed twice.
 //
 //   StudyStore store("map.sqlite", plan, origin, StudyStore::Opening::resume);
@@ -37,18 +37,18 @@ inline constexpr int store_schema = 2;
 inline constexpr std::size_t rows_per_commit = 1000;
 inline constexpr double seconds_per_commit = 1;  ///< time after the first row that is not yet durable [s]
 
-/// The content of a column: something that the plan varies, or a figure of a closing.
+/// The kind of a column: a variable of the plan, or a figure of a closing.
 enum class ColumnKind { variable, figure };
 
 struct StoredColumn {
   std::string key;   ///< name in the database and in the header of CSV: "gap_contact_m"; see column_key()
-  std::string name;  ///< key of the scene, "gap.contact", or the figure's name for people
+  std::string name;  ///< key of the scene, such as "gap.contact", or readable name of a figure
   std::string unit;  ///< SI unit, "m/s"; empty for a count, a ratio, yes or no
   ColumnKind kind = ColumnKind::figure;
   bool operator==(const StoredColumn&) const = default;
 };
 
-/// Returns a name with its unit as a word of letters, digits and underscores: ("gap.contact", "m") is "gap_contact_m".
+/// Returns the name of a column in the database: ("gap.contact", "m") gives "gap_contact_m".
 [[nodiscard]] std::string column_key(std::string_view name, std::string_view unit);
 
 /// The share of a plan that one part of a study computes: every `count`-th point, from index - 1 on, so that all parts cost
@@ -66,17 +66,17 @@ struct Shard {
 [[nodiscard]] Shard shard_from(std::string_view text);
 
 struct StoredPlan {
-  std::string text;                   ///< canonical text: equal plans are equal bytes. It does not include the shard
+  std::string text;                   ///< canonical text, equal for equal plans; the shard is not part of it
   std::int64_t points = 0;            ///< number of points, numbered 0 ... points - 1
   std::vector<StoredColumn> columns;  ///< columns of every row, in this order
   std::uint64_t seed = 0;
   Shard shard = {};  ///< share of the plan that this file holds
 };
 
-/// The program and processor of a computation: they may change the last digits of its results.
+/// The program and the processor of a computation, which influence the last digits of its results.
 struct StoredOrigin {
   std::string program;    ///< name, version and hash of the program
-  std::string processor;  ///< name of the processor, and its instructions that are used
+  std::string processor;  ///< name of the processor and its vector instructions in use
   std::string command;
 };
 
@@ -84,12 +84,12 @@ struct StoredRow {
   std::int64_t point = 0;
   ContentKey content = {};
   std::string status;          ///< outcome of the computation: "done", "no_contact", "numerical_failure"
-  std::string reason = {};     ///< reason in words, where it did not succeed
+  std::string reason = {};     ///< reason if the computation did not succeed
   std::vector<double> values;  ///< values, one per column [SI]; NaN where not known. The sign of a zero is not kept
   std::string extra = {};      ///< JSON of further data of the point, such as the waveform found there; may be empty
 };
 
-/// One run of the program on a store.
+/// A run of the program that wrote to a store.
 struct StoredSession {
   std::string program, processor, command;  ///< see StoredOrigin
   std::string host;
@@ -99,48 +99,47 @@ struct StoredSession {
   std::int64_t rows = 0;    ///< number of rows written in the session
 };
 
-/// Returns true for a regular file that begins as a store does. Nothing else is opened, so that it never waits for a pipe.
+/// Returns true for a regular file that begins like a store. Other kinds of files, such as pipes, are not opened.
 [[nodiscard]] bool is_store(const std::filesystem::path& path);
 
-/// Returns the current writer of the store in words ("process 4711 on node3 since ...: softland explore ..."); none without
-/// one.
+/// Returns a description of the current writer of the store, such as "process 4711 on node3 since ...: softland explore ...";
+/// none if there is no writer.
 [[nodiscard]] std::optional<std::string> writer_of(const std::filesystem::path& path);
 
-/// The one writer of a store.
+/// Writes rows to a store; a store has one writer at a time.
 class StudyStore {
  public:
   enum class Opening {
     fresh,  ///< the file must not exist
-    resume  ///< an existing one is continued: this plan, or another of the same columns and shard
+    resume  ///< an existing store with the same columns and shard is continued, with this or another plan
   };
 
-  /// Creates or continues the store. Throws InvalidInput with path and reason where `path` exists and should not, is not a
-  /// store, is a store of a later schema or of other columns, or cannot be written to; and, with its name, where another
-  /// process writes into it. Throws OutputLost where the disk is full. A damaged store is left as it is, with a copy of it
-  /// beside: FILE.damaged.
+  /// Creates or continues the store. Throws InvalidInput with path and reason if `path` must not exist but does, is not a store,
+  /// is a store of a later schema or of other columns, or is not writable; also, with its name, if another process writes to the
+  /// store. Throws OutputLost if the disk is full. A damaged store is not changed; it is copied to FILE.damaged.
   StudyStore(const std::filesystem::path& path, const StoredPlan& plan, const StoredOrigin& origin, Opening opening);
-  /// Commits what it can without reporting errors: call close() to learn of them.
+  /// Commits waiting rows without reporting errors; close() reports them.
   ~StudyStore();
   StudyStore(const StudyStore&) = delete;
   StudyStore& operator=(const StudyStore&) = delete;
 
   [[nodiscard]] const std::filesystem::path& path() const;
-  /// Returns, for every point of the plan, whether the store held it when it was opened.
+  /// Returns for every point of the plan if the store held a row of it when it was opened.
   [[nodiscard]] std::vector<bool> done() const;
-  /// True when the store holds rows of other plans, so that find() may find something.
+  /// Returns true if the store holds rows of earlier plans, which find() can return.
   [[nodiscard]] bool has_earlier_plans() const;
-  /// Returns the number of these rows.
+  /// Returns the number of rows of earlier plans.
   [[nodiscard]] std::int64_t earlier_rows() const;
   /// Returns a row of an earlier plan with this content. May be called on any thread.
   [[nodiscard]] std::optional<StoredRow> find(const ContentKey& content) const;
 
-  /// Takes a row to be written; returns soon. A row that the store holds with the same bits changes nothing. Throws
-  /// InvalidInput where the store has a row of this point with other bits, or the row does not fit the plan. Throws OutputLost
-  /// where earlier rows could not be written; these are kept and tried again with the next call. May be called on any thread.
+  /// Queues a row, which another thread writes. A row that is equal to one in the store is ignored. Throws InvalidInput if the
+  /// store has a different row of this point, or if the row does not fit the plan. Throws OutputLost if earlier rows could not
+  /// be written; these are written again at the next call. May be called on any thread.
   void add(StoredRow row);
-  /// Waits until all rows taken are durable. Throws as add().
+  /// Waits until all queued rows are on the disk. Throws as add().
   void flush();
-  /// Calls flush(), then leaves the file alone in its folder, without log or lock. Throws as add().
+  /// Calls flush(), and removes log and lock, so that the store is a single file. Throws as add().
   void close();
 
  private:
@@ -148,16 +147,16 @@ class StudyStore {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// A selection of rows in the words of SQL: an expression over the columns and `point`, `status`, `reason`; empty for all rows.
+/// A selection of rows by an SQL expression of the columns and of `point`, `status` and `reason`; empty for all rows.
 struct StudyQuery {
   std::string where = {};
 };
 
-/// A store in its current state, whether or not somebody writes into it. It never changes the content.
+/// Reads a store, even while another process writes to it. It never changes the content.
 class StudyReader {
  public:
-  /// Throws InvalidInput with path and reason where this is not a store, a store of a later schema, a damaged one, or cannot be
-  /// read.
+  /// Opens the store. Throws InvalidInput with path and reason if the file is not a store, is a store of a later schema, is
+  /// damaged, or cannot be read.
   explicit StudyReader(const std::filesystem::path& path);
   ~StudyReader();
   StudyReader(StudyReader&&) noexcept;
@@ -170,8 +169,8 @@ class StudyReader {
   /// Returns the number of rows of the plan by their status.
   [[nodiscard]] std::map<std::string, std::int64_t> by_status() const;
 
-  /// Calls row(...) for the rows of the plan that the query selects, in the order of their points. Throws InvalidInput naming
-  /// --where and the expression where that cannot be understood or does more than compare; Interrupted when asked to stop.
+  /// Calls row(...) for the rows of the plan that the query selects, in the order of their points. Throws InvalidInput with
+  /// --where and the expression if it is invalid or not a plain expression of columns; Interrupted after a request to stop.
   void read(const std::function<void(const StoredRow&)>& row, const StudyQuery& query = {}, const Watch& watch = {}) const;
 
  private:
@@ -192,8 +191,8 @@ struct Merged {
   std::vector<std::string> notes;  ///< notes on missing points, and on parts of several programs or processors
 };
 
-/// Merges the parts of a study into one store `out`, which must not exist. Throws InvalidInput with the names where parts are
-/// of different plans, or hold a point with different bits.
+/// Merges the parts of a study into one store `out`, which must not exist. Throws InvalidInput with the names of the parts if
+/// they have different plans, or different rows for a point.
 [[nodiscard]] Merged merge_studies(const std::vector<std::filesystem::path>& paths, const std::filesystem::path& out,
                                    const StoredOrigin& origin, const MergeOptions& options = {});
 

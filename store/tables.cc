@@ -21,7 +21,7 @@ namespace softland::internal {
 namespace {
 
 constexpr std::size_t most_columns = 1900;  // SQLite accepts 2000
-// SQLite has no date after the year 9999, to which a clock may be set.
+// SQLite has no date after the year 9999, but the clock of a machine may be later.
 constexpr const char* now = "ifnull(strftime('%Y-%m-%d %H:%M:%f', 'now'), 'after the year 9999')";
 constexpr int first_with_checksums = 2;  // first schema with checksums
 
@@ -43,21 +43,21 @@ ContentKey key_of(std::span<const unsigned char> bytes) {
   return key;
 }
 
-// Returns a name as SQL writes it.
+// Returns a name quoted for SQL.
 std::string sql_name(std::string_view name) {
   std::string text = "\"";
   for (const char c : name) text += c == '"' ? "\"\"" : std::string(1, c);
   return text + "\"";
 }
 
-// Returns a number as the database gives it back.
+// Returns a number as the database returns it: -0 becomes 0.
 double kept(double value) { return value + 0.0; }
 
 bool has_checksums(const Database& database) { return database.number_of("PRAGMA user_version") >= first_with_checksums; }
 
-// A checksum of 32 bits over added words and texts, the same on every machine. A change of one word always changes it before it
-// is cut, and two texts do not run into each other. It is quicker than a hash of the text that a row would be: rows are written
-// 300 000 a second.
+// A checksum of 32 bits of numbers and texts, equal on all machines. A change of one word always changes the sum before it is cut
+// to 32 bits, and the boundary between two texts counts. It is faster than a hash of the text of a row: 300 000 rows are written
+// per second.
 class Checksum {
  public:
   void add(std::uint64_t word) { state_ = (std::rotl(state_, 27) ^ word) * 0x9E3779B97F4A7C15; }
@@ -129,16 +129,17 @@ std::array<unsigned char, 16> bytes_of(const ContentKey& key) {
 }
 
 void check_plan(const StoredPlan& plan) {
-  require(plan.points >= 1, fmt::format("a study has one point at least, not {}", plan.points));
+  require(plan.points >= 1, fmt::format("a study must have at least one point, but has {}", plan.points));
   require(plan.columns.size() <= most_columns,
-          fmt::format("a store has at most {} columns, not {}", most_columns, plan.columns.size()));
+          fmt::format("a store must have at most {} columns, but the plan has {}", most_columns, plan.columns.size()));
   std::set<std::string> keys(fixed_columns.begin(), fixed_columns.end());
   for (const StoredColumn& column : plan.columns) {
     const bool word =
         !column.key.empty() && column_key(column.key, "") == column.key && (column.key[0] < '0' || column.key[0] > '9');
-    require(word, fmt::format("the column \"{}\" is no word of letters, digits and underscores", shortened(column.key)));
-    require(keys.insert(lower(column.key)).second,
-            fmt::format("two columns of the study are called {}; large and small letters are the same to a store", column.key));
+    require(word, fmt::format("the column \"{}\" must be a word of letters, digits and underscores", shortened(column.key)));
+    require(
+        keys.insert(lower(column.key)).second,
+        fmt::format("two columns of the study are called {}; names must differ by more than upper and lower case", column.key));
   }
 }
 
@@ -147,19 +148,16 @@ void create_tables(const Database& database, const std::vector<StoredColumn>& co
   database.run(fmt::format("PRAGMA application_id = {}", store_application));
   database.run(fmt::format("PRAGMA user_version = {}", store_schema));
   database.run(
-      "CREATE TABLE study(plan INTEGER PRIMARY KEY, text TEXT NOT NULL, digest TEXT NOT NULL, points INTEGER NOT NULL,"
-      " seed TEXT NOT NULL, shard INTEGER NOT NULL, shards INTEGER NOT NULL, checksum INTEGER NOT NULL);"
-      "CREATE TABLE columns(position INTEGER PRIMARY KEY, key TEXT NOT NULL, name TEXT NOT NULL, unit TEXT NOT NULL, kind TEXT "
-      "NOT NULL);"
-      "CREATE TABLE session(session INTEGER PRIMARY KEY, plan INTEGER NOT NULL, program TEXT NOT NULL, processor TEXT NOT NULL,"
-      " command TEXT NOT NULL, host TEXT NOT NULL, process INTEGER NOT NULL, began TEXT NOT NULL, last TEXT NOT NULL,"
-      " rows INTEGER NOT NULL);"
-      "CREATE TABLE tally(plan INTEGER NOT NULL, status TEXT NOT NULL, rows INTEGER NOT NULL, PRIMARY KEY(plan, status)) WITHOUT "
-      "ROWID");
+      "CREATE TABLE study(plan INTEGER PRIMARY KEY, text TEXT NOT NULL, digest TEXT NOT NULL, points INTEGER NOT NULL, "
+      "seed TEXT NOT NULL, shard INTEGER NOT NULL, shards INTEGER NOT NULL, "
+      "checksum INTEGER NOT NULL);CREATE TABLE columns(position INTEGER PRIMARY KEY, key TEXT NOT NULL, name TEXT NOT NULL, "
+      "unit TEXT NOT NULL, kind TEXT NOT NULL);CREATE TABLE session(session INTEGER PRIMARY KEY, plan INTEGER NOT NULL, "
+      "program TEXT NOT NULL, processor TEXT NOT NULL, command TEXT NOT NULL, host TEXT NOT NULL, process INTEGER NOT NULL, "
+      "began TEXT NOT NULL, last TEXT NOT NULL, rows INTEGER NOT NULL);CREATE TABLE tally(plan INTEGER NOT NULL, "
+      "status TEXT NOT NULL, rows INTEGER NOT NULL, PRIMARY KEY(plan, status)) WITHOUT ROWID");
   std::string sql =
-      "CREATE TABLE results(plan INTEGER NOT NULL, point INTEGER NOT NULL, content BLOB NOT NULL, status TEXT NOT NULL, reason "
-      "TEXT NOT NULL,"
-      " extra TEXT NOT NULL, checksum INTEGER NOT NULL";
+      "CREATE TABLE results(plan INTEGER NOT NULL, point INTEGER NOT NULL, content BLOB NOT NULL, status TEXT NOT NULL, "
+      "reason TEXT NOT NULL, extra TEXT NOT NULL, checksum INTEGER NOT NULL";
   for (const StoredColumn& column : columns) sql += ", " + sql_name(column.key) + " REAL";
   database.run(sql + ", PRIMARY KEY(plan, point)) WITHOUT ROWID");
   Statement insert = database.prepare("INSERT INTO columns(key, name, unit, kind) VALUES(?, ?, ?, ?)");
@@ -171,8 +169,8 @@ void create_tables(const Database& database, const std::vector<StoredColumn>& co
 void check_schema(const Database& database) {
   const std::int64_t schema = database.number_of("PRAGMA user_version");
   require(schema <= store_schema,
-          fmt::format("{}: was written by a later softland (schema {} of stores; this one reads up to {})", database.shown(),
-                      schema, store_schema));
+          fmt::format("{}: was written by a later version of softland (store schema {}; this version reads up to {})",
+                      database.shown(), schema, store_schema));
   const std::int64_t tables = database.number_of(
       "SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name IN ('study', 'columns', 'session', 'results', 'tally')");
   if (tables != 5 || schema < 1 || database.number_of("SELECT count(*) FROM session JOIN study USING(plan)") < 1)
@@ -191,7 +189,7 @@ std::vector<StoredColumn> columns_in(const Database& database) {
   return found;
 }
 
-// Checks numbers before anything is computed from them.
+// Checks the number of points and the part of the plan that a store states, before other numbers are computed from them.
 void require_sound(const Database& database, std::int64_t points, std::int64_t index, std::int64_t count) {
   constexpr std::int64_t most_points = std::int64_t{1} << 53;
   const auto damaged = [&](const std::string& what) {
@@ -207,11 +205,10 @@ void require_sound(const Database& database, std::int64_t points, std::int64_t i
 NumberedPlan current_plan(const Database& database) {
   NumberedPlan found;
   const bool checked = has_checksums(database);
-  Statement study =
-      database.prepare(fmt::format("SELECT plan, text, points, seed, shard, shards, {} FROM study WHERE plan = (SELECT plan FROM "
-                                   "session ORDER BY session DESC "
-                                   "LIMIT 1)",
-                                   checked ? "checksum" : "0"));
+  Statement study = database.prepare(fmt::format(
+      "SELECT plan, text, points, seed, shard, shards, {} FROM study WHERE plan = (SELECT plan FROM session ORDER BY session "
+      "DESC LIMIT 1)",
+      checked ? "checksum" : "0"));
   if (!study.step()) throw DamagedStore(fmt::format("{}: the store is damaged: it has no plan", database.shown()));
   require_sound(database, study.integer(2), study.integer(4), study.integer(5));
   found.number = study.integer(0);
@@ -219,7 +216,7 @@ NumberedPlan current_plan(const Database& database) {
   found.plan.seed = std::strtoull(study.text(3).c_str(), nullptr, 10);
   found.plan.shard = {.index = static_cast<int>(study.integer(4)), .count = static_cast<int>(study.integer(5))};
   if (checked && study.integer(6) != checksum_of(found.plan))
-    throw DamagedStore(fmt::format("{}: the store is damaged: its plan is not the one that was written", database.shown()));
+    throw DamagedStore(fmt::format("{}: the store is damaged: its plan has changed since it was written", database.shown()));
   return found;
 }
 
@@ -279,8 +276,8 @@ void SessionTally::note(const std::map<std::string, std::int64_t>& rows_by_statu
 
 std::vector<StoredSession> sessions_in(const Database& database) {
   Statement statement = database.prepare(
-      "SELECT program, processor, command, host, process, began, last, rows, (julianday(last) - julianday(began)) * 86400"
-      " FROM session ORDER BY session");
+      "SELECT program, processor, command, host, process, began, last, rows, (julianday(last) - julianday(began)) "
+      "* 86400 FROM session ORDER BY session");
   std::vector<StoredSession> all;
   while (statement.step()) {
     all.push_back({.program = statement.text(0),
@@ -305,7 +302,7 @@ std::map<std::string, std::int64_t> tally_of(const Database& database, std::int6
 }
 
 std::string select_rows(const Database& database, const std::vector<StoredColumn>& columns) {
-  // A lost checksum counts as a wrong one, except in a store without checksums.
+  // A missing checksum counts as a wrong one, unless the store has no checksums.
   std::string sql =
       fmt::format("SELECT point, content, status, reason, extra, {}", has_checksums(database) ? "ifnull(checksum, 0)" : "NULL");
   for (const StoredColumn& column : columns) sql += ", " + sql_name(column.key);
@@ -322,7 +319,7 @@ StoredRow row_in(const Database& database, const Statement& statement, std::size
                 .extra = statement.text(4)};
   for (std::size_t i = 0; i < values; ++i) row.values[i] = statement.number(first_value + static_cast<int>(i));
   if (!statement.is_null(checksum) && statement.integer(checksum) != checksum_of(row))
-    throw DamagedStore(fmt::format("{}: the store is damaged: the row of point {} is not the one that was written",
+    throw DamagedStore(fmt::format("{}: the store is damaged: the row of point {} has changed since it was written",
                                    database.shown(), row.point));
   return row;
 }
@@ -355,8 +352,8 @@ bool RowReader::next() {
   else
     row_ = row_in(database_, statement_, values_);
   if (row_.point < 0 || row_.point >= points_ || !shard_.contains(row_.point))
-    fail(fmt::format("it has a point {}, which its part of the plan has not", row_.point));
-  if (row_.point <= last_) fail(fmt::format("point {} stands behind point {}", row_.point, last_));
+    fail(fmt::format("it has point {}, which does not belong to its part of the plan", row_.point));
+  if (row_.point <= last_) fail(fmt::format("point {} follows point {}", row_.point, last_));
   last_ = row_.point;
   count();
   return true;
@@ -414,12 +411,13 @@ bool RowWriter::write(const StoredRow& row) {
   if (sqlite3_changes(database_.handle()) == 1) return true;
   select_.bind(1, plan_).bind(2, row.point);
   if (!select_.step())
-    throw DamagedStore(fmt::format("{}: the store is damaged: point {} is there and is not", database_.shown(), row.point));
+    throw DamagedStore(
+        fmt::format("{}: the store is damaged: point {} is found by one query and not by another", database_.shown(), row.point));
   const StoredRow there = row_in(database_, select_, columns_.size());
   select_.reset();
   const std::string other = difference(there, row, columns_);
   if (!other.empty())
-    throw Contradiction(fmt::format("{}: point {} is there already, with other bits: {}", database_.shown(), row.point, other));
+    throw Contradiction(fmt::format("{}: point {} already has a different row: {}", database_.shown(), row.point, other));
   return false;
 }
 
@@ -430,7 +428,7 @@ std::string difference(const StoredRow& a, const StoredRow& b, const std::vector
   }
   if (a.content != b.content) return fmt::format("content {} and {}", a.content.hexadecimal(), b.content.hexadecimal());
   if (a.reason != b.reason) return fmt::format("reason \"{}\" and \"{}\"", shortened(a.reason), shortened(b.reason));
-  return a.extra == b.extra ? "" : "what they keep beside the columns";
+  return a.extra == b.extra ? "" : "the data in extra";
 }
 
 }  // namespace softland::internal

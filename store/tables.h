@@ -1,12 +1,12 @@
 // The tables of a store, and their content.
 //
-//   study    one row per plan: its text, digest of that, points, seed, shard, checksum of these and of columns
-//   columns  of results, with name, unit and kind
+//   study    one row per plan: text, digest of the text, points, seed, shard, checksum of these and of the columns
+//   columns  one row per column of results: name, unit and kind
 //   session  one row per run: program, processor, command, host, process, times, rows written
-//   results  (plan, point) -> content, status, reason, extra, checksum of all that stands in the row, and the columns
-//   tally    (plan, status) -> rows
+//   results  (plan, point) -> content, status, reason, extra, checksum of the row, and the columns
+//   tally    (plan, status) -> number of rows
 //
-// Stores of schema 1 have no checksums; they are read, and continued, as they are.
+// Stores of schema 1 have no checksums; they are read and continued without.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ void check_plan(const StoredPlan& plan);
 /// Creates the tables for rows of these columns.
 void create_tables(const Database& database, const std::vector<StoredColumn>& columns);
 
-/// Throws InvalidInput where the tables are of a later schema, DamagedStore where tables are missing.
+/// Throws InvalidInput for tables of a later schema, and DamagedStore if tables are missing.
 void check_schema(const Database& database);
 
 /// A plan as the store holds it.
@@ -64,7 +64,7 @@ class SessionTally {
 /// Returns "SELECT ... FROM results" with the columns that row_in() reads.
 [[nodiscard]] std::string select_rows(const Database& database, const std::vector<StoredColumn>& columns);
 [[nodiscard]] std::array<unsigned char, 16> bytes_of(const ContentKey& key);
-/// Returns the row. Throws DamagedStore where it is not what was written.
+/// Returns the row that the statement is at. Throws DamagedStore if the row has changed since it was written.
 [[nodiscard]] StoredRow row_in(const Database& database, const Statement& statement, std::size_t values);
 
 /// Reads the rows of a plan in the order of their points.
@@ -72,12 +72,12 @@ class RowReader {
  public:
   enum class Of {
     rows,   ///< the whole content of the rows
-    points  ///< their numbers only, which is ten times as quick
+    points  ///< the numbers of the points only, which is ten times faster
   };
   /// `where` is an expression over the columns; empty for all rows.
   RowReader(const Database& database, const NumberedPlan& plan, Of what, const std::string& where = {});
-  /// Goes to the next row; returns false after the last one. Throws DamagedStore where a row is not what was written, where
-  /// points do not rise or do not belong to the plan, and at the end where there are more or fewer rows than were counted.
+  /// Goes to the next row; returns false after the last one. Throws DamagedStore if a row has changed since it was
+  /// written, if points do not increase or do not belong to the plan, and at the end if the number of rows is wrong.
   bool next();
   [[nodiscard]] const StoredRow& row() const { return row_; }
 
@@ -100,7 +100,7 @@ class RowReader {
   std::map<std::string, std::int64_t, std::less<>>::iterator counted_ = by_status_.end();
 };
 
-/// Thrown for a row that the store holds with other bits.
+/// Thrown if the store has a different row of the same point.
 class Contradiction : public InvalidInput {
  public:
   using InvalidInput::InvalidInput;
@@ -110,8 +110,8 @@ class Contradiction : public InvalidInput {
 class RowWriter {
  public:
   RowWriter(const Database& database, std::int64_t plan, const std::vector<StoredColumn>& columns);
-  /// Returns true when the row was new. A row that the store holds with the same bits stays. Throws Contradiction where it has
-  /// other bits.
+  /// Writes a row; returns false if the store already has an equal one. Throws Contradiction if the store has a different row of
+  /// this point.
   bool write(const StoredRow& row);
 
  private:
@@ -122,7 +122,7 @@ class RowWriter {
   Statement insert_, select_;
 };
 
-/// Returns the difference of two rows of one point, in words; empty where they hold the same bits.
+/// Returns a description of the difference between two rows of one point; empty if they are equal.
 [[nodiscard]] std::string difference(const StoredRow& a, const StoredRow& b, const std::vector<StoredColumn>& columns);
 
 }  // namespace softland::internal
