@@ -1,4 +1,4 @@
-// A list of numbers as Python has it.
+// Converts vectors of numbers to NumPy arrays.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -7,7 +7,7 @@
 
 namespace softland::python {
 
-/// A new array of shape (values.size(),) that holds a copy of the values.
+/// Returns a new array of shape (values.size(),) with a copy of the values.
 inline pybind11::array_t<double> array(const std::vector<double>& values) {
   return pybind11::array_t<double>(static_cast<pybind11::ssize_t>(values.size()), values.data());
 }

@@ -1,4 +1,4 @@
-// The evaluator under Python: arrays in, arrays out.
+// The evaluator for Python: figures of devices from arrays of their varied values.
 #include "studies/devices/evaluator.h"
 
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ Figure figure_named(const std::string& name) {
     for (const Figure& f : figure_table) {
       if (Evaluator::measured(f)) known += (known.empty() ? "" : ", ") + std::string(f.quantity());
     }
-    return fmt::format("no figure '{}' that is measured of devices; there are {}", name, known);
+    return fmt::format("unknown figure '{}'; choose from {}", name, known);
   });
   return *found;
 }
@@ -49,12 +49,12 @@ std::unique_ptr<Evaluator> made_evaluator(const PyScene& scene, const std::vecto
   });
 }
 
-// (figures, status, reasons by row)
+// Returns (figures, status, reasons), with a row for each device.
 py::tuple evaluate(const Evaluator& evaluator, const Rows& rows, int jobs, const py::object& progress) {
   const auto keys = static_cast<py::ssize_t>(evaluator.keys().size()),
              figures = static_cast<py::ssize_t>(evaluator.figures().size());
   require(rows.ndim() == 2 && rows.shape(1) == keys,
-          [&] { return fmt::format("evaluator: expected an array of n rows of {} numbers", keys); });
+          [&] { return fmt::format("evaluator: must be an array of shape (n, {})", keys); });
   const auto count = static_cast<std::size_t>(rows.shape(0));
   py::array_t<double> values({rows.shape(0), figures});
   std::vector<RowEnd> ends(count);
@@ -65,7 +65,7 @@ py::tuple evaluate(const Evaluator& evaluator, const Rows& rows, int jobs, const
     evaluator.evaluate(in, out, ends, jobs, watch);
     return true;
   });
-  // A status is one of a few texts: each is made once.
+  // Each of the few different statuses is converted to a Python text once.
   std::map<std::string, py::str> texts;
   py::list status(count);
   py::dict reasons;
@@ -95,7 +95,7 @@ void bind_evaluator(py::module_& m) {
                              })
       .def("evaluate", &evaluate)
       .def("jacobian", [](const Evaluator& e, const Rows& row) {
-        require(row.ndim() == 1, "jacobian: expected one row");
+        require(row.ndim() == 1, "jacobian: must be a single row, of shape (keys,)");
         Run run;
         return run([&](const Watch& watch) { return e.jacobian({row.data(), static_cast<std::size_t>(row.size())}, watch); });
       });

@@ -1,4 +1,4 @@
-// Explorations of the design space under Python.
+// Explorations of a design space for Python.
 #include <pybind11/stl.h>
 
 #include <string>
@@ -26,7 +26,7 @@ void search_the_front(Exploration& exploration, const ExploreRequest& request, c
                       StudyStore& store, KnownRows known, Run& run) {
   static_cast<void>(search_front(exploration, store, std::move(known), aims,
                                  {.jobs = request.jobs, .stop = run.stop(), .on_point = [&run](const FrontFound& found) {
-                                    run.watch().tell("searching the front",
+                                    run.watch().tell("searching the Pareto front",
                                                      static_cast<double>(found.asked) / static_cast<double>(found.points));
                                   }}));
 }
@@ -43,7 +43,7 @@ void explore_part(Exploration& exploration, const ExploreRequest& request, const
       .run();
 }
 
-// Into a store, which has the rows that are done also where Ctrl-C ends it.
+// Explores a design space into a store. After Ctrl-C the store keeps the rows that are done.
 void explore(const PyScene& scene, const verbs::Told& told, const std::string& command, const py::object& progress) {
   const verbs::Study& verb = verbs::study_named("explore");
   const auto [request, shard, plan] = in_keywords("explore", [&] {

@@ -1,4 +1,4 @@
-// softland as a Python module: the library's functions, with arrays and JSON. Its users meet the package softland beside it.
+// The extension module of the Python package softland: functions of the library, with arrays and JSON. Users import the package.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 

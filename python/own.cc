@@ -18,10 +18,10 @@ namespace py = pybind11;
 namespace {
 
 constexpr std::size_t fewest_intervals = 8, most_intervals = 512, most_known = 64;
-// Accuracy of the polynomials over the largest voltage: beyond own_waveform_accuracy, since they converge so fast.
+// Accuracy of the polynomials relative to the largest voltage; better than own_waveform_accuracy, because they converge fast.
 constexpr double aim = 1e-12;
 
-// Chebyshev point k of so many intervals over [begin, end], from the end to the begin.
+// Returns Chebyshev point k for a number of intervals over [begin, end]; points run from the end to the begin.
 double chebyshev_point(double begin, double end, std::size_t k, std::size_t intervals) {
   return (begin + end) / 2 + (end - begin) / 2 * std::cos(pi * static_cast<double>(k) / static_cast<double>(intervals));
 }
@@ -30,7 +30,7 @@ py::array_t<double> array(std::span<const double> values) {
   return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
-// An object that a user's function gave, with its type: "'abc' (str)".
+// Returns an object with its type for messages, such as "'abc' (str)".
 std::string shown(const py::handle& given) {
   constexpr std::size_t longest = 80;
   std::string text = py::repr(given);
@@ -38,10 +38,10 @@ std::string shown(const py::handle& given) {
   return text + " (" + std::string(py::str(py::type::handle_of(given).attr("__name__"))) + ")";
 }
 
-// Takes what a user's function, named by `who`, gave for numbers.
+// Converts the value that a Python function returned to numbers; `who` names the function in messages.
 std::vector<double> numbers(const py::object& given, const std::string& who) {
   const auto values = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);  // clears the error
-  require(static_cast<bool>(values), [&] { return who + " gave " + shown(given) + "; it must give numbers, as an array"; });
+  require(static_cast<bool>(values), [&] { return who + " returned " + shown(given) + "; it must return an array of numbers"; });
   return {values.data(), values.data() + values.size()};
 }
 
@@ -74,7 +74,7 @@ double PythonWaveform::Arc::at(double time) const {
     above += weight * values[k], below += weight;
   }
   const double value = above / below;
-  // Rounding beyond the samples would break a limit of a driver that they keep.
+  // Values beyond the samples by rounding are set to the extreme sample, so that they keep the limits of a driver.
   if (value < least && least - value <= own_waveform_accuracy * std::max(-least, most)) return least;
   if (value > most && value - most <= own_waveform_accuracy * std::max(-least, most)) return most;
   return value;
@@ -83,7 +83,7 @@ double PythonWaveform::Arc::at(double time) const {
 std::vector<double> PythonWaveform::called(const std::vector<double>& times, std::span<const double> x) const {
   std::vector<double> volts = numbers(voltage_(array(times), array(x)), "the own waveform '" + name_ + "'");
   require(volts.size() == times.size(), [&] {
-    return "the own waveform '" + name_ + "' gave " + std::to_string(volts.size()) + " volts for " +
+    return "the own waveform '" + name_ + "' returned " + std::to_string(volts.size()) + " volts for " +
            std::to_string(times.size()) + " times";
   });
   return volts;
@@ -111,8 +111,8 @@ std::shared_ptr<const PythonWaveform::Course> PythonWaveform::course(std::span<c
     std::vector<std::size_t> open(made->arcs.size());
     for (std::size_t i = 0; i < open.size(); ++i) open[i] = i;
     for (std::size_t intervals = fewest_intervals; !open.empty() && intervals <= most_intervals; intervals *= 2) {
-      // One call asks for all arcs that are not followed yet. The value at a breakpoint is the voltage after it: the end
-      // of an arc is looked at from inside.
+      // One call returns the voltages of all arcs that are not accurate yet. The function returns the voltage after a breakpoint,
+      // so that the end of an arc is evaluated slightly before it.
       std::vector<double> times;
       for (const std::size_t i : open) {
         const Arc& arc = made->arcs[i];
@@ -160,7 +160,7 @@ double PythonWaveform::voltage(double time, std::span<const double> x) const {
   }
   const auto after =
       std::upper_bound(known->arcs.begin(), known->arcs.end(), time, [](double t, const Arc& arc) { return t < arc.end; });
-  if (after == known->arcs.end()) {  // the voltage stays on this value at the end
+  if (after == known->arcs.end()) {  // after the last breakpoint the voltage is constant
     const py::gil_scoped_acquire held;
     return called({time}, x)[0];
   }
@@ -182,7 +182,7 @@ double PythonObjective::value(const Metrics& closing, const Metrics& step) const
     try {
       return told.cast<double>();
     } catch (const py::cast_error&) {
-      throw InvalidInput("the objective '" + name_ + "' gave " + shown(told) + "; it must give a number");
+      throw InvalidInput("the objective '" + name_ + "' returned " + shown(told) + "; it must return a number");
     }
   } catch (...) {
     first_.keep(std::current_exception());
@@ -202,8 +202,10 @@ void PythonObjective::values(std::span<const Metrics> closings, const Metrics& s
     }
     const std::vector<double> told = numbers(value_(all, figures_of(step)), "the objective '" + name_ + "'");
     require(told.size() == values.size(), [&] {
-      return "the objective '" + name_ + "' gave " + std::to_string(told.size()) + " values for " +
-             std::to_string(values.size()) + " devices: over devices its figures are arrays, and it returns an array";
+      return "the objective '" + name_ + "' returned " + std::to_string(told.size()) + " values for " +
+             std::to_string(values.size()) +
+             " devices: in a search over devices its figures are arrays, "
+             "and it must return an array with a value for each device";
     });
     std::copy(told.begin(), told.end(), values.begin());
   } catch (...) {

@@ -16,7 +16,8 @@
 
 namespace softland::python {
 
-/// The first exception of functions that the library calls, and takes for a bad candidate: it is raised when the work has ended.
+/// Keeps the first exception of Python functions that the library calls. The library treats it as an infeasible candidate; it is
+/// raised after the computation.
 class FirstError {
  public:
   void keep(std::exception_ptr error) {
@@ -27,7 +28,7 @@ class FirstError {
     const std::scoped_lock lock(lock_);
     return first_ != nullptr;
   }
-  /// Throws it, if there is one, and forgets it.
+  /// Throws the kept exception, if any, and clears it.
   void rethrow() {
     std::unique_lock lock(lock_);
     const std::exception_ptr first = std::exchange(first_, nullptr);
@@ -46,7 +47,7 @@ class FirstError {
 /// 46 (2004) 501, eq. 4.2.
 class PythonWaveform final : public OwnWaveform {
  public:
-  /// `voltage`: (times, x) -> volts, arrays; `breakpoints`: (x) -> times, or their array.
+  /// `voltage` is a function (times, x) -> volts of arrays; `breakpoints` is a function (x) -> times, or an array of times.
   PythonWaveform(std::string name, std::vector<OwnParameter> parameters, pybind11::object breakpoints, pybind11::object voltage);
   PythonWaveform(const PythonWaveform&) = delete;
   PythonWaveform& operator=(const PythonWaveform&) = delete;
@@ -62,7 +63,7 @@ class PythonWaveform final : public OwnWaveform {
   struct Arc {
     double begin = 0, end = 0;
     std::vector<double> values;  // voltages at Chebyshev points, from the end to the begin
-    double least = 0, most = 0;  // extremes of these
+    double least = 0, most = 0;  // smallest and largest of these voltages
     [[nodiscard]] double at(double time) const;
   };
   struct Course {
@@ -80,7 +81,7 @@ class PythonWaveform final : public OwnWaveform {
   mutable FirstError first_;
 };
 
-/// An objective that a Python function tells of the figures of a closing and of the plain step.
+/// An objective that a Python function computes from the figures of a closing and of the plain step.
 class PythonObjective final : public OwnObjective {
  public:
   PythonObjective(std::string name, pybind11::object value, bool lands_first);
@@ -90,7 +91,7 @@ class PythonObjective final : public OwnObjective {
 
   [[nodiscard]] std::string_view name() const override { return name_; }
   [[nodiscard]] double value(const Metrics& closing, const Metrics& step) const override;
-  /// One call with arrays.
+  /// Computes the objective of all devices by one call of the Python function, with arrays.
   void values(std::span<const Metrics> closings, const Metrics& step, std::span<double> values) const override;
   [[nodiscard]] bool lands_first() const override { return lands_first_; }
   [[nodiscard]] FirstError& first_error() const { return first_; }

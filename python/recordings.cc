@@ -1,4 +1,4 @@
-// Files of instruments under Python, and the waveforms of a scene as files for others.
+// Reads files of instruments for Python, and exports the waveforms of a scene for other programs.
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -36,7 +36,7 @@ Recording read(const std::filesystem::path& file, const std::vector<std::string>
   });
 }
 
-// (name, heading, unit, column in the file, values in SI units)
+// Returns (name, heading, unit, column in the file, values in SI units) of every channel.
 py::list channels_of(const Recording& recording) {
   py::list all;
   for (const Channel& channel : recording.channels) {
@@ -47,16 +47,16 @@ py::list channels_of(const Recording& recording) {
   return all;
 }
 
-// Rows of time and 1 where the contact closes, 0 where it opens, from t = 0 on.
+// Returns the edges of a contact from t = 0 on: rows of time and state, 1 where it closes and 0 where it opens.
 py::array_t<double> edges(const Column& times, const Column& volts, double threshold, bool is_closed_below, double hysteresis,
                           double merge, bool from_zero) {
   require(times.ndim() == 1 && times.size() == volts.size() && times.size() > 0,
-          "times and volts: must be as many, of shape (n,)");
+          "times and volts: must have the same shape (n,)");
   require(hysteresis >= 0 && merge >= 0, "hysteresis and merge: must be at least 0");
   const Trace trace{.times = numbers(times), .values = numbers(volts), .told = {}};
   for (std::size_t i = 0; i < trace.times.size(); ++i)
     require(std::isfinite(trace.times[i]) && std::isfinite(trace.values[i]) && (i == 0 || trace.times[i] >= trace.times[i - 1]),
-            "times and volts: must be finite, and times must not go back");
+            "times and volts: must be finite, and times must not decrease");
   const ThresholdKeys keys{.threshold = threshold, .hysteresis = hysteresis, .is_closed_below = is_closed_below, .merge = merge};
   const std::vector<LevelEdge> found = from_zero ? contact_edges(trace, keys, "the trace") : level_edges(trace, keys);
   py::array_t<double> rows({static_cast<py::ssize_t>(found.size()), py::ssize_t{2}});

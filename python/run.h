@@ -1,4 +1,4 @@
-// Runs a computation under Python: without the GIL, stopped by Ctrl-C, and with Python functions that get its progress.
+// Runs a computation for Python: without the GIL, interruptible by Ctrl-C, with Python callbacks for its progress.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -16,9 +16,8 @@
 
 namespace softland::python {
 
-/// While it lives a SIGINT sets this flag as soon as it comes, and is then left to Python: what computes in the main thread
-/// stops, and Python raises KeyboardInterrupt when it is back. In other threads, where Python delivers no signal, it does
-/// nothing.
+/// During its lifetime, SIGINT sets a flag and is then passed on to Python. A computation in the main thread stops, and Python
+/// raises KeyboardInterrupt. In other threads, to which Python delivers no signals, this class does nothing.
 class StoppedByInterrupt {
  public:
   explicit StoppedByInterrupt(std::atomic<bool>& stop);
@@ -33,14 +32,13 @@ class StoppedByInterrupt {
 /// One call from Python into the library.
 class Run {
  public:
-  /// `progress`: called with what is being computed and which part of it is done, at most ten times a second. None: no
-  /// progress is reported.
+  /// `progress` is called with the name of the current stage and its done share, at most ten times a second; None: not called.
   explicit Run(pybind11::object progress = pybind11::none());
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
 
-  /// Returns the result of work(watch), run without the GIL. Raises what Python raised in one of its functions,
-  /// KeyboardInterrupt where Ctrl-C stopped it, and what the work throws.
+  /// Returns the result of work(watch), run without the GIL. Raises an exception of a Python callback, KeyboardInterrupt after
+  /// Ctrl-C, and exceptions of the work.
   template <class Work>
   auto operator()(Work&& work) {
     std::optional<std::invoke_result_t<Work, const Watch&>> result;
@@ -60,14 +58,13 @@ class Run {
 
   [[nodiscard]] const Watch& watch() const { return watch_; }
   [[nodiscard]] const std::atomic<bool>* stop() const { return &stop_; }
-  /// True if it was asked to stop, other than by end_by_wish().
+  /// Returns true if the run was asked to stop in another way than by end_by_wish().
   [[nodiscard]] bool given_up() const { return stop_.load(std::memory_order_relaxed) && !ended_by_wish_; }
-  /// Ends the work at once, in callbacks of the library, if Ctrl-C or a failed function has asked it to stop.
+  /// For callbacks of the library: throws, to end the work, if Ctrl-C or a failed Python function has asked it to stop.
   void throw_if_given_up() const {
     if (given_up()) throw Interrupted();
   }
-  /// Calls a Python function from whichever thread computes. The first exception of one ends the work and is raised when it has
-  /// ended.
+  /// Calls a Python function from any thread. The first exception of such a function ends the work, and is raised afterwards.
   template <class Call>
   void call(Call&& call) {
     const pybind11::gil_scoped_acquire held;
@@ -77,7 +74,7 @@ class Run {
       keep(std::current_exception());
     }
   }
-  /// Keeps an exception that is on its way through the library, which may take it for a bad candidate.
+  /// Keeps an exception that passes through the library, which may treat it as an infeasible candidate.
   void keep(std::exception_ptr error);
 
  private:
@@ -88,12 +85,12 @@ class Run {
   std::exception_ptr first_;
   pybind11::object progress_;
   std::atomic<std::chrono::steady_clock::rep> told_ = 0;
-  std::mutex progress_lock_;  // guards what follows
+  std::mutex progress_lock_;  // guards the members below
   MonotoneProgress shown_;
   Watch watch_;
 
  public:
-  /// Ends the work by the wish of a callback: the result is then the one found so far.
+  /// Ends the work because a callback returned True; the result is the best one so far.
   void end_by_wish() {
     ended_by_wish_ = true;
     stop_ = true;

@@ -41,11 +41,11 @@ std::shared_ptr<const PreparedScene> driven_by(const std::shared_ptr<const Prepa
   if (waveforms.empty()) return prepared;
   auto own = std::make_shared<PreparedScene>(*prepared);
   for (const auto& [drive, waveform] : waveforms) {
-    require(own->drives.find(drive) != nullptr, [&] { return fmt::format("waveforms: the scene has no drive '{}'", drive); });
+    require(own->drives.find(drive) != nullptr, [&] { return fmt::format("waveforms: unknown drive '{}'", drive); });
     Drive& driven = own->drives.at(drive);
     if (driven.limits) {
       const Signal told = own->told(own->drives.place(drive), waveform);
-      // An own waveform is followed by cubics, which may miss it by as much.
+      // The cubics that approximate an own waveform may exceed a limit by this error.
       const double missed = std::holds_alternative<Own>(waveform) ? own_waveform_accuracy * told.peak() : 0;
       const std::string why = violation(told, {.min_voltage = driven.limits->min_voltage - missed,
                                                .max_voltage = driven.limits->max_voltage + missed,
@@ -61,14 +61,14 @@ namespace {
 
 using Value = std::variant<bool, int, double, std::string>;
 
-// Changes a key as --set does; a number is in SI units.
+// Changes a key as --set does; a number is in the SI unit of the key.
 void change(SceneFile& file, const std::string& key, const Value& value) {
   if (const auto* text = std::get_if<std::string>(&value)) return file.set(key + "=" + *text);
   try {
     if (const auto* flag = std::get_if<bool>(&value)) return file.assign(key, SceneValue(*flag));
     if (const auto* whole = std::get_if<int>(&value)) return file.assign(key, SceneValue(*whole));
     file.assign(key, SceneValue(std::get<double>(value)));
-  } catch (const std::logic_error&) {  // the reader of the scene reports what is wrong with the key
+  } catch (const std::logic_error&) {  // read_scene() reports the fault of the key
     file.set(key + "=" +
              std::visit(
                  []<class T>(const T& one) {
@@ -85,7 +85,7 @@ void change(SceneFile& file, const std::string& key, const Value& value) {
 
 std::string json_of_scene(const SceneFile& file) { return json_text(file.json()); }
 
-// Time, deflection, velocity, acceleration and contact force, a row per knot.
+// Returns time, deflection, velocity, acceleration and contact force, with a row for each knot.
 py::array_t<double> points_of(const Trajectory& run) {
   py::array_t<double> all({static_cast<py::ssize_t>(run.points.size()), py::ssize_t{5}});
   auto to = all.mutable_unchecked<2>();
@@ -106,7 +106,7 @@ py::array_t<double> rebounds_of(const std::vector<Rebound>& rebounds) {
   return all;
 }
 
-// The run of a closing again, with all its modes.
+// The motion of a closing in all modes, from a repeated simulation.
 struct Motion {
   RecordedMotion tape;
   std::size_t modes = 0;
@@ -127,7 +127,8 @@ Motion motion_of(const PyClosing& c, const Watch& watch) {
   return motion;
 }
 
-// Begin and end of each step: times (steps x 2), and q, v and accelerations (steps x 2 x 3 x modes).
+// Returns the states at begin and end of each step: times (steps x 2), and coordinates, velocities and accelerations of the modes
+// (steps x 2 x 3 x modes).
 py::tuple arrays_of(const Motion& motion) {
   const auto steps = static_cast<py::ssize_t>(motion.tape.arcs().size()), modes = static_cast<py::ssize_t>(motion.modes);
   py::array_t<double> times({steps, py::ssize_t{2}}), states({steps, py::ssize_t{2}, py::ssize_t{3}, modes});
@@ -149,7 +150,7 @@ py::tuple shapes_of(const PreparedScene& p, int places) {
 
 ClosingRecord record_of(const PyClosing& c) { return softland::record_of(*c.prepared, c.closing, c.command); }
 
-// quantity -> (value, error, unit), in the order of the table; yes or no without error and unit.
+// Returns a dict of (value, error, unit) by figure, in the order of the table of figures. A yes or no has neither error nor unit.
 py::dict figures_of(const Closing& closing) {
   py::dict all;
   for (const Figure& figure : asked_among(all_figures, closing.metrics.asked)) {
@@ -204,7 +205,7 @@ void bind_scene(py::module_& m) {
            [](const PyClosing& c, const std::string& drive, const std::vector<double>& times) {
              const std::vector<std::string> names = c.prepared->drive_names();
              const auto found = std::find(names.begin(), names.end(), drive);
-             require(found != names.end(), [&] { return fmt::format("the scene has no drive '{}'", drive); });
+             require(found != names.end(), [&] { return fmt::format("unknown drive '{}'", drive); });
              const Signal signal = c.prepared->signals()[static_cast<std::size_t>(found - names.begin())];
              std::vector<double> volts;
              for (const double t : times) volts.push_back(signal.voltage(t));
@@ -230,7 +231,7 @@ void bind_scene(py::module_& m) {
                     return PyScene{.file = SceneFile::parse(text, name, directory), .directory = directory};
                   })
       .def("copy", [](const PyScene& s) { return PyScene(s); })
-      .def("change",  // all of them, or none
+      .def("change",  // changes all given keys, or none after an error
            [](PyScene& s, const std::vector<std::pair<std::string, Value>>& changes) {
              SceneFile changed = s.file;
              for (const auto& [key, value] : changes) change(changed, key, value);

@@ -1,4 +1,4 @@
-// A scene under Python, and what the verbs make of it.
+// A scene for Python, and the results of verbs on it.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -17,13 +17,13 @@
 
 namespace softland::python {
 
-/// A scene file and what was made of it, which is kept until the scene changes.
+/// A scene file and its prepared forms, which are kept until the scene changes.
 struct PyScene {
   SceneFile file;
   std::filesystem::path directory;                                ///< the directory that relative paths in it start from
   std::shared_ptr<const PreparedScene> plain = {}, limited = {};  ///< prepare_and_choose() without and with default limits
 
-  /// Made ready, when it is first asked for.
+  /// Returns the prepared scene; it is prepared at the first call.
   [[nodiscard]] std::shared_ptr<const PreparedScene> ready(bool default_limits, Run& run);
   [[nodiscard]] std::shared_ptr<const PreparedScene> ready(bool default_limits = false) {
     Run run;
@@ -31,7 +31,7 @@ struct PyScene {
   }
 };
 
-/// The result of a verb: its JSON, and the files that the program writes of it, each made when it is asked for.
+/// The result of a verb: its JSON and its files, each of which is made when it is requested.
 struct Outcome {
   std::string json;
   std::map<std::string, std::function<std::string()>> files = {};
@@ -41,7 +41,7 @@ struct Outcome {
 
 [[nodiscard]] Outcome python_outcome(const nlohmann::json& data, const std::vector<verbs::Outcome::File>& files);
 
-/// One closing, with what it is of.
+/// A simulated closing, with the scene and the motion that belong to it.
 struct PyClosing : verbs::Simulated {
   std::string command;
 };
@@ -54,16 +54,15 @@ void bind_exploration(pybind11::module_& module);
 void bind_tuning(pybind11::module_& module);
 void bind_recordings(pybind11::module_& module);
 
-/// A waveform, wrapped so that it is one Python type whatever its family.
+/// A waveform of any family, as a single Python type.
 struct PyWaveform {
   Waveform value;
 };
 
-/// The waveforms that replace those of a scene, by drive.
-/// Takes a Python dict of softland._softland.Waveform.
+/// Returns the waveforms by drive of a Python dict of softland._softland.Waveform; they replace those of a scene.
 [[nodiscard]] DriveWaveforms waveforms_of(const pybind11::dict& given, Run& run);
 
-/// Returns the result of `work`. Messages about a request have its options in the words of Python.
+/// Returns the result of `work`. Messages about a request name options by their Python keywords.
 template <class Work>
 auto in_keywords(const char* verb, Work&& work) {
   try {
@@ -74,11 +73,11 @@ auto in_keywords(const char* verb, Work&& work) {
   }
 }
 
-/// Asks a study (verbs/study.h) of a scene. `waveforms` are those of others, by name and drive.
+/// Runs a verb of verbs/study.h on a scene. `waveforms` are further waveforms to evaluate, by name and drive.
 [[nodiscard]] Outcome study(PyScene& scene, const std::string& verb, const verbs::Told& told, const pybind11::dict& waveforms,
                             std::string command, const pybind11::object& progress);
 
-/// A scene like this one under other waveforms. Throws InvalidInput for a drive that it has not, and beyond its limits.
+/// Returns the scene with other waveforms. Throws InvalidInput for an unknown drive, and for a waveform beyond the limits.
 [[nodiscard]] std::shared_ptr<const PreparedScene> driven_by(const std::shared_ptr<const PreparedScene>& prepared,
                                                              const DriveWaveforms& waveforms);
 

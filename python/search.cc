@@ -1,4 +1,4 @@
-// Searches for waveforms under Python.
+// Searches for waveforms, for Python.
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
@@ -22,7 +22,7 @@ namespace py = pybind11;
 
 namespace {
 
-// The request of a search, with the parts that no text can hold.
+// The request of a search, with Python objects that a text cannot express.
 struct Request {
   verbs::OptimizeRequest words;
   std::shared_ptr<PythonObjective> objective;
@@ -30,16 +30,16 @@ struct Request {
   std::vector<py::dict> starts;
   py::object callback, progress;
   std::string command;
-  std::string out;  // empty: nothing is kept
+  std::string out;  // folder of the search; empty: nothing is stored
 };
 
 PlannedSearch planned_search(const Request& request, const SceneFile& file, Run& run) {
   PlannedSearch search =
       planned(completed(request.words, file), file, request.words.waveform,
               {.objective = request.objective, .waveforms = {request.own_waveforms.begin(), request.own_waveforms.end()}});
-  require(
-      !search.for_devices || request.own_waveforms.empty(),
-      "own_waveforms: a search for devices works on scene files, which cannot hold one: ask for robust=\"none\" or a measure");
+  require(!search.for_devices || request.own_waveforms.empty(),
+          "own_waveforms: must not be given with a search for devices, which needs scene files; "
+          "give robust=\"none\" or one statistic");
   search.options.jobs = request.words.jobs;
   search.options.stop = run.stop();
   for (const py::dict& start : request.starts) {
@@ -49,10 +49,11 @@ PlannedSearch planned_search(const Request& request, const SceneFile& file, Run&
   return search;
 }
 
-// The same search, kept in a folder. Its starts are written into its plan, and have to be possible to write.
+// Returns the search as one that is stored in a folder. Its start waveforms become part of its plan; a file must be able to hold
+// them.
 StoredSearch kept_search(const Request& request, const PyScene& scene, std::optional<KnownSearch>& known, Run& run) {
   require(!request.objective && request.own_waveforms.empty(),
-          "out: a search with functions of Python cannot be kept, since no file tells which functions they were");
+          "out: must not be given for a search with Python functions, which cannot be stored in a file");
   AskedSearch asked{.request = request.words,
                     .given = GivenText{.file = scene.file.name(), .folder = scene.directory, .text = scene.file.text()},
                     .scene = scene.file,
@@ -68,8 +69,8 @@ StoredSearch kept_search(const Request& request, const PyScene& scene, std::opti
   return stored_search(asked, stores, known);
 }
 
-// The callbacks report to Python, which may end a search. Once candidates are tried they throw nothing, which a search
-// would take for a bad candidate: run.stop() ends it.
+// Sets callbacks that report to Python, which may end the search. During the search they throw nothing, because the search would
+// treat that as an infeasible candidate; run.stop() ends it.
 void listen(PlannedSearch& search, const Request& request, Run& run, SearchSession* session = nullptr) {
   OptimizeOptions& options = search.options;
   options.on_preparation = [&run](std::string_view what, double part) {
@@ -102,7 +103,7 @@ void listen(PlannedSearch& search, const Request& request, Run& run, SearchSessi
   };
 }
 
-// The first error of a Python function comes before what the library made of it.
+// Runs `work`; an error of a Python function takes precedence over the error that the library reports for it.
 template <class Work>
 auto searched(const Request& request, Run& run, Work&& work) {
   const auto raise = [&] {
@@ -122,7 +123,7 @@ auto searched(const Request& request, Run& run, Work&& work) {
   }
 }
 
-// A result of a waveform that no file can hold: the keys of a result.json that are left.
+// Returns the result for an own waveform, which a file cannot hold: the keys of result.json that do not need the waveform.
 Outcome outcome_of_own(const OptimizeResult& found) {
   nlohmann::json parameters = nlohmann::json::object();
   for (const auto& [name, value] : found.parameters) parameters[name] = value;
@@ -144,7 +145,7 @@ bool is_own(const OptimizeResult& found) {
          });
 }
 
-// Runs a search, which a session keeps in a folder, or none does.
+// Runs a search; a session, if any, stores it in a folder.
 Outcome run_search(PlannedSearch& search, const Request& request, Run& running, SearchSession* session = nullptr) {
   listen(search, request, running, session);
   return searched(request, running, [&](const Watch& watch) {
@@ -195,8 +196,7 @@ void bind_search(py::module_& m) {
                             .progress = given["progress"],
                             .command = given["command"].cast<std::string>(),
                             .out = given["out"].cast<std::string>()};
-      require(!request.words.resume || !request.out.empty(),
-              "resume: needs `out`, the folder of the search that is gone on with");
+      require(!request.words.resume || !request.out.empty(), "resume: requires `out`, the folder of the search to continue");
       return request.out.empty() ? search(scene, request) : search_in_folder(scene, request);
     });
   });

@@ -1,4 +1,4 @@
-// The verbs that look at a scene (verbs/study.h), in Python: its methods are made of their descriptions by the build.
+// Runs the verbs of verbs/study.h for Python. The build generates the Python methods from the descriptions of the verbs.
 #include <pybind11/stl.h>
 
 #include <memory>
@@ -17,7 +17,7 @@ namespace py = pybind11;
 
 namespace {
 
-// Waveforms of others, by the names of the user.
+// Returns the further waveforms to evaluate, by the names that the user gives.
 std::map<std::string, DriveWaveforms> others_of(const py::dict& given, Run& run) {
   std::map<std::string, DriveWaveforms> others;
   for (const auto& [name, waveforms] : given)

@@ -1,4 +1,4 @@
-// Tunings under Python: the shots of a session, and a simulated device that answers them.
+// Tunings for Python: the shots of a session, and a simulated device that answers them.
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
@@ -20,7 +20,7 @@ namespace py = pybind11;
 
 namespace {
 
-// A session and what it was begun by.
+// A tuning session with its scene and its request.
 struct PyTuning {
   TuningSession session;
   std::string command;
@@ -41,7 +41,7 @@ std::unique_ptr<PyTuning> made_tuning(const PyScene& scene, const verbs::Told& t
   return tuning;
 }
 
-// number, how long the last levels are held [s], (times, volts) by drive, and the line that a program gets
+// Returns (number, duration of the hold [s], (times, volts) by drive, line for a command) of a shot.
 py::tuple shot_of(const PyTuning& tuning) {
   const ToldShot shot = tuning.session.told();
   py::dict drives;
@@ -60,7 +60,7 @@ void learn(PyTuning& tuning, const std::string& answer, const py::object& progre
 
 Outcome outcome_of(const PyTuning& tuning, const std::string& name) {
   const auto* const end = find_named(tuning_ends, name);
-  require(end != nullptr, "a tuning is " + listed(tuning_ends) + ", and never " + name);
+  require(end != nullptr, "the end of a tuning must be " + listed(tuning_ends) + ", not " + name);
   const auto files = std::make_shared<const std::map<std::string, std::string>>(tuning.session.files(end->value, tuning.command));
   Outcome outcome{.json = json_text(json_of(tuning.session.report(end->value, tuning.command)))};
   for (const auto& [file, ignored] : *files) outcome.files[file] = [files, file = file] { return files->at(file); };
@@ -74,7 +74,7 @@ std::unique_ptr<PracticeDevice> practice(const PyScene& scene, const verbs::Told
   return run([&](const Watch&) { return std::make_unique<PracticeDevice>(file, options); });
 }
 
-// The line that `softland device` answers to this one.
+// Returns the answer of a simulated device to a line, as `softland device` gives it.
 std::string answered(const PracticeDevice& device, const std::string& line) {
   const ToldShot shot = read_shot(read_line(line));
   const std::vector<Waveform> waveforms = shot.waveforms(device.nominal());

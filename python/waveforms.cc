@@ -1,4 +1,4 @@
-// Waveforms as objects.
+// Waveforms as Python objects.
 #include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
@@ -24,7 +24,7 @@ DriveWaveforms waveforms_of(const py::dict& given, Run&) {
 
 namespace {
 
-// A waveform of a family with these parameters in SI units; what is not given has the default of the family.
+// Returns a waveform of a family with the given parameters in SI units; the others have the defaults of the family.
 PyWaveform made(const std::string& name, const py::dict& parameters) {
   std::optional<Waveform> found;
   std::vector<std::string_view> families;
@@ -55,11 +55,11 @@ PyWaveform made(const std::string& name, const py::dict& parameters) {
     for (const auto& [key, ignored] : parameters) {
       const std::string given = py::str(key);
       require(std::find(names.begin(), names.end(), given) != names.end(),
-              [&] { return fmt::format("{}: no parameter '{}'{}", name, given, internal::hint(given, names)); });
+              [&] { return fmt::format("{}: unknown parameter '{}'{}", name, given, internal::hint(given, names)); });
     }
     found = std::move(one);
   });
-  require(found.has_value(), [&] { return fmt::format("no waveform family '{}'{}", name, internal::hint(name, families)); });
+  require(found.has_value(), [&] { return fmt::format("unknown waveform family '{}'{}", name, internal::hint(name, families)); });
   static_cast<void>(signal(*found));
   return {std::move(*found)};
 }
@@ -83,7 +83,7 @@ py::array_t<double> voltages(const PyWaveform& waveform,
   return volts;
 }
 
-// Straight lines through samples that are held on average: at k / rate, with the hold voltage as the last row.
+// Returns a table of samples at k / rate, connected by straight lines, with the hold voltage as the last row.
 PyWaveform resampled(const PyWaveform& waveform, double rate, double end) {
   require(rate > 0 && end > 0 && std::isfinite(rate * end) && rate * end <= 1e7,
           "resampled: rate and end must be above 0, and at most 1e7 samples");
