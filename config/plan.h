@@ -5,9 +5,8 @@
 //   grid     all combinations of the values of the variables, the last one fastest
 //   sample   a point set in the box of the ranges (sampling/points.h)
 //   list     the rows of a table
-//   nsga2    points in the box of the ranges that a search for a Pareto front finds one after the other (optimizers/nsga2.h):
-//   point k is
-//            known when all earlier points are computed
+//   nsga2    points in the box of the ranges that a search for a Pareto front finds in sequence (optimizers/nsga2.h): point k
+//            is known when all earlier points are computed
 // Values between the ends of a range are rounded to 15 significant digits, so that a finer grid reproduces the values of a
 // coarser one exactly, and every number has a short text.
 #pragma once

@@ -1,4 +1,4 @@
-"""The wheel: the package, and the module that `./softland python` builds. For machines like this one: the processor's instructions, the Debian packages."""
+"""Makes the wheel of the package and of the module that `./softland python` builds, for machines with the same processor and Debian packages."""
 
 import shutil
 import subprocess
@@ -8,12 +8,12 @@ from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
 ROOT = Path(__file__).resolve().parents[1]
-SCRATCH = ROOT / "build" / "wheel"  # not among the sources, by which the launcher sees what changed
+SCRATCH = ROOT / "build" / "wheel"  # outside of the sources, whose changes the launcher detects
 SCRATCH.mkdir(parents=True, exist_ok=True)
 
 
 class Built(build_ext):
-    """Takes the module from the build folder, which the launcher names."""
+    """Copies the module from the build folder, which the launcher names."""
 
     def build_extension(self, ext):
         line = subprocess.run([ROOT / "softland", "python"], check=True, stdout=subprocess.PIPE, text=True).stdout

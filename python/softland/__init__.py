@@ -1,4 +1,4 @@
-"""softland: how MEMS and NEMS switches close, and the waveforms that land them softly.
+"""softland: simulation of MEMS and NEMS switches, and search for waveforms that close them without bounce.
 
 >>> import softland
 >>> scene = softland.load("scenes/mem-gold.toml")
@@ -6,7 +6,7 @@
 >>> closing.impact_velocity
 0.08558113969278344 ± 1.6e-08 m/s
 
-All numbers are in SI units; text with a unit is read like in a scene file. docs/python.md is the way in.
+All numbers are in SI units; text with a unit is read as in a scene file. docs/python.md is the introduction.
 """
 
 from . import _softland

@@ -1,4 +1,4 @@
-"""Arguments of the public functions, held against their annotations: a message names argument, type due and value."""
+"""Checks arguments of the public functions against their annotations: a message names the argument, the expected type and the value."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from ._errors import WrongType
 
-_MOST_ELEMENTS = 1000  # of a sequence that are looked at
+_MOST_ELEMENTS = 1000  # largest number of elements of a sequence that are checked
 _SPECIAL = ("__init__", "__call__", "__getitem__", "__setitem__", "__delitem__")
 _OF_PYBIND = ("incompatible function arguments", "incompatible constructor arguments", "Unable to cast")
 
@@ -43,7 +43,7 @@ def _is_array(value: Any) -> bool:
 
 
 def _fits(value: Any, hint: Any) -> bool:
-    """Whether a value may stand where this is annotated; what is annotated in a way that is not known here fits."""
+    """Returns True if a value fits an annotation; every value fits an annotation of an unknown kind."""
     if hint is Any:
         return True
     if hint is None or hint is type(None):
@@ -53,7 +53,7 @@ def _fits(value: Any, hint: Any) -> bool:
     origin, inner = typing.get_origin(hint), typing.get_args(hint)
     if origin is typing.Union or isinstance(hint, types.UnionType):
         return any(_fits(value, one) for one in inner)
-    if origin is typing.Literal:  # which of them is known better by who takes it
+    if origin is typing.Literal:  # the called function checks the value itself
         return any(type(value) is type(one) for one in inner)
     if origin is np.ndarray or hint is np.ndarray:
         return _is_array(value)
@@ -90,7 +90,7 @@ def _fits(value: Any, hint: Any) -> bool:
 
 
 def _words(hint: Any) -> str:
-    """What is due, in words."""
+    """Returns the expected type in words."""
     if hint is None or hint is type(None):
         return "None"
     if hint is npt.ArrayLike or hint == npt.ArrayLike:
@@ -130,7 +130,7 @@ def _shown(value: Any) -> str:
 
 @functools.lru_cache(maxsize=None)
 def _hints(function: Callable[..., Any]) -> dict[str, Any]:
-    """The annotations that can be understood at run time, by parameter."""
+    """Returns the annotations that can be evaluated at run time, by parameter."""
     names = {**vars(sys.modules["softland"]), **vars(sys.modules[function.__module__])}
     found: dict[str, Any] = {}
     for name, text in getattr(function, "__annotations__", {}).items():
@@ -147,7 +147,7 @@ def _check(function: Callable[..., Any], name: str, arguments: tuple[Any, ...], 
     signature = inspect.signature(function)
     try:
         bound = signature.bind(*arguments, **named)
-    except TypeError:  # too many, too few or unknown ones: Python's own message names them
+    except TypeError:  # too many, too few or unknown arguments: the message of Python names them
         return
     for parameter, hint in _hints(function).items():
         if parameter not in bound.arguments:
@@ -181,7 +181,7 @@ def _checked(function: Callable[..., Any], name: str) -> Callable[..., Any]:
 
 
 def check_arguments(namespace: Mapping[str, Any], names: list[str]) -> None:
-    """Makes the functions of these names, and the public methods of these classes, look at their arguments."""
+    """Adds the check of arguments to the named functions, and to the public methods of the named classes."""
     for name in names:
         one = namespace[name]
         if inspect.isclass(one) and not issubclass(one, Exception):

@@ -1,4 +1,4 @@
-"""Measurements as Python has them, as the file that `fit` reads."""
+"""Writes measurements from Python to the bench file that `fit` reads."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Measurement = Mapping[str, Any]
 
 @contextmanager
 def bench_of(data: str | os.PathLike[str] | Sequence[Measurement]) -> Iterator[str]:
-    """The path of a bench file: the one that is given, or one of these measurements, which is gone afterwards."""
+    """Yields the path of a bench file: the given one, or a temporary file with the given measurements."""
     if isinstance(data, (str, os.PathLike)):
         yield os.fspath(data)
         return
@@ -55,7 +55,7 @@ def _section(measurement: Measurement, folder: Path, number: int) -> str:
 
 
 def _with_unit(value: Any, unit: str) -> Any:
-    """Numbers count in SI units."""
+    """Returns a value as text; numbers are in SI units."""
     if isinstance(value, np.ndarray):
         value = value.tolist()
     if isinstance(value, (list, tuple)):

@@ -23,11 +23,11 @@ _KNOT = np.dtype([("time", "f8"), ("gap", "f8"), ("deflection", "f8"), ("velocit
 
 
 class Closing:
-    """A closing: figures of merit, the course at the contact point, and the motion of the whole beam.
+    """A simulated closing: figures of merit, the trajectory of the contact point, and the motion of the whole beam.
 
-    Every figure is an attribute, named as in the JSON of the program without its unit: `closing.impact_velocity` is a float [m/s] that knows its
-    `.unit` and its `.error` (absolute, of `simulate` a difference of two runs, of certified ones calibrated). What a closing does not have is NaN.
-    The figures: docs/figures.md. Names after Bognash & Asokanthan (2019).
+    Every figure is an attribute, named as in the JSON of the program without its unit: `closing.impact_velocity` is a float [m/s] with
+    attributes `unit` and `error`. The error is absolute: the difference of two runs or, for a certified closing, a bound. Figures that do not exist
+    are NaN. docs/figures.md defines the figures; names follow Bognash & Asokanthan (2019).
     """
 
     def __init__(self, native: _softland.Closing) -> None:
@@ -43,34 +43,34 @@ class Closing:
         try:
             return self._figures[name]
         except KeyError:
-            raise AttributeError(f"there is no {name!r}; there are {', '.join(self._figures)}") from None
+            raise AttributeError(f"unknown attribute {name!r}; the figures are {', '.join(self._figures)}") from None
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self._figures]
 
     @property
     def figures(self) -> dict[str, Any]:
-        """All figures by name: `Quantity`, and of `settled` yes or no."""
+        """All figures by name: a `Quantity` each, but `settled` is True or False."""
         return dict(self._figures)
 
     @property
     def status(self) -> str:
-        """done, open, no_contact, not_settled, collapsed_at_rest, collapsed_onto_electrode or numerical_failure: docs/figures.md."""
+        """Outcome: done, open, no_contact, not_settled, collapsed_at_rest, collapsed_onto_electrode or numerical_failure (docs/figures.md)."""
         return self._native.status
 
     @property
     def message(self) -> str:
-        """Why the run is not done; empty where it is."""
+        """Reason if the simulation is not done; else empty."""
         return self._native.message
 
     @property
     def warnings(self) -> list[str]:
-        """Of the scene, of the laws that it leaves, and of figures that are ill-conditioned."""
+        """Warnings about the scene, about laws beyond their range of validity, and about ill-conditioned figures."""
         return self._native.warnings
 
     @property
     def touched(self) -> bool:
-        """Whether the contact point reached the contact plane."""
+        """True if the contact point reached the contact plane."""
         return not math.isnan(self._figures["initial_contact_time"])
 
     @property
@@ -80,8 +80,8 @@ class Closing:
 
     @property
     def trajectory(self) -> npt.NDArray[np.void]:
-        """The course at the contact point, a structured array (n,): time [s]; gap to the contact plane and deflection towards it [m]; velocity [m/s];
-        acceleration [m/s^2]; contact_force on the beam [N]. Rows are the knots of the integration, of long runs those that draw the same picture.
+        """The trajectory of the contact point, a structured array (n,): time [s]; gap to the contact plane and deflection towards it [m]; velocity [m/s];
+        acceleration [m/s^2]; contact_force on the beam [N]. Rows are the steps of the integrator; of long runs, only those needed for the same plot.
         """
         points = self._native.points
         run = np.empty(len(points), _KNOT)
@@ -92,7 +92,7 @@ class Closing:
 
     @property
     def rebounds(self) -> npt.NDArray[np.void]:
-        """All separations after the first touch, a structured array (n,): begin, end [s], NaN where one is under way at the end; height [m]."""
+        """All rebounds, a structured array (n,): begin and end [s] (NaN if the rebound lasts beyond the simulation), height [m]."""
         rows = self._native.rebounds
         all_ = np.empty(len(rows), [("begin", "f8"), ("end", "f8"), ("height", "f8")])
         for name, column in zip(("begin", "end", "height"), rows.T):
@@ -101,8 +101,8 @@ class Closing:
 
     @property
     def motion(self) -> npt.NDArray[np.void]:
-        """All modes, a structured array (n,): time [s]; q (modes,) [m kg^(1/2)], v and a, its first and second derivatives. Two rows for each step
-        of the integration, its begin and its end: at make and break of contact accelerations jump. The closing is run once more for it.
+        """All modes, a structured array (n,): time [s]; q (modes,) [m kg^(1/2)], v and a, its first and second derivatives. Each step of the
+        integrator has two rows, its begin and its end, because accelerations jump at make and break of contact. The closing is simulated again for this.
         """
         times, states = self._arcs()
         modes = states.shape[-1]
@@ -115,8 +115,8 @@ class Closing:
     def shape(self, time: npt.ArrayLike, places: int = 101) -> tuple[Array, Array]:
         """The deflection of the whole beam towards the electrode: places x (p,) and y, (p,) for a time or (n, p) for times (n,) [s] -> [m].
 
-        Between steps modes follow the quintics that have q, v and a of both ends. Of a plate the places are those of its quadrature
-        points. Raises ValueError for a time outside the window.
+        Within a step, the modes are quintic polynomials with q, v and a of both ends. For a plate, x are the quadrature points.
+        Raises ValueError for a time outside the simulation.
         """
         times, states = self._arcs()
         given = np.asarray(time, float)
@@ -129,7 +129,7 @@ class Closing:
         return x, y[0] if given.ndim == 0 else y
 
     def voltage(self, drive: str, times: npt.ArrayLike | None = None) -> tuple[Array, Array]:
-        """Times [s] and what the source of a drive gives then [V]; default: a thousand times over the window and the jumps."""
+        """Returns times [s] and the applied voltage of a drive at these times [V]; default: even times over the simulation."""
         t = np.linspace(0, self._native.duration, 2001) if times is None else np.asarray(times, float)
         return t, self._native.voltage(drive, np.atleast_1d(t))
 
@@ -176,7 +176,7 @@ class Closing:
 
 
 def _quintic(t: Array, ends: Array, states: Array) -> Array:
-    """q at times t (n,) in steps `ends` (n, 2) with q, v and a of both ends (n, 2, 3, modes): (n, modes)."""
+    """Returns q (n, modes) at times t (n,) within steps `ends` (n, 2), from q, v and a at both ends (n, 2, 3, modes)."""
     h = (ends[:, 1] - ends[:, 0])[:, None]
     s = np.where(h > 0, (t - ends[:, 0])[:, None] / np.where(h > 0, h, 1), 0)
     q0, v0, a0 = states[:, 0, 0], states[:, 0, 1] * h, states[:, 0, 2] * h**2

@@ -1,12 +1,12 @@
-"""What softland raises."""
+"""Exceptions of softland."""
 
 from __future__ import annotations
 
 
 class InvalidInput(ValueError):
-    """What was given breaks a rule. The message names value and rule, of a scene file line and key as well, in the words of the program.
+    """Invalid input. The message names value and rule; for a scene file also line and key.
 
-    Attributes: `message`; `key`, its path ("gap.contact"); `file` and `line` of a scene file; None where they are not known.
+    Attributes: `message`; `key`, the path of the key ("gap.contact"); `file` and `line` of the scene file; None if not known.
     """
 
     def __init__(self, message: str, key: str | None = None, file: str | None = None, line: int | None = None) -> None:
@@ -18,4 +18,4 @@ class InvalidInput(ValueError):
 
 
 class WrongType(InvalidInput, TypeError):
-    """An argument of a function has the wrong type: the message names the argument (`key`), the type that is due and the value."""
+    """An argument of a function has the wrong type: the message names the argument (`key`), the expected type and the value."""

@@ -1,4 +1,4 @@
-"""Figures of merit as a function of numbers of a scene."""
+"""Figures of merit as a function of values of a scene."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ Array = npt.NDArray[np.float64]
 
 
 class Evaluator:
-    """A function of arrays: rows of keys to rows of figures, (n, d) -> (n, m), SI units. Made by `Scene.evaluator`.
+    """A function of arrays that maps rows of values of keys to rows of figures, (n, d) -> (n, m), in SI units. Made by `Scene.evaluator`.
 
-    The scene is made ready once. Rows are closed in lanes on all cores; a row has the same figures whatever other rows there are, and those that
-    `softland robustness` gives such a device. What a row does not have is NaN. It can be called by several threads, pickled, and serves SciPy,
-    Optuna, OpenTURNS, scikit-learn and Dask.
+    The scene is prepared once. Rows are simulated on all cores. The figures of a row do not depend on the other rows, and equal those of
+    `softland robustness` for the same device; figures that do not exist are NaN. An evaluator can be called from several threads and pickled, and
+    works with SciPy, Optuna, OpenTURNS, scikit-learn and Dask.
 
-    Attributes: `keys`, `units` of the columns; `figures`; `nominal`, what the scene itself has (d,).
+    Attributes: `keys` and `units` of the columns; `figures`; `nominal`, the values in the scene (d,).
     """
 
     def __init__(
@@ -44,7 +44,7 @@ class Evaluator:
         self._reasons: dict[int, str] = {}
 
     def __call__(self, x: npt.ArrayLike, progress: bool | Progress | None = False) -> Array:
-        """Figures of rows: (n, d) -> (n, m), or of one row (d,) -> (m,). Raises InvalidInput for another shape, KeyboardInterrupt on Ctrl-C."""
+        """Returns the figures of rows, (n, d) -> (n, m), or of one row, (d,) -> (m,). Raises InvalidInput for another shape, KeyboardInterrupt on Ctrl-C."""
         rows = np.asarray(x, float)
         if rows.ndim not in (1, 2) or rows.shape[-1] != len(self.keys):
             hint = ": one key, so x[:, None]" if len(self.keys) == 1 and rows.ndim == 1 else ""
@@ -55,24 +55,24 @@ class Evaluator:
 
     @property
     def status(self) -> npt.NDArray[np.str_]:
-        """How the rows of the last call ended, (n,): "done", ..., or "infeasible": there is no such device, or no such waveform."""
+        """Status of each row of the last call, (n,): "done", ..., or "infeasible" for an impossible device or waveform."""
         return np.array(self._status, dtype=np.str_)
 
     @property
     def reasons(self) -> dict[int, str]:
-        """Why rows of the last call have no figures, by their number."""
+        """Reasons why rows of the last call have no figures, by number of the row."""
         return dict(self._reasons)
 
     def jacobian(self, x: npt.ArrayLike) -> Array:
-        """The derivatives of the figures by the keys at a row (d,) -> (m, d): exact ones, through impacts and rebounds (docs/figures.md).
+        """Returns the exact derivatives of the figures by the keys at a row, (d,) -> (m, d), also through impacts and rebounds (docs/figures.md).
 
-        Raises InvalidInput with the reason where there is none: of counts, where a source rounds to bits, and, for vdp="each", unless all volts are
-        written in Vdp of one electrode, or none.
+        Raises InvalidInput with the reason if there is no derivative: for counts, for a source that rounds to bits, and for vdp="each" unless either all
+        voltages or none are multiples of Vdp of one electrode.
         """
         return np.asarray(self._native.jacobian(np.asarray(x, float)))
 
     def one(self, figure: str | int = 0) -> Any:
-        """The function of one figure for `scipy.optimize` with vectorized=True: (d, n) -> (n,), and (d,) -> float."""
+        """Returns the function of one figure for `scipy.optimize` with vectorized=True: (d, n) -> (n,), and (d,) -> float."""
         column = figure if isinstance(figure, int) else self.figures.index(figure)
 
         def function(x: npt.ArrayLike) -> Any:

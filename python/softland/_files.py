@@ -1,4 +1,4 @@
-"""Files that are either the old one or the new one, never half of it."""
+"""Writes files atomically: a reader sees the old file or the new one, never a part of it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 
 def write_whole(path: str | os.PathLike[str], content: bytes) -> None:
-    """Writes a temporary file beside `path`, brings it to the disk, and gives it the name."""
+    """Writes a temporary file beside `path`, flushes it to the disk, and renames it."""
     target = Path(path)
     handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
     try:

@@ -1,4 +1,4 @@
-"""What a verb found: the record of its JSON, and the files that the program writes of it."""
+"""The result of a verb: the record of its JSON, and the files that the program writes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Outcome(Record):
-    """A whole result: a `Record` of the program's JSON that can be saved as the program saves it."""
+    """The result of a verb: a `Record` of the JSON of the program, which can be saved to the same files."""
 
     def __init__(self, native: _softland.Outcome) -> None:
         super().__init__(json.loads(native.json))
@@ -30,13 +30,13 @@ class Outcome(Record):
         return self._native.files
 
     def file(self, name: str) -> str:
-        """The content of one of them."""
+        """Returns the content of one of these files."""
         if name not in self._native.files:
-            raise KeyError(f"no file {name!r}; there are {', '.join(self._native.files)}")
+            raise KeyError(f"unknown file {name!r}; choose from {', '.join(self._native.files)}")
         return self._native.file(name).decode("utf-8", "replace")
 
     def save(self, folder: str | os.PathLike[str]) -> Path:
-        """Writes these files into a folder, which is made where it is missing, each of them whole. Returns the folder."""
+        """Writes these files to a folder, which is created if missing. Returns the folder."""
         place = Path(folder)
         place.mkdir(parents=True, exist_ok=True)
         for name in self._native.files:
@@ -44,7 +44,7 @@ class Outcome(Record):
         return place
 
     def table(self) -> pandas.DataFrame:
-        """A table of the result in pandas: of `robustness` a row for every device, else a row for every number. SI units stand in the names."""
+        """Returns the result as a pandas table: for `robustness` a row for each device, else a row for each number. Names contain the SI units."""
         import pandas
 
         if "devices.csv" in self._native.files:
@@ -56,7 +56,7 @@ class Outcome(Record):
 
 
 def numbers_of(data: Any, before: str = "") -> list[tuple[str, Any]]:
-    """(path of keys, number or text) of all leaves of a JSON object, lists left out."""
+    """Yields (path of keys, number or text) of all leaves of a JSON object, except those in lists."""
     rows: list[tuple[str, Any]] = []
     for key, value in data.items():
         path = f"{before}.{key}" if before else key

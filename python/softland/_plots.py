@@ -1,4 +1,4 @@
-"""matplotlib, imported when something is drawn."""
+"""Plots by matplotlib, which is imported at the first plot."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 def axes(ax: Any = None) -> Any:
-    """These axes, or new ones."""
+    """Returns the given axes, or new ones."""
     if ax is not None:
         return ax
     import matplotlib.pyplot as plt

@@ -1,4 +1,4 @@
-"""How far a long computation is, where tqdm is installed."""
+"""Progress of long computations, by tqdm if it is installed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Progress = Callable[[str, float], None]
 
 @contextmanager
 def shown(progress: bool | Progress | None) -> Iterator[Progress | None]:
-    """The function that the library tells: the user's own; a bar of tqdm for True, or for None at a terminal or in a notebook; else None."""
+    """Returns the progress callback: the function of the user; a bar of tqdm for True, or for None at a terminal or in a notebook; else None."""
     if callable(progress):
         yield progress
         return
@@ -23,7 +23,7 @@ def shown(progress: bool | Progress | None) -> Iterator[Progress | None]:
     if progress:
         try:
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # of a notebook without ipywidgets, where the bar is one of text
+                warnings.simplefilter("ignore")  # tqdm warns in a notebook without ipywidgets, where it shows a bar of text
                 from tqdm.auto import tqdm
         except ImportError:
             yield None

@@ -1,4 +1,4 @@
-"""What files of instruments hold, as arrays."""
+"""Reads files of instruments to arrays."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ Array = npt.NDArray[np.float64]
 
 
 class Recording(Mapping[str, Array]):
-    """A record over time: a mapping of the names of its channels to their values, (n,) in SI units, NaN where a number is missing.
+    """A record over time: a mapping from names of channels to values, (n,) in SI units, NaN for missing numbers.
 
-    Attributes: `file`; `format`, what wrote it; `times` (n,) [s], empty where the file has none; `units` {channel: unit of `record[channel]` in the
-    file, "mV", empty where it names none}; `notes` and `left_out`, what is to be known of what was taken. Made by `softland.read`.
+    Attributes: `file`; `format` of the file; `times` (n,) [s], empty if the file has none; `units`, {channel: its unit in the file, such as "mV", or
+    empty}; `notes` on assumptions, and `left_out`, data that were not read. Made by `softland.read`.
     """
 
     def __init__(self, native: _softland.Recording) -> None:
@@ -52,15 +52,15 @@ class Recording(Mapping[str, Array]):
         if channel is not None:
             return self._values[channel]
         if len(self._values) != 1:
-            raise ValueError(f"channel: there are several: {', '.join(self._values)}")
+            raise ValueError(f"channel: name one of several: {', '.join(self._values)}")
         return next(iter(self._values.values()))
 
     def contact_edges(self, threshold: float | str, channel: str | None = None, **options: Any) -> Array:
-        """Of the voltage of a contact when it closes and opens, (n, 2): see `softland.contact_edges`. channel: not needed where there is one."""
+        """Returns the times at which a contact closes and opens, (n, 2), from its voltage: see `softland.contact_edges`. channel: optional if there is one."""
         return contact_edges(self.times, self._only(channel), threshold, **options)
 
     def waveform(self, channel: str | None = None, *, scale: float = 1.0) -> Waveform:
-        """A drive of straight lines through the samples from t = 0 on [V], times `scale`, volts at the switch per volt of the file."""
+        """Returns a waveform of straight lines through the samples from t = 0 on [V], multiplied by `scale`, volts at the switch per volt of the file."""
         values = self._only(channel) * scale
         kept = (self.times >= 0) & np.isfinite(values)
         times, volts = self.times[kept], values[kept]
@@ -69,7 +69,7 @@ class Recording(Mapping[str, Array]):
         return Waveform.table(times, volts)
 
     def table(self) -> pandas.DataFrame:
-        """All channels in pandas, with the times as index."""
+        """Returns all channels as a pandas table with the times as index."""
         import pandas
 
         return pandas.DataFrame(self._values, index=pandas.Index(self.times, name="time [s]") if len(self.times) else None)
@@ -89,7 +89,7 @@ class Recording(Mapping[str, Array]):
         return self._native.text.rstrip()
 
     def _repr_html_(self) -> str:
-        """The picture of `softland read --plot`, for notebooks."""
+        """The plot of `softland read --plot`, for notebooks."""
         return self._native.svg
 
     def __reduce__(self) -> Any:
@@ -106,11 +106,11 @@ def read(
     time_unit: str | None = None,
     decimal: Literal[".", ","] | None = None,
 ) -> Recording:
-    """What a file of an oscilloscope, a generator, a logger or a simulator holds, as `softland read`: CSV of twelve makers, SPICE PWL, VCD, UFF 58 (docs/files.md).
+    """Reads a file of an oscilloscope, a generator, a logger or a simulator, as `softland read`: CSV of twelve makers, SPICE PWL, VCD, UFF 58 (docs/files.md).
 
-    column: name or place, from 1, of the channel that is wanted; time_column: the same of the times. interval: between samples [s], where the file does not
-    say it, or "uneven". skip: lines at the beginning that are left out. time_unit: "us". decimal: the decimal sign.
-    Raises InvalidInput with file, line, column and rule for what cannot be read, or can be read in two ways, with the key that decides.
+    column: name or number, from 1, of the channel to read; time_column: the same for the times. interval: time between samples [s], if the file does not
+    give it, or "uneven". skip: number of lines at the beginning to skip. time_unit: unit of the times, such as "us". decimal: the decimal sign.
+    Raises InvalidInput with file, line, column and rule for an unreadable file, and for an ambiguous one with the key that decides.
     """
     given = {"column": column, "time_column": time_column, "skip": skip, "time_unit": time_unit, "decimal": decimal}
     words = [f"{key}={value}" for key, value in given.items() if value is not None]
@@ -129,11 +129,11 @@ def contact_edges(
     merge: float | str = 0.0,
     from_zero: bool = True,
 ) -> Array:
-    """When a voltage says that a contact closes and opens: (n, 2), a row for each edge, time [s] and 1 where it closes, 0 where it opens.
+    """Returns the times at which a contact closes and opens, from its voltage: (n, 2), a row for each edge with time [s] and 1 (closes) or 0 (opens).
 
-    times [s] and volts [V], both (n,). The contact is closed where they are above (or below) the threshold [V], by straight lines between samples;
-    hysteresis about it [V]; states that last for less than `merge` [s] are none. from_zero: edges from t = 0 on, when the drives begin.
-    What `Tuning.learn` takes as "edges_s". Raises InvalidInput for a contact that is closed at t = 0 already.
+    times [s] and volts [V], both (n,). The contact is closed where the voltage is above (or below) the threshold [V], by linear interpolation between
+    samples. hysteresis: width of the band about the threshold [V]. States shorter than `merge` [s] are ignored. from_zero: return edges from t = 0 on,
+    when the drives begin. The result can be "edges_s" of `Tuning.learn`. Raises InvalidInput for a contact that is closed at t = 0.
     """
     if closed not in ("above", "below"):
         raise ValueError(f"closed {closed!r}: must be above or below")

@@ -1,4 +1,4 @@
-"""Numbers that know their unit and error, and results whose attributes are the keys of softland's JSON without the unit."""
+"""Numbers with unit and error, and results whose attributes are the keys of the JSON of softland without the unit."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _ENDINGS = {
 
 
 def unit_of_key(key: str) -> tuple[str, str]:
-    """("impact_velocity", "m/s") of "impact_velocity_m_s"; the unit is empty where the key has none."""
+    """Splits a key: "impact_velocity_m_s" gives ("impact_velocity", "m/s"); the unit is empty if the key has none."""
     for ending, unit in _ENDINGS.items():
         if key.endswith(ending) and len(key) > len(ending):
             return key[: -len(ending)], unit
@@ -25,9 +25,9 @@ def unit_of_key(key: str) -> tuple[str, str]:
 
 
 class Quantity(float):
-    """A float in SI units that knows its unit, and how well it is known.
+    """A float in SI units with its unit and its error.
 
-    Attributes: `unit`, the SI symbol ("m/s"), empty for a plain number; `error`, absolute and in the same unit, NaN where it is not estimated.
+    Attributes: `unit`, the SI symbol ("m/s"), empty for a plain number; `error`, absolute and in the same unit, NaN if not estimated.
     Arithmetic gives plain floats.
     """
 
@@ -52,7 +52,7 @@ class Quantity(float):
 
 
 class Record(Mapping[str, Any]):
-    """A part of a result. Its keys are those of the JSON that the program writes; as attributes they come without their unit.
+    """A part of a result. Its keys are those of the JSON that the program writes; attributes have the same names without the unit.
 
     >>> found.pull_in.static            # found["pull_in"]["static_V"]
     16.209 V
@@ -81,7 +81,7 @@ class Record(Mapping[str, Any]):
         for key in self._data:
             if unit_of_key(key)[0] == name:
                 return self._value(key)
-        raise AttributeError(f"there is no {name!r}; there are {', '.join(self.__dir__())}")
+        raise AttributeError(f"unknown attribute {name!r}; choose from {', '.join(self.__dir__())}")
 
     def __dir__(self) -> list[str]:
         return [unit_of_key(key)[0] for key in self._data]
@@ -90,7 +90,7 @@ class Record(Mapping[str, Any]):
         return "\n".join(_lines(self)) or "Record()"
 
     def to_json(self) -> Any:
-        """The same as plain dicts, lists, floats and None: what json.dump() takes."""
+        """Returns plain dicts, lists, floats and None, as json.dump() accepts them."""
         return self._data
 
     def _value(self, key: str) -> Any:
@@ -139,5 +139,5 @@ def _lines(record: Record, depth: int = 0) -> Iterator[str]:
 
 
 def read(text: str) -> Record:
-    """A record of the text of a JSON object."""
+    """Returns the record of the text of a JSON object."""
     return Record(json.loads(text))

@@ -1,4 +1,4 @@
-"""What the program wrote, read again."""
+"""Reads results that the program wrote."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _LAST = "(SELECT plan FROM session ORDER BY session DESC LIMIT 1)"
 
 
 class Result(Record):
-    """A folder that a verb of the program filled, or one of its JSON files: a `Record` of the JSON. `folder`: where it lies."""
+    """A result folder of the program, or a JSON file in it: a `Record` of the JSON. `folder`: path of the folder."""
 
     def __init__(self, path: Path) -> None:
         super().__init__(json.loads(path.read_text()))
@@ -34,50 +34,50 @@ class Result(Record):
 
     @property
     def folder(self) -> Path:
-        """The folder of the files."""
+        """Path of the folder of the files."""
         return self._path.parent
 
     @property
     def files(self) -> list[str]:
-        """Names of what lies there."""
+        """Names of the files in the folder."""
         return sorted(path.name for path in self.folder.iterdir() if path.is_file())
 
     def scene(self, name: str = "best.toml") -> Scene:
-        """A scene of the folder: best.toml, drawing.toml, calibrated.toml, worst-1.toml; of a simulation the one that it ran."""
+        """Returns a scene of the folder: best.toml, drawing.toml, calibrated.toml or worst-1.toml; for a simulation, the simulated scene."""
         path = self.folder / name
         if not path.exists() and isinstance(self._data.get("scene_toml"), str):
             return load(self._data["scene_toml"])
         return load(path)
 
     def waveforms(self) -> dict[str, Waveform]:
-        """The waveforms of the result by drive, as tables [s], [V]."""
+        """Returns the waveforms of the result by drive, as tables [s], [V]."""
         part = self._data.get("best", self._data)
         return {drive: Waveform.table(*np.array(points).T) for drive, points in part.get("waveforms", {}).items()}
 
     def trajectory(self) -> npt.NDArray[np.void]:
-        """The course of trajectory.csv, a structured array with the columns of the file (time_s, tip_gap_m, ...)."""
+        """Returns the content of trajectory.csv as a structured array with the columns of the file (time_s, tip_gap_m, ...)."""
         course: npt.NDArray[np.void] = np.genfromtxt(self.folder / "trajectory.csv", delimiter=",", names=True)  # type: ignore[assignment]
         return course
 
     def table(self) -> pandas.DataFrame:
-        """devices.csv in pandas, a row for every device."""
+        """Returns devices.csv as a pandas table, with a row for each device."""
         import pandas
 
         return pandas.read_csv(self.folder / "devices.csv")
 
 
 class Store:
-    """A store of `softland explore`, or of a search: rows in one SQLite file, read while others write.
+    """A store of `softland explore` or of a search: rows in one SQLite file, readable even while another process writes to it.
 
-    Of one that was gone on with under other plans these are the plan and the rows of the last.
-    Attributes: `plan`, its text; `columns`, {key: (name, unit)}; `points`, how many are planned.
+    Only the plan and the rows of the last session are read, if the store was continued with another plan.
+    Attributes: `plan`, text of the plan; `columns`, {key: (name, unit)}; `points`, number of planned points.
     """
 
     def __init__(self, path: Path) -> None:
         self._path = path
         with self._opened() as database:
             if database.execute("PRAGMA application_id").fetchone()[0] != _STORE:
-                raise InvalidInput(f"{path}: is no store of softland")
+                raise InvalidInput(f"{path}: must be a store of softland")
             self.plan: str
             self.points: int
             self.plan, self.points = database.execute("SELECT text, points FROM study WHERE plan = " + _LAST).fetchone()
@@ -89,12 +89,12 @@ class Store:
         return sqlite3.connect(f"file:{self._path}?mode=ro", uri=True)
 
     def __len__(self) -> int:
-        """Rows that are there."""
+        """Number of rows in the store."""
         with self._opened() as database:
             return int(database.execute("SELECT count(*) FROM results WHERE plan = " + _LAST).fetchone()[0])
 
     def rows(self) -> npt.NDArray[np.void]:
-        """All rows by point, a structured array: point, the columns (SI units; NaN where there is none), status, reason."""
+        """Returns all rows by point, a structured array: point, the columns (SI units; NaN for missing values), status, reason."""
         names = ", ".join('"' + key.replace('"', '""') + '"' for key in self.columns)
         with self._opened() as database:
             rows = database.execute(f"SELECT point, {names}, status, reason FROM results WHERE plan = {_LAST} ORDER BY point").fetchall()
@@ -102,7 +102,7 @@ class Store:
         return np.array([tuple(math.nan if one is None else one for one in row) for row in rows], dtype=fields)
 
     def table(self) -> pandas.DataFrame:
-        """The same in pandas, with the point as index."""
+        """Returns all rows as a pandas table with the point as index."""
         import pandas
 
         rows = self.rows()
@@ -113,18 +113,18 @@ class Store:
 
 
 def open(path: str | os.PathLike[str]) -> Result | Store:
-    """What the program wrote: a folder of --out, a JSON file in one, or a store. Raises InvalidInput for anything else."""
+    """Reads a result of the program: a folder of --out, a JSON file of it, or a store. Raises InvalidInput for anything else."""
     place = Path(path)
     if place.is_dir():
         for name in _JSON:
             if (place / name).exists():
                 return Result(place / name)
-        raise InvalidInput(f"{place}: holds no result of softland: none of {', '.join(_JSON)}")
+        raise InvalidInput(f"{place}: must hold a result of softland, one of {', '.join(_JSON)}")
     if not place.exists():
-        raise InvalidInput(f"{place}: is not there")
+        raise InvalidInput(f"{place}: does not exist")
     if place.suffix == ".json":
         return Result(place)
     with place.open("rb") as file:
         if file.read(16) != b"SQLite format 3\0":
-            raise InvalidInput(f"{place}: is neither a folder of results, nor JSON, nor a store")
+            raise InvalidInput(f"{place}: must be a folder of results, a JSON file or a store")
     return Store(place)

@@ -1,4 +1,4 @@
-"""A scene, and what softland tells of it."""
+"""A scene, with the computations of softland as its methods."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Value = Union[str, float, int, bool, Sequence[Any], Mapping[str, Any]]
 
 
 def _toml(value: Any) -> str:
-    """A value as TOML on one line."""
+    """Returns a value as TOML on one line."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
@@ -55,7 +55,7 @@ def _change(native: _softland.Scene, key: str, value: Any) -> tuple[str, Any]:
 
 
 def _holds_quantity(native: _softland.Scene, key: str) -> bool:
-    """Whether a number with a unit is written there."""
+    """Returns True if the value of a key in the scene is a number with a unit."""
     try:
         return bool(_softland.units(native.written(key) or "")[1])
     except ValueError:
@@ -63,7 +63,7 @@ def _holds_quantity(native: _softland.Scene, key: str) -> bool:
 
 
 class Waveforms(Mapping[str, Waveform]):
-    """The waveforms of a scene by drive, in volts; `scene.waveforms["main"] = waveform` gives it another."""
+    """The waveforms of a scene by drive, in volts; `scene.waveforms["main"] = waveform` replaces one."""
 
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
@@ -85,17 +85,17 @@ class Waveforms(Mapping[str, Waveform]):
 
 
 class Scene(Studies, MutableMapping[str, Any]):
-    """A scene: a mapping of the keys of its file, "gap.contact", to what is written there.
+    """A scene: a mapping from keys of its file, such as "gap.contact", to their values.
 
     >>> scene = softland.load("my.toml")
     >>> scene["gap.contact"]
     2e-06 m
-    >>> scene["gap.contact"] = "2.1 um"          # or 2.1e-6: numbers count in SI units
+    >>> scene["gap.contact"] = "2.1 um"          # or 2.1e-6: numbers are in SI units
     >>> scene["electrode.main.span"] = ["60 um", "tip"]
 
-    Reading gives `Quantity` for what has a unit, else text, numbers, flags and lists as they are written; KeyError where nothing is written, though
-    a default may be in force: `scene.resolved()` has all of them. Every change is checked as the program checks a file: it raises InvalidInput in
-    the words of the program, and then nothing has changed. `update` makes several changes at once, of which only the result must be a scene.
+    Reading a key gives a `Quantity` for a value with a unit, else text, number, flag or list as in the file. It raises KeyError for a key that is not in
+    the file; `scene.resolved()` also has all defaults. Every change is checked as the program checks a file. An invalid change raises InvalidInput and
+    is not made. `update` makes several changes at once; only the final scene must be valid.
     """
 
     def __init__(self, native: _softland.Scene) -> None:
@@ -130,7 +130,7 @@ class Scene(Studies, MutableMapping[str, Any]):
         return len(_paths(self._tree()))
 
     def update(self, *others: Any, **more: Any) -> None:
-        """All of these changes, or none of them: update({"gap.electrode": "4 um", "gap.contact": "2.4 um"})."""
+        """Makes all of these changes, or none of them after an error: update({"gap.electrode": "4 um", "gap.contact": "2.4 um"})."""
         self._native.change([_change(self._native, key, value) for key, value in dict(*others, **more).items()])
 
     def _tree(self) -> Any:
@@ -138,28 +138,28 @@ class Scene(Studies, MutableMapping[str, Any]):
 
     @property
     def text(self) -> str:
-        """As TOML: read again it is the same scene, digit for digit."""
+        """Returns the scene as TOML text, from which the same scene is read, digit for digit."""
         return self._native.text
 
     @property
     def name(self) -> str:
-        """What messages call it."""
+        """Name of the scene in messages."""
         return self._native.name
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the text to a file, whole."""
+        """Writes the text to a file, atomically."""
         write_whole(path, self.text.encode())
 
     def copy(self) -> Scene:
-        """One that can be changed without this one."""
+        """Returns an independent copy."""
         return Scene(self._native.copy())
 
     def resolved(self) -> Scene:
-        """The scene with every default written out and every voltage in volts."""
+        """Returns the scene with every default written out and every voltage in volts."""
         return Scene(self._native.resolved())
 
     def check(self) -> list[str]:
-        """Makes the scene ready to run, and returns its warnings. Raises InvalidInput for one that cannot be run."""
+        """Prepares the scene for simulation, and returns its warnings. Raises InvalidInput for a scene that cannot be simulated."""
         return self._native.warnings()
 
     # The following are the drives and the verbs.
@@ -177,7 +177,7 @@ class Scene(Studies, MutableMapping[str, Any]):
     # The verbs of the program; Studies has the others.
 
     def modes(self, places: int = 101) -> Modes:
-        """Natural frequencies and mode shapes."""
+        """Returns natural frequencies and mode shapes."""
         return Modes(self._native.frequencies(), *self._native.shapes(places))
 
     def tune(
@@ -189,20 +189,20 @@ class Scene(Studies, MutableMapping[str, Any]):
         progress: bool | Progress | None = None,
         **options: Any,
     ) -> Outcome:
-        """Tunes a waveform on one device, as `softland tune`: until five closings in a row are without a bounce, or `closings` are used.
+        """Tunes a waveform on one device, as `softland tune`: until five closings in a row are bounce-free, or the number `closings` is reached.
 
-        device: a function that gets a `Shot`, the waveforms to be fired, and returns when the contact was closed: see `Tuning.learn`. `scene.device()` is
-            a simulated one.
-        callback: called with a line about each closing; one that returns True ends the tuning.
-        options: those of `tuning`; `out="folder"` keeps everything there.
-        The result is a `Record` of tune.json. What the device raises comes through; the exception's `tuning` has the closings until then, and goes on
-        with `error.tuning.run(device)`.
+        device: a function that gets a `Shot`, the waveforms to apply, and returns the times at which the contact was closed: see `Tuning.learn`.
+            `scene.device()` is a simulated device.
+        callback: called with a line about each closing; if it returns True, the tuning ends.
+        options: those of `tuning`; `out="folder"` stores all closings there.
+        The result is a `Record` of tune.json. An exception of the device is raised; its attribute `tuning` has the closings so far, and
+        `error.tuning.run(device)` continues.
         """
         tuning = self.tuning(progress=progress, **options)
         try:
             return tuning.run(device, closings=closings, callback=callback, progress=progress)
         except BaseException as error:
-            with suppress(AttributeError):  # of an exception that takes no attributes
+            with suppress(AttributeError):  # some exceptions do not accept attributes
                 error.tuning = tuning  # type: ignore[attr-defined]
             raise
 
@@ -215,14 +215,15 @@ class Scene(Studies, MutableMapping[str, Any]):
         jobs: int | None = None,
         tolerance: float = 1e-5,
     ) -> Evaluator:
-        """Figures as a function of numbers of the scene: (n, d) -> (n, m).
+        """Returns the figures as a function of values of the scene, (n, d) -> (n, m).
 
-        keys: what [spread] may name ("gap.contact", "electrode.main.span[2]", "driver.main.gain"), and parameters of waveforms in volts
+        keys: keys that [spread] may name ("gap.contact", "electrode.main.span[2]", "driver.main.gain"), and parameters of waveforms in volts
             ("waveform.main.level", "waveform.main.times[1]").
         figures: names such as "impact_velocity".
-        vdp: whose pull-in voltages the units Vsp and Vdp stand for: "nominal", every row gets the volts of the scene; "each", every row is a scene of
-            its own, of which any number that is written may vary, in the unit that it is written in, Vdp too.
-        jobs: threads; default: one per core. tolerance: of the integrator; with 1e-5 95 % quantiles of rebounds move by less than 0.4 %.
+        vdp: pull-in voltages to which the units Vsp and Vdp refer. "nominal": those of the scene, so that every row has the voltages of the scene. "each":
+            those of each row, which is then a scene of its own; every number in the file may vary, in the unit of the file, including Vdp.
+        jobs: number of threads; default: one per core. tolerance: tolerance of the integrator; with 1e-5, the 95th percentile of rebounds changes by
+            less than 0.4 %.
         """
         given = [[one] if isinstance(one, str) else one for one in (keys, figures)]
         return Evaluator(self, given[0], given[1], vdp, jobs, tolerance)
@@ -264,7 +265,7 @@ def _rebuilt(text: str, name: str, directory: str) -> Scene:
 
 
 def _read(node: Any) -> Any:
-    """Text with a unit as a quantity; lists element by element; tables as they are."""
+    """Returns text with a unit as a quantity, lists element by element, and tables unchanged."""
     if isinstance(node, str):
         try:
             value, unit = _softland.units(node)
@@ -278,7 +279,7 @@ def _read(node: Any) -> Any:
 
 
 def _parts(key: str) -> list[str | int]:
-    """The parts of a path: spread."structure.thickness".cov, electrode.main.span[2]."""
+    """Splits a path into its parts: spread."structure.thickness".cov, electrode.main.span[2]."""
     parts: list[str | int] = []
     rest = key
     while rest:
@@ -305,10 +306,10 @@ def _paths(node: Any, before: str = "") -> list[str]:
 
 
 def load(scene: str | os.PathLike[str], set: Mapping[str, Value] | None = None) -> Scene:
-    """A scene from a file, or from text: what has more than one line, or a '=', is text.
+    """Returns the scene of a file or of a text. An argument with several lines, or with a '=', is a text.
 
     set: changes, as `--set` of the program makes them: {"gap.contact": "2.1 um"}.
-    Raises InvalidInput (message, key, file, line) in the words of the program.
+    Raises InvalidInput with message, key, file and line.
     """
     given = os.fspath(scene)
     if isinstance(scene, str) and ("\n" in given or "=" in given):
@@ -323,11 +324,11 @@ def load(scene: str | os.PathLike[str], set: Mapping[str, Value] | None = None) 
 
 
 def shipped(name: str) -> Scene:
-    """A scene that softland ships, by its name: shipped("mem-gold")."""
+    """Returns a scene that is shipped with softland, by its name: shipped("mem-gold")."""
     folder = Path(_softland.scenes)
     names = sorted(path.stem for path in folder.glob("*.toml"))
     if name not in names:
-        raise KeyError(f"no shipped scene {name!r}; there are {', '.join(names)}")
+        raise KeyError(f"unknown shipped scene {name!r}; choose from {', '.join(names)}")
     return load(folder / f"{name}.toml")
 
 

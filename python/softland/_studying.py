@@ -1,4 +1,4 @@
-"""How the methods that the build makes (_studies.py) ask the library: what was told, as texts of the program's options."""
+"""Helpers of the generated methods (_studies.py): they convert arguments to texts of the options of the program, and run a verb."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Told = Mapping[str, "Sequence[Any] | None"]
 
 
 def _quantity(value: float | str | None, unit: str) -> list[str] | None:
-    """A number counts in the SI unit."""
+    """Returns a quantity as text; a number is in the SI unit."""
     return None if value is None else [value if isinstance(value, str) else f"{float(value)!r} {unit}".rstrip()]
 
 
@@ -65,18 +65,18 @@ def _assigned(values: Mapping[str, float | str] | None) -> list[str] | None:
 
 
 def _settings(values: Mapping[str, Any] | Sequence[str] | None) -> list[str] | None:
-    """KEY=VALUE of a mapping, or as they are written."""
+    """Returns texts KEY=VALUE of a mapping, or given texts unchanged."""
     if not isinstance(values, Mapping):
         return None if values is None else list(values)
     return [f"{key}={str(one).lower() if isinstance(one, bool) else one}" for key, one in values.items()]
 
 
 def _errors(errors: Mapping[str, float | str] | None, *more: str) -> dict[str, list[str] | None]:
-    """Errors of instruments as the options of their names."""
+    """Returns errors of instruments as the options of the same names."""
     units = {"edge_error": "s", "unseen": "s", "gain_error": "", "shot_error": "", **dict.fromkeys(more, "s")}
     for name in errors or {}:
         if name not in units:
-            raise ValueError(f"errors: no {name!r}; there are {', '.join(units)}")
+            raise ValueError(f"errors: unknown name {name!r}; choose from {', '.join(units)}")
     return {name.replace("_", "-"): _quantity(value, units[name]) for name, value in (errors or {}).items()}
 
 
@@ -93,7 +93,7 @@ def texts(told: Told) -> dict[str, list[str]]:
 
 
 class Studying:
-    """A scene that can be asked."""
+    """Base class of a scene, with the computations that have Python code of their own."""
 
     _native: _softland.Scene
 
@@ -128,13 +128,13 @@ class Studying:
         from ._results import Store
 
         if not told["vary"]:
-            raise InvalidInput('vary: nothing varies: give {"gap.contact": "1.6 um:2.4 um:7"}')
+            raise InvalidInput('vary: no key varies: give {"gap.contact": "1.6 um:2.4 um:7"}')
         with shown(progress) as tell:
             _softland.explore(self._native, texts(told), command(), tell)
         return Store(Path((told["out"] or [""])[0]))
 
     def _export(self, told: Told, progress: bool | Progress | None, waveforms: Mapping[str, Waveform] | None) -> str:
-        """Warns where the switch does not close under the samples as well as under the waveform itself."""
+        """Warns if the switch closes less well under the samples than under the waveform itself."""
         scene = self._native.copy() if waveforms else self._native
         for drive, one in (waveforms or {}).items():
             is_own = one.family not in _softland.families
@@ -161,7 +161,7 @@ class Studying:
         if folder is not None:
             folder.mkdir(parents=True, exist_ok=True)
         elif told["resume"]:
-            raise ValueError("resume: goes on with the closings in the folder `out`, which is missing")
+            raise ValueError("resume: requires `out`, the folder of the tuning to continue")
         log = "" if folder is None else str(folder / "closings.jsonl")
         with shown(progress) as tell:
             return Tuning(_softland.Tuning(self._native, texts({**told, **_errors(errors, "trigger_delay")}), log, command(), tell), folder)
@@ -170,7 +170,7 @@ class Studying:
         self, verb: str, told: Told, progress: bool | Progress | None, waveforms: Mapping[str, Mapping[str, Waveform]] | None = None
     ) -> Outcome:
         with ExitStack() as stack:
-            # Measurements stand in a file for as long as they are asked for.
+            # Given measurements are in a temporary file during the fit.
             texts = {
                 option: [one if isinstance(one, str) else stack.enter_context(bench_of(one)) for one in values]
                 for option, values in told.items()

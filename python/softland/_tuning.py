@@ -1,4 +1,4 @@
-"""A waveform tuned on one device, closing after closing."""
+"""Tuning of a waveform on one device, closing after closing."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ Array = npt.NDArray[np.float64]
 
 
 class Shot:
-    """One closing that a device is asked for, open loop.
+    """A requested closing of a device, open loop: the waveforms to apply.
 
     Attributes: `number`, from 1; `waveforms`, {drive: Waveform}, tables that begin at t = 0, in volts at the switch; `amplifiers`, {drive: volts at the
-    switch per volt of its generator}, 1 where [driver] has no amplifier; `hold`, how long the last levels are held [s]; `duration`, how long the contact is
-    recorded from t = 0 on [s].
+    switch per volt of its generator}, 1 where [driver] has no amplifier; `hold`, duration of the last levels [s]; `duration` of the record of the contact
+    from t = 0 on [s].
     """
 
     def __init__(self, told: tuple[int, float, float, dict[str, _softland.Waveform], str]) -> None:
@@ -32,17 +32,17 @@ class Shot:
         self.amplifiers = {drive: float(one.get("amplifier", 1)) for drive, one in self.line["drives"].items()}
 
     def points(self, drive: str = "main") -> tuple[Array, Array]:
-        """Times [s] and voltages [V] between which a drive goes straight, (n,) and (n,); two of one time are a jump, the last one is held."""
+        """Returns times [s] and voltages [V] that straight lines connect, (n,) and (n,); two equal times are a jump, the last voltage is held."""
         table = self.waveforms[drive].parameters
         return np.array(table["times"]), np.array(table["voltages"])
 
     def samples(self, rate: float, drive: str = "main") -> Array:
-        """Voltages at the switch [V] at k / rate [Hz], (n,), from t = 0 up to `duration`; a generator plays them over `amplifiers[drive]`."""
+        """Returns the voltages at the switch [V] at k / rate [Hz], (n,), from t = 0 to `duration`; divide by `amplifiers[drive]` for a generator."""
         return np.asarray(self.waveforms[drive](np.arange(int(np.ceil(self.duration * rate)) + 1) / rate))
 
     @property
     def line(self) -> dict[str, Any]:
-        """As a program is told by `softland tune --device` (docs/tune.md)."""
+        """Returns the line that `softland tune --device` sends to a command (docs/tune.md)."""
         return dict(json.loads(self._line))
 
     def __repr__(self) -> str:
@@ -53,10 +53,10 @@ Device = Callable[[Shot], "Mapping[str, Any] | None"]
 
 
 class Tuning:
-    """A tuning under way: made by `Scene.tuning`, and run by `run(device)`, or shot by shot: `learn(fire(tuning.shot()))`.
+    """A tuning: made by `Scene.tuning`, and run by `run(device)`, or shot by shot by `learn(fire(tuning.shot()))`.
 
-    All closings stay in it whatever the device raises, and on Ctrl-C: `run` goes on where it stopped, `result()` tells what is known by now. With
-    `out` they are on the disk as well, each before the next is fired. Use it from one thread at a time.
+    All closings are kept after an exception of the device and after Ctrl-C: `run` continues, and `result()` returns the results so far. With `out`, each
+    closing is written to the disk before the next shot. Use a tuning from one thread at a time.
     """
 
     def __init__(self, native: _softland.Tuning, out: Path | None) -> None:
@@ -66,24 +66,24 @@ class Tuning:
 
     @property
     def closings(self) -> int:
-        """Closings that were learned."""
+        """Number of closings whose records were used."""
         return self._native.closings
 
     @property
     def is_done(self) -> bool:
-        """Whether five in a row were without a bounce."""
+        """True if the last five closings were bounce-free."""
         return self._native.is_done
 
     def shot(self) -> Shot:
-        """What is to be fired next; the same until an answer is learned."""
+        """Returns the next shot; the same one until learn() is called."""
         return Shot(self._native.shot())
 
     def learn(self, answer: Mapping[str, Any] | None, progress: bool | Progress | None = False) -> str:
-        """Learns what the contact did under `shot()`, and proposes the next shot. Returns a line about this closing and the next.
+        """Updates the model of the device by the record of the contact under `shot()`, and finds the next shot. Returns a line about both.
 
-        answer: {"edges_s": [[time, 1 closes or 0 opens], ...]} or {"closing_time_s": t or None, "bounce_count": n}, either with "loudness"; or
-            {"error": "no trigger"}: the same waveform comes again. None, or no edges: the contact stayed open.
-        Raises InvalidInput for what cannot be an answer, which is not learned. After Ctrl-C here the answer is on record: the next call learns that one.
+        answer: {"edges_s": [[time, 1 closes or 0 opens], ...]} or {"closing_time_s": t or None, "bounce_count": n}, optionally with "loudness"; or
+            {"error": "no trigger"} to repeat the shot. None, or no edges: the contact stayed open.
+        Raises InvalidInput for an invalid answer, which is not used. After Ctrl-C in this call the answer is stored, and the next call uses it.
         """
         self._pending = self._pending or json.dumps({**(answer or {"edges_s": []}), "shot": self._native.shot()[0]}, default=_plain)
         self._learn_pending(progress)
@@ -95,7 +95,7 @@ class Tuning:
         try:
             with shown(progress) as tell:
                 self._native.learn(self._pending, tell)
-        except KeyboardInterrupt:  # recorded, and not learned yet
+        except KeyboardInterrupt:  # the record is stored, but not used yet
             raise
         except BaseException:
             self._pending = None
@@ -110,10 +110,10 @@ class Tuning:
         callback: Callable[[str], Any] | None = None,
         progress: bool | Progress | None = None,
     ) -> Outcome:
-        """Fires shots until five closings in a row are without a bounce, or `closings` are used. The last one is of the waveform kept.
+        """Fires shots until five closings in a row are bounce-free, or the number `closings` is reached. The last shot has the final waveform.
 
-        device: called with each `Shot`, returns an answer as `learn` takes it. What it raises comes through.
-        callback: called with a line about each closing; one that returns True ends the tuning.
+        device: called with each `Shot`; returns an answer for `learn`. Its exceptions are raised.
+        callback: called with a line about each closing; if it returns True, the tuning ends.
         """
         end = "failed"
         try:
@@ -137,7 +137,7 @@ class Tuning:
         return self.result(end)
 
     def result(self, end: str = "under_way") -> Outcome:
-        """What is known by now: a `Record` of tune.json with the files best.toml, best.csv, tune.json, tune.html. `end` is its `status`."""
+        """Returns the results so far: a `Record` of tune.json with the files best.toml, best.csv, tune.json, tune.html. `end` becomes its `status`."""
         return Outcome(self._native.outcome(end))
 
     def _write(self, end: str) -> None:
@@ -149,7 +149,7 @@ class Tuning:
 
 
 class PracticeDevice:
-    """A simulated device in a simulated laboratory, as `softland device`: one of the scene's spread, told of by nothing but its answers.
+    """A simulated device in a laboratory, as `softland device`: a device drawn from [spread] of the scene, known only by its answers.
 
     Called with a `Shot` it returns {"shot": number, "edges_s": [[time, 1 closes or 0 opens], ...]}. Shots do not depend on each other. Made by
     `Scene.device`.

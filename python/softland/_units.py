@@ -1,4 +1,4 @@
-"""Text with a unit to SI numbers."""
+"""Converts text with a unit to SI numbers."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from ._records import Quantity
 
 
 def units(text: str) -> Quantity:
-    """The SI number that a text says, by the program's own reader: units("250 um") is 0.00025 with the unit "m".
+    """Returns the SI number of a text, as the program reads it: units("250 um") is 0.00025 with the unit "m".
 
-    Vsp and Vdp stay units of their own. Raises InvalidInput with the broken rule.
+    Vsp and Vdp are not converted. Raises InvalidInput with the broken rule.
     """
     value, unit = _softland.units(text)
     return Quantity(value, unit)
 
 
 def number(value: Any) -> Any:
-    """A number as it is, a text with a unit as its SI number, lists element by element."""
+    """Returns a number unchanged, a text with a unit as its SI number, and lists element by element."""
     if isinstance(value, str):
         return float(units(value))
     if isinstance(value, (list, tuple)):

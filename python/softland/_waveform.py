@@ -1,4 +1,4 @@
-"""Waveforms as objects."""
+"""Waveforms as Python objects."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ Array = npt.NDArray[np.float64]
 
 
 class Waveform:
-    """A drive voltage against time [V], [s]. It does not change; what changes it gives a new one.
+    """A drive voltage against time [V], [s]. It is immutable; methods return new waveforms.
 
     >>> pulse = softland.Waveform("pulse", levels=["20 V", "8 V", "16 V"], times=["12 us", "30 us"], edge="1 us")
     >>> pulse(20e-6)
     8.0
 
-    The families and their parameters are those of docs/figures.md and docs/scene.md, numbers in SI units or text with a unit; Vsp and Vdp belong
-    to a scene, and stand there. Raises InvalidInput that names parameter, value and rule.
+    docs/figures.md and docs/scene.md have the families and their parameters, which are numbers in SI units or text with a unit. Vsp and Vdp are valid
+    only in a scene. Raises InvalidInput with parameter, value and rule.
     """
 
     def __init__(self, family: str, **parameters: Any) -> None:
@@ -31,7 +31,7 @@ class Waveform:
 
     @classmethod
     def table(cls, times: npt.ArrayLike, voltages: npt.ArrayLike) -> Waveform:
-        """Straight lines between points (times [s] from 0 on, voltages [V], both of shape (n,)); two points of one time are a jump."""
+        """Returns the waveform of straight lines between points (times [s] from 0 on, voltages [V], both of shape (n,)); two points of the same time are a jump."""
         return cls("table", times=np.asarray(times, float).tolist(), voltages=np.asarray(voltages, float).tolist())
 
     @classmethod
@@ -42,53 +42,53 @@ class Waveform:
 
     @property
     def family(self) -> str:
-        """step, harmonic, pulse, table, s-curve, chirp, bspline or sines; of an own waveform its name."""
+        """Family: step, harmonic, pulse, table, s-curve, chirp, bspline or sines; the name of an own waveform."""
         return self._native.family
 
     @property
     def parameters(self) -> dict[str, float | list[float]]:
-        """Of the family, in SI units."""
+        """Parameters of the family, in SI units."""
         return self._native.parameters
 
     @property
     def hold_level(self) -> float:
-        """What it ends on [V]."""
+        """Final voltage [V]."""
         return self._native.hold_level
 
     @property
     def breakpoints(self) -> Array:
-        """Times at which it kinks or jumps, 0 among them [s]."""
+        """Times at which the voltage kinks or jumps, including 0 [s]."""
         return np.asarray(self._native.breakpoints)
 
     def __call__(self, time: npt.ArrayLike) -> Any:
-        """The voltage at a time, or at an array of times [s] -> [V]; where it jumps, that after the jump."""
+        """Returns the voltage at a time, or at an array of times, [s] -> [V]; at a jump the voltage after it."""
         times = np.asarray(time, float)
         volts = self._native.voltage(np.atleast_1d(times))
         return float(volts[0]) if times.ndim == 0 else volts
 
     def scaled(self, volts: float = 1.0, time: float = 1.0) -> Waveform:
-        """With its voltages times `volts` and its times times `time`, both above 0."""
+        """Returns the waveform with its voltages multiplied by `volts` and its times by `time`, both above 0."""
         return Waveform._of(self._native.scaled(volts, time))
 
     def resampled(self, rate: float | str, end: float | str) -> Waveform:
-        """A table of its values at k / rate [Hz] up to `end` [s], straight lines between them; the last one is the hold level."""
+        """Returns a table of the voltages at k / rate [Hz] up to `end` [s], with straight lines between them; the last one is the hold voltage."""
         return Waveform._of(self._native.resampled(number(rate), number(end)))
 
     def points(self, end: float | str, tolerance: float = 1e-3) -> tuple[Array, Array]:
-        """Times [s] and voltages [V] whose straight connections stay within `tolerance` [V] of it up to `end` [s]."""
+        """Returns times [s] and voltages [V]; straight lines between them stay within `tolerance` [V] of the waveform up to `end` [s]."""
         points = np.asarray(self._native.points(number(end), tolerance), float).reshape(-1, 2)
         return points[:, 0], points[:, 1]
 
     def csv(self, end: float | str, drive: str = "main") -> str:
-        """For a generator: the text of a CSV file with a header time_s,DRIVE."""
+        """Returns the text of a CSV file for a generator, with a header time_s,DRIVE."""
         return self._native.csv(drive, number(end))
 
     def spice(self, end: float | str, drive: str = "main") -> str:
-        """For a circuit simulator: the text of a file with a subcircuit softland_DRIVE that holds a PWL source."""
+        """Returns the text of a SPICE file with a subcircuit softland_DRIVE that holds a PWL source."""
         return self._native.spice(drive, number(end))
 
     def plot(self, end: float | str, ax: Any = None) -> Any:
-        """Draws it up to `end` [s] with matplotlib; returns the axes."""
+        """Draws the waveform up to `end` [s] with matplotlib; returns the axes."""
         from ._plots import axes
 
         ax = axes(ax)
@@ -114,16 +114,16 @@ def _rebuilt(family: str, parameters: Mapping[str, Any]) -> Waveform:
 
 
 class OwnWaveform(Waveform):
-    """A waveform that is a Python function: to be run, and to be searched.
+    """A waveform defined by a Python function, for simulations and searches.
 
-    voltage: (times, x) -> volts, arrays of shape (n,), (d,) -> (n,) [s] -> [V]: smooth between the breakpoints. It is called a few times for each
+    voltage: function (times, x) -> volts of arrays, (n,), (d,) -> (n,), [s] -> [V], smooth between the breakpoints. It is called a few times for each
         candidate, from several threads in turn.
-    breakpoints: the times at which it kinks or jumps [s], above 0 and increasing, or a function (x) -> these. From the last one on it stays;
-        without one it must be constant.
-    parameters: {name: (lower, upper, start)}, between which bounds a search varies x; names by custom with their unit ("rise_s").
-    x: values of these; default: their starts.
+    breakpoints: times at which the voltage kinks or jumps [s], above 0 and increasing, or a function (x) -> times. After the last one the voltage is
+        constant; without breakpoints it must be constant from t = 0 on.
+    parameters: {name: (lower, upper, start)}, the bounds and the start of a search; names should end in the unit ("rise_s").
+    x: values of the parameters; default: their starts.
 
-    No scene file can hold it: `Waveform.table(*own.points(end))` can stand in one.
+    A scene file cannot hold this waveform, but it can hold `Waveform.table(*own.points(end))`.
     """
 
     def __init__(
@@ -139,6 +139,6 @@ class OwnWaveform(Waveform):
         self._native = _softland.Waveform.own(self._function, None if x is None else list(map(float, x)))
 
     def at(self, x: Sequence[float] | Mapping[str, float]) -> Waveform:
-        """The waveform with these values of its parameters."""
+        """Returns the waveform with these values of its parameters."""
         values = list(x.values()) if isinstance(x, Mapping) else list(x)
         return Waveform._of(_softland.Waveform.own(self._function, [float(one) for one in values]))
