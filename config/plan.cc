@@ -445,7 +445,7 @@ void Plan::count_points() {
   if (!rows_.empty()) {
     points_ = rows_.size();
   } else if (is_search_) {
-    require(points_ <= most_searched, [&] { return fmt::format("must have at most {} points in a search", most_searched); });
+    require(points_ <= most_searched, [&] { return fmt::format("a search must have at most {} points", most_searched); });
   } else if (sample_) {
     sampled_.emplace(*sample_, variables_.size(), seed_, Stream::plan, points_);
   } else {

@@ -143,7 +143,7 @@ TEST_P(EveryVerb, Describes_optimized) {
     const json pull_in = data(scene().quickly({"pull-in", name, "--json", "-"}));
     expect_same_pull_in(checked, pull_in, contact);
   } else {
-    refused(scene().quickly({"pull-in", name}), "there is no electrode to pull in");
+    refused(scene().quickly({"pull-in", name}), "the scene has no electrode");
   }
   for (const char* format : {"csv", "spice-pwl"}) exports({"export", name, "--format", format});
 }

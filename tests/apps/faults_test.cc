@@ -46,7 +46,8 @@ std::map<std::string, Call> calls() {
       long_window{"--set", "simulate.duration=100 ms"};
   const std::vector<std::string> many{"--set", "structure.modes=20", "--set", "gas.model=reynolds"};
   const std::vector<std::string> pulse{"--set",
-                                       "waveform.main={family=\"pulse\", levels=[\"20 V\", \"0 V\", \"17 V\"], times=[\"20 us\", "
+                                       "waveform.main={family=\"pulse\", levels=[\"20 V\", \"0 V\", \"17 V\"], "
+                                       "times=[\"20 us\", "
                                        "\"32 us\"]}"};
   const std::vector<std::string> gold{"gold.toml"};
   return {
@@ -193,7 +194,7 @@ TEST_F(Faults, OutputThatIsLostIsAnErrorOfEveryVerb_optimized) {
     for (const auto& [place, out] : places) {
       const Outcome o = here->run(words(verb, calls()[verb].quick), SOFTLAND_PROGRAM, out.first);
       EXPECT_EQ(o.status, output_lost) << verb << ", " << place;
-      EXPECT_THAT(o.err, HasSubstr("softland: standard output: cannot be written: " + out.second)) << verb << ", " << place;
+      EXPECT_THAT(o.err, HasSubstr("softland: standard output: could not be written: " + out.second)) << verb << ", " << place;
     }
     if (!takes(verb, "--json")) continue;
     const std::vector<std::string> as_json = calls()[verb].quick + std::vector<std::string>{"--json", "-"};

@@ -102,7 +102,7 @@ TEST_F(Front, OfAGridIsMarkedInItsReportBesideAMap) {
   EXPECT_THAT(read(here.path() / "page/map.svg"), HasSubstr("Impact speed over waveform.main.level and gap.contact"));
   const Outcome bad = here.run({"report", "map.sqlite", "--map", "beauty"});
   EXPECT_EQ(bad.status, 2);
-  EXPECT_THAT(bad.err, HasSubstr("--map beauty: is no figure of this exploration: "));
+  EXPECT_THAT(bad.err, HasSubstr("--map beauty: must be a figure of this exploration: "));
   EXPECT_EQ(here.run({"report", "map.sqlite", "--pareto", "impact_velocity,beauty"}).status, 2);
 }
 

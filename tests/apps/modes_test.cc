@@ -53,12 +53,11 @@ TEST(ModesOfAFile, AreRefusedWithTheOptionThatDecides) {
     EXPECT_EQ(o.status, 2) << o.out;
     return o.err;
   };
-  EXPECT_THAT(refused({"modes"}), HasSubstr("a scene is needed, or --from"));
-  EXPECT_THAT(refused({"modes", "gold.toml", "--axis", "x"}), HasSubstr("--axis: says something about the file of --from"));
-  EXPECT_THAT(refused({"modes", "gold.toml", "--from", "beam.frd"}), HasSubstr("stands instead of the scene"));
+  EXPECT_THAT(refused({"modes"}), HasSubstr("requires a scene, or --from"));
+  EXPECT_THAT(refused({"modes", "gold.toml", "--axis", "x"}), HasSubstr("--axis: describes the file of --from"));
+  EXPECT_THAT(refused({"modes", "gold.toml", "--from", "beam.frd"}), HasSubstr("replaces a scene"));
   EXPECT_THAT(refused({"modes", "--from", "beam.frd", "--direction", "z"}), HasSubstr("--axis is needed"));
-  EXPECT_THAT(refused({"modes", "--from", "line.txt", "--axis", "x", "--direction", "-z"}),
-              HasSubstr("--mass gives that of the structure"));
+  EXPECT_THAT(refused({"modes", "--from", "line.txt", "--axis", "x", "--direction", "-z"}), HasSubstr("give --mass"));
   EXPECT_THAT(refused({"modes", "--from", "line.txt", "--axis", "x", "--direction", "-z", "--mass", "1 mm"}),
               HasSubstr("--mass 1 mm: must be a mass"));
   EXPECT_THAT(refused({"modes", "--from", "x.rst", "--axis", "x", "--direction", "-z"}),

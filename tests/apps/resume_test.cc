@@ -127,7 +127,8 @@ TEST_F(Resume, RefusesAnotherSearchAndSaysWhatDiffers) {
 }
 
 TEST_F(Resume, WithoutASearchNeedsAScene) {
-  refused({"optimize", "--resume", "--out", "none"}, "--resume: none holds no search to go on with");
+  refused({"optimize", "--resume", "--out", "none"},
+          "--resume: none holds no search to continue; name its folder by --out, or omit --resume");
   done(optimize({"--resume", "--out", "out", "--budget", "20"}));
   EXPECT_TRUE(fs::exists(at("out/result.json")));
 }
@@ -228,7 +229,7 @@ TEST_F(Start, RefusesWhatTheSearchCannotBeginWith) {
   refused(with("none.toml"), "none.toml: cannot be read: No such file or directory");
   refused(with(""), "--start: must not be empty");
   fs::create_directory(at("folder"));
-  refused(with("folder"), "folder: holds none of result.json, best.toml, release.toml");
+  refused(with("folder"), "folder: must hold one of result.json, best.toml, release.toml; name the folder of --out");
   EXPECT_FALSE(fs::exists(at("out"))) << "nothing is begun";
 }
 

@@ -312,7 +312,8 @@ TEST_F(Search, EndsWithFourWhenNoWaveformCanCloseAndLeavesNothingOfAnEarlierSear
 TEST(EarlierSearch, OfAnotherSceneIsNamedBeforeItIsReplaced) {
   const Workplace here;
   const std::vector<std::string> asked{"optimize", "gold.toml", "--robust", "none", "--budget", "20", "--out", "out"};
-  const std::string said = "out holds results of another scene, \"A relay\": those of this search will replace them";
+  const std::string said =
+      "out holds results of another scene, \"A relay\", which this search will replace; --out names another folder";
   write(here.path() / "gold.toml",
         "title = \"A relay\"\n" + shipped("mem-gold.toml").substr(shipped("mem-gold.toml").find("\n[") + 1));
   const int status = here.run(asked).status;

@@ -149,14 +149,14 @@ TEST_F(Table, ShowsMultiplesOfAPullInVoltageWithoutPrefixes) {
 TEST_F(Table, NamesWhatItCannotTake) {
   make_store(at("a.sqlite"), 10);
   expect_bad({"table", "a.sqlite", "--where", "bounces > 1"},
-             "--where \"bounces > 1\": no such column: bounces; the columns are point, ");
+             "--where \"bounces > 1\": no such column: bounces; choose from the columns point, ");
   expect_bad({"table", "a.sqlite", "--where", "1); drop table results; --"}, "--where \"1); drop table results; --\": ");
   expect_bad({"table", "a.sqlite", "--select", "point,bounces"},
-             "--select point,bounces: there is no column \"bounces\"; there are point, gap_contact_m, ");
+             "--select point,bounces: unknown column \"bounces\"; choose from point, gap_contact_m, ");
   expect_bad({"table", "a.sqlite", "--out", "a.sqlite"}, "--out a.sqlite: is a store");
   expect_bad({"table", "a.sqlite", "--out", "no folder/a.csv"}, "no folder/a.csv: cannot write in its folder");
-  expect_bad({"table", "gold.toml"}, "gold.toml: is no store of softland");
-  expect_bad({"table", "nothing"}, "nothing: there is no such file");
+  expect_bad({"table", "gold.toml"}, "gold.toml: must be a store of softland");
+  expect_bad({"table", "nothing"}, "nothing: the file does not exist");
   EXPECT_EQ(printed({"table", "a.sqlite", "--csv", "--select", "point", "--where", "point > 8"}), "point\n9\n");
 }
 
@@ -168,9 +168,9 @@ TEST_F(StatusVerb, TellsHowFarAStudyIs) {
     const std::string writing = printed({"status", "a.sqlite"});
     EXPECT_THAT(writing,
                 AllOf(StartsWith("a.sqlite: 25 of 250 points, part 2/4 of 1000\n"), HasSubstr("  done "),
-                      HasSubstr("  no_contact "), HasSubstr(fmt::format("  writes now           process {} on ", ::getpid()))));
+                      HasSubstr("  no_contact "), HasSubstr(fmt::format("  written now by       process {} on ", ::getpid()))));
   }
-  EXPECT_THAT(printed({"status", "a.sqlite"}), HasSubstr("  writes now           nobody\n"));
+  EXPECT_THAT(printed({"status", "a.sqlite"}), HasSubstr("  written now by       nobody\n"));
   make_store(at("b.sqlite"), 10);
   const json both = json::parse(printed({"status", "a.sqlite", "b.sqlite", "--json", "-"}));
   EXPECT_EQ(both["points"], 260);
@@ -180,7 +180,7 @@ TEST_F(StatusVerb, TellsHowFarAStudyIs) {
   EXPECT_EQ(both["stores"][1]["sessions"][0]["rows"], 10);
   EXPECT_EQ(both["stores"][1]["sessions"][0]["program"], test::origin().program);
   EXPECT_EQ(both["stores"][1]["plan"], content_key("grid of 10 points").hexadecimal());
-  expect_bad({"status", "a.sqlite", "gold.toml"}, "gold.toml: is no store of softland");
+  expect_bad({"status", "a.sqlite", "gold.toml"}, "gold.toml: must be a store of softland");
 }
 
 TEST_F(MergeVerb, MakesOneStoreOfParts) {
@@ -188,17 +188,17 @@ TEST_F(MergeVerb, MakesOneStoreOfParts) {
     make_store(at(fmt::format("part {}.sqlite", index)), 100, {.index = index, .count = 3});
   const Outcome early = here.run({"merge", "part 1.sqlite", "part 3.sqlite", "--complete", "--out", "all.sqlite"});
   EXPECT_EQ(early.status, 4);
-  EXPECT_THAT(early.err, AllOf(HasSubstr("33 of 100 points are missing"), HasSubstr("no part was given of 2/3")));
+  EXPECT_THAT(early.err, AllOf(HasSubstr("33 of 100 points are missing"), HasSubstr("no part was given for 2/3")));
   EXPECT_FALSE(fs::exists(at("all.sqlite")));
   EXPECT_EQ(printed({"merge", "part 1.sqlite", "part 2.sqlite", "part 3.sqlite", "--complete", "--out", "all.sqlite"}),
-            "100 of 100 points of 3 parts in all.sqlite\n");
+            "100 of 100 points from 3 parts in all.sqlite\n");
   make_store(at("whole.sqlite"), 100);
   EXPECT_EQ(dump(at("all.sqlite")), dump(at("whole.sqlite")));
   expect_bad({"merge", "part 1.sqlite", "--out", "all.sqlite"}, "all.sqlite: exists already; it is not replaced");
   expect_bad({"merge", "part 1.sqlite"}, "--out is required");
   make_store(at("other.sqlite"), 99);
   expect_bad({"merge", "part 1.sqlite", "other.sqlite", "--out", "new.sqlite"},
-             "other.sqlite: holds another plan than part 1.sqlite");
+             "other.sqlite: must have the same plan as part 1.sqlite");
 }
 
 TEST_F(Stores, KeepTheNamesOfTheirCompanions) {
@@ -221,7 +221,7 @@ TEST_F(Stores, KeepTheNamesOfTheirCompanions) {
     expect_bad(with(explore, {"--out", name}), reason);
     expect_bad(with(explore, {"--point", "1", "--out", name}), reason);
     expect_bad(with(explore, {"--out", "new.sqlite", "--json", std::string("new.sqlite") + ending}),
-               fmt::format("--json new.sqlite{}: is a file that the store new.sqlite has beside it", ending));
+               fmt::format("--json new.sqlite{}: is a companion file of the store new.sqlite", ending));
     EXPECT_FALSE(fs::exists(at(name)));
     EXPECT_FALSE(fs::exists(at("new.sqlite")));
   }
@@ -286,10 +286,10 @@ class SlurmVerb : public Stores {
 
   SlurmVerb() {
     fs::create_directory(at(folder));
-    write(
-        at("map.toml"),
-        "[plan]\nscene = \"gold.toml\"\nset = [\"structure.modes=2\", \"simulate.accuracy=1e-3\", \"simulate.duration=80 us\"]\n"
-        "vary = [\"waveform.main.level=20 V:24 V:11\"]\n");
+    write(at("map.toml"),
+          "[plan]\nscene = \"gold.toml\"\n"
+          "set = [\"structure.modes=2\", \"simulate.accuracy=1e-3\", \"simulate.duration=80 us\"]\n"
+          "vary = [\"waveform.main.level=20 V:24 V:11\"]\n");
     write(at("script.sh"), printed({"slurm", "map.toml", "--tasks", "3", "--out", std::string(folder) + "/map.sqlite"}));
     // Stands for that of Slurm: tells what it was asked, and does it at once.
     write(at("sbatch"), R"(#!/bin/bash
@@ -339,7 +339,7 @@ TEST_F(SlurmVerb, KeepsTheNumberOfPartsOfOneThatIsSubmittedAlone) {
   const StudyReader part(at(folder) / "map-parts/part-2-of-3.sqlite");
   EXPECT_EQ(part.plan().shard, (Shard{.index = 2, .count = 3}));
   EXPECT_FALSE(fs::exists(at(folder) / "map.sqlite"));
-  EXPECT_THAT(read(at("log.txt")), HasSubstr("part-1-of-3.sqlite: there is no such file"));
+  EXPECT_THAT(read(at("log.txt")), HasSubstr("part-1-of-3.sqlite: the file does not exist"));
   ASSERT_EQ(submitted("1-3"), 0);
   EXPECT_EQ(test::rows_in(at(folder) / "map.sqlite").size(), 11u);
   EXPECT_EQ(part.sessions().size(), 2u) << "the part went on with what it held";
@@ -376,14 +376,15 @@ TEST_F(SlurmVerb, NamesTheFilesThatItWasToldWhateverTheirBytes) {
 TEST_F(SlurmVerb, NamesWhatItCannotTake) {
   expect_bad({"slurm", "map.toml"}, "--tasks is required");
   expect_bad({"slurm", "map.toml", "--tasks", "0"}, "--tasks 0: must be a whole number from 1 on");
-  expect_bad({"slurm", "map.toml", "--tasks", "12"}, "--tasks 12: a study of 11 points has at most 11 parts");
+  expect_bad({"slurm", "map.toml", "--tasks", "12"}, "--tasks 12: must be at most 11 for a study of 11 points");
   expect_bad({"slurm", "map.toml", "--tasks", "2", "--cpus", "x"}, "--cpus x: must be a whole number from 1 on");
   expect_bad({"slurm", "map.toml", "--tasks", "2", "--out", "gold.toml"}, "gold.toml: exists already");
   write(at("front.toml"),
         "[plan]\nscene = \"gold.toml\"\nvary = [\"waveform.main.level=20 V:24 V\"]\nsample = \"nsga2:100\"\n"
         "pareto = \"initial_contact_time,impact_velocity\"\n");
-  expect_bad({"slurm", "front.toml", "--tasks", "2"}, "a search for a front goes from point to point and cannot be divided");
-  expect_bad({"slurm", "gold.toml", "--tasks", "2"}, "gold.toml: is neither a plan, which has a section [plan], nor a store");
+  expect_bad({"slurm", "front.toml", "--tasks", "2"},
+             "a search for a Pareto front depends on its earlier points and cannot be divided");
+  expect_bad({"slurm", "gold.toml", "--tasks", "2"}, "gold.toml: must be a store, or a plan file, which has a section [plan]");
 }
 
 }  // namespace

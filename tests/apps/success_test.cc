@@ -263,7 +263,7 @@ TEST(SetElement, OfAListIsThatOfTheWholeList_optimized) {
   EXPECT_EQ(modes("electrode.main.span[3]=tip").err,
             "softland: --set electrode.main.span[3]=tip: electrode.main.span is a list of 2, counted from 1\n");
   EXPECT_EQ(modes("piezo.span[1]=5 um").err,
-            "softland: --set piezo.span[1]=5 um: piezo.span is no list in this scene: give the whole list, such as --set "
+            "softland: --set piezo.span[1]=5 um: piezo.span must be a list in this scene: give the whole list, such as --set "
             "'piezo.span=[\"10 um\", \"tip\"]'\n");
   EXPECT_EQ(modes("electrode.main.span[2]=2 V").err.substr(0, 47), "softland: --set electrode.main.span[2]=2 V: val");
 }

@@ -293,9 +293,9 @@ TEST_F(TuneVerb, AsksAPersonWhatTheOscilloscopeShowed_optimized) {
   const Outcome o = here.run({"tune", "plate.toml", "--by-hand", "--effort", "0.2", "--jobs", "1", "--out", "out", "--quiet"});
   EXPECT_EQ(o.status, 4) << "no closing was without a bounce: " << o.err;
   for (const char* said :
-       {"load out/shot-1.csv into the generator", "when did the contact first close", "36 V is no time; write it with its unit",
-        "-3 us is no time", "9 s is after the end of the record", "bounces: many: must be a whole number from 0 on",
-        "none.csv: cannot be read", "shot 4: load out/shot-4.csv"})
+       {"load out/shot-1.csv into the generator", "did the contact first close", "36 V: must be a time with its unit",
+        "-3 us: must be a time", "9 s: must not be after the end of the record",
+        "bounces: many: must be a whole number from 0 on", "none.csv: cannot be read", "shot 4: load out/shot-4.csv"})
     EXPECT_THAT(o.err, HasSubstr(said));
   const json j = tune_json();
   EXPECT_EQ(j["status"], "stopped");
@@ -318,7 +318,8 @@ TEST_F(TuneVerb, AsksAPersonWhatTheOscilloscopeShowed_optimized) {
   write(here.path() / "stdin.txt", "21.5 us\n2\nstop\n");
   const Outcome amplified = here.run({"tune", "plate.toml", "--by-hand", "--effort", "0.2", "--jobs", "1", "--out", "out",
                                       "--quiet", "--set", "driver.main.amplifier=20"});
-  EXPECT_THAT(amplified.err, HasSubstr("load out/shot-1.csv into the generator, main in volts before an amplifier of 20, close"));
+  EXPECT_THAT(amplified.err,
+              HasSubstr("load out/shot-1.csv into the generator, main in volts at the input of an amplifier of gain 20, close"));
   EXPECT_NEAR(held(), held_at_switch / 20, 1e-12 * held_at_switch);
   EXPECT_TRUE(fs::exists(here.path() / "out/shot-2.csv"));
   EXPECT_FALSE(fs::exists(here.path() / "out/shot-4.csv"));
@@ -442,7 +443,7 @@ TEST_F(TuneVerb, TakesTheFileOfAnOscilloscope_optimized) {
   }
   EXPECT_THAT(here.run(words({"--contact", "closed=below"})).err, HasSubstr("scope.csv: missing key 'threshold'"));
   EXPECT_THAT(here.run({"tune", "plate.toml", "--device", "x", "--contact", "threshold=1 V"}).err,
-              HasSubstr("--contact says how files are read that --by-hand is told of"));
+              HasSubstr("--contact requires --by-hand: it says how to read the recorded files"));
 }
 
 TEST_F(TuneVerb, TakesTheCaptureOfALogicAnalyser_optimized) {
@@ -467,8 +468,8 @@ TEST_F(TuneVerb, TakesASwitchThatIsQuickerThanAnOscilloscope_slow) {
 
 TEST_F(TuneVerb, NamesTheOptionThatItCannotTake) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> refused{
-      {{}, "--device COMMAND or --by-hand says where the shots are fired: give one of them"},
-      {{"--device", "x", "--by-hand"}, "give one of them"},
+      {{}, "give either --device COMMAND or --by-hand: it says how shots are fired"},
+      {{"--device", "x", "--by-hand"}, "give either --device COMMAND or --by-hand"},
       {{"--device", "x", "--closings", "0"}, "--closings 0: must be a whole number from 1 on"},
       {{"--device", "x", "--timeout", "0 s"}, "--timeout 0 s: must be above 0 s"},
       {{"--device", "x", "--timeout", "3"}, "--timeout 3: must be a time [s]"},
@@ -480,7 +481,7 @@ TEST_F(TuneVerb, NamesTheOptionThatItCannotTake) {
        "--format, --sample-rate, --bits and --amplifier are of the files that --by-hand writes"},
       {{"--by-hand", "--amplifier", "0"}, "--amplifier"},
       {{"--device", "x", "--actuator", "hand"}, "--actuator hand: must be electrostatic"},
-      {{"--device", "x", "--resume"}, "closings.jsonl: there is no such file"}};
+      {{"--device", "x", "--resume"}, "closings.jsonl: the file does not exist"}};
   for (const auto& [words, rule] : refused) {
     const Outcome o = here.run(std::vector<std::string>{"tune", "plate.toml"} + words);
     EXPECT_EQ(o.status, 2) << rule;

@@ -121,7 +121,7 @@ TEST_F(TuningLabs, SayWhatIsWrongWithEveryMalformedAnswer) {
   for (const auto& [answer, rule] : answers) {
     write(here.path() / "answer", answer + "\n");
     EXPECT_THAT(refusal("cat '" + (here.path() / "answer").string() + "'"),
-                AllOf(StartsWith("--device cat "), HasSubstr(": its answer to shot 1: "), HasSubstr(rule)))
+                AllOf(StartsWith("--device cat "), HasSubstr(": invalid answer to shot 1: "), HasSubstr(rule)))
         << answer;
   }
 }
@@ -228,7 +228,7 @@ TEST_F(TuningLogs, KeepTheClosingsOfAnEarlierRun) {
 }
 
 TEST_F(TuningLogs, SayWhyTheyCannotGoOn) {
-  EXPECT_THAT(refused(), AllOf(StartsWith("resume: "), HasSubstr("there is no such file")));
+  EXPECT_THAT(refused(), AllOf(StartsWith("resume: "), HasSubstr("the file does not exist")));
   { TuningLog first(file(), {{"seed", 1}}, false); }
   EXPECT_THAT(refused({{"seed", 2}}), HasSubstr("closings.jsonl:1: its closings are of another seed: 1 instead of 2"));
   const std::string header = read(file());

@@ -208,9 +208,10 @@ TEST(BeamParts, ThatCannotBeAreRefusedWithTheirPlace) {
               HasSubstr("x.toml:4: structure.sections[1].widht = \"10 um\": unknown key (did you mean 'width'?)"));
   EXPECT_THAT(refusal("thickness = \"2 um\"", "thickness = \"2 um\"\nlength = \"250 um\""),
               AllOf(HasSubstr("x.toml:3: structure.sections = [{ length"),
-                    HasSubstr("cannot stand beside structure.length = \"250 um\": give one of them")));
+                    HasSubstr("must not be given together with structure.length = \"250 um\": give one of them")));
   EXPECT_THAT(refusal("[\"0 um\", \"tip\"]", "[\"0 um\", \"251 um\"]"),
-              HasSubstr("x.toml:8: structure.layers[1].span = [\"0 um\", \"251 um\"]: from 0 m to 251 um: must increase and lie "
+              HasSubstr("x.toml:8: structure.layers[1].span = [\"0 um\", \"251 um\"]: from 0 m to 251 um: "
+                        "must increase and lie "
                         "on the beam, from 0 m to 250 um"));
   EXPECT_THAT(refusal("face = \"far\"", "face = \"both\""), HasSubstr("structure.layers[1].face = \"both\": unknown value"));
   EXPECT_THAT(refusal("size = \"4 um\"", "size = \"10 um\""),
@@ -240,7 +241,8 @@ TEST(BeamParts, NameTheirLengthWhereSomethingLiesBeyondIt) {
   EXPECT_THAT(refusal("pad_length", "at = \"260 um\"\npad_length"),
               HasSubstr("contact.at = \"260 um\": must lie on the beam: its sections are 250 um long"));
   EXPECT_EQ(message(std::string(built_scene), {"structure.length=250 um"}),
-            "--set structure.length=250 um: [structure]: missing key 'width' (a length such as \"20 um\"); structure.length took "
+            "--set structure.length=250 um: [structure]: missing key 'width' (a length such as \"20 um\"); "
+            "structure.length took "
             "the place of structure.sections");
 }
 

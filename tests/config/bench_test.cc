@@ -206,20 +206,20 @@ TEST(Bench, NamesTheKeyThatAFileOfAnInstrumentLacks) {
   const std::string scope = "file = \"scope.csv\"\n", low = scope + "column = \"CH2\"\nthreshold = \"1 V\"\n";
   expect_so("contact", scope, "missing key 'threshold'");
   expect_so("contact", scope + "threshold = \"1 V\"", "column");
-  expect_so("contact", low, "the contact is closed at t = 0 already; closed = \"below\"");
+  expect_so("contact", low, "the contact must be open at t = 0; closed = \"below\"");
   expect_so("contact", low + "closed = \"under\"", "b.toml:8: measurement.closed = \"under\": must be \"above\" or \"below\"");
   expect_so("contact", low + "closed = \"below\"\nmerge = \"9 us\"\nedges = 2", "its voltage has 1 edges");
   expect_so("contact", low + "hysteresis = \"-1 V\"", "must be at least 0");
   expect_so("contact", low + "thresold = \"1 V\"", "did you mean 'threshold'?");
   expect_so("contact", low + "per_volt = \"1 um\"", "is of a position or velocity only");
-  expect_so("velocity", scope + "threshold = \"1 V\"", "is of a contact record only");
+  expect_so("velocity", scope + "threshold = \"1 V\"", "applies to a contact record only");
   expect_so("velocity", scope + "column = \"CH2\"", "the velocity is in V: expected a velocity [m/s]; per_volt");
   expect_so("velocity", scope + "column = 2\nunit = \"um\"", "the velocity is in um: expected a velocity");
-  expect_so("velocity", scope + "column = 2\nunit = \"m/s\"\nper_volt = \"1 m/s\"", "must not stand beside a unit");
+  expect_so("velocity", scope + "column = 2\nunit = \"m/s\"\nper_volt = \"1 m/s\"", "must not be given together with unit");
   expect_so("velocity", "file = \"plain.csv\"", "the file names no unit: say unit");
-  expect_so("velocity", scope + "column = 2\nunit = \"m/s\"\nuntil = \"-1 us\"", "leaves no row");
+  expect_so("velocity", scope + "column = 2\nunit = \"m/s\"\nuntil = \"-1 us\"", "must not be before the first row");
   expect_so("contact", low + "closed = \"below\"\nuntil = \"9 us\"", "is of a position or velocity only");
-  expect_so("capacitance", scope + "column = 2", "is of a file over time only");
+  expect_so("capacitance", scope + "column = 2", "applies to a file of values over time only");
 }
 TEST(Bench, ContactKeysOfAnOptionAreThoseOfAMeasurement) {
   const ContactTraceKeys keys =
@@ -244,7 +244,7 @@ TEST(Bench, ContactKeysOfAnOptionAreThoseOfAMeasurement) {
 }
 TEST(Bench, RefusesWhatItCannotMean) {
   const std::string begin = "[[measurement]]\nquantity = \"pull_in\"\n";
-  expect_refused("", "there is no [[measurement]]");
+  expect_refused("", "must have at least one [[measurement]]");
   expect_refused("measurements = 1", "unknown key (did you mean 'measurement'?)");
   expect_refused("[[measurement]]\nquantity = \"pullin\"\nvalue = \"1 V\"\nerror = \"1 %\"", "did you mean 'pull_in'?");
   expect_refused(begin + "value = \"1 V\"", "bench.toml:1: [[measurement]]: missing key 'error'");
@@ -255,11 +255,11 @@ TEST(Bench, RefusesWhatItCannotMean) {
   expect_refused(begin + "value = \"1 V\"\nerror = \"0 V\"", "must be above 0");
   expect_refused(begin + "value = \"-1 V\"\nerror = \"1 %\"", "a pull_in must be above 0");
   expect_refused(begin + "value = \"1 V\"\nerror = \"1 %\"\nlevel = \"3 V\"", "a pull_in has none");
-  expect_refused(begin + "value = \"1 V\"\nerror = \"1 %\"\nmode = 2", "is of a frequency only");
+  expect_refused(begin + "value = \"1 V\"\nerror = \"1 %\"\nmode = 2", "applies to a frequency only");
   expect_refused(begin + "value = \"1 V\"\nerror = \"1 %\"\neror = 2", "unknown key (did you mean 'error'?)");
   expect_refused(begin + "file = \"none.csv\"\nerror = \"1 %\"", "measurement.file = \"none.csv\"");
   expect_refused(begin + "value = \"1 V\"\nerror = \"1 %\"\n[device.B]\nset = [\"gap.contact=1 um\"]",
-                 "no measurement is of this device");
+                 "no measurement belongs to this device");
   expect_refused("[[measurement]]\nquantity = \"position\"\nvalue = \"1 um\"\nerror = \"1 nm\"", "name a file");
 }
 

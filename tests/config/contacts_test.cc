@@ -83,13 +83,14 @@ TEST(Contacts, RefuseWhatContradictsItself) {
   EXPECT_EQ(softland::message(with(left + inner + stop)), "");
   EXPECT_EQ(
       softland::message(edited(small_scene, one_contact, one_contact + inner)),
-      "x.toml:18: contact.model = \"linear\": [contact] is the only one of its kind: it cannot stand beside [contact.NAME]");
+      "x.toml:18: contact.model = \"linear\": [contact] must not be combined with [contact.NAME]: use one of the two forms");
   EXPECT_EQ(softland::message(edited(small_scene, one_contact, left + inner)),
             "x.toml:11: gap.contact = \"2 um\": belongs to one [contact]: every [contact.NAME] has a gap of its own");
   EXPECT_EQ(softland::message(edited(small_scene, "contact = \"2 um\"\n", "")),
             "x.toml:9: [gap]: missing key 'contact' (a length such as \"2 um\")");
   EXPECT_EQ(softland::message(with(left + section("right", "gap = \"2 um\""))),
-            "x.toml:21: [contact.right]: stands at the place of contact.left, with the same gap: one contact with count = 2 says "
+            "x.toml:21: [contact.right]: stands at the place of contact.left, with the same gap: "
+            "one contact with count = 2 says "
             "the same");
   EXPECT_EQ(softland::message(with(left + section("right", "count = 2"))),
             "x.toml:21: [contact.right]: missing key 'gap' (a length such as \"2 um\")");

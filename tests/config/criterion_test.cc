@@ -63,13 +63,13 @@ TEST(Criterion, HoldsWhereItsViolationSaysSo) {
 }
 
 TEST(Criterion, IsRefusedWithTheReason) {
-  EXPECT_EQ(refused("fast"), "'fast' is no condition: write a figure, <, <=, ==, >= or >, and a value");
-  EXPECT_EQ(refused("bounce_cuont == 0"), "'bounce_cuont' is no figure of merit (did you mean 'bounce_count'?)");
+  EXPECT_EQ(refused("fast"), "'fast' must be a condition: a figure, then <, <=, ==, >= or >, then a value");
+  EXPECT_EQ(refused("bounce_cuont == 0"), "unknown figure of merit 'bounce_cuont' (did you mean 'bounce_count'?)");
   EXPECT_EQ(refused("t_i < 60 V"), "initial_contact_time in 't_i < 60 V' must be a time [s]");
   EXPECT_EQ(refused("t_i < 60"), "initial_contact_time in 't_i < 60' must be a time [s]");
   EXPECT_EQ(refused("N_B == 0 us"), "bounce_count in 'N_B == 0 us' must be a plain number");
   EXPECT_EQ(refused("t_i <= 0 us"),
-            "the limit of initial_contact_time in 't_i <= 0 us' must not be 0: give what is small enough");
+            "the limit of initial_contact_time in 't_i <= 0 us' must not be 0: give a small value with its unit");
   EXPECT_NE(refused("t_i < "), "");
   EXPECT_NE(refused("< 3 us"), "");
   EXPECT_NE(refused(""), "");
@@ -87,7 +87,7 @@ TEST(RobustMeasure, HasANameAndALevel) {
 }
 
 TEST(RobustMeasure, IsRefusedWithTheReason) {
-  EXPECT_EQ(refused_measure("best").find("'best' is no measure: there are cvar:0.9"), 0U);
+  EXPECT_EQ(refused_measure("best").find("unknown statistic 'best': choose one of cvar:0.9"), 0U);
   EXPECT_EQ(refused_measure("cvar:1"), "the level of cvar must be at least 0 and less than 1");
   EXPECT_EQ(refused_measure("cvar:nan").find("the level of cvar must be"), 0U);
   EXPECT_EQ(refused_measure("cvar:").find("the level of cvar must be"), 0U);
@@ -121,7 +121,7 @@ TEST(Calibration, OfAPiezoNeedsOne) {
   EXPECT_EQ(read_scene(file).calibration.piezo_error, 0.01);
   EXPECT_FALSE(read_scene(file).calibration.is_empty());
   EXPECT_EQ(refusal([] { return calibrated({"calibration.piezo.error=\"1 %\""}); }),
-            "--set calibration.piezo.error=\"1 %\": [calibration.piezo]: there is no [piezo] whose deflection could be measured");
+            "--set calibration.piezo.error=\"1 %\": [calibration.piezo]: needs a [piezo] layer, whose deflection is measured");
   file.set("calibration.piezo.error=\"1 us\"");
   EXPECT_NE(refusal([&] { return read_scene(file); }).find("must be a percentage or a plain number"), std::string::npos);
 }
@@ -135,7 +135,8 @@ TEST(Calibration, MaySortDevicesIntoClasses) {
   EXPECT_EQ(refused({"calibration.Vdp.error=0", "calibration.classes=2.5"}),
             "--set calibration.classes=2.5: must be a whole number from 2 to 256");
   EXPECT_EQ(refused({"calibration.classes=4"}),
-            "--set calibration.classes=4: nothing to sort devices by: add [calibration.Vdp] or [calibration.frequency]");
+            "--set calibration.classes=4: needs a measurement by which devices are sorted: "
+            "add [calibration.Vdp] or [calibration.frequency]");
   EXPECT_EQ(refused({"calibration.Vdp.error=0", "calibration.clases=4"}),
             "--set calibration.clases=4: expected a section [calibration.NAME] or the key 'classes'");
 }

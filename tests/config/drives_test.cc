@@ -55,7 +55,8 @@ TEST(Drives, StandBeforeTheyBegin) {
   EXPECT_EQ(drives(step + "before = \"0.5 Vsp\"\n").at("main").before, 25);
   const auto said = [](const std::string& from, const std::string& to) { return message(edited(small_scene, from, to)); };
   EXPECT_EQ(said(main_waveform, step + "before = \"80 V\"\n"),
-            "x.toml:27: [waveform.main]: the voltage reaches 80 V, above the driver's max_voltage of 75 V; without [driver.main] "
+            "x.toml:27: [waveform.main]: the voltage reaches 80 V, above the driver's max_voltage of 75 V; "
+            "without [driver.main] "
             "the limits are 0 V and 1.5 Vsp");
   EXPECT_EQ(said(main_waveform, step + "before = \"3 m\"\n"),
             "x.toml:30: waveform.main.before = \"3 m\": expected a voltage [V], got a length [m]");
@@ -198,15 +199,15 @@ TEST(Drives, SourcesThatMakeNoSenseAreRefused) {
     return "";
   };
   EXPECT_EQ(message("main", "max_voltage = \"60 V\"\nbits = 10\n"),
-            "x.toml:42: driver.main.bits = 10: needs a sample_rate: samples are what is rounded");
+            "x.toml:42: driver.main.bits = 10: needs sample_rate, because samples are rounded");
   EXPECT_EQ(message("main", "sample_rate = \"1 MHz\"\nbits = 10\n"),
             "x.toml:42: driver.main.bits = 10: needs max_voltage: it divides the voltages from min_voltage to max_voltage");
   EXPECT_EQ(message("piezo", "source_resistance = \"1 kohm\"\n"),
-            "x.toml:36: driver.piezo.source_resistance = \"1 kohm\": charges an electrode; a piezo layer is driven without one");
-  EXPECT_EQ(
-      message("main", "parallel_capacitance = \"1 pF\"\n"),
-      "x.toml:41: driver.main.parallel_capacitance = \"1 pF\": needs a source_resistance: a source without one charges it at "
-      "once");
+            "x.toml:36: driver.piezo.source_resistance = \"1 kohm\": must not be given for a piezo layer: "
+            "it is the resistance that charges an electrode");
+  EXPECT_EQ(message("main", "parallel_capacitance = \"1 pF\"\n"),
+            "x.toml:41: driver.main.parallel_capacitance = \"1 pF\": needs source_resistance, "
+            "through which this capacitance is charged");
   EXPECT_EQ(message("main", "parallel_capacitance = \"0 F\"\n"), "");
   EXPECT_EQ(message("main", "sample_rate = \"1 MHz\"\n"), "");
   EXPECT_THAT(message("main", "max_voltage = \"60 V\"\nbits = 25\n"), testing::HasSubstr("must be in [1, 24]"));
@@ -232,12 +233,14 @@ TEST(Drives, APercentageForThePiezoNeedsAMainElectrode) {
       return error.what();
     }
   };
-  EXPECT_EQ(message(text), "x.toml:29: waveform.piezo.amplitude = \"1 %\": is a percentage of the main hold level, which is 0 V");
-  const std::string two = edited(text, "[electrode.main]", "[electrode.left]\nspan = [\"0 m\", \"50 um\"]\n[electrode.right]");
   EXPECT_EQ(
-      message(two),
-      "x.toml:31: waveform.piezo.amplitude = \"1 %\": is a percentage of the main hold level, but there is neither an electrode "
-      "'main' nor only one electrode");
+      message(text),
+      "x.toml:29: waveform.piezo.amplitude = \"1 %\": is a percentage of the hold voltage of the main electrode, which is 0 V: "
+      "give volts");
+  const std::string two = edited(text, "[electrode.main]", "[electrode.left]\nspan = [\"0 m\", \"50 um\"]\n[electrode.right]");
+  EXPECT_EQ(message(two),
+            "x.toml:31: waveform.piezo.amplitude = \"1 %\": is a percentage of the hold voltage of the main electrode, "
+            "but no electrode is called 'main' and there are several: give volts");
 }
 
 TEST(Drives, PulseLevelsMayMixVoltsAndPullInVoltages) {

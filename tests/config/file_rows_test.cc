@@ -105,7 +105,7 @@ TEST(FileRows, KeysNeedAFileAndAreChecked) {
     }
   };
   const std::string rows = "family = \"table\"\ntimes = [\"0 s\"]\nvoltages = [\"1 V\"]\n";
-  refused(rows + "skip = 1\n", "waveform.main.skip = 1: says something about a file, and there is no file");
+  refused(rows + "skip = 1\n", "waveform.main.skip = 1: describes a file: give the key file too, or omit this key");
   refused(rows + "column = 0\n", "waveform.main.column = 0");
   refused(rows + "decimal = \";\"\n", "waveform.main.decimal");
   refused(rows + "interval = \"even\"\n", "waveform.main.interval");

@@ -275,20 +275,20 @@ TEST(Plan, RefusesWhatIsNone) {
       {{"structure.modes=2:8:100"}, "100 values in equal steps from 2 to 8 are not whole numbers; 2, 3, 4, 7 values are"},
       {{"structur.length=1 um:2 um:3"}, "unknown section (did you mean 'structure'?)"},
       {{"surface.elastic_modulus=1 N/m:2 N/m:3"}, "the scene has no such section"},
-      {{"electrode.main.span=1 um:2 um:3"}, "is a list of 2: name one of them"},
-      {{"electrode.main.span[3]=1 um:2 um:3"}, "is a list of 2: name one of them"},
+      {{"electrode.main.span=1 um:2 um:3"}, "is a list of 2: name one element"},
+      {{"electrode.main.span[3]=1 um:2 um:3"}, "is a list of 2: name one element"},
       {{"structure.length[1]=1 um:2 um:3"}, "is no list"},
       {{"title=a,b"}, "unknown section"},
       {{"gap.electrode*gap.contact=1 um:2 um:3"}, "several keys vary by one factor"},
       {{"gap.contact=1 um:2 um:3", "gap.electrode*gap.contact=0.9:1.1:3"}, "gap.contact varies already"},
       {{"gap.contact*gap.contact=0.9:1.1:3"}, "names gap.contact twice"},
       {{"structure.damping_ratio*gap.contact=0.9:1.1:3"}, "is 0 in the scene: no factor changes it"},
-      {{"structure.length=1 um:2 um:100000", "gap.contact=1 um:2 um:100000"}, "there may be no more"},
+      {{"structure.length=1 um:2 um:100000", "gap.contact=1 um:2 um:100000"}, "the plan must have at most"},
   };
   for (const auto& [vary, words] : grids) {
     const std::string told = refusal(vary);
     EXPECT_NE(told.find(words), std::string::npos) << vary.back() << ": " << told;
-    EXPECT_EQ(told.find("--vary") == 0, words != "there may be no more") << told;
+    EXPECT_EQ(told.find("--vary") == 0, words != "the plan must have at most") << told;
   }
   EXPECT_NE(refusal({"structure.length=1 um:2 um:3"}, "sobol:8").find("KEY=LOW:HIGH or KEY=LOW:HIGH:log"), std::string::npos);
   EXPECT_NE(refusal({"structure.length=1 um,2 um"}, "sobol:8").find("KEY=LOW:HIGH"), std::string::npos);

@@ -80,13 +80,14 @@ TEST(Spread, WithWeightsIsOneAmountThatIsAddedToAll) {
     return message(with_spread("undercut = { keys = [" + keys + "], distribution = \"normal\", " + more + " }"));
   };
   using testing::HasSubstr;
-  EXPECT_THAT(refused(R"(weights = [1], standard_deviation = "50 nm")"), HasSubstr("there are 1 of them for 2 keys"));
+  EXPECT_THAT(refused(R"(weights = [1], standard_deviation = "50 nm")"),
+              HasSubstr("must be one weight for each key, but there are 1 for 2 keys"));
   EXPECT_THAT(refused(R"(weights = [1, 0], standard_deviation = "50 nm")"), HasSubstr("must not be 0"));
-  EXPECT_THAT(refused(R"(weights = [1, 1], cov = "2 %")"), HasSubstr("add an amount that is 0 in this scene"));
+  EXPECT_THAT(refused(R"(weights = [1, 1], cov = "2 %")"), HasSubstr("add an amount to the keys"));
   EXPECT_THAT(refused(R"(weights = [1, 1], standard_deviation = "50 V")"), HasSubstr("expected a length"));
   EXPECT_THAT(refused(R"(weights = [1, 1], standard_deviation = "50 nm")", R"("gap.contact", "structure.youngs_modulus")"),
               HasSubstr("one amount cannot be added to gap.contact and structure.youngs_modulus"));
-  EXPECT_THAT(refused(R"(standard_deviation = "50 nm")"), HasSubstr("or weights with which one amount is added to them"));
+  EXPECT_THAT(refused(R"(standard_deviation = "50 nm")"), HasSubstr("or weights with which one amount is added to each key"));
 }
 
 TEST(Spread, SetsTheMembersOfADevice) {
@@ -137,8 +138,9 @@ TEST(Spread, SaysWhyAnEndThatFollowsTheLengthCannotDiffer) {
     }
     return std::string();
   };
-  EXPECT_THAT(refused("\"tip\"", R"("electrode.main.span[2]" = { distribution = "normal", cov = "2 %" })"),
-              testing::HasSubstr(R"([spread."electrode.main.span[2]"]: electrode.main.span[2] is the tip of every device)"));
+  EXPECT_THAT(
+      refused("\"tip\"", R"("electrode.main.span[2]" = { distribution = "normal", cov = "2 %" })"),
+      testing::HasSubstr(R"([spread."electrode.main.span[2]"]: electrode.main.span[2] is the tip of the beam in every device)"));
   EXPECT_THAT(refused("\"90 %\"", R"("electrode.main.span[2]" = { distribution = "normal", standard_deviation = "1 um" })"),
               testing::HasSubstr(
                   R"(standard_deviation = "1 um": electrode.main.span[2] is a percentage of structure.length in this scene)"));
@@ -306,17 +308,18 @@ TEST(Spread, RefusesWhatMakesNoSense) {
       {R"(gaps = { keys = "gap.contact", distribution = "normal", cov = "2 %" })", "expected a list of texts"},
       {R"(gaps = { keys = ["gap.contact", "gap.electrode"], distribution = "normal", standard_deviation = "2 nm" })",
        "several keys vary by one factor: give a percentage"},
-      {thickness + "\nboth = { keys = [\"structure.thickness\", \"structure.width\"], distribution = \"normal\", cov = \"2 %\" }",
-       "structure.thickness varies by another entry already"},
+      {thickness + "\n"
+                   "both = { keys = [\"structure.thickness\", \"structure.width\"], distribution = \"normal\", cov = \"2 %\" }",
+       "structure.thickness already varies by another entry"},
       {R"("structure.damping_ratio" = { distribution = "normal", cov = "2 %" })",
-       "is 0 in this scene, and stays 0 by any factor"},
+       "is 0 in this scene, so that no factor changes it"},
       {R"("structure.thickness" = { distribution = "triangular", low = "110 %", high = "120 %" })", "mode"},
       {R"("structure.thickness" = { distribution = "normal", cov = "2 %", truncate_low = "130 %" })", "truncate_low"},
       {R"("structure.thickness" = { distribution = "empirical", values = ["4 um"] })", "values"},
       {R"("structure.thickness" = { distribution = "lognormal", standard_deviation = "1 GPa" })", "expected a length [m]"},
       {R"("driver.mian.gain" = { distribution = "normal", cov = "1 %" })",
-       "'driver.mian.gain' is not an error of a drive, such as driver.main.gain: no such electrode (did you mean 'main'?)"},
-      {R"("driver.dispersion.gain" = { distribution = "normal", cov = "1 %" })", ": a force factor has no source"},
+       "'driver.mian.gain' is not an error of a drive, such as driver.main.gain: unknown electrode (did you mean 'main'?)"},
+      {R"("driver.dispersion.gain" = { distribution = "normal", cov = "1 %" })", ": the dispersion force has no source"},
       {R"("driver.main.gian" = { distribution = "normal", cov = "1 %" })",
        "'driver.main.gian' is not an error of a drive, such as driver.main.gain (did you mean 'gain'?)"},
       {R"("driver.main.max_voltage" = { distribution = "normal", cov = "1 %" })", "(known: gain, offset, delay, jitter)"},
@@ -325,18 +328,18 @@ TEST(Spread, RefusesWhatMakesNoSense) {
       {R"("driver.main.gain.now" = { distribution = "normal", cov = "1 %" })",
        "'driver.main.gain.now' is not an error of a drive"},
       {R"("driver.main.offset" = { distribution = "normal", cov = "1 %" })",
-       "driver.main.offset is nominally 0, and stays 0 by any factor: give it a distribution in V"},
+       "driver.main.offset is nominally 0, so that no factor changes it: give its distribution in V"},
       {R"("driver.main.offset" = { distribution = "normal", standard_deviation = "5 ns" })",
        R"(spread."driver.main.offset".standard_deviation = "5 ns": expected a voltage [V], got a time [s])"},
       {R"("driver.main.gain" = { distribution = "normal", standard_deviation = "5 mV" })",
        "expected a plain number, got a voltage [V]"},
       {R"("driver.main.delay" = { distribution = "normal", standard_deviation = "5 ns", truncate_high = "200 %" })",
-       "is a ratio to a value that is 0"},
+       "is relative to the value in the scene, which is 0: give it a unit"},
       {R"(times = { keys = ["driver.main.delay", "driver.main.jitter"], distribution = "normal", standard_deviation = "5 ns" })",
        "several keys vary by one factor: give a percentage"},
       {thickness + "\n\"driver.main.jitter\" = { distribution = \"normal\", standard_deviation = \"5 ns\" }\n" +
            "correlation = [[\"structure.thickness\", \"driver.main.jitter\", 0.3]]",
-       "'driver.main.jitter' is drawn anew for every edge: there is no correlation with it"},
+       "'driver.main.jitter' has a new random value for every edge, and cannot be correlated"},
       {thickness + "\ncorrelation = 3", "expected a list such as"},
       {thickness + "\ncorrelation = [[\"structure.thickness\", \"gaps\"]]", "expected a list such as"},
       {thickness + "\ncorrelation = [[\"structure.thickness\", \"gaps\", 0.3]]", "'gaps' does not vary"},

@@ -140,7 +140,7 @@ TEST_P(BadQuantity, IsRefusedWithTheRule) {
   }
 }
 
-constexpr const char* no_number = "not a number and a unit";
+constexpr const char* no_number = "must be a number and a unit";
 
 // clang-format off
 INSTANTIATE_TEST_SUITE_P(Units, BadQuantity, testing::Values(

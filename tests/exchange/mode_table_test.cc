@@ -88,7 +88,7 @@ TEST(ModeTable, LeavesOutByNameWhatDoesNotBendAlongTheDirection) {
   EXPECT_THAT(table.left_out, testing::ElementsAre("mode 2 at 90 kHz, in-plane", "mode 4 at 300 kHz, torsional"));
   EXPECT_THAT(summary(table), HasSubstr("CalculiX .frd: 36 nodes at 6 places over 100 um, 2 modes at 25 kHz, 156 kHz"));
   EXPECT_THAT(summary(table), HasSubstr("left out: mode 2 at 90 kHz, in-plane"));
-  EXPECT_THAT(summary(table), HasSubstr("lengths are taken as m (structure.length_unit says otherwise)"));
+  EXPECT_THAT(summary(table), HasSubstr("lengths are taken as m (structure.length_unit changes this)"));
 
   ModeKeys across = sample_named("frd").keys;
   across.direction = "y";
@@ -117,7 +117,7 @@ TEST(ModeTable, TakesTheClampAtTheOtherEnd) {
   const ModeSample& sample = sample_named("frd");
   ModeKeys keys = sample.keys;
   keys.axis = "-x";
-  EXPECT_THAT(refusal_of(sample.content, keys), HasSubstr("the far end stands still: structure.axis the other way round"));
+  EXPECT_THAT(refusal_of(sample.content, keys), HasSubstr("the far end does not move: reverse structure.axis"));
 }
 
 TEST(ModeTable, RefusesWithTheRule) {
@@ -133,36 +133,36 @@ TEST(ModeTable, RefusesWithTheRule) {
     return refusal_of(sample_named(name).content, keys);
   };
   // These files lack something.
-  EXPECT_THAT(keyed("comsol", [](ModeKeys& k) { k.mass.reset(); }), HasSubstr("structure.mass gives that of the structure"));
+  EXPECT_THAT(keyed("comsol", [](ModeKeys& k) { k.mass.reset(); }), HasSubstr("give structure.mass"));
   EXPECT_THAT(keyed("frd", [](ModeKeys& k) { k.mass = 1e-12; }),
-              HasSubstr("structure.mass: the modes of the file are mass-normalised already"));
+              HasSubstr("structure.mass: must be omitted, because the modes of the file are mass-normalised"));
   EXPECT_THAT(keyed("rom", [](ModeKeys& k) { k.length_unit.reset(); }), HasSubstr("structure.length_unit says it"));
   EXPECT_THAT(keyed("rom", [](ModeKeys& k) { k.clamp.reset(); }), HasSubstr("structure.clamp says where the clamp is"));
   EXPECT_THAT(keyed("frd", [](ModeKeys& k) { k.axis = ""; }), HasSubstr("structure.axis is needed"));
   EXPECT_THAT(keyed("frd", [](ModeKeys& k) { k.direction = "up"; }),
               HasSubstr("structure.direction = \"up\": must be x, y or z"));
-  EXPECT_THAT(keyed("frd", [](ModeKeys& k) { k.direction = "x"; }), HasSubstr("must be across the axis"));
-  EXPECT_THAT(keyed("comsol", [](ModeKeys& k) { k.direction = "y"; }),
-              HasSubstr("the file holds no motion along it, but along z"));
-  EXPECT_THAT(keyed("table", [](ModeKeys& k) { k.mass = 1; }), HasSubstr("the table is in m, Hz and 1/sqrt(kg) already"));
+  EXPECT_THAT(keyed("frd", [](ModeKeys& k) { k.direction = "x"; }), HasSubstr("must be perpendicular to the axis"));
+  EXPECT_THAT(keyed("comsol", [](ModeKeys& k) { k.direction = "y"; }), HasSubstr("must be a direction of motion in the file: z"));
+  EXPECT_THAT(keyed("table", [](ModeKeys& k) { k.mass = 1; }),
+              HasSubstr("must be omitted, because the table is in m, Hz and 1/sqrt(kg)"));
   EXPECT_THAT(edited("comsol", "freq=25000", "lambda=4E-9"),
-              HasSubstr("no frequency of mode 1 (lambda=4E-9) stands in the file; structure.frequencies"));
+              HasSubstr("the file does not hold the frequency of mode 1 (lambda=4E-9); give structure.frequencies"));
   EXPECT_THAT(refusal_of(test::sample_uff(0), sample_named("uff").keys), HasSubstr("structure.mass"));
   EXPECT_THAT(refusal_of(test::sample_uff(2, false), sample_named("uff").keys),
               HasSubstr("modes of 25 kHz, 156 kHz at 6 nodes, but no positions"));
   // These files hold no modes.
-  EXPECT_THAT(edited("comsol", "w (m)", "acpr.p_t (Pa)"), HasSubstr("\"acpr.p_t (Pa) @ freq=25000\" is no displacement"));
+  EXPECT_THAT(edited("comsol", "w (m)", "acpr.p_t (Pa)"), HasSubstr("\"acpr.p_t (Pa) @ freq=25000\" must be a displacement"));
   EXPECT_THAT(refusal_of("$SENE    \n      25     1.0000\n", {}), HasSubstr("(.pcs), no modes; they stand in the .rom"));
-  EXPECT_THAT(refusal_of("time_s,main\n0,1\n", {}), HasSubstr("no known file of modes"));
+  EXPECT_THAT(refusal_of("time_s,main\n0,1\n", {}), HasSubstr("unknown kind of file"));
   // These files contradict themselves.
   EXPECT_THAT(edited("frd", " -1         7 2.0", " -1        7 2.0"),
               HasSubstr("the line of a node must have 49 columns, and has 48"));
   EXPECT_THAT(edited("frd", "MODAL", "XXXXX"), HasSubstr("accepted")) << "the kind of step is told by its number";
   EXPECT_THAT(edited("frd", "1PGK                2.46", "1PGK                2.86"), HasSubstr("by the generalised stiffness"));
   EXPECT_THAT(edited("comsol", "% Nodes:              6", "% Nodes:              7"),
-              HasSubstr("6 rows, but the file says 7 nodes"));
+              HasSubstr("the file has 6 rows, but states 7 nodes"));
   EXPECT_THAT(edited("table", "frequency_Hz,,,25000,156000", "frequency_Hz,,,25000,15600"),
-              HasSubstr("the frequencies must rise"));
+              HasSubstr("the frequencies must increase"));
   EXPECT_THAT(edited("table", "mode_2", "mode_3"), HasSubstr("beam.txt:2: column 5: \"mode_3\" must be mode_2"));
   EXPECT_THAT(edited("table", "8e-05,1e-05", "8e-05,-1e-05"), HasSubstr("a width must be positive"));
   EXPECT_THAT(edited("uff", "    11\n", "    11 \n         1\n"), HasSubstr("beam.txt:")) << "a record too many";
@@ -172,18 +172,18 @@ TEST(ModeTable, SaysWhichModesOfAFileAreNotThere) {
   const ModeSample& sample = sample_named("frd");
   const ModeTable other_step =
       parse_mode_table(replaced(sample.content, "    2    1MODAL", "    0    1     "), "beam.txt", sample.keys);
-  EXPECT_THAT(other_step.left_out, testing::Contains("results that are no modes"));
+  EXPECT_THAT(other_step.left_out, testing::Contains("results other than modes"));
   EXPECT_EQ(other_step.frequencies.size(), 1U);
   const std::size_t cut = sample.content.rfind(" -4  DISP");
   const ModeTable shorter = parse_mode_table(sample.content.substr(0, cut + 200), "beam.txt", sample.keys);
-  EXPECT_THAT(shorter.left_out, testing::Contains("mode 4: the file ends in it"));
+  EXPECT_THAT(shorter.left_out, testing::Contains("mode 4: the file ends within it"));
 }
 
 TEST(ModeTable, OfAMeshWithoutNodesIsRefused) {
   const std::string text = fmt::format(
       "    2C{:18}{:12}{:38}\n -3\n  100CL  101{:12}{:12}{:20}{:2}{:5}MODAL{:7}\n -4  DISP        4    1\n -3\n 9999\n", "", 0, 1,
       "1000.0", 0, "", 2, 1, 1);
-  EXPECT_THAT(refusal_of(text, sample_named("frd").keys), HasSubstr("displacements before the nodes"));
+  EXPECT_THAT(refusal_of(text, sample_named("frd").keys), HasSubstr("the nodes must precede the displacements"));
 }
 
 TEST(ModeTable, OfAHingedEndIsRefused) {
@@ -201,7 +201,7 @@ TEST(ModeTable, TellsWhetherItsFarEndIsAClamp) {
   };
   const ModeTable clamped = table([](double u) { return 1e6 * u * u * (1 - u) * (1 - u); });
   EXPECT_EQ(clamped.far_end, SplineEnd::clamped);
-  EXPECT_THAT(summary(clamped), HasSubstr("the far end stands still in every mode, as at a clamp"));
+  EXPECT_THAT(summary(clamped), HasSubstr("the far end does not move in any mode, as at a clamp"));
   const ModeTable hinged = table([](double u) { return 1e6 * u * u * (1 - u); }),
                   free = table([](double u) { return 1e6 * u * u; });
   EXPECT_EQ(hinged.far_end, SplineEnd::free);

@@ -91,7 +91,7 @@ TEST(Recording, BrokenRowsAreNamedWithLineAndColumn) {
   refused("t (s),U\n0.5q,1\n1,2\n2,3\n", {"x.csv:2", "column 1", "0.5q"});
   refused("t (s),U\nq0.5,1\n1,2\n2,3\n", {"x.csv:2", "column 1", "q0.5"});
   refused("t,U\n0,1\n,2\n2,3\n", {"x.csv:3", "column 1", "time is missing"});
-  refused("Data Points:3\nData:\n1\n2\n3\n4\n", {"speaks of 3 samples and holds 4"});
+  refused("Data Points:3\nData:\n1\n2\n3\n4\n", {"states 3 samples, but holds 4"});
   refused("t,U\n\"0.5,1\n1.5,2\n2.5,3\n", {"x.csv:2", "quote is not closed"});
 }
 

@@ -35,9 +35,10 @@ TEST(Trace, IsTheNamedTheOnlyOrTheUsualChannel) {
 }
 
 TEST(Trace, ToldWhatIsTaken) {
-  EXPECT_EQ(trace_in("t,A\n0,1.5\n1,2\n2,3\n").told,
-            "columns, \"A\": 3 samples, every 1 s, from 0 s to 2 s; the file names no unit: V taken; the file names no unit of "
-            "time: s taken");
+  EXPECT_EQ(
+      trace_in("t,A\n0,1.5\n1,2\n2,3\n").told,
+      "columns, \"A\": 3 samples, every 1 s, from 0 s to 2 s; the file names no unit: V is assumed; the file names no unit of "
+      "time: s taken");
 }
 
 TEST(Trace, TimesThatRepeatGoBackOrDriftAreRefused) {

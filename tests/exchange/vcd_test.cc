@@ -159,7 +159,7 @@ TEST(Vcd, IsRefusedWithFileLineAndRule) {
     SCOPED_TRACE(text);
     expect_invalid([&] { (void)read_dump(text); }, parts);
   };
-  refused(head, {"x.vcd:4", "there is no time"});
+  refused(head, {"x.vcd:4", "must have a time"});
   refused("$timescale 1 ns $end\n$var wire 1 ! a $end\n", {"x.vcd:3", "before $enddefinitions"});
   refused("$timescale 1 ns", {"x.vcd:1", "$end"});
   refused("$timescale 1 ns $end\n$var wire 1 ! $end\n", {"x.vcd:2", "$var TYPE BITS IDENTIFIER NAME $end"});

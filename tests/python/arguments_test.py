@@ -123,11 +123,11 @@ class Arguments(unittest.TestCase):
         self.assertEqual(ramp.resampled("1 MHz", np.float32(1e-5)).hold_level, 5)
 
     def test_what_functions_of_the_user_give(self) -> None:
-        with self.assertRaisesRegex(softland.InvalidInput, r"own waveform 'wrong' gave 'volts' \(str\); it must give numbers"):
+        with self.assertRaisesRegex(softland.InvalidInput, r"own waveform 'wrong' returned 'volts' \(str\); it must return an array of numbers"):
             softland.OwnWaveform("wrong", lambda t, x: "volts", [1e-6])
         with self.assertRaisesRegex(softland.InvalidInput, r"breakpoints of the own waveform 'wrong' gave 'times' \(str\)"):
             softland.OwnWaveform("wrong", lambda t, x: t, lambda x: "times")
-        with self.assertRaisesRegex(softland.InvalidInput, "no breakpoints, so that it would stand at its voltage at t = 0 s, 0 V, for ever"):
+        with self.assertRaisesRegex(softland.InvalidInput, "no breakpoints, so that it would keep its voltage at t = 0 s, 0 V"):
             softland.OwnWaveform("zero", lambda t, x: 1e6 * np.minimum(t, 20e-6), [])
         with self.assertRaisesRegex(softland.InvalidInput, r"step: level must be a number, not \[1, 2\]"):
             softland.Waveform("step", level=[1, 2])

@@ -90,7 +90,7 @@ class Options(unittest.TestCase):
             scene.robustness(samples=0)
         with self.assertRaisesRegex(softland.InvalidInput, r"^errors Vdp:2: must be Vdp"):
             scene.calibrate(errors={"Vdp": 2})
-        with self.assertRaisesRegex(softland.InvalidInput, r"^bias nix=1.0 V: no such drive"):
+        with self.assertRaisesRegex(softland.InvalidInput, r"^bias nix=1.0 V: unknown drive"):
             scene.pull_in(bias={"nix": 1})
         with self.assertRaisesRegex(softland.InvalidInput, r"^hold_step late: must be chosen or fixed"):
             scene.optimize(hold_step="late")

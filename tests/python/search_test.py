@@ -173,7 +173,7 @@ class Kept(unittest.TestCase):
 
     def test_refuses_what_no_folder_can_hold(self):
         scene = softland.load(GOLD)
-        with self.assertRaisesRegex(softland.InvalidInput, "out: a search with functions of Python cannot be kept"):
+        with self.assertRaisesRegex(softland.InvalidInput, "out: must not be given for a search with Python functions"):
             scene.optimize(objective=lambda closing, step: 1.0, out=self.out / "own")
         with self.assertRaisesRegex(softland.InvalidInput, "resume: needs `out`"):
             scene.optimize(resume=True)

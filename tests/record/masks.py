@@ -32,7 +32,7 @@ TEXT_MASKS = [(verb, file, re.compile(expression, re.M)) for verb, file, express
     ("status", "stdout", r"(^ +until ).*(, run \d+$)"),
     ("status", "stdout", r"(^  program +)[0-9a-f]{40}($)"),
     ("optimize", "stderr", rf"(; a closing takes ){_TIME}(, all about ){_TIME}(.*$)"),
-    ("simulate", "stderr", rf"(: a right-hand side takes ){_TIME}( instead of ){_TIME}(, ).*( less$)"),
+    ("simulate", "stderr", rf"(: one evaluation of the equations of motion takes ){_TIME}( instead of ){_TIME}(, ).*( less$)"),
     ("accuracy", "stdout", r"(\AA closing with [^.]*? takes )[\s\S]*?(\n\n)"),
     ("accuracy", "stdout", r"(^1e-\d+ ) +[a-z].*($)"),
     ("accuracy", ".html", rf"(</td><td>)(?:{_TIME}|—)(</td></tr>$)"),

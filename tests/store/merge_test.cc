@@ -51,7 +51,7 @@ TEST_F(Merge, TellsWhatIsMissing) {
   parts.erase(parts.begin() + 1);
   const Merged merged = merge_studies(parts, file, origin());
   EXPECT_EQ(merged.rows, 75);
-  EXPECT_THAT(merged.notes, ElementsAre("25 of 100 points are missing", "no part was given of 2/4"));
+  EXPECT_THAT(merged.notes, ElementsAre("25 of 100 points are missing", "no part was given for 2/4"));
 }
 
 TEST_F(Merge, ThatIsToBeCompleteWritesNothingBefore) {
@@ -85,8 +85,8 @@ TEST_F(Merge, RefusesOtherBitsForOnePoint) {
       [&] {
         static_cast<void>(merge_studies({path("a"), path("b")}, file, origin()));
       },
-      ThrowsMessage<InvalidInput>(
-          AllOf(HasSubstr("/a and "), HasSubstr("/b hold point 17 with different bits: impact_velocity_m_s 0.2"))));
+      ThrowsMessage<InvalidInput>(AllOf(
+          HasSubstr("/a and "), HasSubstr("/b must hold the same row for point 17, but differ in impact_velocity_m_s 0.2"))));
   EXPECT_THAT(names_in(TemporaryFolder::path()), ElementsAre("a", "b"));
 }
 
@@ -96,11 +96,11 @@ TEST_F(Merge, RefusesWhatDoesNotBelongTogether) {
   const auto refused = [&](const std::vector<fs::path>& parts, const fs::path& out, const std::string& reason) {
     EXPECT_THAT([&] { static_cast<void>(merge_studies(parts, out, origin())); }, ThrowsMessage<InvalidInput>(HasSubstr(reason)));
   };
-  refused({path("a"), path("b")}, file, "holds another plan than");
-  refused({path("a"), path("a")}, file, "is named twice");
+  refused({path("a"), path("b")}, file, "must have the same plan as");
+  refused({path("a"), path("a")}, file, "must not be given twice");
   refused({path("a")}, path("b"), "exists already; it is not replaced");
   refused({path("a")}, path("a"), "exists already; it is not replaced");
-  refused({path("a"), path("nothing")}, file, "there is no such file");
+  refused({path("a"), path("nothing")}, file, "the file does not exist");
   refused({}, file, "one part at least");
   EXPECT_THAT(names_in(TemporaryFolder::path()), ElementsAre("a", "b"));
 }
@@ -148,7 +148,7 @@ TEST_F(Merge, NamesTheFirstOfManyPartsThatAreMissing) {
   make_store(path("b"), 10, {.index = 3, .count = most});
   const std::vector<std::string> notes = merge_studies({path("a"), path("b")}, file, origin()).notes;
   ASSERT_EQ(notes.size(), 2u);
-  EXPECT_THAT(notes[1], AllOf(HasSubstr("no part was given of 2/2147483647, 4/2147483647, "), HasSubstr("and 2147483625 more")));
+  EXPECT_THAT(notes[1], AllOf(HasSubstr("no part was given for 2/2147483647, 4/2147483647, "), HasSubstr("and 2147483625 more")));
 }
 
 TEST_F(Merge, OfMorePartsThanAProcessMayOpenFilesAsksForMore) {

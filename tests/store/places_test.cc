@@ -62,17 +62,17 @@ void expect_refused(const fs::path& file, const std::string& reason) {
 
 TEST_F(Place, OfAnythingButAStoreIsRefused) {
   expect_refused(write("empty", ""), "is empty (0 bytes)");
-  expect_refused(write("text", "title = \"a scene\"\n"), "is no store of softland");
-  expect_refused(write("long text", std::string(5000, 'x')), "is no store of softland");
+  expect_refused(write("text", "title = \"a scene\"\n"), "is not a store of softland");
+  expect_refused(write("long text", std::string(5000, 'x')), "is not a store of softland");
   run_sql(path("other"), "CREATE TABLE t(x)");
-  expect_refused(path("other"), "is a database of SQLite, but no store of softland");
+  expect_refused(path("other"), "is a database of SQLite, but not a store of softland");
   fs::create_directory(path("folder"));
   expect_refused(path("folder"), "is a folder");
   ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
-  expect_refused(path("pipe"), "is no regular file");
-  expect_refused("/dev/zero", "is no regular file");
+  expect_refused(path("pipe"), "must be a regular file");
+  expect_refused("/dev/zero", "must be a regular file");
   EXPECT_FALSE(is_store(path("nothing")));
-  EXPECT_THAT([&] { StudyReader{path("nothing")}; }, ThrowsMessage<InvalidInput>(HasSubstr("there is no such file")));
+  EXPECT_THAT([&] { StudyReader{path("nothing")}; }, ThrowsMessage<InvalidInput>(HasSubstr("the file does not exist")));
   EXPECT_THAT([&] { StudyStore(path("no folder/a"), plan_of(10), origin(), Opening::resume); },
               ThrowsMessage<InvalidInput>(HasSubstr("the folder of the store cannot be written to: No such file")));
 }
@@ -97,9 +97,9 @@ TEST_F(Place, OfAStoreOfALaterSchemaIsRefused) {
   make_store(file, 10);
   run_sql(file, "PRAGMA user_version = 3");
   const std::string before = content_of(file);
-  EXPECT_THAT(
-      [&] { StudyReader{file}; },
-      ThrowsMessage<InvalidInput>(HasSubstr("was written by a later softland (schema 3 of stores; this one reads up to 2)")));
+  EXPECT_THAT([&] { StudyReader{file}; },
+              ThrowsMessage<InvalidInput>(
+                  HasSubstr("was written by a later version of softland (store schema 3; this version reads up to 2)")));
   EXPECT_THAT([&] { StudyStore(file, plan_of(10), origin(), Opening::resume); },
               ThrowsMessage<InvalidInput>(HasSubstr("a later softland")));
   EXPECT_EQ(content_of(file), before);
@@ -112,7 +112,7 @@ TEST_F(Place, OfADamagedStoreKeepsItAndACopy) {
   for (int again = 0; again < 2; ++again) {
     EXPECT_THAT(
         [&] { StudyStore(file, plan_of(3000), origin(), Opening::resume); },
-        ThrowsMessage<InvalidInput>(AllOf(HasSubstr("the store is damaged"), HasSubstr("study.sqlite.damaged is a copy of it"))));
+        ThrowsMessage<InvalidInput>(AllOf(HasSubstr("the store is damaged"), HasSubstr("study.sqlite.damaged is a copy"))));
     EXPECT_EQ(content_of(file), before);
     EXPECT_EQ(content_of(path("study.sqlite.damaged")), before);
     EXPECT_THAT(names_in(TemporaryFolder::path()), ElementsAre("study.sqlite", "study.sqlite.damaged"));
@@ -133,7 +133,7 @@ TEST_F(Place, OfAStoreWithMissingTablesIsRefused) {
   run_sql(file, "DROP TABLE tally");
   EXPECT_THAT([&] { StudyReader{file}; }, ThrowsMessage<InvalidInput>(HasSubstr("damaged: tables are missing")));
   EXPECT_THAT([&] { StudyStore(file, plan_of(10), origin(), Opening::resume); },
-              ThrowsMessage<InvalidInput>(HasSubstr("is a copy of it")));
+              ThrowsMessage<InvalidInput>(HasSubstr("is a copy")));
 }
 
 // Neither read nor gone on with, in words that name file and fault.
@@ -151,7 +151,7 @@ TEST_F(Place, OfAStoreWhoseNumbersCannotBeIsRefused) {
         std::pair{"UPDATE study SET shard = 4294967297, shards = 4294967297", "the part 4294967297/"},
         std::pair{"UPDATE study SET points = 0", "its plan has 0 points"},
         std::pair{"UPDATE study SET points = 9223372036854775807", "its plan has 9223372036854775807"},
-        std::pair{"UPDATE study SET points = 11", "its plan is not the one that was written"},
+        std::pair{"UPDATE study SET points = 11", "its plan has changed since it was written"},
         std::pair{"UPDATE columns SET unit = 'mm' WHERE unit = 'm'", "its plan is not the one"},
         std::pair{"ALTER TABLE results DROP COLUMN bounce_count", "no such column"},
         std::pair{"ALTER TABLE study DROP COLUMN seed", "no such column: seed"},
@@ -289,7 +289,7 @@ TEST_F(Place, TakesOneWriterWhoSaysItsName) {
     for (const std::string& name : {file.string(), path("link")}) {
       EXPECT_THAT([&] { StudyStore(name, plan_of(10), origin(), Opening::resume); },
                   ThrowsMessage<InvalidInput>(
-                      AllOf(HasSubstr("another run writes into this store (process "), HasSubstr("explore a.toml)"))));
+                      AllOf(HasSubstr("another run writes to this store (process "), HasSubstr("explore a.toml)"))));
     }
   }
   EXPECT_FALSE(writer_of(file));

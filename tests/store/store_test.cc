@@ -175,7 +175,7 @@ TEST_F(Store, RefusesAStudyOfOtherColumnsOrOfAnotherPart) {
   EXPECT_THAT([&] { StudyStore(file, other, origin(), Opening::resume); },
               ThrowsMessage<InvalidInput>(HasSubstr("it also has bounce_time_s")));
   EXPECT_THAT([&] { StudyStore(file, plan_of(10, {.index = 1, .count = 4}), origin(), Opening::resume); },
-              ThrowsMessage<InvalidInput>(HasSubstr("holds the part 1/2 of a study, not 1/4")));
+              ThrowsMessage<InvalidInput>(HasSubstr("holds part 1/2 of a study, not 1/4")));
 }
 
 TEST_F(Store, RefusesPlansThatItCannotHold) {
@@ -204,7 +204,7 @@ TEST_F(Store, TakesARowOnceAndRefusesOtherBits) {
   store.add(other);
   store.add(row_of(2));  // a row of the same batch: it is kept
   EXPECT_THAT([&] { store.flush(); },
-              ThrowsMessage<InvalidInput>(HasSubstr("point 1 is there already, with other bits: impact_velocity_m_s")));
+              ThrowsMessage<InvalidInput>(HasSubstr("point 1 already has a different row: impact_velocity_m_s")));
   store.close();
   EXPECT_EQ(dump(file), dump({row_of(1), row_of(2)}));
   std::int64_t counted = 0;
@@ -291,7 +291,8 @@ TEST(AShard, HoldsEveryPointInOneOfThem) {
 TEST(AShard, IsReadFromText) {
   EXPECT_EQ(shard_from("3/8"), (Shard{.index = 3, .count = 8}));
   for (const char* wrong : {"", "3", "3/", "/8", "0/8", "9/8", "-1/8", "3/8 ", "3/8/2", "a/b", "99999999999/99999999999"})
-    EXPECT_THAT([&] { static_cast<void>(shard_from(wrong)); }, ThrowsMessage<InvalidInput>(HasSubstr("is no part of a study")))
+    EXPECT_THAT([&] { static_cast<void>(shard_from(wrong)); },
+                ThrowsMessage<InvalidInput>(HasSubstr("must be a part i/N of a study")))
         << wrong;
 }
 

@@ -46,7 +46,7 @@ TEST(DriverLimits, SeeAHarmonicThatNeverEnds) {
 
 TEST(DriverLimits, CountTheStartAtZero) {
   EXPECT_THAT(violation(signal(Step{.level = 6}), {.min_voltage = 5, .max_voltage = 45}),
-              AllOf(HasSubstr("0 V (where every drive starts)"), HasSubstr("5 V")));
+              AllOf(HasSubstr("0 V (the voltage of every drive before t = 0)"), HasSubstr("5 V")));
 }
 
 TEST(DriverLimits, AreViolatedWhenTheyAreNotNumbers) {
