@@ -34,7 +34,8 @@ Anchor& anchor(Scene& scene, std::size_t) {
 const Section* holes_keys() {
   static const Section keys{
       .name = "holes",
-      .keys = {OfHoles::number<&Holes::pitch>("pitch", dimension::length, positive, "from hole to hole, along and across")
+      .keys = {OfHoles::number<&Holes::pitch>("pitch", dimension::length, positive,
+                                              "distance between the centres of adjacent holes, along and across the beam")
                    .needed()
                    .such_as("20 um"),
                OfHoles::number<&Holes::size>("size", dimension::length, positive, "side of a hole").needed().such_as("8 um")},
@@ -55,7 +56,7 @@ double& width_of_section(Scene& scene, std::size_t number, std::size_t element) 
 const Section* section_keys() {
   static const Section keys = [] {
     Key width =
-        numbers("width", {dimension::length}, positive, "across the beam, or a list of it at begin and end, linear between");
+        numbers("width", {dimension::length}, positive, "width, or a list of the widths at begin and end, linear between");
     width.may_be_one = true;
     width.like = "20 um";
     width.bound.element = width_of_section;
@@ -66,18 +67,19 @@ const Section* section_keys() {
                  .part = holes_keys};
     return Section{
         .name = "sections",
-        .keys = {number("length", {dimension::length}, positive, "along the beam").needed(), std::move(width),
+        .keys = {number("length", {dimension::length}, positive, "length along the beam").needed(), std::move(width),
                  OfSection::number<&SectionPart::thickness>("thickness", dimension::length, positive,
-                                                            "in the direction of motion"),
-                 OfSection::number<&SectionPart::youngs_modulus>("youngs_modulus", dimension::pressure, positive,
-                                                                 "absent: that of [structure], as all that a section leaves out"),
-                 OfSection::number<&SectionPart::density>("density", dimension::density, positive, "of the section"),
+                                                            "thickness in the direction of motion"),
+                 OfSection::number<&SectionPart::youngs_modulus>(
+                     "youngs_modulus", dimension::pressure, positive,
+                     "Young's modulus; absent: that of [structure], as for every key that a section omits"),
+                 OfSection::number<&SectionPart::density>("density", dimension::density, positive, "density of the section"),
                  std::move(of_holes)},
-        .about = "a stretch of the beam",
+        .about = "section of the beam with its own width, thickness or material",
         .check = [](Scene& scene, const SectionReader& in, std::size_t part) {
           section_part(scene, part).length = in.number("length");
           in.require(!in.has_value("width") || in.quantities("width").size() <= 2, "width",
-                     "must be one width, or a list of two: at the begin and at the end of the section");
+                     "must be one width, or a list of two widths, at the begin and at the end of the section");
         }};
   }();
   return &keys;
@@ -85,7 +87,7 @@ const Section* section_keys() {
 
 const Section* layer_keys() {
   static const Section keys = [] {
-    Key face = one_of("face", {"near", "far"}, "of the beam: near is that of the contact").needed();
+    Key face = one_of("face", {"near", "far"}, "face of the beam; near: that of the contact").needed();
     face.bound.choose = [](Scene& scene, std::size_t number, std::string_view word) {
       layer_part(scene, number).face = find_named(sides, word)->value;
     };
@@ -97,12 +99,12 @@ const Section* layer_keys() {
                      .needed(),
                  OfLayer::number<&LayerPart::density>("density", dimension::density, positive, "of the layer").needed(),
                  OfLayer::number<&LayerPart::stress>("stress", dimension::pressure, any,
-                                                     "along the beam before its release, positive in tension")
+                                                     "stress along the beam before its release, positive in tension")
                      .by_default("'0 Pa'")
                      .such_as("50 MPa"),
                  OfLayer::number<&LayerPart::poissons_ratio>(
                      "poissons_ratio", dimension::none, Range{.least = -1, .most = 0.5, .least_open = true, .most_open = true},
-                     "needed by plate_strain")},
+                     "Poisson's ratio of the layer, needed by plate_strain")},
         .about = "a layer on a face of the beam",
         .check = [](Scene&, const SectionReader&, std::size_t) {}};
   }();
@@ -118,14 +120,16 @@ RestShape& rest_shape(Scene& scene) {
 const Section* rest_shape_keys() {
   static const Section keys = [] {
     Key positions =
-        numbers("positions", {dimension::length, dimension::none}, not_negative, "along the beam, from 0 m to the tip").needed();
+        numbers("positions", {dimension::length, dimension::none}, not_negative, "positions along the beam, from 0 m to the tip")
+            .needed();
     positions.words = {tip};
     positions.bound.place = [](Scene& scene, std::size_t, std::size_t element) -> Place& {
       return at(rest_shape(scene).positions, element);
     };
-    Key heights =
-        numbers("heights", {dimension::length}, any, "of the face over the straight shape, away from the near electrode")
-            .needed();
+    Key heights = numbers("heights", {dimension::length}, any,
+                          "heights of the face above the straight shape, "
+                          "away from the near electrode")
+                      .needed();
     heights.bound.element = [](Scene& scene, std::size_t, std::size_t element) -> double& {
       return at(rest_shape(scene).heights, element);
     };
@@ -134,9 +138,10 @@ const Section* rest_shape_keys() {
                    .about = "the shape of the released beam",
                    .check = [](Scene&, const SectionReader& in, std::size_t) {
                      const std::size_t places = in.quantities("positions").size(), heights = in.quantities("heights").size();
-                     in.require(places >= 2, "positions", "must be two at least, from 0 m to the tip");
-                     in.require(heights == places, "heights",
-                                fmt::format("there are {} of them for {} positions: give a height for each", heights, places));
+                     in.require(places >= 2, "positions", "must be at least two positions, from 0 m to the tip");
+                     in.require(
+                         heights == places, "heights",
+                         fmt::format("must be one height for each position, but there are {} for {} positions", heights, places));
                    }};
   }();
   return &keys;
@@ -148,13 +153,13 @@ const Section* anchor_keys() {
   static const Section keys{
       .name = "anchor",
       .keys = {OfAnchor::template number<&Anchor::rotation>("rotation", dimension::rotational_stiffness, not_negative,
-                                                            "moment per turn; absent: rigid"),
+                                                            "rotational stiffness; absent: rigid"),
                OfAnchor::template number<&Anchor::translation>("translation", dimension::stiffness, not_negative,
-                                                               "force per deflection; absent: rigid")},
+                                                               "translational stiffness; absent: rigid")},
       .about = "how an end of the beam is held",
       .check = [](Scene&, const SectionReader& in, std::size_t) {
         if (!in.has_value("rotation") && !in.has_value("translation"))
-          in.fail("needs rotation, translation or both: the one that is not given is rigid");
+          in.fail("needs rotation, translation or both; one that is not given is rigid");
       }};
   return &keys;
 }
@@ -179,21 +184,21 @@ std::vector<Key> beam_part_keys() {
   return {{.name = "sections",
            .type = KeyType::tables,
            .instead_of = {"length"},
-           .about = "the beam from x = 0 on, stretch by stretch",
+           .about = "sections of the beam, in order from x = 0",
            .like = "[{ length = \"60 um\", width = \"10 um\" }, { length = \"190 um\", width = [\"40 um\", \"20 um\"] }]",
            .part = section_keys},
           {.name = "layers",
            .type = KeyType::tables,
-           .about = "on the faces of the beam; of several on a face the later one lies outside",
+           .about = "layers on the faces of the beam; a later layer on the same face lies outside",
            .like = "[{ face = \"far\", span = [\"0 um\", \"tip\"], thickness = \"0.2 um\", youngs_modulus = \"70 GPa\", "
                    "density = \"2200 kg/m^3\" }]",
            .part = layer_keys},
-          anchor_key<&Beam::anchor>("anchor", {"clamped"}, "the end at x = 0; absent: clamped"),
-          anchor_key<&Beam::far_anchor>("far_anchor", {"free", "clamped"}, "the far end; absent: what the kind says"),
+          anchor_key<&Beam::anchor>("anchor", {"clamped"}, "anchor at x = 0; absent: clamped"),
+          anchor_key<&Beam::far_anchor>("far_anchor", {"free", "clamped"}, "anchor of the far end; absent: according to kind"),
           {.name = "rest_shape",
            .type = KeyType::table,
            .instead_of = {"stress_gradient"},
-           .about = "how the released beam rests: straight lines between heights at places along it",
+           .about = "shape of the released beam: straight lines between heights at positions along it",
            .like = "{ positions = [\"0 um\", \"50 %\", \"tip\"], heights = [\"0 nm\", \"20 nm\", \"80 nm\"] }",
            .part = rest_shape_keys}};
 }
@@ -207,7 +212,7 @@ std::vector<Advice> part_advice() {
   constexpr std::string_view holes =
       "holes stand in a section: sections = [{ length = \"250 um\", holes = { pitch = \"20 um\", size = \"8 um\" } }]";
   constexpr std::string_view anchor =
-      "'anchor' and 'far_anchor' describe ends that give way: anchor = { rotation = \"1e-7 N m/rad\" }";
+      "'anchor' and 'far_anchor' describe compliant ends: anchor = { rotation = \"1e-7 N m/rad\" }";
   constexpr std::string_view shape = "'stress_gradient' and 'rest_shape' describe a beam that is not straight at rest";
   return {{"hinge", sections}, {"taper", sections},  {"plate_w", sections}, {"plate_t", sections}, {"plate_l", sections},
           {"film", layers},    {"coating", layers},  {"hole", holes},       {"perforat", holes},   {"spring", anchor},

@@ -8,11 +8,11 @@ Section calibration_section() {
           .is_named = true,
           .beside = classes_key,
           .keys = {number("error", {dimension::none, dimension::time}, {.least = 0, .most = 0.5},
-                          "of the measurement, one standard deviation; of a time in its unit")
+                          "standard deviation of the measurement; for a time in its unit")
                        .by_default("'0 %'")},
           .about =
-              "what is measured on every device before it is driven: NAME is Vdp, frequency, piezo, "
-              "the static deflection per volt on it over the contact gap, or time, that of closing under a step to 1.2 Vdp"};
+              "per-device calibration, measured before actuation: NAME is Vdp, frequency, piezo (static deflection per volt, "
+              "divided by the contact gap) or time (closing time under a step to 1.2 Vdp)"};
 }
 
 }  // namespace softland::internal

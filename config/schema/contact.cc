@@ -16,9 +16,9 @@ ContactModel& contact_model(Scene& scene, std::size_t k) { return scene.device.c
 using OfContact = Of<contact>;
 
 Key place_key() {
-  Key key =
-      internal::number("at", {dimension::length, dimension::none}, not_negative,
-                       "the pad's centre, from the clamped end; absent: the pad ends at the free end, or lies about the middle");
+  Key key = internal::number(
+      "at", {dimension::length, dimension::none}, not_negative,
+      "position of the centre of the pad, from the clamped end; absent: the pad ends at the free end, or is in the middle");
   key.words = {tip};
   key.bound.place = [](Scene& scene, std::size_t k, std::size_t) -> Place& {
     std::optional<Place>& at = contact(scene, k).at;
@@ -29,8 +29,9 @@ Key place_key() {
 }
 
 Key gap_key() {
-  Key key = internal::number("gap", {dimension::length}, positive,
-                             "rest distance of its place to its plane; of a [contact.NAME], and required there");
+  Key key = internal::number(
+      "gap", {dimension::length}, positive,
+      "gap between the contact point and its contact plane at rest; only for [contact.NAME], and required there");
   key.bound.number = [](Scene& scene, std::size_t k) -> double& {
     return k == 0 ? scene.device.gap.contact : contact(scene, k).gap;
   };
@@ -44,42 +45,44 @@ Key conduction_key(std::string_view name, const Dimension& dimension, Range rang
   return key;
 }
 
-// Keys of the resistance of the closed contact: see model/contact/resistance.h. A law that has a hardness has its own key for
-// it.
+// Returns the keys of the resistance of the closed contact (model/contact/resistance.h). A law with a hardness has its own key
+// for it.
 std::vector<Key> conduction_keys() {
-  Key hardness =
-      conduction_key<&Conduction::hardness>("hardness", dimension::pressure, positive,
-                                            "of the softer metal: conducting spots are plastic where their pressure is as high");
+  Key hardness = conduction_key<&Conduction::hardness>(
+      "hardness", dimension::pressure, positive, "hardness of the softer metal; conducting spots are plastic at this pressure");
   for_each_law<ContactModel>([&]<class Law>(std::type_identity<Law>) {
     if constexpr (!requires(Law law) { law.hardness; }) hardness.only_for.push_back(Law::name);
   });
   return {conduction_key<&Conduction::resistivity>(
               "resistivity", dimension::resistivity, positive,
-              "of both metals, from which the contact's resistance follows; absent: not computed")
+              "resistivity of both metals, which gives the contact resistance; absent: no resistance is computed")
               .such_as("22 nohm m"),
           std::move(hardness).such_as("1 GPa"),
           conduction_key<&Conduction::film_resistance>("film_resistance", dimension::resistance, not_negative,
-                                                       "in series with each contact; default 0"),
-          conduction_key<&Conduction::mean_free_path>("mean_free_path", dimension::length, not_negative,
-                                                      "of the electrons, which spots as small resist the more; default 0")
+                                                       "resistance in series with each contact; default 0"),
+          conduction_key<&Conduction::mean_free_path>(
+              "mean_free_path", dimension::length, not_negative,
+              "mean free path of the electrons, which increases the resistance of small spots; default 0")
               .such_as("38 nm")};
 }
 
 std::vector<Key> contact_keys() {
   std::vector<Key> keys = keys_of_laws<ContactModel, contact_model>("law of the contact force");
   const auto of_every_law = {
-      OfContact::number<&Contact::pad_length>("pad_length", dimension::length, positive,
-                                              "the pad ends at the free end, or lies about the middle between two clamps"),
-      OfContact::number<&Contact::pad_width>("pad_width", dimension::length, positive, "absent: that of the beam"),
+      OfContact::number<&Contact::pad_length>(
+          "pad_length", dimension::length, positive,
+          "length of the pad, which ends at the free end, or is in the middle between two clamps"),
+      OfContact::number<&Contact::pad_width>("pad_width", dimension::length, positive,
+                                             "width of the pad; absent: that of the beam"),
       OfContact::choice<contact_distributions, &Contact::distribution>(
-          "distribution", "where the force acts: at the pad's centre, or wherever the pad is beyond the plane")
+          "distribution", "where the force acts: at the centre of the pad, or wherever the pad is beyond the contact plane")
           .by_default("'centre'"),
       place_key(),
       gap_key(),
       one_of("side", {name_of(sides, Side::near), name_of(sides, Side::far)},
-             "far: a back stop, on the side away from the electrode; of a [contact.NAME]; default near"),
+             "side of the contact; far: a back stop on the side away from the electrode; only for [contact.NAME]; default near"),
       OfContact::number<&Contact::count>("count", dimension::none, {.least = 1, .most = 1000},
-                                         "equal contacts side by side across the beam; default 1")
+                                         "number of equal contacts side by side across the beam; default 1")
           .such_as("2")
           .fixed("it is a number of contacts")};
   keys.insert(keys.begin() + 1, of_every_law);
@@ -90,7 +93,7 @@ std::vector<Key> contact_keys() {
 void check_pad_length(const Device& d, const Contact& c, const SectionReader& in) {
   const bool per_area = acts_per_area(c.model);
   if (!in.is_given("pad_length")) {
-    if (d.structure.is_rigid() && !per_area) return;  // only the area of a plate's pad would count
+    if (d.structure.is_rigid() && !per_area) return;  // for a plate, only the area of the pad is used
     in.fail(R"(missing key 'pad_length' (a length such as "2 um"))");
   }
   if (per_area && !in.is_given("pad_width")) in.require_of_structure("pad_length", "width", d.structure);
@@ -102,7 +105,7 @@ void check_named(const Device& d, std::size_t k, const SectionReader& in) {
   const Contact& c = d.contacts[k];
   constexpr std::size_t longest = 64;
   if (!is_bare_key(c.name) || c.name.size() > longest)
-    in.fail(fmt::format("a name may hold letters, digits, '_' and '-', at most {} of them", longest));
+    in.fail(fmt::format("a name must consist of at most {} letters, digits, '_' and '-'", longest));
   if (!in.is_given("gap")) in.fail(R"(missing key 'gap' (a length such as "2 um"))");
   const double own = in.number("gap");
   const SectionReader gap(in.file(), "gap");
@@ -120,14 +123,14 @@ void check_conduction(const Contact& c, const SectionReader& in) {
     return;
   }
   in.require(c.distribution == ContactDistribution::centre, "resistivity",
-             "not with distribution = \"pad\", whose load is another at every point of the pad");
-  in.require(c.side == Side::near, "resistivity", "belongs to a contact of the near side: a back stop makes no connection");
+             "must not be given with distribution = \"pad\", whose load differs from point to point of the pad");
+  in.require(c.side == Side::near, "resistivity", "belongs to a contact on the near side: a back stop makes no connection");
   in.require(!std::holds_alternative<AdhesiveRepulsiveSurfaces>(c.model), "resistivity",
-             "not with model = \"adhesive-repulsive\", which does not tell the load of the metal from the pressure of the film");
+             "must not be given with model = \"adhesive-repulsive\", "
+             "which does not separate the load on the metal from the pressure of the film");
   const bool has_summits = number_of(c.model, "effective_modulus", 0) > 0;
   if (!has_summits && !(c.conduction.hardness > 0))
-    in.fail(
-        R"(missing key 'hardness' (a pressure such as "1 GPa"), by which the conducting spot is as large as its load asks for)");
+    in.fail(R"(missing key 'hardness' (a pressure such as "1 GPa"), which gives the size of a conducting spot under its load)");
 }
 
 void check_contact(Scene& scene, const SectionReader& in, std::size_t k) {
@@ -137,21 +140,21 @@ void check_contact(Scene& scene, const SectionReader& in, std::size_t k) {
   c.connects = c.side == Side::near;
   check_pad_length(d, c, in);
   if (in.is_given("at")) {
-    in.require(!d.structure.is_rigid(), "at", "belongs to a beam: a plate touches with all of it");
+    in.require(!d.structure.is_rigid(), "at", "belongs to a beam: a plate touches with its whole area");
     in.require(d.contact_position(k) > 0 && d.contact_position(k) <= d.structure.length, "at",
                "must lie on the beam: " + in.written_length(d.structure));
   }
   if (in.is_given("count")) in.require(c.count == std::floor(c.count), "count", "must be a whole number");
   if (c.name.empty()) {
     for (const std::string_view key : {"gap", "side"})
-      in.require(!in.is_given(key), key, "belongs to one of several, [contact.NAME]; the plane of [contact] is at gap.contact");
+      in.require(!in.is_given(key), key, "belongs to [contact.NAME]; the contact plane of a single [contact] is at gap.contact");
   } else {
     check_named(d, k, in);
   }
   if (std::holds_alternative<RigidStop>(c.model)) {
     in.require(d.structure.is_rigid(), "model", "needs a plate: a beam has modes that take part in an impact");
     in.require(!d.gas || !is_compressible(*d.gas), "model",
-               "not with gas.model = \"reynolds\", whose film still flows under a plate that rests");
+               "must not be given with gas.model = \"reynolds\", whose film still flows under a plate at rest");
   }
   check_bounds(c.model, in);
   check_conduction(c, in);
@@ -164,23 +167,24 @@ void check_contact(Scene& scene, const SectionReader& in, std::size_t k) {
 }  // namespace
 
 Section contact_section() {
-  return {.name = "contact",
-          .may_be_named = true,
-          .may_vary = true,
-          .selector = "model",
-          .keys = contact_keys(),
-          .about = "contact under the tip, or [contact.NAME] of several; absent: the tip meets nothing",
-          .advice = {{"dimple", "'count' stands for equal contacts side by side, [contact.NAME] for several places"},
-                     {"number", "'count' stands for equal contacts side by side, [contact.NAME] for several places"},
-                     {"rough",
-                      "the roughness of a face is 'asperity_deviation' with model = \"asperity-gaussian\", "
-                      "and 'asperity_height' with model = \"asperity-uniform\""}},
-          .begin =
-              [](Scene& scene, const SectionReader& in, std::string_view name) {
-                scene.device.contacts.push_back({.model = law_of<ContactModel>(in), .name = std::string(name)});
-                return scene.device.contacts.size() - 1;
-              },
-          .check = check_contact};
+  return {
+      .name = "contact",
+      .may_be_named = true,
+      .may_vary = true,
+      .selector = "model",
+      .keys = contact_keys(),
+      .about = "contact under the tip, or one [contact.NAME] of several; absent: no contact",
+      .advice = {{"dimple", "'count' gives the number of equal contacts side by side, [contact.NAME] a contact at another place"},
+                 {"number", "'count' gives the number of equal contacts side by side, [contact.NAME] a contact at another place"},
+                 {"rough",
+                  "the roughness of a face is 'asperity_deviation' with model = \"asperity-gaussian\", "
+                  "and 'asperity_height' with model = \"asperity-uniform\""}},
+      .begin =
+          [](Scene& scene, const SectionReader& in, std::string_view name) {
+            scene.device.contacts.push_back({.model = law_of<ContactModel>(in), .name = std::string(name)});
+            return scene.device.contacts.size() - 1;
+          },
+      .check = check_contact};
 }
 
 }  // namespace softland::internal

@@ -26,13 +26,13 @@ Section dispersion_section() {
                        .by_default("'ideal'")
                        .of({"casimir", "auto"}),
                    OfDispersion::number<&Dispersion::hamaker_constant>("hamaker_constant", dimension::energy, positive,
-                                                                       "of the pair of surfaces")
+                                                                       "Hamaker constant of the pair of surfaces")
                        .needed()
                        .of({"van-der-waals", "auto"})
                        .such_as("3e-19 J"),
                    OfDispersion::number<&Dispersion::equilibrium_distance>(
                        "equilibrium_distance", dimension::length, not_negative,
-                       "where attraction and repulsion balance; 0 m: no repulsion")
+                       "distance at which attraction and repulsion balance; 0 m: no repulsion")
                        .by_default("'0 m'")
                        .of({"van-der-waals", "auto"})},
           .about = "Casimir and van der Waals forces between beam and electrode plane; absent: none",

@@ -10,30 +10,34 @@ Section driver_section() {
   Key bits{.name = "bits",
            .type = KeyType::integer,
            .range = {.least = 1, .most = 24},
-           .about = "of the samples: 2^bits voltages from min_voltage to max_voltage; absent: samples are not rounded"};
-  return {
-      .name = "driver",
-      .is_named = true,
-      .keys =
-          {number("min_voltage", drive_voltage, any, "default for an electrode: 0 V"),
-           number("max_voltage", drive_voltage, any, "default for an electrode: 1.5 times the larger of Vsp and Vdp"),
-           number("max_slew", {dimension::slew_rate}, positive, "absent: unlimited"),
-           number("bandwidth", {dimension::frequency}, positive, "of the source, of first order; absent: unlimited")
-               .such_as("1 MHz"),
-           number("source_resistance", {dimension::resistance}, positive,
-                  "through which it charges the open switch; absent: none"),
-           number("parallel_capacitance", {dimension::capacitance}, not_negative,
-                  "beside the switch, behind source_resistance; default 0 F"),
-           number("sample_rate", {dimension::frequency}, positive, "samples are held; absent: none are taken").such_as("25 MHz"),
-           std::move(bits),
-           number("amplifier", {dimension::none}, positive,
-                  "volts at the switch per volt of the source: all voltages of a scene are those at the switch; default 1"),
-           number("gain", {dimension::none}, {.least = 0.5, .most = 2},
-                  "error of the source: V(t) = gain f(t - delay) + offset; default 1")
-               .or_else(no_amplification),
-           number("offset", {dimension::voltage}, any, "from t = 0 on; default 0 V"),
-           number("delay", {dimension::time}, not_negative, "of the whole waveform; default 0 s")},
-      .about = "limits of the source, hard bounds of every search, and what it makes of a waveform"};
+           .about = "samples are rounded to 2^bits voltages from min_voltage to max_voltage; absent: not rounded"};
+  return {.name = "driver",
+          .is_named = true,
+          .keys = {number("min_voltage", drive_voltage, any, "smallest voltage; default for an electrode: 0 V"),
+                   number("max_voltage", drive_voltage, any,
+                          "largest voltage; default for an electrode: 1.5 times the larger of Vsp and Vdp"),
+                   number("max_slew", {dimension::slew_rate}, positive, "largest rate of change; absent: unlimited"),
+                   number("bandwidth", {dimension::frequency}, positive,
+                          "first-order bandwidth of the source; "
+                          "absent: unlimited")
+                       .such_as("1 MHz"),
+                   number("source_resistance", {dimension::resistance}, positive,
+                          "resistance through which the source charges the open switch; absent: none"),
+                   number("parallel_capacitance", {dimension::capacitance}, not_negative,
+                          "capacitance parallel to the switch, behind source_resistance; default 0 F"),
+                   number("sample_rate", {dimension::frequency}, positive,
+                          "rate of samples, each held until the next; absent: no sampling")
+                       .such_as("25 MHz"),
+                   std::move(bits),
+                   number("amplifier", {dimension::none}, positive,
+                          "gain of the amplifier, volts at the switch per volt of the source; "
+                          "all voltages of a scene are those at the switch; default 1"),
+                   number("gain", {dimension::none}, {.least = 0.5, .most = 2},
+                          "gain error of the source: V(t) = gain f(t - delay) + offset; default 1")
+                       .or_else(no_amplification),
+                   number("offset", {dimension::voltage}, any, "offset error of the source from t = 0 on; default 0 V"),
+                   number("delay", {dimension::time}, not_negative, "delay of the whole waveform; default 0 s")},
+          .about = "limits of the source, which no search exceeds, and the way in which the source applies a waveform"};
 }
 
 }  // namespace softland::internal

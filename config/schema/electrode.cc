@@ -35,14 +35,14 @@ Landing& landing(Scene& scene, std::size_t k) {
 }
 using OfLanding = Of<landing>;
 
-// The keys of a section come in the order of their names: any of them may be the first one.
+// Keys are set in the order of their names, so that any of them may be the first.
 UniformAsperities& asperities(Scene& scene, std::size_t k) {
   std::optional<UniformAsperities>& one = landing(scene, k).asperities;
   if (!one) one.emplace();
   return *one;
 }
 
-/// Returns the keys of asperities on the face, which take no energy.
+/// Returns the keys of asperities on the face of the dielectric, which dissipate no energy.
 std::vector<Key> asperity_keys() {
   std::vector<Key> keys;
   const auto add = [&]<std::size_t i>(std::integral_constant<std::size_t, i>) {
@@ -59,25 +59,26 @@ std::vector<Key> asperity_keys() {
 
 const Section* landing_keys() {
   static const Section keys = [] {
-    Key model = one_of("model", {"wall", "linear", UniformAsperities::name},
-                       "wall: it does not yield; linear: a spring on every spot of the face; asperity-uniform: summits on it")
-                    .needed();
+    Key model =
+        one_of("model", {"wall", "linear", UniformAsperities::name},
+               "law of the face; wall: rigid; linear: springs distributed on the face; asperity-uniform: summits on the face")
+            .needed();
     model.bound.choose = [](Scene& scene, std::size_t k, std::string_view) { static_cast<void>(landing(scene, k)); };
     Key stiffness = OfLanding::number<&Landing::stiffness>("stiffness", dimension::stress_gradient, positive,
-                                                           "pressure of the face per depth")
+                                                           "pressure on the face per depth of indentation")
                         .needed()
                         .such_as("1e17 Pa/m");
     Key from = OfLanding::number<&Landing::from>("from", dimension::length, not_negative,
-                                                 "how far above the face the pressure begins; default 0")
+                                                 "height above the face at which the pressure begins; default 0")
                    .such_as("30 nm");
     stiffness.only_for = {"linear"};
     from.only_for = {"linear"};
     Section section{.name = "landing",
                     .selector = "model",
                     .keys = {std::move(model), std::move(stiffness), std::move(from)},
-                    .about = "how the beam lands on the face",
-                    .advice = {{"damping", "the face of a dielectric takes no energy"},
-                               {"pad", "the pad is all of the face over the electrode"}}};
+                    .about = "law by which the beam lands on the face",
+                    .advice = {{"damping", "the face of a dielectric dissipates no energy"},
+                               {"pad", "the pad is the whole face above the electrode"}}};
     std::ranges::move(asperity_keys(), std::back_inserter(section.keys));
     return section;
   }();
@@ -85,25 +86,26 @@ const Section* landing_keys() {
 }
 
 const Section* dielectric_keys() {
-  static constexpr std::string_view relative_permittivity = "'permittivity' is that of the insulator over that of vacuum";
+  static constexpr std::string_view relative_permittivity = "'permittivity' is the relative permittivity of the insulator";
   static const Section keys{
       .name = "dielectric",
-      .keys = {OfDielectric::number<&Dielectric::thickness>("thickness", dimension::length, positive, "of the insulator")
+      .keys = {OfDielectric::number<&Dielectric::thickness>("thickness", dimension::length, positive,
+                                                            "thickness of the insulator")
                    .needed()
                    .such_as("0.2 um"),
                OfDielectric::number<&Dielectric::permittivity>("permittivity", dimension::none, {.least = 1, .most = 1e6},
-                                                               "of the insulator, relative")
+                                                               "relative permittivity of the insulator")
                    .needed(),
                OfDielectric::number<&Dielectric::roughness>("roughness", dimension::length, not_negative,
-                                                            "air that is left where its summits touch")
+                                                            "air gap that remains where the summits of its roughness touch")
                    .by_default("'0 m'"),
-               OfDielectric::number<&Dielectric::charge>("charge", dimension::charge_density, any, "per area, on its face")
+               OfDielectric::number<&Dielectric::charge>("charge", dimension::charge_density, any, "charge per area on its face")
                    .by_default("'0 C/m^2'")
                    .such_as("-0.1 mC/m^2"),
                Key{.name = "landing",
                    .type = KeyType::table,
-                   .about =
-                       "how the beam lands on its face, which then is the contact; absent: a beam that reaches it has failed",
+                   .about = "law by which the beam lands on its face, which is then the contact; "
+                            "absent: a beam that reaches the face has failed",
                    .like = "{ model = \"wall\" }",
                    .part = landing_keys}},
       .about = "an insulator on the electrode",
@@ -136,7 +138,7 @@ void check_extent(const Structure& s, Electrode& e, const SectionReader& in) {
 void check_fringing(const Structure& s, const Electrode& e, const SectionReader& in) {
   const FringingRow& law = row_of(fringing_laws, e.fringing);
   const SectionReader structure(in.file(), "structure");
-  // Sections of a beam may have their own thicknesses: the field takes the local one.
+  // If sections of a beam have their own thickness, the fringing field uses the local thickness.
   const bool lacks_thickness = law.needs_thickness && std::isnan(s.thickness) && !s.is_built();
   const std::string fringing =
       fmt::format("fringing = {}{}", toml_string(law.name), in.is_given("fringing") ? "" : ", the default,");
@@ -156,12 +158,12 @@ void check_landing(Device& d, const Electrode& e, const SectionReader& in) {
   const bool has_contacts = in.file().find({"contact"}) != nullptr;
   if (has_contacts && !in.file().is_named(*find_section("contact"))) {
     in.file().fail_section(
-        "contact", "stands beside the face of a dielectric, which is a contact too: give it a name, [contact.tip], and a 'gap'");
+        "contact", "must have a name, as in [contact.tip], and a 'gap', because the face of a dielectric is a contact as well");
   }
   in.require(!has_contacts || in.file().find({"contact", std::string(face_name)}) == nullptr, "dielectric",
-             fmt::format("has a landing, whose contact is called {0}: [contact.{0}] needs another name", face_name));
+             fmt::format("has a landing, whose contact is called {0}: [contact.{0}] must have another name", face_name));
   in.require(in.file().find({"dispersion"}) == nullptr, "dielectric",
-             "has a landing: a beam that lands on a dielectric takes no dispersion force");
+             "must not have a landing together with [dispersion]: remove one of them");
   const Landing& landing = *e.dielectric->landing;
   const double plane = d.gap.electrode - landing.begin();
   in.require(plane > 0, "dielectric",
@@ -169,9 +171,9 @@ void check_landing(Device& d, const Electrode& e, const SectionReader& in) {
                          landing.asperities ? "asperity_height" : "from", gap.written("electrode")));
   if (gap.is_given("contact")) {
     gap.require(std::abs(d.gap.contact - plane) <= 1e-9 * d.gap.electrode, "contact",
-                "must be " + engineering(plane, "m") + ", where the landing begins: leave it out");
+                "must be omitted or " + engineering(plane, "m") + ", where the landing begins");
   }
-  if (!has_contacts) d.gap.contact = plane;  // the contact follows: see check_metrics()
+  if (!has_contacts) d.gap.contact = plane;  // the contact is added by check_metrics()
 }
 
 void check_electrode(Scene& scene, const SectionReader& in, std::size_t k) {
@@ -195,30 +197,31 @@ void check_electrode(Scene& scene, const SectionReader& in, std::size_t k) {
 }  // namespace
 
 Section electrode_section() {
-  return {
-      .name = "electrode",
-      .is_named = true,
-      .may_vary = true,
-      .keys = {OfElectrode::spans<&Electrode::begin, &Electrode::end, &Electrode::further>(
-                   "span", "begin and end, from the clamped end; of several pads a list of these; beams only and required there"),
-               number("area", {dimension::area}, positive, "plates only; absent: that of the plate"),
-               OfElectrode::choice<sides, &Electrode::side>("side",
-                                                            "of the beam: near is that of the contact; far pulls away from it")
-                   .by_default("'near'"),
-               OfElectrode::number<&Electrode::gap>(
-                   "gap", dimension::length, positive,
-                   "far, both: rest distance of the face on the far side to the beam; required there"),
-               OfElectrode::choice<fringing_laws, &Electrode::fringing>("fringing", "law of the fringing field")
-                   .by_default("'meijs-fokkema'"),
-               Key{.name = "dielectric",
-                   .type = KeyType::table,
-                   .about = "an insulator on it, at whose face all gaps of the scene end",
-                   .like = "{ thickness = \"0.2 um\", permittivity = 7.6 }",
-                   .part = dielectric_keys}},
-      .about = "an electrode under the beam",
-      .advice = {{"permittiv", dielectric_advice}, {"nitride", dielectric_advice}, {"oxide", dielectric_advice}},
-      .begin = begin_electrode,
-      .check = check_electrode};
+  return {.name = "electrode",
+          .is_named = true,
+          .may_vary = true,
+          .keys = {OfElectrode::spans<&Electrode::begin, &Electrode::end, &Electrode::further>(
+                       "span",
+                       "begin and end, from the clamped end, or a list of these for several pads; "
+                       "required for beams, and only for beams"),
+                   number("area", {dimension::area}, positive, "area; for plates only; absent: that of the plate"),
+                   OfElectrode::choice<sides, &Electrode::side>(
+                       "side", "side of the beam; near: that of the contact; far: pulls away from the contact")
+                       .by_default("'near'"),
+                   OfElectrode::number<&Electrode::gap>(
+                       "gap", dimension::length, positive,
+                       "for side far or both, and required there: rest gap between the beam and the electrode on the far side"),
+                   OfElectrode::choice<fringing_laws, &Electrode::fringing>("fringing", "law of the fringing field")
+                       .by_default("'meijs-fokkema'"),
+                   Key{.name = "dielectric",
+                       .type = KeyType::table,
+                       .about = "insulator on the electrode; all gaps of the scene are measured to its face",
+                       .like = "{ thickness = \"0.2 um\", permittivity = 7.6 }",
+                       .part = dielectric_keys}},
+          .about = "an electrode under the beam",
+          .advice = {{"permittiv", dielectric_advice}, {"nitride", dielectric_advice}, {"oxide", dielectric_advice}},
+          .begin = begin_electrode,
+          .check = check_electrode};
 }
 
 }  // namespace softland::internal

@@ -13,14 +13,14 @@ Gas& gas(Scene& scene, std::size_t) { return *scene.device.gas; }
 std::vector<Key> gas_keys() {
   std::vector<Key> keys = keys_of_laws<Gas, gas>("law of the squeeze film");
   std::ranges::find(keys, "damping", &Key::name)
-      ->dimensions.push_back(dimension::damping);  // a plate may have that of the whole plate
+      ->dimensions.push_back(dimension::damping);  // a plate may have a damping of the whole plate
   return keys;
 }
 
 void check_gas(Scene& scene, const SectionReader& in, std::size_t) {
   const Structure& moving = scene.device.structure;
   if (in.has_value("damping") && in.quantities("damping").front().dimension == dimension::damping) {
-    in.require(moving.is_rigid(), "damping", "is that of a whole plate: of a beam give it per length, in N s/m^2");
+    in.require(moving.is_rigid(), "damping", "is in N s/m, as for a whole plate: give it per length of the beam, in N s/m^2");
     std::get<LinearGas>(*scene.device.gas).damping /= moving.length;
   }
   if (!in.is_given("quality_factor")) in.require_of_structure("model", "width", moving);

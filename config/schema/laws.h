@@ -17,12 +17,12 @@
 
 namespace softland::internal {
 
-/// Returns the number that the law in force has under the key of field i of `Law`; `part` gives the variant of a scene.
+/// Returns the number of field i of `Law` in a scene; `part` gives the variant of laws in the scene.
 template <auto part, class Law, std::size_t i>
 [[nodiscard]] double& bound_number(Scene& scene, std::size_t entry) {
   return *number_of(part(scene, entry), fields_of<Law>[i].key);
 }
-/// Sets by a word what the law in force has under the key of field i of `Law`.
+/// Sets field i of `Law` in a scene by a word.
 template <auto part, class Law, std::size_t i>
 void bound_word(Scene& scene, std::size_t entry, std::string_view word) {
   std::visit(
@@ -76,8 +76,8 @@ template <auto part, class Law, std::size_t i>
   return key;
 }
 
-/// Returns the key `model`, then the keys of all laws, each with the laws it belongs to, in an order that every law agrees
-/// with.
+/// Returns the key `model`, then the keys of all laws, each with the laws to which it belongs. The keys of every law keep their
+/// order.
 template <class Variant, auto part>
 [[nodiscard]] std::vector<Key> keys_of_laws(std::string_view about) {
   Key model{.name = "model", .type = KeyType::choice, .required = true, .about = about};

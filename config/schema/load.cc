@@ -11,18 +11,20 @@ using OfLoad = Of<load>;
 
 Section load_section() {
   return {.name = "load",
-          .keys = {OfLoad::number<&SwitchedLoad::voltage>("voltage", dimension::voltage, positive, "of its source")
+          .keys = {OfLoad::number<&SwitchedLoad::voltage>("voltage", dimension::voltage, positive,
+                                                          "open-circuit voltage of the "
+                                                          "load")
                        .needed()
                        .such_as("5 V"),
                    OfLoad::number<&SwitchedLoad::resistance>("resistance", dimension::resistance, positive,
-                                                             "in series with the contact")
+                                                             "resistance in series with the contact")
                        .needed()
                        .such_as("50 ohm")},
           .about = "the circuit that the contact switches; absent: none",
           .begin = [](Scene&, const SectionReader&, std::string_view) { return std::size_t{0}; },
           .check =
               [](Scene& scene, const SectionReader& in, std::size_t) {
-                if (!scene.device.has_contact()) in.fail("needs a [contact], which is what switches it");
+                if (!scene.device.has_contact()) in.fail("needs a [contact], which switches the load");
               }};
 }
 

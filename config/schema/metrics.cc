@@ -20,7 +20,9 @@ using OfElectrical = Of<electrical>;
 Key connection_key() {
   Key key{.name = "closed",
           .type = KeyType::texts,
-          .about = "of several contacts: \"all\" (default), \"any\", or a list of those that must all be closed"};
+          .about =
+              "contacts that must be closed for the connection: \"all\" (default), \"any\", "
+              "or a list of contacts that must all be closed"};
   for (const auto& row : connections) key.words.push_back(row.name);
   return key;
 }
@@ -29,7 +31,8 @@ Key connection_key() {
 void set_connection(Device& d, const SectionReader& in) {
   if (!in.is_given("closed")) return;
   const bool is_list = in.is_list("closed");
-  in.require(d.contacts.size() > 1, "closed", "says which of several contacts make the connection: the scene has none such");
+  in.require(d.contacts.size() > 1, "closed",
+             "needs several contacts [contact.NAME], of which it names those that make the connection");
   const std::vector<std::string>& given = in.texts("closed");
   if (!is_list) {
     d.connection = find_named(connections, given.front())->value;
@@ -40,14 +43,14 @@ void set_connection(Device& d, const SectionReader& in) {
     const auto named = std::ranges::find(d.contacts, name, &Contact::name);
     std::vector<std::string_view> known;
     for (const Contact& c : d.contacts) known.push_back(c.name);
-    in.require(named != d.contacts.end(), "closed", "there is no [contact." + name + "]" + hint(name, known));
+    in.require(named != d.contacts.end(), "closed", "unknown contact [contact." + name + "]" + hint(name, known));
     in.require(named->side == Side::near, "closed", "[contact." + name + "] is a back stop: it makes no connection");
   }
   for (Contact& c : d.contacts) c.connects = std::ranges::find(given, c.name) != given.end();
 }
 
-// The first contact closes the switch, and statics concern it. The order must not depend on that of the file. Contacts that
-// make the connection come first, back stops last, and among equals the outermost and then the nearest.
+// Sorts the contacts; the static figures are those of the first one. The order must not depend on that of the file. Contacts
+// that make the connection come first, back stops last; equal ones are sorted from the tip, then by their gap.
 void order_contacts(Device& d) {
   if (d.contacts.size() < 2) return;
   d.contacts.front().gap = d.gap.contact;
@@ -65,7 +68,7 @@ void order_contacts(Device& d) {
 // The electrical figures need a contact, and a resistance the resistivity of every contact that makes the connection.
 void check_electrical(const Device& d, const SectionReader& in) {
   for (const std::string_view key : {"closed_force", "closed_resistance", "closed_after"}) {
-    in.require(!in.is_given(key) || d.has_contact(), key, "needs a [contact], which is what closes");
+    in.require(!in.is_given(key) || d.has_contact(), key, "needs a [contact]");
   }
   if (!in.is_given("closed_resistance")) return;
   for (const Contact& c : d.contacts) {
@@ -95,11 +98,11 @@ Section metrics_section() {
   return {.name = "metrics",
           .always_in_force = true,
           .keys = {OfMetrics::number<&MetricsOptions::significant_rebound>("significant_rebound", dimension::length, positive,
-                                                                           "a rebound counts when it is higher")
+                                                                           "rebounds up to this height are not significant")
                        .by_default("'1 nm'"),
                    OfMetrics::number<&MetricsOptions::steady_force>(
                        "steady_force", dimension::none, {.least = 0, .most = 1, .least_open = true, .most_open = true},
-                       "of the hold force, default 10 %: from there on the contact force is steady")
+                       "share of the hold force above which the contact force is steady; default 10 %")
                        .such_as("10 %"),
                    connection_key(),
                    OfElectrical::number<&ElectricalClosing::force>(
@@ -111,7 +114,7 @@ Section metrics_section() {
                        .such_as("1 ohm"),
                    OfElectrical::number<&ElectricalClosing::after>(
                        "closed_after", dimension::time, not_negative,
-                       "openings of the connection that are not longer do not count; default 0")
+                       "openings of the connection up to this duration are not counted; default 0")
                        .such_as("1 us")},
           .about = "figures of merit",
           .begin = [](Scene&, const SectionReader&, std::string_view) { return std::size_t{0}; },

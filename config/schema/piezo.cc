@@ -10,7 +10,7 @@ constexpr Range at_least_one{.least = 1, .most = 1e6};
 
 std::size_t begin_piezo(Scene& scene, const SectionReader& in, std::string_view) {
   if (const std::string_view why = scene.device.structure.why_no_layer(); !why.empty()) in.fail(why);
-  if (scene.device.surface) in.fail("covers a face of the beam; [surface] is for a bare beam");
+  if (scene.device.surface) in.fail("must not be combined with [surface], which is for a beam without layers");
   scene.device.piezo.emplace();
   return 0;
 }
@@ -25,17 +25,18 @@ Section piezo_section() {
                OfPiezo::number<&Piezo::thickness>("thickness", dimension::length, positive, "of the layer").needed(),
                OfPiezo::number<&Piezo::youngs_modulus>("youngs_modulus", dimension::pressure, positive, "of the layer").needed(),
                OfPiezo::number<&Piezo::density>("density", dimension::density, positive, "of the layer").needed(),
-               OfPiezo::number<&Piezo::d31>("d31", dimension::piezo_coefficient, any,
-                                            "negative for the usual ceramics: a positive voltage lifts the tip")
+               OfPiezo::number<&Piezo::d31>(
+                   "d31", dimension::piezo_coefficient, any,
+                   "piezoelectric coefficient, negative for the usual ceramics: a positive voltage lifts the tip")
                    .needed()
                    .instead("e31"),
                OfPiezo::number<&Piezo::e31>("e31", dimension::charge_density, any,
-                                            "the same as a stress per field: d31 youngs_modulus")
+                                            "stress per field, d31 youngs_modulus, instead of d31")
                    .needed()
                    .instead("d31"),
                OfPiezo::number<&Piezo::relative_permittivity>(
                    "relative_permittivity", dimension::none, at_least_one,
-                   "of the layer; absent: the drive energy does not count the charging of the layer")
+                   "permittivity of the layer; absent: the drive energy excludes the charging of the layer")
                    .such_as("1500")},
       .about = "a piezoelectric layer on the face away from the electrode",
       .begin = begin_piezo,

@@ -13,8 +13,8 @@
 namespace softland::internal {
 namespace {
 
-/// The sizes [SI unit] that a quantity of a dimension can have in a scene. They are far beyond any switch, and no product of a
-/// few of them leaves double precision.
+/// Range of the sizes of a quantity in a scene [SI unit]. It exceeds that of any switch, and products of a few such values stay
+/// within double precision.
 struct Extent {
   Dimension dimension;
   double smallest;  ///< smallest value of a positive quantity
@@ -86,7 +86,7 @@ Range Key::range_of(const Dimension& dimension) const {
 std::string Key::example_of(const Dimension& dimension) const {
   if (dimension == dimensions.front()) {
     if (!like.empty()) return std::string(like);
-    // The default as TOML is a quoted text; a default that is 0 or not a quantity is no example.
+    // The default serves as an example if it is a quantity other than 0.
     if (type == KeyType::quantity && fallback.starts_with('\'') && !fallback.starts_with("'0 "))
       return std::string(fallback.substr(1, fallback.size() - 2));
   }
@@ -143,12 +143,13 @@ const Key* find_key(const std::vector<std::string>& path) {
 
 std::string hint(std::string_view word, const std::vector<std::string_view>& known) {
   if (known.empty()) return {};
-  constexpr std::size_t longest_word = 64;  // a longer one is not a typing error, and the distance costs the product of lengths
+  constexpr std::size_t longest_word =
+      64;  // a longer word is not a typing error, and the distance takes a time proportional to the product of the lengths
   if (word.size() <= longest_word) {
     const auto distance = [&](std::string_view name) { return edit_distance(word, name); };
     const auto nearest = *std::min_element(known.begin(), known.end(), [&](auto a, auto b) { return distance(a) < distance(b); });
     if (distance(nearest) <= std::max<std::size_t>(2, nearest.size() / 3)) return fmt::format(" (did you mean '{}'?)", nearest);
-    // A word may begin exactly one name: "poisson" of poissons_ratio.
+    // The word may be the beginning of exactly one name: "poisson" of poissons_ratio.
     constexpr std::size_t shortest_beginning = 4;
     const auto is_begun = [&](std::string_view name) { return word.size() >= shortest_beginning && name.starts_with(word); };
     if (std::ranges::count_if(known, is_begun) == 1)

@@ -1,4 +1,4 @@
-// Makers of sections and keys: every section of a scene has a file beside this one.
+// Functions that make sections and keys. Every section of a scene has a file in this folder.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace softland::internal {
 
-// Ends that these leave open are closed by the extent of the dimension.
+// The open ends of these ranges are those of the dimension.
 inline constexpr Range any{};
 inline constexpr Range not_negative{.least = 0};
 inline constexpr Range small_error{.least = 0, .most = 0.1, .least_open = true};
@@ -37,8 +37,8 @@ inline const std::vector<Dimension> drive_voltage{dimension::voltage, dimension:
   return {.name = name, .type = KeyType::choice, .choices = std::move(choices), .about = about};
 }
 
-/// Keys that set members of one part of a scene: `part` returns it, for example a Structure& of a Scene& and the number of an
-/// electrode.
+/// Makes keys that set members of one part of a scene. `part` returns that part, for example a Structure& for a Scene& and the
+/// number of an electrode.
 template <auto part>
 struct Of {
   template <auto member>
@@ -93,7 +93,7 @@ struct Of {
 [[nodiscard]] std::vector<Key> beam_part_keys();
 inline constexpr std::string_view dielectric_advice =
     "'dielectric' describes an insulator on the electrode: dielectric = { thickness = \"0.2 um\", permittivity = 7.6 }";
-/// Returns answers to unknown keys of [structure] that these, or a rest shape, describe.
+/// Returns advice for unknown keys of [structure] about sections, layers, anchors and rest shape.
 [[nodiscard]] std::vector<Advice> part_advice();
 
 [[nodiscard]] Section title_section();
@@ -105,7 +105,7 @@ inline constexpr std::string_view dielectric_advice =
 [[nodiscard]] Section piezo_section();
 [[nodiscard]] Section dispersion_section();
 [[nodiscard]] Section surface_section();
-/// Returns the section of every drive without a section of its own; only the force factor has one.
+/// Returns the section [waveform.NAME] of a drive other than the dispersion force, which has its own.
 [[nodiscard]] Section waveform_section();
 [[nodiscard]] Section force_factor_section();
 [[nodiscard]] Section calibration_section();

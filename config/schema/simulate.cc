@@ -12,7 +12,8 @@ constexpr std::string_view automatic = "auto";
 }  // namespace
 
 Section simulate_section() {
-  Key effects = one_of("effects", {"all", automatic}, "auto: leave out those that hardly change t_i, v_i and B_H");
+  Key effects = one_of("effects", {"all", automatic},
+                       "auto: leave out effects that change t_i, v_i and B_H by less than effects_tolerance");
   effects.bound.choose = [](Scene& scene, std::size_t, std::string_view chosen) {
     scene.simulate.automatic_effects = chosen == automatic;
   };
@@ -21,9 +22,9 @@ Section simulate_section() {
           .always_in_force = true,
           .keys = {OfSimulate::number<&SimulateOptions::duration>(
                        "duration", dimension::time, positive,
-                       "absent: six periods of the first mode, or four times what a step takes to close the switch"),
+                       "simulated time; absent: six periods of the first mode, or four times the closing time under a step"),
                    OfSimulate::number<&SimulateOptions::open_at>("open_at", dimension::time, not_negative,
-                                                                 "command to open; absent: told from the drives"),
+                                                                 "time of the command to open; absent: found from the waveforms"),
                    OfSimulate::number<&SimulateOptions::accuracy>("accuracy", dimension::none, small_error,
                                                                   "relative error of t_i, v_i, B_H and the peak force")
                        .by_default("1e-06")
@@ -32,10 +33,11 @@ Section simulate_section() {
                                                                    "relative tolerance of the integrator, instead of accuracy")
                        .instead("accuracy"),
                    std::move(effects).by_default("'all'"),
-                   OfSimulate::number<&SimulateOptions::effects_tolerance>("effects_tolerance", dimension::none, small_error,
-                                                                           "what effects = auto counts as hardly: relative")
+                   OfSimulate::number<&SimulateOptions::effects_tolerance>(
+                       "effects_tolerance", dimension::none, small_error,
+                       "relative change of t_i, v_i and B_H below which effects = auto leaves out an effect")
                        .by_default("1e-03")},
-          .about = "the run",
+          .about = "the simulation",
           .begin = [](Scene&, const SectionReader&, std::string_view) { return std::size_t{0}; }};
 }
 

@@ -64,14 +64,14 @@ std::vector<Key> structure_keys() {
   for (Key& key : keys) {
     if (key.only_for == kinds) key.only_for.clear();
   }
-  Key kind = one_of("kind", kinds, "what moves");
+  Key kind = one_of("kind", kinds, "kind of the moving structure");
   keys.insert(keys.begin(), std::move(kind).needed());
   return keys;
 }
 
 void check(Plate&, Structure& s, Scene&, const SectionReader& in) {
   const double area = in.number("area");
-  // A plate counts as square where no law needs its width.
+  // If no law needs the width of a plate, it is taken as square.
   if (!in.is_given("width")) s.width = std::sqrt(area);
   s.length = area / s.width;
   s.modes = 1;
@@ -97,7 +97,7 @@ void check(Beam& beam, Structure& s, Scene& scene, const SectionReader& in) {
     if (!in.has_value(key)) continue;
     in.require(!in.flag(key) || in.is_given("poissons_ratio"), key, "needs structure.poissons_ratio");
   }
-  if (!in.has_value("residual_stress") || in.file().find({"surface"})) return;  // the load is another one with a surface
+  if (!in.has_value("residual_stress") || in.file().find({"surface"})) return;  // the load is defined by [surface]
   const std::string buckled = why_buckled(s);
   in.require(buckled.empty(), "residual_stress", buckled);
 }
@@ -120,7 +120,7 @@ Section structure_section() {
           .may_vary = true,
           .selector = "kind",
           .keys = structure_keys(),
-          .about = "the moving part",
+          .about = "the moving structure",
           .advice = part_advice(),
           .begin =
               [](Scene& scene, const SectionReader& in, std::string_view) {

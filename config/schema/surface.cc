@@ -16,27 +16,27 @@ void check_surface(Scene& scene, const SectionReader& in, std::size_t) {
 }  // namespace
 
 Section surface_section() {
-  return {
-      .name = "surface",
-      .may_vary = true,
-      .keys = {OfSurface::number<&Surface::elastic_modulus>("elastic_modulus", dimension::stiffness, any,
-                                                            "of the surfaces, of either sign")
-                   .by_default("'0 N/m'"),
-               OfSurface::number<&Surface::residual_stress>("residual_stress", dimension::stiffness, any,
-                                                            "of the surfaces, positive where they pull")
-                   .by_default("'0 N/m'"),
-               OfSurface::choice<surface_faces, &Surface::faces>("faces", "that have elastic_modulus; wide: upper and lower only")
-                   .by_default("'all'"),
-               OfSurface::choice<residual_loads, &Surface::cantilever_load>("cantilever_load",
-                                                                            "what residual_stress does to a cantilever")
-                   .by_default("'none'")},
-      .about = "surface elasticity and residual stress of a thin beam; absent: none",
-      .begin =
-          [](Scene& scene, const SectionReader&, std::string_view) {
-            scene.device.surface.emplace();
-            return std::size_t{0};
-          },
-      .check = check_surface};
+  return {.name = "surface",
+          .may_vary = true,
+          .keys = {OfSurface::number<&Surface::elastic_modulus>("elastic_modulus", dimension::stiffness, any,
+                                                                "elastic modulus of the surfaces, of either sign")
+                       .by_default("'0 N/m'"),
+                   OfSurface::number<&Surface::residual_stress>("residual_stress", dimension::stiffness, any,
+                                                                "residual stress of the surfaces, positive in tension")
+                       .by_default("'0 N/m'"),
+                   OfSurface::choice<surface_faces, &Surface::faces>(
+                       "faces", "faces that have elastic_modulus; wide: upper and lower face only")
+                       .by_default("'all'"),
+                   OfSurface::choice<residual_loads, &Surface::cantilever_load>("cantilever_load",
+                                                                                "effect of residual_stress on a cantilever")
+                       .by_default("'none'")},
+          .about = "surface elasticity and residual stress of a thin beam; absent: none",
+          .begin =
+              [](Scene& scene, const SectionReader&, std::string_view) {
+                scene.device.surface.emplace();
+                return std::size_t{0};
+              },
+          .check = check_surface};
 }
 
 }  // namespace softland::internal

@@ -3,7 +3,7 @@
 namespace softland::internal {
 
 Section title_section() {
-  Key title = words("title", "one line that names the switch").by_default("''");
+  Key title = words("title", "name of the switch, one line").by_default("''");
   title.bound.text = [](Scene& scene, std::size_t) -> std::string& { return scene.title; };
   return {.name = "",
           .always_in_force = true,

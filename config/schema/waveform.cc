@@ -6,7 +6,7 @@
 namespace softland::internal {
 namespace {
 
-/// Returns the keys of one parameter of a family: two where it may be given in another way.
+/// Returns the keys of one parameter of a family: two if it may be given in two ways.
 template <class Family>
 std::vector<Key> keys_of(const Parameter<Family>& parameter, const std::vector<Dimension>& level, bool factor) {
   Key key = std::holds_alternative<double Family::*>(parameter.member) ? number(parameter.name, level, any, parameter.about)
@@ -24,7 +24,7 @@ std::vector<Key> keys_of(const Parameter<Family>& parameter, const std::vector<D
       if (!key.required) key.fallback = factor ? "1.0" : "'0 V'";
       break;
     case ParameterKind::swing:
-      if (!factor) key.dimensions.push_back(dimension::none);  // allows a percentage
+      if (!factor) key.dimensions.push_back(dimension::none);  // permits a percentage
       break;
     case ParameterKind::time:
       take(dimension::time, not_negative, "'0 s'");
@@ -49,22 +49,21 @@ std::vector<Key> keys_of(const Parameter<Family>& parameter, const std::vector<D
   return {std::move(key)};
 }
 
-/// Returns keys for what a file of an instrument does not contain.
+/// Returns the keys that give what a file of an instrument does not contain.
 std::vector<Key> keys_beside_file() {
   Key column{.name = file_keys::column,
              .type = KeyType::integer,
              .range = {.least = 1, .most = 1e6},
              .any_word = true,
-             .about = "name or number of the channel; absent: the only one, or the one named after the drive"};
+             .about = "name or number of the channel; absent: the only channel, or that with the name of the drive"};
   Key time_column = column;
   time_column.name = file_keys::time_column;
   time_column.about = "name or number of the column of times; absent: found by its heading";
-  Key interval =
-      number(file_keys::interval, {dimension::time}, positive, "between rows that are even, whatever the times of the file are")
-          .such_as("8 ns");
+  Key interval = number(file_keys::interval, {dimension::time}, positive, "time between rows, instead of the times of the file")
+                     .such_as("8 ns");
   interval.words = {file_keys::uneven};
   Key shift =
-      number(file_keys::shift, {dimension::time}, any, "added to the times of the file; first: the first row is at t = 0");
+      number(file_keys::shift, {dimension::time}, any, "shift added to the times of the file; first: the first row is at t = 0");
   shift.words = {file_keys::first};
   std::vector<Key> keys;
   keys.push_back(std::move(column));
@@ -73,11 +72,12 @@ std::vector<Key> keys_beside_file() {
   keys.push_back({.name = file_keys::skip,
                   .type = KeyType::integer,
                   .range = {.least = 0, .most = 1e9},
-                  .about = "lines at the beginning that are left out; default 0"});
-  keys.push_back(words(file_keys::unit, "of the channel, where the file names none or a wrong one; absent: V"));
-  keys.push_back(words(file_keys::time_unit, "of the times, likewise; absent: s"));
-  keys.push_back(one_of(file_keys::decimal, {".", ","}, "decimal sign; absent: found"));
-  keys.push_back(number(file_keys::scale, {dimension::none}, any, "volts per volt of the file, as of a probe; default 1"));
+                  .about = "number of lines at the beginning to skip; default 0"});
+  keys.push_back(words(file_keys::unit, "unit of the channel, if the file names none or a wrong one; absent: V"));
+  keys.push_back(words(file_keys::time_unit, "unit of the times, if the file names none or a wrong one; absent: s"));
+  keys.push_back(one_of(file_keys::decimal, {".", ","}, "decimal sign; absent: found from the numbers"));
+  keys.push_back(number(file_keys::scale, {dimension::none}, any,
+                        "volts at the switch per volt of the file, such as the factor of a probe; default 1"));
   keys.push_back(std::move(shift));
   return keys;
 }
@@ -88,10 +88,10 @@ Section section_of(std::string_view entry, const std::vector<Dimension>& level, 
   std::vector<std::string_view> names;
   std::vector<Key> keys{one_of("family", {}, "shape of the voltage against time").needed(),
                         number(before_key, level, any,
-                               entry.empty() ? "before t = 0, where a run starts at rest; absent: 0 V"
-                                             : "before t = 0, where a run starts at rest; absent: 1")};
+                               entry.empty() ? "voltage before t = 0, under which the switch is at rest; absent: 0 V"
+                                             : "value before t = 0, under which the switch is at rest; absent: 1")};
   keys.push_back(one_of(before_state_key, {open_state, closed_state_word},
-                        "equilibrium under the values before t = 0 in which a run begins; default open"));
+                        "initial equilibrium under the values before t = 0; default open"));
   for_each_family([&]<class Family>(const Family&) {
     names.push_back(FamilyOf<Family>::name);
     std::vector<Key> own;
@@ -100,7 +100,8 @@ Section section_of(std::string_view entry, const std::vector<Dimension>& level, 
     }
     if constexpr (requires { FamilyOf<Family>::from_file; }) {
       Key file =
-          words(file_key, "of an instrument or of softland (time_s and a column named after the drive), relative to the scene")
+          words(file_key,
+                "file of an instrument or of softland (time_s and a column with the name of the drive), relative to the scene")
               .needed();
       file.only_for = {FamilyOf<Family>::name};
       for (Key& key : own) {
@@ -127,7 +128,7 @@ Section waveform_section() {
 
 Section force_factor_section() {
   return section_of(dispersion_drive, {dimension::none},
-                    "factor of the dispersion force, nominally 1; without one it stays there");
+                    "factor on the dispersion force, nominally 1; without a waveform it stays 1");
 }
 
 }  // namespace softland::internal

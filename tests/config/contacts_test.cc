@@ -85,7 +85,7 @@ TEST(Contacts, RefuseWhatContradictsItself) {
       softland::message(edited(small_scene, one_contact, one_contact + inner)),
       "x.toml:18: contact.model = \"linear\": [contact] must not be combined with [contact.NAME]: use one of the two forms");
   EXPECT_EQ(softland::message(edited(small_scene, one_contact, left + inner)),
-            "x.toml:11: gap.contact = \"2 um\": belongs to one [contact]: every [contact.NAME] has a gap of its own");
+            "x.toml:11: gap.contact = \"2 um\": belongs to a single [contact]: every [contact.NAME] has its own gap");
   EXPECT_EQ(softland::message(edited(small_scene, "contact = \"2 um\"\n", "")),
             "x.toml:9: [gap]: missing key 'contact' (a length such as \"2 um\")");
   EXPECT_EQ(softland::message(with(left + section("right", "gap = \"2 um\""))),
@@ -103,14 +103,15 @@ TEST(Contacts, RefuseWhatContradictsItself) {
   EXPECT_EQ(softland::message(with(section("stop", "gap = \"1 um\"\nside = \"far\""))),
             "x.toml:16: [contact.stop]: a back stop closes nothing: a contact of side = \"near\" is missing");
   EXPECT_EQ(softland::message(edited(small_scene, one_contact, one_contact + "gap = \"1 um\"\n")),
-            "x.toml:21: contact.gap = \"1 um\": belongs to one of several, [contact.NAME]; the plane of [contact] is at "
-            "gap.contact");
+            "x.toml:21: contact.gap = \"1 um\": belongs to [contact.NAME]; "
+            "the contact plane of a single [contact] is at gap.contact");
   EXPECT_EQ(softland::message(with(left + inner, "[metrics]\nclosed = [\"outer\"]\n")),
-            "x.toml:47: metrics.closed = [\"outer\"]: there is no [contact.outer] (known: inner, left)");
+            "x.toml:47: metrics.closed = [\"outer\"]: unknown contact [contact.outer] (known: inner, left)");
   EXPECT_EQ(softland::message(with(left + stop, "[metrics]\nclosed = [\"a_stop\"]\n")),
             "x.toml:48: metrics.closed = [\"a_stop\"]: [contact.a_stop] is a back stop: it makes no connection");
   EXPECT_EQ(softland::message(std::string(small_scene) + "[metrics]\nclosed = \"all\"\n"),
-            "x.toml:41: metrics.closed = \"all\": says which of several contacts make the connection: the scene has none such");
+            "x.toml:41: metrics.closed = \"all\": needs several contacts [contact.NAME], "
+            "of which it names those that make the connection");
 }
 
 }  // namespace

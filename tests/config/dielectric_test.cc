@@ -104,7 +104,9 @@ TEST(DielectricKeys, AreRefusedByFileLineAndKey) {
   EXPECT_THAT(refusal_of(edited_plate("fringing = \"none\"", "fringing = \"none\"\nside = \"both\"\ngap = \"4 um\"")),
               HasSubstr("belongs to an electrode on the near side alone"));
   EXPECT_THAT(refusal_of(edited_plate("[contact]", "[dispersion]\nmodel = \"casimir\"\n[contact]")),
-              HasSubstr("x.toml:9: gap.contact = \"4 um\": a plate that lands on a dielectric takes no dispersion force"));
+              HasSubstr("x.toml:9: gap.contact = \"4 um\": a plate that lands on a dielectric must not have a dispersion "
+                        "force: "
+                        "remove [dispersion]"));
   EXPECT_THAT(refusal_of(edited_plate("dielectric =", "# dielectric =")),
               HasSubstr("x.toml:9: gap.contact = \"4 um\": must be less than"));
 }
@@ -186,9 +188,9 @@ TEST(LandingKeys, DescribeAsperities) {
   EXPECT_THAT(refused("40 nm", "3 um"), HasSubstr("x.toml:14: electrode.main.dielectric"));
   EXPECT_THAT(refused("40 nm", "3 um"), HasSubstr("'asperity_height' must be less than gap.electrode"));
   EXPECT_THAT(refused("asperity_radius", R"(damping = "1 s/m", asperity_radius)"),
-              HasSubstr("landing.damping = \"1 s/m\": unknown key; the face of a dielectric takes no energy"));
+              HasSubstr("landing.damping = \"1 s/m\": unknown key; the face of a dielectric dissipates no energy"));
   EXPECT_THAT(refused("asperity_radius", R"(pad_length = "1 um", asperity_radius)"),
-              HasSubstr("landing.pad_length = \"1 um\": unknown key; the pad is all of the face over the electrode"));
+              HasSubstr("landing.pad_length = \"1 um\": unknown key; the pad is the whole face above the electrode"));
   EXPECT_THAT(refused("asperity_radius", R"(from = "1 nm", asperity_radius)"),
               HasSubstr("landing.from = \"1 nm\": belongs to model = \"linear\""));
   EXPECT_THAT(refusal_of(edited_bridge("stiffness = \"1e17 Pa/m\"", "asperity_height = \"40 nm\", stiffness = \"1e17 Pa/m\"")),
@@ -240,19 +242,19 @@ TEST(LandingKeys, AreRefusedByFileLineAndKey) {
               HasSubstr("x.toml:14: [electrode.main.dielectric.landing]: missing key 'stiffness'"));
   EXPECT_THAT(refusal_of(edited_bridge("\"30 nm\"", "\"4 um\"")), HasSubstr("x.toml:14: electrode.main.dielectric"));
   EXPECT_THAT(refusal_of(edited_bridge("electrode = \"3 um\"", "electrode = \"3 um\"\ncontact = \"2 um\"")),
-              HasSubstr("x.toml:11: gap.contact = \"2 um\": must be 2.97 um, where the landing begins: leave it out"));
+              HasSubstr("x.toml:11: gap.contact = \"2 um\": must be omitted or 2.97 um, where the landing begins"));
   EXPECT_THAT(refusal_of(edited_bridge("[waveform.main]",
                                        "[contact]\nmodel = \"linear\"\nstiffness = \"1 N/m\"\n"
                                        "pad_length = \"1 um\"\n[waveform.main]")),
-              HasSubstr("[contact]: stands beside the face of a dielectric, which is a contact too: give it a name, "
-                        "[contact.tip], and a 'gap'"));
+              HasSubstr("[contact]: must have a name, as in [contact.tip], and a 'gap', "
+                        "because the face of a dielectric is a contact as well"));
   EXPECT_THAT(refusal_of(edited_bridge("[waveform.main]", with_stops({"dielectric"}) + "[waveform.main]")),
               HasSubstr("x.toml:14: electrode.main.dielectric = "));
   EXPECT_THAT(refusal_of(edited_bridge("[waveform.main]",
                                        with_stops({"left", "right"}) + "[metrics]\nclosed = [\"dielctric\"]\n[waveform.main]")),
-              HasSubstr("there is no [contact.dielctric] (did you mean 'dielectric'?)"));
+              HasSubstr("unknown contact [contact.dielctric] (did you mean 'dielectric'?)"));
   EXPECT_THAT(refusal_of(edited_bridge("[waveform.main]", "[dispersion]\nmodel = \"casimir\"\n[waveform.main]")),
-              HasSubstr("has a landing: a beam that lands on a dielectric takes no dispersion force"));
+              HasSubstr("must not have a landing together with [dispersion]: remove one of them"));
   EXPECT_THAT(refusal_of(edited_bridge("[waveform.main]",
                                        "[electrode.other]\nspan = [\"200 um\", \"250 um\"]\nfringing = "
                                        "\"none\"\n[waveform.main]")),

@@ -84,8 +84,8 @@ INSTANTIATE_TEST_SUITE_P(Names, BadFile, testing::Values(
     Edit{"thickness =", "thicknes =", R"(x.toml:6: structure.thicknes = "4 um": unknown key (did you mean 'thickness'?))"},
     Edit{"thickness =", "colour =", R"(x.toml:6: structure.colour = "4 um": unknown key (known: kind, sections, layers, anchor, far_anchor, rest_shape, length, width, thickness, youngs_modulus, density, modes, damping_ratio, plate_strain, poissons_ratio, stress_gradient, residual_stress, biaxial, stretching, mass, stiffness, area, file, axis, direction, length_unit, mass_unit, mass_normalised, clamp, positions, frequencies, shapes, rest_offsets, widths, frequency_factor, axial_stiffness))"},
     Edit{"thickness =", "hinge_width =", R"(x.toml:6: structure.hinge_width = "4 um": unknown key; 'sections' describes a beam whose width, thickness or material changes along it, such as a hinge narrower than the plate: sections = [{ length = "60 um", width = "10 um" }, { length = "190 um", width = "40 um" }])"},
-    Edit{"thickness =", "springs =", R"(x.toml:6: structure.springs = "4 um": unknown key; 'anchor' and 'far_anchor' describe ends that give way: anchor = { rotation = "1e-7 N m/rad" })"},
-    Edit{"pad_length", "dimples", R"(x.toml:19: contact.dimples = "5 um": unknown key; 'count' stands for equal contacts side by side, [contact.NAME] for several places)"},
+    Edit{"thickness =", "springs =", R"(x.toml:6: structure.springs = "4 um": unknown key; 'anchor' and 'far_anchor' describe compliant ends: anchor = { rotation = "1e-7 N m/rad" })"},
+    Edit{"pad_length", "dimples", R"(x.toml:19: contact.dimples = "5 um": unknown key; 'count' gives the number of equal contacts side by side, [contact.NAME] a contact at another place)"},
     Edit{"thickness =", "thick =", R"(x.toml:6: structure.thick = "4 um": unknown key (did you mean 'thickness'?))"},
     Edit{"thickness =", "poisson =", R"(x.toml:6: structure.poisson = "4 um": unknown key (did you mean 'poissons_ratio'?))"},
     Edit{"pad_length", "roughness", R"(x.toml:19: contact.roughness = "5 um": unknown key; the roughness of a face is 'asperity_deviation' with model = "asperity-gaussian", and 'asperity_height' with model = "asperity-uniform")"},
@@ -150,7 +150,7 @@ INSTANTIATE_TEST_SUITE_P(Structure, BadFile, testing::Values(
     structure_line("plate_strain = true", "x.toml:9: structure.plate_strain = true: needs structure.poissons_ratio"),
     structure_line(R"(plate_strain = "yes")", R"(x.toml:9: structure.plate_strain = "yes": expected true or false)"),
     structure_line("poissons_ratio = 0.5", "x.toml:9: structure.poissons_ratio = 0.5: must be in (-1, 0.5)"),
-    Edit{R"(contact = "2 um")", R"(contact = "3.47 um")", R"(x.toml:11: gap.contact = "3.47 um": must be less than 0.99 times gap.electrode = "3.5 um": nearer than a hundredth of that gap no force law holds)"},
+    Edit{R"(contact = "2 um")", R"(contact = "3.47 um")", R"(x.toml:11: gap.contact = "3.47 um": must be less than 0.99 times gap.electrode = "3.5 um": force laws do not hold below 1/100 of that gap)"},
     Edit{R"(contact = "2 um")", R"(contact = "3.5 um")", R"(x.toml:11: gap.contact = "3.5 um": must be less than gap.electrode = "3.5 um")"},
     Edit{R"(span = ["60 um", "240 um"])", R"(span = ["60 um", "251 um"])", R"(x.toml:13: electrode.main.span = ["60 um", "251 um"]: must end on the beam: structure.length = "250 um")"},
     Edit{R"(span = ["60 um", "240 um"])", R"(span = ["60 um", "60 um"])", R"(x.toml:13: electrode.main.span = ["60 um", "60 um"]: the end must be greater than the begin)"},
@@ -182,8 +182,8 @@ const std::string factor = "[waveform.dispersion]\nfamily = \"step\"\n";
 
 INSTANTIATE_TEST_SUITE_P(Surface, BadFile, testing::Values(
     Edit{"[gas]", "[load]\nvoltage = \"5 V\"\n[gas]", "x.toml:14: [load]: missing key 'resistance' (a resistance such as \"50 ohm\")"},
-    Edit{"[gas]", "[surface]\n[gas]", "x.toml:22: [piezo]: covers a face of the beam; [surface] is for a bare beam"},
-    Edit{"[gas]", "[surface]\nelastic_modulus = \"-1 MN/m\"\n[gas]", "x.toml:14: [surface]: leaves a bending rigidity of -1.623e-10 N m^2, which must be above 0"},
+    Edit{"[gas]", "[surface]\n[gas]", "x.toml:22: [piezo]: must not be combined with [surface], which is for a beam without layers"},
+    Edit{"[gas]", "[surface]\nelastic_modulus = \"-1 MN/m\"\n[gas]", "x.toml:14: [surface]: leaves a bending rigidity of -1.623e-10 N m^2"},
     Edit{"[gas]", "[surface]\nresidual_stress = \"10 N/m\"\ncantilever_load = \"compression\"\n[gas]", "x.toml:14: [surface]: leaves -5 MPa along the beam, which buckles at -4.106 MPa"}));
 
 INSTANTIATE_TEST_SUITE_P(Dispersion, BadFile, testing::Values(
@@ -298,7 +298,7 @@ INSTANTIATE_TEST_SUITE_P(Plates, BadPlate, testing::Values(
     Edit{"thickness = \"3 um\"\n", "", R"(x.toml:10: [electrode.main]: fringing = "meijs-fokkema", the default, needs structure.width and structure.thickness on a plate; fringing = "none" does not)"},
     Edit{"width = \"100 um\"\nthickness = \"3 um\"\n[gap]\nelectrode = \"3.8 um\"\ncontact = \"2.6 um\"\n[electrode.main]", "[gap]\nelectrode = \"3.8 um\"\ncontact = \"2.6 um\"\n[electrode.main]\nfringing = \"none\"", R"(x.toml:13: gas.model = "strip": needs structure.width on a plate)"},
     Edit{"[gas]", "[piezo]\nspan = [\"0 um\", \"9 um\"]\nthickness = \"1 um\"\nyoungs_modulus = \"61 GPa\"\ndensity = \"7750 kg/m^3\"\nd31 = \"-171 pm/V\"\n[gas]", "x.toml:13: [piezo]: a rigid plate does not bend; a layer needs a beam"},
-    Edit{"model = \"strip\"\nviscosity = \"1.86e-5 Pa s\"\n[contact]\nmodel = \"linear\"\nstiffness = \"312 N/m\"", "model = \"reynolds\"\n[contact]\nmodel = \"rigid\"\nrestitution = 0.5", R"(x.toml:16: contact.model = "rigid": not with gas.model = "reynolds", whose film still flows under a plate that rests)"},
+    Edit{"model = \"strip\"\nviscosity = \"1.86e-5 Pa s\"\n[contact]\nmodel = \"linear\"\nstiffness = \"312 N/m\"", "model = \"reynolds\"\n[contact]\nmodel = \"rigid\"\nrestitution = 0.5", R"(x.toml:16: contact.model = "rigid": must not be given with gas.model = "reynolds", whose film still flows under a plate at rest)"},
     Edit{"stiffness = \"312 N/m\"", "stiffness = \"312 N/m\"\ndistribution = \"pad\"", R"(x.toml:19: contact.distribution = "pad": a plate touches with all of its pad at once, as at the centre)"},
     Edit{"stiffness = \"312 N/m\"", "stiffness = \"312 N/m\"\npad_length = \"1 mm\"", R"(x.toml:19: contact.pad_length = "1 mm": must be less than structure.area / structure.width)"}));
 // clang-format on
