@@ -30,7 +30,7 @@ inline constexpr std::string_view before_state_key = "before_state", open_state 
 /// Value of rise_time that selects the shortest rise permitted by max_slew of the driver.
 inline constexpr std::string_view steepest_rise = "driver";
 
-/// Returns the dimension of a waveform parameter in a scene. That of a level depends on the drive.
+/// Returns the dimension of a waveform parameter in a scene; the dimension of a level depends on the drive.
 [[nodiscard]] Dimension dimension_of(ParameterKind kind);
 
 /// Returns the waveform with every level raised by `by`.

@@ -17,9 +17,10 @@ struct Block {
   std::vector<int> columns;                 ///< number of each column in the file, from 1
   std::vector<std::vector<double>> values;  ///< NaN where a number is missing
   std::vector<Missing> missing;
-  std::vector<std::uint32_t> lines;       ///< line of each row
-  std::vector<std::string> names, units;  ///< name and unit of each column, from its heading or its cells; empty if there is none
-  std::vector<int> digits;                ///< number of significant digits in each column, from some of its rows
+  std::vector<std::uint32_t> lines;  ///< line of each row
+  std::vector<std::string> names,
+      units;                ///< name and unit of each column, from its heading or its cells; empty without a heading
+  std::vector<int> digits;  ///< number of significant digits in each column, from some of its rows
   bool has_headings = false;
   Preamble preamble;
   std::vector<std::string> left_out, notes;

@@ -31,7 +31,7 @@ struct NodalModes {
   std::array<bool, 3> holds{true, true, true};  ///< true for the directions of motion that the file holds
   std::optional<double> length_unit = {};       ///< unit of length that the file names [m]
   bool needs_length_unit = false;               ///< true if the format has no usual unit of length, so that the user must give it
-  std::string normalised_by = {};  ///< what the modes are normalised by according to the file; empty if it does not say
+  std::string normalised_by = {};               ///< text of the file on the normalisation of its modes; may be empty
   std::vector<std::string> left_out = {}, notes = {};
 };
 

@@ -33,7 +33,7 @@ struct Preamble {
   void take_line(std::string_view line, const std::vector<std::string_view>& cells);
   /// Reads a key and its value; returns false for an unknown key.
   bool take(std::string_view key, std::string_view value);
-  /// Returns the first statement of a kind; null if there is none.
+  /// Returns the first statement of a kind; null without such a statement.
   [[nodiscard]] const TimeClaim* first(TimeClaim::Of of) const;
 };
 

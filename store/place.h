@@ -28,8 +28,8 @@ void require_room(const std::filesystem::path& path);
 /// Opens the store for reading, by the access mode that its folder permits.
 [[nodiscard]] std::unique_ptr<const Database> open_to_read(const std::filesystem::path& path);
 
-/// Returns the journal mode of SQLite for a file system. "WAL" lets other processes read during a write. "TRUNCATE" is the only
-/// safe mode if several machines use the file, because the index of a write-ahead log is in the memory of one machine. `type` is
+/// Returns the journal mode of SQLite for a file system. "WAL" lets other processes read during a write. Only "TRUNCATE" is
+/// safe if several machines use the file, because the index of a write-ahead log is in the memory of one machine. `type` is
 /// the file system as statfs() reports it.
 [[nodiscard]] const char* journal_on(long type);
 [[nodiscard]] const char* journal_at(const std::filesystem::path& path);

@@ -136,7 +136,7 @@ class StudyStore::Implementation {
 
   std::optional<RowWriter> rows_;
   std::optional<SessionTally> tally_;
-  fs::path log_;  // path of the write-ahead log; empty if there is none
+  fs::path log_;  // path of the write-ahead log; empty without a log
   std::optional<FileNumber> log_number_;
   std::string rescued_;  // message with the file to which the rows of a removed store were saved; only the writing thread uses it
 

@@ -114,9 +114,9 @@ class StudyStore {
     resume  ///< an existing store with the same columns and shard is continued, with this or another plan
   };
 
-  /// Creates or continues the store. Throws InvalidInput with path and reason if `path` must not exist but does, is not a store,
-  /// is a store of a later schema or of other columns, or is not writable; also, with its name, if another process writes to the
-  /// store. Throws OutputLost if the disk is full. A damaged store is not changed; it is copied to FILE.damaged.
+  /// Creates or continues the store. Throws InvalidInput with path and reason if `path` must not exist but does, or is not a
+  /// store. The same holds for a store of a later schema or of other columns, one that is not writable, and one to which another
+  /// process writes. Throws OutputLost if the disk is full. A damaged store is not changed; it is copied to FILE.damaged.
   StudyStore(const std::filesystem::path& path, const StoredPlan& plan, const StoredOrigin& origin, Opening opening);
   /// Commits waiting rows without reporting errors; close() reports them.
   ~StudyStore();

@@ -22,7 +22,7 @@
 namespace softland::verbs {
 namespace {
 
-// Reads "Vdp:1 %,time:0.5 %".
+// Reads the errors of --error, such as "Vdp:1 %,time:0.5 %".
 void read_errors(const std::string& option, const std::string& list, IdentificationOptions& options) {
   const std::array<std::pair<std::string_view, double*>, 6> errors{{{"Vdp", &options.pull_in_error},
                                                                     {"Vsp", &options.static_pull_in_error},
@@ -52,7 +52,7 @@ void read_errors(const std::string& option, const std::string& list, Identificat
   }
 }
 
-// Reads "1.1,1.25".
+// Reads the multiples of --steps, such as "1.1,1.25".
 void read_steps(const std::string& option, const std::string& list, std::vector<double>& all) {
   std::vector<double> steps;
   for (const std::string& one : split(list, ',')) {

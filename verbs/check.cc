@@ -35,7 +35,7 @@ using internal::plain_number;
 using internal::quantity;
 using internal::scientific;
 
-// Says at which factor the dispersion force closes the switch.
+// Returns the strength of the dispersion force, relative to its nominal strength, at which it closes the switch.
 std::string dispersion_words(const PreparedScene& p, const Watch& watch) {
   const std::size_t k = p.scene.device.electrodes.size();
   const std::vector<double> bias = bias_of(p.scene, k);
@@ -79,7 +79,7 @@ std::string closed_state_words(const ClosedState& state) {
   return words;
 }
 
-// Gives the capacitance of the closed state of a switch that lands on a dielectric, and its change with more modes.
+// Returns the capacitance of the closed state of a switch that lands on a dielectric, and its change with more modes.
 std::string capacitance_words(const PreparedScene& p) {
   const ModeLadder ladder(p);
   const ByModes found = closed_capacitance_by_modes(ladder, hold_levels(p.signals()));
@@ -89,7 +89,7 @@ std::string capacitance_words(const PreparedScene& p) {
          (ladder.exists() ? "; more modes shift it by " + shift_words(found, "F") : "");
 }
 
-// Returns the message about a key, with its place.
+// Returns a message about a key with its file and line.
 std::string said_of(const SceneFile& file, const std::string& key, std::string_view words) {
   try {
     file.refuse(key, words);
@@ -150,7 +150,7 @@ void add_parts(CheckRecord& record, const Device& device) {
         {"anchors", fmt::format("near end {}; far end {}", end_words(s.near_hold()), end_words(s.far_hold()))});
 }
 
-// Gives the distance of the rest shape from the straight shape, for a structure that is not straight.
+// Adds lines on the rest shape of a structure that is not straight at rest.
 void add_rest_shape(CheckRecord& record, const Device& device) {
   constexpr int places = 200;
   const double length = device.structure.length, gap = device.gap.electrode;

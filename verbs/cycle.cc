@@ -46,7 +46,7 @@ struct CycleRequest : Usual {
   static Outcome shown_again(const nlohmann::json& json) { return shown(read_cycles(json)); }
 
   CyclingOptions options{.jobs = one_per_core()};
-  std::vector<std::string> results;  ///< results with other waveforms
+  std::vector<std::string> results;  ///< further scenes or results that give the closing or the opening waveform
   bool searches = false;             ///< true when both waveforms are searched for the rate
   std::string target = "bounce", waveform = {};
   Actuator actuator = Actuator::electrostatic;

@@ -38,7 +38,7 @@ void read_drift(const std::string& option, const std::string& text, double& drif
   drift = signed_quantity(option, text.substr(0, stroke), dimension::none) / shots;
 }
 
-// Reads "1 us" or "-1 us".
+// Reads a delay, which may be negative: "1 us" or "-1 us".
 void read_delay(const std::string& option, const std::string& text, double& delay) {
   delay = signed_quantity(option, text, dimension::time);
 }

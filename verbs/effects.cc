@@ -1,4 +1,4 @@
-// Verb `effects`: a closing with and without each effect.
+// Verb `effects`: compares the closing with and without each effect of the model.
 #include "studies/closing/effects.h"
 
 #include "reports/effects_report.h"

@@ -13,7 +13,7 @@
 
 namespace softland::verbs {
 
-/// Options that are not given are empty.
+/// The options of `explore`; those that are not given are empty.
 struct ExploreRequest {
   std::vector<std::string> vary, options;
   std::string sample, pareto, list, study, target, actuator, waveform, optimizer, shard, out;
@@ -22,11 +22,11 @@ struct ExploreRequest {
   int jobs = one_per_core();
   bool certify = false, resume = false;
 
-  /// Returns the options that belong to a plan, by name.
+  /// Returns the given options that are part of a plan, by name.
   [[nodiscard]] std::map<std::string, std::string> of_plan() const;
-  /// Returns the plan of this scene. Messages begin with an option as `spelling` has it. Throws InvalidInput.
+  /// Returns the plan of these options and a scene. Messages begin with an option in its `spelling`. Throws InvalidInput.
   [[nodiscard]] PlanRequest plan(SceneFile scene, const Spelling& spelling) const;
-  /// Returns the part of its points. Throws InvalidRequest.
+  /// Returns the part of the points that --shard selects. Throws InvalidRequest.
   [[nodiscard]] Shard part() const;
 };
 /// Reads the request. Throws InvalidRequest.

@@ -1,4 +1,4 @@
-// The laboratory verbs share these options about the instruments: `device` simulates these errors, `tune` expects them.
+// Options about the errors of the instruments in a laboratory: the verb `device` simulates these errors, `tune` expects them.
 #pragma once
 
 #include <optional>
@@ -9,11 +9,12 @@
 
 namespace softland::verbs {
 
-/// Errors that are not given are the usual ones of the scene.
+/// Errors of the instruments; those that are not given have defaults, which depend on the scene.
 struct ToldErrors {
   std::optional<double> edge_error = {}, unseen = {}, gain_error = {}, shot_error = {};
-  std::optional<double> trigger_delay = {};  ///< delay that `tune` expects; it alone has the option
-  std::optional<double> capacitance = {};    ///< threshold, for an instrument that measures the capacitance
+  std::optional<double> trigger_delay =
+      {};  ///< standard deviation of the delay between drives and records; an option of `tune` only
+  std::optional<double> capacitance = {};  ///< threshold, for an instrument that measures the capacitance
 
   /// Returns the errors. Throws InvalidInput for a scene that cannot be read.
   [[nodiscard]] LaboratoryErrors errors(const SceneFile& file) const;

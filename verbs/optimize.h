@@ -9,19 +9,20 @@
 
 namespace softland::verbs {
 
-/// The least time of any waveform takes a second or two: a search of this many evaluations is hardly longer with it.
+/// Number of evaluations from which a search also computes the least time of any waveform (verb `limit`), which takes a second or
+/// two.
 inline constexpr long evaluations_worth_a_limit = 1000;
 
-/// Options that are not given are empty.
+/// The options of `optimize`; those that are not given are empty.
 struct OptimizeRequest : SearchRequest {
   std::vector<std::string> starts;  ///< results and scenes to begin with
   int jobs = one_per_core();
-  std::string cycle = {};  ///< rate for which the pair of waveforms is searched, "2 kHz"; see the verb cycle
+  std::string cycle = {};  ///< rate for which closing and opening waveforms are searched, "2 kHz"; see the verb `cycle`
   std::string duty = {};   ///< duty of the cycle
   bool resume = false;
   bool limit = false;  ///< true: compare the winner with the least time of any waveform, however long that takes
 };
-/// Reads the request. Throws InvalidRequest for options that search_request.h does not check.
+/// Reads the request. Throws InvalidRequest for invalid options; those of SearchRequest are checked later (search_request.h).
 [[nodiscard]] OptimizeRequest optimize_request(const Told& told);
 
 }  // namespace softland::verbs

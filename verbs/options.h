@@ -1,5 +1,6 @@
-// The options of a verb are those of its request: a struct with a function template `options(archive, request)`, which names
-// each option once. The command line and Python declare, read and explain their options by archives of that template.
+// The options of a verb are the members of a struct, its request. A function template `options(archive, request)` names each
+// option once, with its type and its help. The command line and Python declare and read options through archives: OptionList
+// collects the options, OptionReader reads their texts into the request.
 #pragma once
 
 #include <fmt/format.h>
@@ -27,10 +28,10 @@
 
 namespace softland::verbs {
 
-/// The texts that the user gave, by option, in their order. A flag has one empty text.
+/// The texts that the user gave, by name of the option, in their order. A flag has one empty text.
 using Told = std::map<std::string, std::vector<std::string>, std::less<>>;
 
-/// A quantity as an option takes it; `rule` ends the sentence "must be ...". Without a range and a rule it is at least 0.
+/// The quantity that an option accepts; `rule` completes the sentence "must be ...". Without a range and a rule it is at least 0.
 struct Wanted {
   Dimension dimension;
   Range range = {};
@@ -39,34 +40,41 @@ struct Wanted {
 
 /// An option as the command line and Python declare it.
 struct OptionRow {
-  enum class Kind { text, flag, repeated, further, object };  ///< further: words behind the scene; object: has no text form
+  enum class Kind {
+    text,
+    flag,
+    repeated,
+    further,
+    object
+  };  ///< further: arguments after the scene; object: a Python object without a text form
   enum class Door { both, program, python };
 
-  std::string name, word, about;  ///< "impact-velocity", "SPEED"; `about` begins in lower case
+  std::string name, word, about;  ///< such as "impact-velocity" and "SPEED"; `about` is the help, which begins in lower case
   Kind kind = Kind::text;
-  Door door = Door::both;     ///< an object is for Python alone
-  bool may_be_empty = false;  ///< false: the door refuses an empty text
+  Door door = Door::both;     ///< interface that has the option: the program, Python or both; objects are for Python only
+  bool may_be_empty = false;  ///< false: an empty text is refused before the option is read
 
   // These members are for Python.
   std::string keyword = {};  ///< name in Python, "impact_velocity"
   std::string type = {};     ///< type in Python, "float | str | None"
   std::string value = {};    ///< default, "None"
-  std::string note = {};     ///< text before `about`: the unit of a number, and the value that `about` describes
-  std::string told = {};     ///< expression that makes the texts of Told, "_quantity(impact_velocity, 'm/s')"
+  std::string note = {};     ///< text in front of `about`, such as the unit of a number
+  std::string told = {};     ///< Python expression that returns the texts of Told, such as "_quantity(impact_velocity, 'm/s')"
   bool is_positional = false;
 };
 
-/// The form of an option in Python; members that are not set follow from its kind. Without a value it must be given.
+/// The form of an option in Python; members that are not set follow from the kind of the option. An option without a default
+/// value is required.
 struct InPython {
   std::optional<std::string> keyword = {}, type = {}, value = {}, told = {};
   bool is_positional = false;
 };
 
-/// Returns "impact_velocity".
+/// Returns the Python keyword of an option: "impact_velocity" for "impact-velocity".
 [[nodiscard]] std::string keyword_of(std::string_view name);
-/// A spelling maps the name of an option to the form of a door: "--impact-velocity", "impact_velocity".
+/// A spelling maps the name of an option to its form on the command line or in Python: "--impact-velocity", "impact_velocity".
 using Spelling = std::function<std::string(std::string_view)>;
-/// Spells the options that requested() has marked in a text, whichever library wrote it.
+/// Replaces the option names that requested() has marked in a message by their spelling.
 [[nodiscard]] std::string spelled(std::string_view marked, const Spelling& spelling);
 [[nodiscard]] std::string spelled(const InvalidRequest& error, const Spelling& spelling);
 /// The type that an optional holds, or the type itself.
@@ -79,14 +87,14 @@ struct Held<std::optional<T>> {
   using type = T;
 };
 
-/// Lists the options.
+/// An archive that lists the options of a verb.
 class OptionList {
  public:
-  /// The program alone has the next option.
+  /// Marks the next option as one of the program only.
   OptionList& program() { return next_.door = OptionRow::Door::program, *this; }
-  /// Python alone has the next option.
+  /// Marks the next option as one of Python only.
   OptionList& python() { return next_.door = OptionRow::Door::python, *this; }
-  /// Python has the next option in this form.
+  /// Sets the form of the next option in Python.
   OptionList& as(const InPython& form) { return next_.form = form, *this; }
 
   template <class T, class Names>
@@ -120,7 +128,7 @@ class OptionList {
   void text(const char* name, const std::optional<std::string>&, const char* word, const std::string& about) {
     add({.name = name, .word = word, .about = about, .may_be_empty = true}, "str | None", "None", "_text({})");
   }
-  /// Adds an option with a text of its own form. Python has a list for "1.1,1.25" and a mapping for "Vdp:1 %,time:0.5 %".
+  /// Adds an option whose text `parse` reads. Python has a list for "1.1,1.25" and a mapping for "Vdp:1 %,time:0.5 %".
   template <class T, class Parse>
   void parsed(const char* name, T&, const Parse&, const char* word, const std::string& about, const char* keyword,
               const char* type) {
@@ -144,7 +152,7 @@ class OptionList {
          .is_positional = is_positional},
         "Sequence[str]", "()", "list({})");
   }
-  /// Adds further results behind the scene; in Python waveforms by name.
+  /// Adds further results as arguments after the scene; in Python they are waveforms by name.
   void results(const char* name, std::vector<std::string>&, const std::string& about) {
     add({.name = name,
          .word = "",
@@ -162,7 +170,7 @@ class OptionList {
   void flag(const char* name, bool&, const std::string& about) {
     add({.name = name, .word = "", .about = about, .kind = OptionRow::Kind::flag}, "bool", "False", "_flag({})");
   }
-  /// Adds a function or another object of Python, which is handed on as it is.
+  /// Adds a Python function or object, which is passed on unchanged.
   void object(const char* keyword, const char* type, const char* value, const std::string& about) {
     python().add({.name = keyword, .word = "", .about = about, .kind = OptionRow::Kind::object}, type, value, "");
   }
@@ -180,7 +188,7 @@ class OptionList {
   [[nodiscard]] const std::vector<OptionRow>& all() const { return all_; }
 
  private:
-  /// Adds an option; `told` has {} for the keyword.
+  /// Adds an option; {} in the Python expression `told` stands for the keyword.
   void add(OptionRow row, const std::string& type, const std::string& value, const std::string& told) {
     const auto [door, form] = std::exchange(next_, {});
     row.door = door;
@@ -214,8 +222,8 @@ template <class Number>
   return value;
 }
 
-/// Sets the members of a request; options that are not given keep their value. Throws InvalidRequest with option, value and
-/// rule.
+/// An archive that reads the given texts into the members of a request; other members keep their values. Throws InvalidRequest
+/// with option, value and rule.
 class OptionReader {
  public:
   explicit OptionReader(const Told& told) : told_(told) {}
@@ -265,7 +273,7 @@ class OptionReader {
   void measurements(const char* name, std::string& value, const std::string&) {
     const std::string* const text = find(name);
     require_request(text != nullptr && !text->empty(),
-                    [&] { return fmt::format("{}: name the file of measurements, such as bench.toml", requested(name)); });
+                    [&] { return fmt::format("{}: must name the file of measurements, such as bench.toml", requested(name)); });
     value = *text;
   }
   void flag(const char* name, bool& value, const std::string&) { value = value || told_.contains(name); }
@@ -285,11 +293,11 @@ class OptionReader {
   const Told& told_;
 };
 
-// Several verbs have the following options.
+// Options that several verbs have.
 template <class Archive, class Seed>
 void seed_option(Archive& a, Seed& seed, const std::string& same) {
   const std::string about = "random seed, a whole number from 0 on (default: 1); the same seed gives " + same;
-  if constexpr (std::is_same_v<Seed, std::optional<std::string>>)  // such a seed is read elsewhere
+  if constexpr (std::is_same_v<Seed, std::optional<std::string>>)  // the request keeps the text of the seed
     a.text("seed", seed, "N", about);
   else
     a.whole("seed", seed, {.least = 0}, about);

@@ -16,8 +16,8 @@ namespace {
 
 using nlohmann::json;
 
-// These members are not results of the point: its scene and drives, program and settings, times of the machine, and tables by
-// the number of modes.
+// Members of a JSON that are not stored as results of a point: scene and drives, program and settings, computing times, and
+// tables by number of modes.
 constexpr std::array<std::string_view, 12> left_out{
     "scene",      "made_with",         "waveforms", "by_modes",  "pulled_through_by_modes_V", "seed", "tolerance",
     "duration_s", "dynamic_precision", "rhs_s",     "has_start", "band_of_contact_gap"};

@@ -1,11 +1,11 @@
-// The verbs that an exploration may run at its points, with the numbers of their records.
+// The verbs that an exploration may run at its points, and the numbers that it stores of them.
 #pragma once
 
 #include "studies/exploration/exploration.h"
 
 namespace softland::verbs {
 
-/// Returns limit, release, effects and check. A record leaves out long lists, files and times of the machine.
+/// Returns the verbs limit, release, effects and check. The stored numbers exclude long lists, files and computing times.
 [[nodiscard]] const OtherStudies& studies_of_points();
 
 }  // namespace softland::verbs

@@ -35,7 +35,7 @@ std::string voltage_rule() {
                      engineering(most_bias, "V"), example(dimension::voltage));
 }
 
-// Reads "V1:V2:N".
+// Reads the range of --sweep, FIRST:LAST:N.
 void read_sweep(const std::string& option, const std::string& text, std::optional<SweepRange>& asked) {
   constexpr int most_points = 100'000;
   const auto refuse = [&](std::string_view rule) { throw InvalidRequest(fmt::format("{} {}: {}", option, visible(text), rule)); };
@@ -86,7 +86,7 @@ void set_bias(PreparedScene& p, const std::string& assignment) {
   p.scene.standing[static_cast<std::size_t>(drive - names.begin())] = is_factor ? given.value - 1 : given.value;
 }
 
-// Names in a sentence the results that are missing because the verb was asked to stop.
+// Returns a sentence with the results that are missing because the verb was asked to stop.
 std::string left_out_words(const std::vector<std::string>& left_out) {
   return wrapped(fmt::format("interrupted before these results were found: {}.", fmt::join(left_out, "; "))) + "\n";
 }
@@ -191,7 +191,7 @@ Outcome run(const Setting& setting, const PullInRequest& request) {
   try {
     watch.throw_if_stopped();
     if (!leaves_choices) {
-      const std::vector<double> standing = prepared.scene.standing;  // levels with --bias
+      const std::vector<double> standing = prepared.scene.standing;  // voltages of all drives, with those of --bias
       prepared = prepare(file, false, watch, find_pull_in);
       prepared.scene.standing = standing;
     }

@@ -1,4 +1,4 @@
-// Reports (reports/report_files.h) become the outcome of a verb.
+// Makes the outcome of a verb from a report (reports/report_files.h).
 #pragma once
 
 #include <memory>
@@ -26,8 +26,8 @@ template <class Report>
       .json = summary_json(json_of(*result)), .text = terminal_text(closing_document(*result)), .files = files_of_report(result)};
 }
 
-/// Shows the result of simulate or optimize from its JSON. JSON from --json has no curves, which all of the files show, so it
-/// gives no files.
+/// Makes the outcome of simulate or optimize again from its JSON. The JSON of --json has no curves, which all files need, so that
+/// the outcome then has no files.
 [[nodiscard]] inline Outcome closing_shown_again(const nlohmann::json& json) {
   require_reportable(json);
   Outcome outcome = closing_shown(std::make_shared<const ClosingRecord>(read_closing(json)));

@@ -1,4 +1,4 @@
-// Verb `robustness`: judges drives on devices with the process variation of [spread].
+// Verb `robustness`: evaluates waveforms on devices with the process variation of [spread].
 #include "studies/devices/robustness.h"
 
 #include <fmt/format.h>
@@ -58,9 +58,9 @@ struct RobustnessRequest : Usual {
   static Outcome shown_again(const nlohmann::json& json) { return shown(read_robustness(json)); }
 
   RobustnessOptions options{.jobs = one_per_core(), .worth_of_measuring = true, .opens_on_command = true};
-  std::vector<std::string> results;  ///< results whose drives are judged as well
+  std::vector<std::string> results;  ///< further results whose waveforms are evaluated
   std::string calibration;           ///< measurements of every device; empty: those of the scene
-  bool box_and_chaos = false;        ///< true: ranges over a box, and polynomial chaos, beside the sample
+  bool box_and_chaos = false;        ///< true: extremes over a box and polynomial chaos are computed in addition to the sample
 };
 
 template <class Archive>
@@ -81,7 +81,7 @@ void options(Archive& a, RobustnessRequest& r) {
   jobs_option(a, r.options.jobs);
 }
 
-// The report refers to the nominal design and the findings.
+// The report keeps references to the nominal design and the results.
 struct Judged {
   std::shared_ptr<const PreparedScene> nominal;
   Robustness found = {};

@@ -44,7 +44,7 @@ const std::vector<Study>& all_studies() {
 
 const Study& study_named(std::string_view name) {
   const auto found = std::ranges::find_if(all_studies(), [&](const Study& one) { return one.name == name; });
-  require(found != all_studies().end(), [&] { return fmt::format("there is no verb '{}'", name); });
+  require(found != all_studies().end(), [&] { return fmt::format("unknown verb '{}'", name); });
   return *found;
 }
 

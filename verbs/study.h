@@ -1,6 +1,6 @@
-// A study is a verb that looks at one scene. Its options, its computation and its files are described once, for the command
-// line and for Python. A verb that a door runs in its own way, such as a tuning on instruments or on a function of Python, has
-// no computation: both doors take name, options and help from it.
+// A study is a verb that computes something from one scene. Its options, its computation and its files are described once, for
+// the command line and for Python. Some verbs, such as the tuning on instruments or by a Python function, run differently in
+// each of the two; their description has name, options and help, but no computation.
 #pragma once
 
 #include <functional>
@@ -19,24 +19,24 @@
 
 namespace softland::verbs {
 
-/// The ending of a verb. The program has an exit status for each.
+/// The outcome of a verb; the program has an exit status for each.
 enum class Ending { done, no_success, numerical_failure, interrupted };
-/// Returns the ending of a verb whose closing has this status.
+/// Returns the outcome of a verb whose closing has this status.
 [[nodiscard]] Ending ending_of(Status status);
 
-/// The findings of a verb, as the command line and Python take them.
+/// The results of a verb, for the command line and for Python.
 struct Outcome {
   struct File {
     std::string name;
     std::function<std::string()> text;
-    std::string listed = {};  ///< name in the list of files, "" where it is not listed
+    std::string listed = {};  ///< entry in the printed list of files; empty: not listed
   };
   nlohmann::json json;
   std::string text;  ///< text for a terminal
   std::vector<File> files = {};
-  std::string next = {};   ///< text below the files; "{}" stands for the scene in their folder that `export` takes
-  std::string last = {};   ///< text below all
-  std::string fault = {};  ///< reason why it is not done, for standard error even of a quiet run
+  std::string next = {};   ///< text below the list of files; "{}" stands for the scene in their folder, for `export`
+  std::string last = {};   ///< text at the very end
+  std::string fault = {};  ///< reason why the verb is not done, printed to standard error even with --quiet
   Ending ending = Ending::done;
 };
 
@@ -46,44 +46,45 @@ struct Setting {
   std::string name;     ///< name of the scene as the user gave it
   std::string command;  ///< command line, for provenance
   const Watch& watch;
-  /// Prepares the scene, without or with the limits that a search takes where the scene has none.
+  /// Prepares the scene. `default_limits` adds the voltage limits of a search to drives without [driver].
   std::function<std::shared_ptr<const PreparedScene>(bool default_limits)> prepared;
   /// Loads the scene of a file, or of a result.
   std::function<SceneFile(const std::string&)> load;
-  /// Returns the waveforms of a result for the switch of `nominal`. Throws InvalidInput where they cannot drive it.
+  /// Returns the waveforms of a result for the switch of `nominal`. Throws InvalidInput if they do not fit its drives.
   std::function<DriveWaveforms(const std::string& result, const PreparedScene& nominal)> waveforms_of;
   /// Returns the scene as it is written, with its comments.
   std::function<std::string()> text;
-  /// Takes a line about the scene or the result while the verb runs; empty: nobody listens. It names options as requested()
-  /// does.
+  /// Receives a line about the scene or the result while the verb runs; may be empty. The line marks names of options as
+  /// requested() does.
   std::function<void(const std::string&)> note = {};
 };
 
-/// The general options that a verb takes besides its own.
+/// The general options of a verb.
 struct Takes {
-  bool scene = true;                           ///< true where a scene is required
+  bool scene = true;                           ///< true if a scene is required
   bool set = true, quiet = true, json = true;  ///< options of the program
 };
 
 struct Study {
   const char *name, *about;
-  const char *python, *returns, *progress;  ///< the method of a scene in Python, the type of its value, and a default
-  const char* in_python;                    ///< further text of its docstring
-  const char *subject, *scene;              ///< word for the scene in --help, and its description
+  const char *python, *returns,
+      *progress;          ///< name of the method of a scene in Python, type of its result, default of its argument `progress`
+  const char* in_python;  ///< further text of its docstring
+  const char *subject, *scene;  ///< word for the scene in --help, and description of the scene
   Takes takes;
-  bool is_explorable;   ///< true where an exploration may run it at every point
-  const char* leaves;   ///< description of the files in --out; null: it leaves no files
-  const char* place;    ///< folder where --out names none; null: then none is written
-  const char* leaving;  ///< option that the files belong to: --out requires it, and it requires --out; null: they belong to all
+  bool is_explorable;   ///< true if an exploration may run the verb at its points
+  const char* leaves;   ///< description of the files in --out; null: no files
+  const char* place;    ///< default folder of the files; null: without --out no files are written
+  const char* leaving;  ///< option that must be given together with --out; null: none
   const char* changes;  ///< example of --set
   std::string remarks;
   std::vector<std::string> files;  ///< names of files that --out may hold
   std::vector<OptionRow> options;
-  /// Reads the given options; the study itself runs when the result is called. Throws InvalidRequest. Empty where a door runs
-  /// the verb.
+  /// Reads the given options and returns a function that runs the verb. Throws InvalidRequest. Empty if command line and Python
+  /// run the verb differently.
   std::function<std::function<Outcome(const Setting&)>(const Told&)> ask = {};
   /// Makes the text and the files of an outcome again from its JSON, as far as possible. Throws InvalidInput for other JSON.
-  /// Empty where the verb leaves no record.
+  /// Empty if the verb writes no JSON that can be read.
   std::function<Outcome(const nlohmann::json&)> shown_again = {};
 
   /// Returns the name of an option in Python.
@@ -95,7 +96,7 @@ inline constexpr auto varied_scene = "scene file with [spread], result folder (t
 inline constexpr auto scene_alone = "scene file (TOML)";
 inline constexpr auto usual_change = "change one key of the scene, such as --set gap.contact=\"1.8 um\"";
 
-/// Defaults for the members of a request that describe its verb.
+/// Defaults of the members by which a request describes its verb.
 struct Usual {
   static constexpr const char *returns = "Outcome", *progress = "None", *in_python = "", *subject = "SCENE",
                               *scene = scene_or_result, *leaves = nullptr, *place = nullptr, *leaving = nullptr,
@@ -115,7 +116,7 @@ template <class Request>
 }
 
 /// Returns the description of a request: a struct with name, about, python and remarks, and a template options(archive,
-/// request). It has shown_again(json) where it leaves a record.
+/// request). A request may also have shown_again(json).
 template <class Request>
 [[nodiscard]] Study described() {
   OptionList list;
@@ -148,7 +149,7 @@ template <class Request>
   return study;
 }
 
-/// Returns the study of a request that has run(setting, request), too.
+/// Returns the description of a request that also has a function run(setting, request).
 template <class Request>
 [[nodiscard]] Study study_of() {
   Study study = described<Request>();
@@ -158,7 +159,7 @@ template <class Request>
   return study;
 }
 
-// Each study has a file of its own.
+// Each of these studies is defined in a file of its own.
 [[nodiscard]] Study accuracy_study();
 [[nodiscard]] Study calibrate_study();
 [[nodiscard]] Study check_study();

@@ -1,5 +1,5 @@
-// Verb `tune`: tunes a waveform on one device, closing after closing. The doors choose who fires the shots: a command or a
-// person for the program, a function for Python.
+// Verb `tune`: tunes a waveform on one device, closing after closing. In the program a command or a person fires the shots, in
+// Python a function.
 #pragma once
 
 #include <chrono>
@@ -18,7 +18,7 @@ namespace softland::verbs {
 struct TuneRequest {
   std::string device;
   bool by_hand = false, resume = false;
-  std::vector<std::string> wafer;     ///< folders of earlier tunings
+  std::vector<std::string> wafer;     ///< folders of earlier tunings of devices of the same wafer
   std::vector<std::string> contact;   ///< keys that say how to read recorded voltages of the contact
   std::optional<std::string> format;  ///< format of the files of shots
   Sampling sampling;                  ///< sampling of the sources

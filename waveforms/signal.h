@@ -83,8 +83,7 @@ class Signal {
 /// Returns the time at which the last piece of any signal begins [s].
 [[nodiscard]] double last_breakpoint(std::span<const Signal> signals);
 
-/// Returns the signal until `time` [s]; from then on its voltage just before `time` is held. For 0 s that is the voltage before
-/// t = 0.
+/// Returns the signal until `time` [s]; from then on its voltage just before `time` is held, which for 0 s is that before t = 0.
 [[nodiscard]] Signal held_from(const Signal& signal, double time);
 /// Returns the part of a signal after a breakpoint [s], before which the signal must be constant. Time counts from the
 /// breakpoint, and the voltage before is `before` [V].
