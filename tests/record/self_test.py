@@ -69,7 +69,7 @@ def sees_planted_mistakes(record):
             "results.initial_contact_time_s")
     planted("purdue-nickel.effects/*/files/effects.json", r'"initial_contact_time_s": ', '"initial_contact_time_m": ', "initial_contact_time_m")
     planted("purdue-nickel.effects/*/stdout", r"(strip +)(\d)", lambda m: m[1] + str((int(m[2]) + 1) % 10), "strip")
-    planted("mistakes.words/transcript", "there is no verb", "there was no verb", "there was no verb")
+    planted("mistakes.words/transcript", "unknown verb", "unknown word", "unknown word")
     planted(step + "files/simulate.json", r'("wall_s": )\S+\d', r"\g<1>7.5", masked=True)
     planted("purdue-nickel.effects/*/files/effects.json", r'("rhs_s": )[^,\s]+', r"\g<1>7.5", masked=True)
 
