@@ -12,11 +12,12 @@
 namespace softland {
 namespace {
 
-constexpr double enough_seconds = 0.03;     // least sum of the timed runs of one setting
-constexpr double reference_tighter = 1e-4;  // factor below the tightest tolerance
-constexpr double reference_looser = 100;    // factor of the second reference over the first, and from one tried to the next
-constexpr double reference_growth = 2.5;    // time ratio of one reference to the next, for a fifth-order method
-constexpr double told_apart = 9.9;  // multiple of the reference's tolerance, less rounding, from which on errors are resolved
+constexpr double enough_seconds = 0.03;     // least total time of the timed runs of one setting
+constexpr double reference_tighter = 1e-4;  // tolerance of the reference over the tightest tolerance of the study
+constexpr double reference_looser =
+    100;  // ratio of the tolerances of the second reference and the first, and of successive references
+constexpr double reference_growth = 2.5;  // time ratio of successive references, for a fifth-order method
+constexpr double told_apart = 9.9;        // least resolved error over the tolerance of the reference: 10, less rounding
 constexpr CloudOptions cloud_options{.runs = 8};
 
 bool touched(const Metrics& m) { return std::isfinite(m.initial_contact_time); }
@@ -37,7 +38,7 @@ class Study {
       }
     }
     const std::size_t tolerances = options.tolerances.size();
-    // The two references and the cloud count as one each.
+    // Each of the two references and the cloud counts as one step of the progress.
     all_ = 3 + (all_integrators.size() + other_points_.size()) * tolerances + other_modes_.size();
     found_.why_always_restarted = prepared.model.has_contact() ? why_always_restarted(prepared.model) : "there is no contact";
     if (found_.why_always_restarted.empty()) all_ += all_integrators.size() * tolerances;
@@ -91,14 +92,14 @@ class Study {
             .stop = options_.stop};
   }
 
-  // Runs a setting until it is timed well enough, none longer than `most_seconds`.
+  // Repeats a setting until its time is well known; stops a run after `most_seconds`.
   void measure(const Switch& model, AccuracyRow& row, int runs, double most_seconds) {
     if (stopped()) {
       row.missing = "interrupted";
       return;
     }
     ClosingOptions closing_options = closing(row);
-    constexpr int steps_per_look = 64;  // steps between two looks at the clock
+    constexpr int steps_per_look = 64;  // integrator steps between two readings of the clock
     int steps = 0;
     bool cut = false;
     double start = 0;
@@ -129,7 +130,7 @@ class Study {
     row.errors = relative_errors(row.figures, found_.reference.figures, prepared_.scene.metrics);
   }
 
-  // Returns the figures. A run without a contact law ends at first touch.
+  // Returns the figures of a run. A run without a contact law ends at first touch.
   [[nodiscard]] Metrics figures(const Trajectory& t) const {
     Metrics m = metrics(t, prepared_.scene.metrics);
     if (!prepared_.model.has_contact()) m.major_bounce_height = m.peak_contact_force = Metrics::unset;
@@ -141,7 +142,7 @@ class Study {
     if (seconds_since(start_) < options_.all_seconds) {
       measure(model, row, options_.runs, options_.most_seconds);
     } else {
-      row.missing = fmt::format("not tried: the {:g} s of the study are over", options_.all_seconds);
+      row.missing = fmt::format("not tried: the time limit of the study, {:g} s, is over", options_.all_seconds);
     }
     progress();
   }
@@ -158,7 +159,7 @@ class Study {
       } else if (tolerance < tightest_ ||
                  (row.points_per_length && 2 * *row.points_per_length > found_.reference.points_per_length)) {
         progress();
-        row.missing = "not tried: the reference is not better";
+        row.missing = "not tried: the reference is too loose to judge it";
       } else {
         try_out(model, row);
         cut = row.missing.starts_with("cut");
@@ -167,7 +168,7 @@ class Study {
     }
   }
 
-  // Measures the same without a restart at the contact.
+  // Measures an integrator at every tolerance without a restart at the contact.
   void go_through(const Switch& model, Integrator integrator) {
     if (!found_.why_always_restarted.empty()) return;
     AccuracyRow row = setting(integrator, own_points_);
@@ -179,7 +180,7 @@ class Study {
     return points ? Switch(prepared_.scene.device, {.points_per_length = *points}) : prepared_.model;
   }
 
-  // Tightens the reference to the planned tolerance, or to where rounding or the remaining time ends it.
+  // Tightens the reference to the planned tolerance, or until rounding or the time limit stops it.
   void tighten_reference(const Switch& fine, std::optional<double> points, double& seconds_left) {
     const double planned = reference_tighter * options_.tolerances.back();
     int steps = 0;
@@ -191,7 +192,8 @@ class Study {
       if (found && (!touched(best.figures) || growth * best_seconds > seconds_left)) return;
       AccuracyRow next = setting(own_integrator_, points, planned * std::pow(reference_looser, steps));
       const double start = options_.clock();
-      constexpr double first_share = 1.0 / 3;  // leaves time for a reference with fewer points
+      constexpr double first_share =
+          1.0 / 3;  // share of the time for the first reference: the rest serves one with fewer quadrature points
       measure(fine, next, 1, found ? seconds_left : first_share * seconds_left);
       const double seconds = seconds_since(start);
       seconds_left = std::max(0.0, seconds_left - seconds);
@@ -276,7 +278,7 @@ class Study {
     }
   }
 
-  // True if a row is within an accuracy, and the following rows of the same setting, which have tighter tolerances.
+  // True if a row is within an accuracy, and so are the following rows of the same setting, which have tighter tolerances.
   [[nodiscard]] bool within(std::size_t index, double accuracy) const {
     const AccuracyRow& first = found_.rows[index];
     if (!first.missing.empty()) return false;

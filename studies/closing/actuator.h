@@ -1,4 +1,4 @@
-// The actuator that closes a switch: the drives that are shaped, in the plain step and in a search.
+// The actuator that closes a switch: the drives whose waveforms the plain step and a search replace.
 #pragma once
 
 #include <cstddef>
@@ -15,14 +15,15 @@ inline constexpr auto actuators = std::to_array<Named<Actuator>>(
     {{Actuator::electrostatic, "electrostatic"}, {Actuator::pzt, "pzt"}, {Actuator::both, "both"}});
 static_assert(is_complete<actuators>());
 
-/// True if an electrode pulls towards the contact: one that is not on the far side.
+/// True if an electrode pulls towards the contact, so that it is not on the far side.
 [[nodiscard]] bool has_pulling_electrode(const Device& device);
-/// The electrode that closes the switch: `main` if it exists, else the first that pulls in. Throws InvalidInput if no electrode
-/// does.
+/// Returns the electrode that closes the switch: `main` if it exists, else the first electrode that pulls towards the contact.
+/// Throws InvalidInput if there is none.
 [[nodiscard]] std::string searched_electrode(const Device& device);
-/// The index of that electrode among the drives.
+/// Returns the index of searched_electrode() among the drives.
 [[nodiscard]] std::size_t searched_drive(const Device& device);
-/// Electrodes on the far side whose driver has limits: a search brakes with them. The others keep the scene's waveform.
+/// Returns the electrodes on the far side whose driver has limits: a search uses them as brakes. Other electrodes on the far
+/// side keep the scene's waveform.
 [[nodiscard]] std::vector<std::string> braking_electrodes(const PreparedScene& prepared);
 
 }  // namespace softland

@@ -27,13 +27,14 @@ struct Judged {
   double value, scale;
 };
 
-// The figures of a closing with some number of modes.
+// The figures of a closing with one number of modes.
 struct Judgement {
   std::vector<Judged> figures;
   PreparedScene scene;
 };
 
-// Finds pull-in voltages as precisely as figures are judged: a dynamic one takes as long as tens of closings.
+// Finds pull-in voltages only as precisely as the comparison needs: a dynamic pull-in voltage takes as long as tens of
+// closings.
 ElectrodePullIn pull_in_to_be_judged(const Switch& model, std::size_t electrode, Bias bias, const Watch& watch) {
   constexpr double precision = 1e-5;
   ElectrodePullIn found{.statically = static_pull_in(model, electrode, bias)};
@@ -45,7 +46,7 @@ Judgement judged(const SceneFile& file, int modes, const Watch& watch) {
   SceneFile with = file;
   with.assign("structure.modes", modes);
   with.assign("simulate.effects",
-              std::string("all"));  // all numbers of modes have the same effects; they are chosen after
+              std::string("all"));  // every number of modes is compared with all effects; effects are left out later
   const PreparedScene p = prepare(with, false, watch, pull_in_to_be_judged);
   const double omega = p.model.basis().angular_frequencies()[0], gap = p.scene.device.contact_gap();
   const Trajectory t = simulate_closing(p.model, p.signals(),
@@ -73,7 +74,7 @@ Judgement judged(const SceneFile& file, int modes, const Watch& watch) {
   return {.figures = std::move(list), .scene = p};
 }
 
-// Returns the largest relative change of any figure; a figure that comes or goes has changed entirely.
+// Returns the largest relative change of any figure; it is 1 for a figure that exists in one of the closings only.
 double change(const std::vector<Judged>& from, const std::vector<Judged>& to) {
   double most = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {
@@ -83,7 +84,7 @@ double change(const std::vector<Judged>& from, const std::vector<Judged>& to) {
   return most;
 }
 
-// Returns the largest relative change of a static voltage of an electrode by twice and four times as many modes.
+// Returns the largest relative change of a static voltage of an electrode with twice and four times as many modes.
 double statics_moved(const Scene& scene, int modes) {
   const Switch own = resolved_switch(scene.device, scene.simulate.accuracy, modes).model;
   const ModeLadder ladder(scene, own);
@@ -97,7 +98,7 @@ double statics_moved(const Scene& scene, int modes) {
   return most;
 }
 
-// True if more modes agree with those of a scene about its closed state under the hold levels.
+// True if more modes give the same stability of the closed state under the hold levels as those of the scene.
 bool agrees_on_stability(const PreparedScene& p) {
   const ModeLadder ladder(p);
   const auto closed = closed_equilibria(ladder, hold_levels(p.signals()));
@@ -129,7 +130,8 @@ AutoModes choose_modes(const SceneFile& file, const Watch& watch) {
   };
   AutoModes found;
   for (int modes = 1; modes + further <= most_modes; ++modes) {
-    // Statics are cheap: do not run closings with modes that they rule out, except the last.
+    // Statics are cheap: skip the closings of a number of modes whose static voltages already change, except for the last
+    // number.
     found = {.modes = modes, .moved = statics_moved(scene, modes)};
     if (!found.settled() && modes + further < most_modes) continue;
     const Judgement& own = with(modes);

@@ -18,7 +18,7 @@ namespace {
 std::string left_out_note(const EffectsChoice& choice, double tolerance) {
   if (choice.left_out.empty())
     return fmt::format(
-        "effects = \"auto\": nothing is left out: no effect was found without which t_i, v_i and B_H change by less than {}",
+        "effects = \"auto\": nothing is left out: no effect was found that changes t_i, v_i and B_H by less than {}",
         engineering(tolerance, ""));
   std::vector<std::string> names;
   for (const EffectAblation& o : choice.left_out)

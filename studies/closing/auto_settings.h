@@ -1,5 +1,5 @@
-// The choices that a scene leaves to softland: modes = "auto" and effects = "auto". Each repeats the closing of a prepared
-// scene, and returns a newly prepared one.
+// The choices that a scene leaves to softland: modes = "auto" and effects = "auto". Each choice repeats the closing of a
+// prepared scene, and returns a newly prepared scene.
 #pragma once
 
 #include "base/watch.h"
@@ -7,12 +7,12 @@
 
 namespace softland {
 
-/// Returns the scene with as many modes as its closing needs, then without the effects that do not matter, and a warning for
-/// each choice. A scene without choices is returned unchanged. `default_limits` is as in prepare(). Throws as prepare() does,
-/// and Interrupted if `watch` asks to stop.
+/// Returns the scene with as many modes as its closing needs, then without the effects that change its figures negligibly. Adds
+/// a warning for each choice. A scene without choices is returned unchanged. `default_limits` is as in prepare(). Throws as
+/// prepare() does, and Interrupted if `watch` asks to stop.
 [[nodiscard]] PreparedScene choose(PreparedScene prepared, bool default_limits = false, const Watch& watch = {});
 
-/// Prepares a user's scene: prepare(), then choose(). Adds a warning if more modes move its static pull-in voltages
+/// Prepares a user's scene: prepare(), then choose(). Adds a warning if more modes change its static pull-in voltages
 /// (by_modes.h).
 [[nodiscard]] PreparedScene prepare_and_choose(const SceneFile& file, bool default_limits = false, const Watch& watch = {});
 

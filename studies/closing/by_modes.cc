@@ -15,10 +15,12 @@ namespace {
 
 constexpr double found_to = 1e-5;  // relative precision of a voltage with more modes
 
-// Returns the limit of values with ever more modes. Three with doubled numbers of modes make a geometric series (Aitken). The
-// last value is the limit if it hardly differs from the one before, or has the most modes and little left to go.
+// Returns the limit of values as the number of modes grows. Values at three successively doubled numbers of modes are
+// extrapolated as a geometric series (Aitken). The last value is the limit if it hardly differs from the one before, or if it
+// has the largest number of modes and changed little.
 double extrapolated(const std::map<int, double>& values) {
-  constexpr double rounding = 3 * found_to, fastest = 0.5, left = 0.02;  // changes of the last value, and their ratio
+  constexpr double rounding = 3 * found_to, fastest = 0.5,
+                   left = 0.02;  // limits of the relative changes of the last value, and of their ratio
   if (values.size() < 2) return std::nan("");
   const auto last = std::prev(values.end()), before = std::prev(last);
   const double change = last->second - before->second, size = std::abs(last->second);
@@ -30,14 +32,14 @@ double extrapolated(const std::map<int, double>& values) {
   return last->first == most_static_modes && std::abs(change) <= left * size ? last->second : std::nan("");
 }
 
-// Rounds to ten digits. The statics of many modes end in rounding, which depends on how a program is linked.
+// Rounds to ten digits: with many modes the last digits are rounding errors, which depend on how a program is linked.
 double to_ten_digits(double value) { return std::isfinite(value) ? std::stod(fmt::format("{:.9e}", value)) : value; }
 
-// Finds one value by modes: calls find(switch) for one switch after the other, and for the finest one if much is left to
-// extrapolate.
+// Finds one value by the number of modes: calls find(switch) for each switch of the ladder, and for the finest one if the last
+// value still changes much.
 template <class Find>
 ByModes value_by_modes(const ModeLadder& ladder, Find&& find) {
-  constexpr double much = 5e-3;  // relative change between the last two
+  constexpr double much = 5e-3;  // relative change between the last two values
   std::map<int, double> values;
   double change = 0, last = std::nan("");
   const auto add = [&](const Switch& model) {
@@ -50,7 +52,7 @@ ByModes value_by_modes(const ModeLadder& ladder, Find&& find) {
   return by_modes(std::move(values));
 }
 
-// Returns an equilibrium of fewer modes as the starting point for more.
+// Extends an equilibrium of fewer modes by zeros, as the starting point for a switch with more modes.
 ClosedEquilibrium with_modes_of(ClosedEquilibrium closed, const Switch& model) {
   closed.q.conservativeResizeLike(Eigen::VectorXd::Zero(model.modes()));
   return closed;
@@ -89,8 +91,8 @@ std::string capacitance_warning(const Scene& scene, const ByModes& found) {
   const std::optional<int> needed = modes_needed(found);
   const std::string enough =
       needed && *needed <= Structure::most_modes
-          ? fmt::format("{} modes hold it to 1 %", *needed)
-          : fmt::format("the {} modes that a closing takes at most do not hold it to 1 %", Structure::most_modes);
+          ? fmt::format("{} modes give it to 1 %", *needed)
+          : fmt::format("the {} modes that a closing takes at most do not give it to 1 %", Structure::most_modes);
   return fmt::format("structure.modes = {}: more modes move the capacitance of the closed state, {}, by {}; {}",
                      scene.device.structure.modes, engineering(found.values.begin()->second, "F", digits),
                      shift_words(found, "F"), enough);
@@ -171,7 +173,7 @@ ByModes static_pull_in_by_modes(const ModeLadder& ladder, const Scene& scene, st
 }
 
 ByModes pulled_through_by_modes(const ModeLadder& ladder, std::size_t electrode, std::vector<double> volts, double own) {
-  constexpr double below = 0.95;  // share of the voltage with fewer modes
+  constexpr double below = 0.95;  // first voltage to try, over the collapse voltage with fewer modes
   std::optional<ClosedEquilibrium> near;
   double found = own;
   return value_by_modes(ladder, [&](const Switch& model) {

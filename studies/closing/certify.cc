@@ -14,23 +14,24 @@
 namespace softland {
 namespace {
 
-constexpr double shared = 0.01;  // share of the tolerance, relative to a figure, for the common error of both runs
-constexpr double parted = 0.1;   // relative difference of a rebound's height from which runs have parted
+constexpr double shared = 0.01;  // common error of both runs over the tolerance, relative to the figure
+constexpr double parted = 0.1;   // relative difference of a rebound's height from which on two runs have diverged
 
-// True if the drives' last digits decide a figure of the closing and of a better one, or whether it exists.
+// True if the last digits of the drives change a figure visibly, or make it come or go, in the closing or in the better run.
 bool ill_conditioned(const Figure& figure, const std::vector<Metrics>& cloud, const Metrics& own, const Metrics& better,
                      const MetricsOptions& options) {
   std::vector<double> values;
   for (const Metrics& m : cloud) values.push_back(figure.counted(m, options));
-  // The effect of a loose tolerance on the values of these two is an error, not a condition.
+  // A loose tolerance moves the values of these two runs by its error, which is no sign of ill-conditioning: only their
+  // existence counts.
   const bool own_has = std::isfinite(figure.value(own)), better_has = std::isfinite(figure.value(better));
   const auto have = std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); }) + own_has + better_has;
   if (have == 0 || cloud.empty()) return false;
   return have < static_cast<std::ptrdiff_t>(cloud.size() + 2) || ill_conditioned(spread(std::move(values)));
 }
 
-// Computes the figures of the closing with each pull-in voltage in which its drives are written higher, and lower, by its
-// error. The error is a multiple of the change by a finer quadrature, plus the width of the bracket of the voltage.
+// Computes the figures of the closing with each pull-in voltage that serves as a unit of its drives increased, and decreased,
+// by its error. The error is a multiple of the change with a finer quadrature, plus the width of the bracket of the voltage.
 std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switch& fine, const SwitchOptions& quadrature,
                                       const ClosingOptions& options, const MetricsOptions& figures, const Watch& watch) {
   const Scene& written = prepared.effects ? prepared.effects->described : prepared.scene;
@@ -40,7 +41,7 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
     const auto at = std::find_if(electrodes.begin(), electrodes.end(), [&](const Electrode& e) { return e.name == name; });
     const auto k = static_cast<std::size_t>(at - electrodes.begin());
     const auto known = prepared.pull_in.find(name);
-    if (known == prepared.pull_in.end()) continue;  // only limits are in its units
+    if (known == prepared.pull_in.end()) continue;  // this pull-in voltage is a unit of limits only
     const Switch model(written.device, quadrature);
     const std::vector<double> bias = bias_of(written, k);
     const StaticPullIn statically = static_pull_in(model, k, bias);
@@ -56,9 +57,9 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
       PreparedScene moved = prepared;
       try {
         moved.drives = written.drives(units).of(prepared.drive_names());
-        for (std::size_t i = 0; i < moved.drives.size(); ++i)  // they charge the same switch
+        for (std::size_t i = 0; i < moved.drives.size(); ++i)  // the sources charge the same switch
           moved.drives[i].source.load = prepared.drives[i].source.load;
-      } catch (const InvalidInput&) {  // error not known: a drive is at a limit of its driver, or no better voltage exists
+      } catch (const InvalidInput&) {  // unknown error: a drive is at a limit of its driver, or no better voltage exists
         found.emplace_back();
         continue;
       }
@@ -78,7 +79,7 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
   return found;
 }
 
-// The course of one run, rebound by rebound, with the touch before each.
+// The rebounds of one run, with the impact velocity of the touch before each.
 struct Course {
   std::vector<Rebound> rebounds;
   std::vector<double> impacts;  // [m/s]
@@ -109,7 +110,7 @@ std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, 
                           .impact_velocity = first.impacts[k],
                           .at_threshold = at_threshold};
   };
-  // The gentlest touch is the one that tiny changes make or unmake.
+  // The gentlest touch is taken for the one that tiny changes add or remove.
   const auto gentlest = [&](std::size_t count) {
     const auto found = std::min_element(first.impacts.begin(), first.impacts.begin() + static_cast<std::ptrdiff_t>(count));
     return named(static_cast<std::size_t>(found - first.impacts.begin()), false);
@@ -136,11 +137,11 @@ Closing certify(const PreparedScene& prepared, const Watch& watch, int jobs) {
   Closing c = simulate(prepared, true, watch);
   if (!c.judge) return c;
   if (!c.judge->came_to_its_end) {
-    c.warnings.emplace_back("the figures could not be certified: there is no other run to judge them by");
+    c.warnings.emplace_back("the figures could not be certified: no second run to compare them with came to its end");
     return c;
   }
   const std::vector<Signal> signals = prepared.signals();
-  // The better of the run and its judge.
+  // The better of the run and its judge has the tighter tolerance.
   const bool judge_is_better = c.judge->tolerance < c.tolerance;
   const SwitchOptions& quadrature = judge_is_better ? c.judge->quadrature : c.quadrature;
   const Switch fine(prepared.scene.device, quadrature);
@@ -163,7 +164,8 @@ Closing certify(const PreparedScene& prepared, const Watch& watch, int jobs) {
   std::erase_if(cloud, [](const Trajectory& t) { return !came_to_its_end(t); });
   std::vector<Metrics> runs;
   for (Trajectory& t : cloud) {
-    t.hold_force = c.trajectory.hold_force;  // value of the closed equilibrium, which one part in 1e7 does not move
+    // The perturbations are too small to change the closed equilibrium.
+    t.hold_force = c.trajectory.hold_force;
     t.is_held = c.trajectory.is_held;
     t.hold_capacitance = c.trajectory.hold_capacitance;
     t.hold_resistance = c.trajectory.hold_resistance;
@@ -176,7 +178,7 @@ Closing certify(const PreparedScene& prepared, const Watch& watch, int jobs) {
     const double own = figure.value(c.metrics), other = figure.value(better);
     double error = error_safety * std::abs(own - other) + shared * c.tolerance * std::abs(own);
     const double unmoved = judge_is_better ? other : own;
-    for (std::size_t i = 0; i + 1 < moved.size(); i += 2) {  // both signs of one voltage
+    for (std::size_t i = 0; i + 1 < moved.size(); i += 2) {  // a pull-in voltage increased and decreased
       error += std::fmax(std::abs(figure.value(moved[i]) - unmoved), std::abs(figure.value(moved[i + 1]) - unmoved));
     }
     if (ill_conditioned(figure, runs, c.metrics, better, prepared.scene.metrics)) {

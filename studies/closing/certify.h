@@ -1,10 +1,12 @@
-// Figures of merit with reliable errors, and clouds in the place of figures that have none.
+// Figures of merit with reliable errors, and ranges in the place of figures that have none.
 //
-// The figures are those of simulate(). Their errors are a multiple of the difference to the judging run, plus a hundredth of
-// the tolerance for the common error of both. They are calibrated on random scenes (bench/certify_coverage.cc). Pull-in
-// voltages in which drives are given are computed again with the judge's quadrature, and the figures' errors contain the effect
-// of theirs. A figure is ill-conditioned if imperceptible changes of the drives move it visibly. It is then given as median and
-// range over a cloud of runs, and its error reaches to the end of that range.
+// The figures are those of simulate(). The error of a figure is a multiple of its difference to the run that judges it, plus a
+// hundredth of the tolerance for the common error of both runs. The errors are calibrated on random scenes
+// (bench/certify_coverage.cc). Pull-in voltages that serve as units of the drives are computed again with the judge's
+// quadrature, and their errors are propagated to the figures.
+//
+// A figure is ill-conditioned if imperceptible changes of the drives change it visibly. It is then given as median and range
+// over a cloud of perturbed runs, and its error reaches to the end of that range.
 #pragma once
 
 #include <optional>
@@ -16,13 +18,14 @@
 
 namespace softland {
 
-/// The rebound at which the runs of a cloud part: up to it they have the same rebounds.
+/// The rebound at which the runs of a cloud diverge. Until then all runs have the same rebounds.
 struct GrazingRebound {
-  int number = 0;              ///< counted from 1, all rebounds of the first run
+  int number = 0;              ///< number of the rebound among all rebounds of the first run, counted from 1
   double time = 0;             ///< begin of the rebound [s]
   double height = 0;           ///< [m]
-  double impact_velocity = 0;  ///< velocity of the touch before it [m/s]
-  bool at_threshold = false;   ///< it counts in some runs only; else the touch before it is the gentlest of all until then
+  double impact_velocity = 0;  ///< impact velocity of the touch before the rebound [m/s]
+  bool at_threshold =
+      false;  ///< true if the rebound is significant in some runs only; false if the touch before it is the gentlest so far
 };
 
 struct IllConditioned {
@@ -32,18 +35,18 @@ struct IllConditioned {
 
 struct Certificate {
   std::vector<IllConditioned> ill_conditioned;
-  std::optional<GrazingRebound> grazing;  ///< none if the runs do not part at a rebound
+  std::optional<GrazingRebound> grazing;  ///< none if the runs do not diverge at a rebound
   int runs = 0;
 };
 
-/// Factor of the difference to the better run.
+/// Ratio of a stated error to the difference between the run and the better one.
 inline constexpr double error_safety = 3;
 
-/// Returns the first rebound in which runs differ, with the cause of the difference; none if they do not differ.
+/// Returns the first rebound in which the runs differ, with the cause of the difference; none if they do not differ.
 [[nodiscard]] std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, const MetricsOptions& options);
 
-/// Runs the scene's own waveforms with simulate() and certifies the figures, unless the run, or its judge, did not come to its
-/// end. `jobs` is the number of threads for the cloud; it does not change the result.
+/// Runs the scene's own waveforms with simulate() and certifies the figures, if both the run and its judge came to their end.
+/// `jobs` is the number of threads for the cloud; it does not change the result.
 [[nodiscard]] Closing certify(const PreparedScene& prepared, const Watch& watch = {}, int jobs = 1);
 
 }  // namespace softland

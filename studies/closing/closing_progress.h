@@ -10,8 +10,8 @@
 
 namespace softland {
 
-/// Returns a ClosingOptions::observer for a closing of `duration` [s] that is the `share` of a computation, after `done`. Empty
-/// if the watch has no listener. `watch` must live as long.
+/// Returns a ClosingOptions::observer that reports the progress of a closing of `duration` [s]. The closing is the `share` of a
+/// computation of which `done` is complete. The observer is empty if the watch has no listener, and must not outlive `watch`.
 [[nodiscard]] inline std::function<bool(double, const double*, const double*)> observer(const Watch& watch, std::string what,
                                                                                         double duration, double done = 0,
                                                                                         double share = 1) {

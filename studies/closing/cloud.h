@@ -1,5 +1,5 @@
-// A closing repeated under imperceptibly perturbed drives. The bounce count and the permanent contact time of a chaotic closing
-// do not converge with the tolerance: such figures are properties of a cloud of runs.
+// A cloud: a closing repeated under imperceptibly perturbed drives. The bounce count and the permanent contact time of a
+// chaotic closing do not converge with the tolerance, so they are given as ranges over such a cloud.
 #pragma once
 
 #include <array>
@@ -16,28 +16,27 @@ namespace softland {
 
 struct CloudOptions {
   int runs = 16;
-  double smallest = 1e-9, largest = 1e-7;  ///< relative change of every drive's levels, of either sign; between them by decades
+  double smallest = 1e-9, largest = 1e-7;  ///< relative changes of the drives' levels, of either sign, in steps of a decade
   std::uint64_t seed = 1;
-  int jobs = 1;  ///< threads; does not change the runs
+  int jobs = 1;  ///< number of threads; does not change the runs
 };
 
-/// Returns the runs in order, as a function of the arguments alone. Runs that `closing.stop` ends are left out, with all after
-/// the first of them. An observer of `closing` is called from several threads at once if jobs > 1; `watch` is called from one
-/// at a time.
+/// Returns the runs in order, as a function of the arguments alone. If `closing.stop` ends a run, that run and all after it are
+/// left out. An observer of `closing` is called from several threads at once if jobs > 1; `watch` is called from one at a time.
 [[nodiscard]] std::vector<Trajectory> perturbed_closings(const Switch& model, std::span<const Signal> drives,
                                                          const ClosingOptions& closing, const CloudOptions& options = {},
                                                          const Watch& watch = {});
 
-/// Range of a figure over the runs that have it; NaN if none has.
+/// Range of a figure over those runs in which it exists; NaN if there are none.
 struct Spread {
   double low = Metrics::unset, median = Metrics::unset, high = Metrics::unset;
   int runs = 0;
 };
 [[nodiscard]] Spread spread(std::vector<double> values);
 
-/// Relative range over the cloud from which on a figure is ill-conditioned: a thousandfold magnification of the perturbation.
+/// Relative range over the cloud from which on a figure is ill-conditioned: a thousandfold of the largest perturbation.
 inline constexpr double ill_conditioned_range = 1e-4;
-/// True if the drives' last digits decide a figure; `values` are those of Figure::counted().
+/// True if the last digits of the drives change a figure visibly; `values` are those of Figure::counted().
 [[nodiscard]] bool ill_conditioned(const Spread& values);
 
 }  // namespace softland

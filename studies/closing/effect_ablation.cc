@@ -16,7 +16,7 @@
 namespace softland {
 namespace {
 
-// Returns the force on the first mode at rest under 1 V on one electrode.
+// Returns the force on the first mode at rest, with 1 V on one electrode.
 double force_at_rest(const Device& described, std::size_t electrode) {
   const Switch model(described);
   Switch::Workspace work = model.workspace();
@@ -36,7 +36,7 @@ BoundedClosing closing(const PreparedScene& p, const Watch& watch, const Closing
   return bounded_closing(p, p.model, bound, watch, "closings without each effect", done, share);
 }
 
-// Returns the distance between the contact point's rest positions with an effect and without it.
+// Returns the effect that shifts the rest position of the contact point by the difference between these two devices.
 OmissibleEffect rest_effect(const std::string& effect, const Device& d, const Device& without,
                             std::optional<SceneValue> instead) {
   const double rise = d.contact_gap() - without.contact_gap();
@@ -65,7 +65,7 @@ void add_omissible_rest_shape(const Device& d, std::vector<OmissibleEffect>& lis
   }
 }
 
-// Adds the structure's parts: compliant anchors become clamps, sections with holes become solid.
+// Adds parts of the structure: compliant anchors are replaced by clamps, and sections with holes by solid ones.
 void add_omissible_parts(const Device& d, std::vector<OmissibleEffect>& list) {
   const Beam& beam = part_of<Beam>(d.structure);
   const auto add_anchor = [&](const char* key, std::optional<Anchor> Beam::*end) {
@@ -163,7 +163,7 @@ void add_omissible_fringing(const PreparedScene& prepared, std::vector<Omissible
   }
 }
 
-// Adds the dielectrics. A face on which the beam lands stays, without its roughness.
+// Adds the dielectrics. A face on which the beam lands is kept; only its roughness can be left out.
 void add_omissible_dielectrics(const PreparedScene& prepared, std::vector<OmissibleEffect>& list) {
   const Device& d = prepared.scene.device;
   for (const Electrode& e : d.electrodes) {
@@ -221,7 +221,8 @@ void add_omissible_contact(const PreparedScene& prepared, std::vector<OmissibleE
   const Contact& contact = d.contacts.front();
   const auto section = [](const Contact& c) { return c.name.empty() ? std::string("contact") : "contact." + c.name; };
   if (contact.distribution == ContactDistribution::pad) {
-    const double rise = 1.5 * d.contact_gap() / d.structure.length * contact.pad_length;  // for a uniform beam bent by its end
+    const double rise =
+        1.5 * d.contact_gap() / d.structure.length * contact.pad_length;  // for a uniform beam bent by a force at its end
     list.push_back({.effect = section(contact) + ".distribution",
                     .magnitude = {.name = "tilt of the pad", .unit = "m", .value = rise},
                     .group = {.name = "over the interference", .value = rise / prepared.model.penetration_scale()},
@@ -273,11 +274,11 @@ PreparedScene without(const PreparedScene& prepared, const std::vector<Omissible
   SceneFile file = frozen.again(prepared.scene.file.name());
   file.assign("simulate.effects", std::string("all"));
   for (const OmissibleEffect& e : effects) {
-    // A key of a section that is left out goes with the section.
+    // A key inside of a section that is left out is removed together with the section.
     const bool inside = std::any_of(effects.begin(), effects.end(),
                                     [&](const OmissibleEffect& other) { return e.effect.starts_with(other.effect + "."); });
     if (inside) continue;
-    file.erase(fmt::format("spread.\"{}\"", e.effect));  // the key has nothing left to vary
+    file.erase(fmt::format("spread.\"{}\"", e.effect));  // a spread of a removed key has nothing to vary
     if (e.instead) {
       file.assign(e.effect, *e.instead);
     } else {
@@ -287,14 +288,14 @@ PreparedScene without(const PreparedScene& prepared, const std::vector<Omissible
   const auto drops_contact = [&](const OmissibleEffect& e) {
     return std::ranges::any_of(prepared.scene.device.contacts, [&](const Contact& c) { return e.effect == "contact." + c.name; });
   };
-  // One contact alone is the connection.
+  // A contact that is left alone makes the connection.
   const auto left =
       prepared.scene.device.contacts.size() - static_cast<std::size_t>(std::ranges::count_if(effects, drops_contact));
   if (left < 2) file.erase("metrics.closed");
   PreparedScene p = prepare(file);
   p.scene.warnings = prepared.scene.warnings;
   p.pull_in = prepared.pull_in;
-  p.drives = prepared.drives.of(p.drive_names());  // the drives charge the switch with all effects
+  p.drives = prepared.drives.of(p.drive_names());  // the sources charge the electrodes of the switch with all effects
   p.duration = prepared.duration;
   p.held_from = prepared.held_from;
   p.tolerance = prepared.tolerance;
@@ -311,7 +312,7 @@ double influence(const Metrics& own, const Metrics& other, const MetricsOptions&
 
 BoundedClosing bounded_closing(const PreparedScene& prepared, const Switch& model, const ClosingBound& bound, const Watch& watch,
                                const std::string& what, double done, double share) {
-  constexpr long steps_per_look = 64;  // steps between two looks at the clock
+  constexpr long steps_per_look = 64;  // integrator steps between two readings of the clock
   BoundedClosing found;
   const auto tell = observer(watch, what, prepared.duration, done, share);
   const double start = processor_seconds();

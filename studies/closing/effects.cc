@@ -13,7 +13,7 @@
 namespace softland {
 namespace {
 
-// Returns why this gas cannot surround the device; empty if it can.
+// Returns the reason why this gas cannot surround the device; empty if it can.
 std::string refusal(Device device, const Gas& gas) {
   device.gas = gas;
   try {
@@ -78,7 +78,7 @@ Effects compare_effects(const PreparedScene& scene, const Watch& watch) {
   std::vector<std::optional<Gas>> laws{std::nullopt};
   for_each_law<Gas>([&]<class Law>(std::type_identity<Law>) {
     const bool in_scene = own && std::holds_alternative<Law>(*own);
-    // A damper and a slit are compared only if the scene describes them.
+    // The linear damper and the film over a slit are compared only if the scene describes them.
     if ((std::is_same_v<Law, LinearGas> || std::is_same_v<Law, StripSlitGas>)&&!in_scene) return;
     const Gas gas = in_scene ? *own : under(own.value_or(Gas{}), Gas(Law{}));
     if (const std::string reason = refusal(prepared.scene.device, gas); !reason.empty()) {
@@ -87,7 +87,7 @@ Effects compare_effects(const PreparedScene& scene, const Watch& watch) {
     }
     laws.emplace_back(gas);
   });
-  // The scene's own closing comes first: its steps set the bound of the others.
+  // The scene's own closing comes first: its cost bounds that of the others.
   const double share = 1.0 / static_cast<double>(laws.size());
   LawClosing of_scene = closing_with(prepared, own, {}, watch, 0, share);
   if (watch.stopped()) throw Interrupted();

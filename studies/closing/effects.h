@@ -1,6 +1,5 @@
-// Compares laws in a scene, by their effect and their cost: the closing of the scene is repeated with each of them in turn.
-// Every effect is left out in turn, and every gas law takes the place of the scene's own. Drives keep their volts, so that only
-// the law differs.
+// Compares the effect and the cost of laws in a scene. The closing of the scene is repeated without each effect in turn, and
+// with each gas law in the place of the scene's own. The voltages stay the same, so that only the law differs.
 #pragma once
 
 #include <optional>
@@ -17,14 +16,15 @@ namespace softland {
 /// The scene with one law in the place of its own.
 struct Effect {
   std::string section;    ///< section of the scene: "gas"
-  std::string choice;     ///< the law; "none" if the effect is left out
+  std::string choice;     ///< name of the law; "none" if the effect is left out
   bool in_scene = false;  ///< true for the law of the scene itself
   NamedNumber magnitude;
-  NamedNumber group;                  ///< the dimensionless group that decides if the law holds
+  NamedNumber group;                  ///< the dimensionless group that decides whether the law is valid
   Metrics metrics;                    ///< figures of this closing
-  double rhs_seconds = 0;             ///< time of a right-hand side, along this closing [s]
+  double rhs_seconds = 0;             ///< time per evaluation of the right-hand side along this closing [s]
   std::vector<std::string> warnings;  ///< warnings of this closing
-  std::optional<double> end = {};     ///< see BoundedClosing; the scene's own closing runs to the end of the window
+  std::optional<double> end =
+      {};  ///< time at which the bound ended the closing [s] (BoundedClosing); none for the scene's own closing
 };
 
 /// A law that cannot take the place of the scene's own.
@@ -38,19 +38,21 @@ struct Effects {
   std::vector<NotCompared> not_compared;  ///< the laws that the scene cannot have
   std::vector<EffectAblation> omissions;
   double window = 0;         ///< window of every closing [s]
-  bool interrupted = false;  ///< true after a stop: the lists hold only complete closings, the scene's own at least
+  bool interrupted = false;  ///< true after a stop: the lists then hold complete closings only, at least the scene's own
 
-  /// The entry of the scene's own law in this section.
+  /// Returns the entry of the scene's own law in this section.
   [[nodiscard]] const Effect& own(const std::string& section) const;
-  /// Largest less smallest value of a figure over the laws of a section that are films or dampers, not "none"; relative to the
-  /// scene's own closing. NaN if it is missing in any of them.
+  /// Returns the largest less the smallest value of a figure over the laws of a section, except "none", relative to the figure
+  /// of the scene's own closing. NaN if the figure is missing in any of these closings.
   [[nodiscard]] double spread(const std::string& section, const Figure& figure) const;
 };
 
-/// Repeats the closing without each effect, and with no gas and with every gas law. The gas has the state that the scene
-/// describes (air at 101325 Pa and 300 K by default), and each law is without the keys of the others. The linear damper and the
-/// film over a slit are compared only if the scene describes them. No closing but the scene's own costs more than the bound
-/// after that (ClosingBound). Throws Interrupted if `watch` asks to stop before the scene's own closing is complete.
+/// Repeats the closing without each effect, without gas, and with every gas law.
+/// - The gas has the state that the scene describes (air at 101325 Pa and 300 K by default). Keys of other gas laws are
+///   removed.
+/// - The linear damper and the film over a slit are compared only if the scene describes them.
+/// - The cost of the scene's own closing bounds that of the others (ClosingBound).
+/// Throws Interrupted if `watch` asks to stop before the scene's own closing is complete.
 [[nodiscard]] Effects compare_effects(const PreparedScene& prepared, const Watch& watch = {});
 
 }  // namespace softland

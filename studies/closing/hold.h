@@ -1,4 +1,4 @@
-// The effect of hold levels on a closed switch: whether it stays closed, and with which force.
+// The hold: whether the hold levels keep a closed switch closed, and with which contact force.
 #pragma once
 
 #include <optional>
@@ -15,31 +15,31 @@
 
 namespace softland {
 
-/// Warning about a trajectory that is not held.
+/// Warning about a closing whose hold levels do not keep the switch closed.
 inline constexpr std::string_view not_held =
     "the hold levels do not keep the switch closed: it has no closed equilibrium under them. They are below its release "
     "voltage, or so high that the electrode pulls the beam past the contact";
 
-/// Returns the warning if the hold levels of these drives do not keep a switch closed whose closed state under them is `state`;
-/// empty if they do.
+/// Returns a warning if the hold levels of these drives do not keep the switch closed; empty if they do. `state` is its closed
+/// state under these levels.
 [[nodiscard]] std::string hold_warning(const Switch& model, const std::vector<Signal>& signals, const ClosedState& state);
 
 /// The effect of the hold levels of drives on a closed switch.
 struct Hold {
   std::optional<ClosedEquilibrium> closed;  ///< none if the switch has no closed equilibrium
-  double force = Metrics::unset;            ///< force of the contact, if it is stable, or of the connection of several [N]
-  std::vector<double> forces = {};          ///< force of each of several contacts [N]; empty if no state holds
+  double force = Metrics::unset;    ///< contact force of a stable equilibrium, or of the connection of several contacts [N]
+  std::vector<double> forces = {};  ///< force of each of several contacts [N]; empty if the switch is not held
   double resistance =
-      Metrics::unset;  ///< resistance of the contact, or of the connection of several [Ohm]; NaN: open, or not known
-  std::vector<double> resistances = {};  ///< resistance of each of several contacts [Ohm]; empty if no state holds
-  /// True if the switch is held. False if it has a contact and no such equilibrium, unless the contact may hold by adhesion,
-  /// and if the equilibrium is unstable.
+      Metrics::unset;  ///< resistance of the contact, or of the connection of several contacts [Ohm]; NaN if open or not known
+  std::vector<double> resistances = {};  ///< resistance of each of several contacts [Ohm]; empty if the switch is not held
+  /// True if the switch is held. A switch with a contact is not held if its closed equilibrium is unstable. Without a closed
+  /// equilibrium it is held only if the contact may hold by adhesion.
   bool is_held = true;
   /// ClosingOptions::steady_force [N]; NaN if the switch is not held.
   [[nodiscard]] double steady_force(const MetricsOptions& options) const { return options.steady_force * force; }
 };
-/// Computes the hold under these levels, one per drive of the switch [V]. `near` is the equilibrium of a switch and drives that
-/// differ little, from which this one is found sooner.
+/// Computes the hold under these levels, one per drive of the switch [V]. `near` is a closed equilibrium of a similar switch
+/// under similar levels: it speeds up the search.
 [[nodiscard]] Hold hold_under(const Switch& model, const std::vector<double>& levels,
                               const std::optional<ClosedEquilibrium>& near = {});
 /// Computes the hold under the hold levels of these drives.
@@ -49,10 +49,10 @@ struct Hold {
 }
 /// Sets the hold force, and whether the switch is held.
 void set_hold(Trajectory& trajectory, const Hold& hold);
-/// Sets the same, and the capacitance of the state in which the hold levels leave the switch.
+/// Sets what set_hold() sets, and the capacitance of the switch at rest under the hold levels.
 void set_rest(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals, const Hold& hold);
-/// Returns the options with the load that the switch carries, for a run from this state whose drives until the command to open
-/// are these.
+/// Returns the options with the load that the switch carries. The run starts from `start`; `held` are its drives until the
+/// command to open.
 [[nodiscard]] MetricsOptions with_load(MetricsOptions options, const Switch& model, StartState start,
                                        const std::vector<Signal>& held);
 /// True if a run that began closed has left its contact for good.

@@ -10,7 +10,7 @@
 namespace softland {
 namespace {
 
-constexpr int most_samples = 4000;  // samples of a curved piece
+constexpr int most_samples = 4000;  // largest number of samples of a curved piece
 constexpr int halvings = 40;
 constexpr double tail = 40;  // time constants after which a decay is over
 
@@ -27,13 +27,15 @@ std::vector<double> levels_at(const std::vector<Signal>& signals, const Instant&
   return levels;
 }
 
-// Number of parts of a piece over which nothing turns twice; 1 for a straight piece.
+// Returns the number of parts into which a piece is divided, so short that no term of it turns twice in one part; 1 for a
+// straight piece.
 int parts_of(const Signal& signal, double begin, double end) {
   const double step = signal.resolving_step(begin);
   return std::isfinite(step) ? std::clamp(static_cast<int>(std::ceil((end - begin) / step)), 1, most_samples) : 1;
 }
 
-// Returns the instants to check, in order: both sides of every breakpoint, and in between for pieces that are not straight.
+// Returns the instants to check, in order: both sides of every breakpoint, and samples between the breakpoints of curved
+// pieces.
 std::vector<Instant> instants(const std::vector<Signal>& signals) {
   std::vector<double> stops;
   double end = 0;
@@ -58,12 +60,12 @@ std::vector<Instant> instants(const std::vector<Signal>& signals) {
   return all;
 }
 
-// True if a drive is an electrode that pulls the beam to the contact.
+// True if a drive is an electrode that pulls the beam towards the contact.
 bool pulls(const Switch& model, std::size_t drive) {
   return model.drive_kind(drive) == DriveKind::electrode && pulls_in(model.device(), drive);
 }
 
-// Tells if a closed switch is held at the levels of its drives.
+// Decides whether a closed switch is held at the levels of its drives.
 class Holding {
  public:
   Holding(const Switch& model, const std::vector<Signal>& signals)
@@ -78,7 +80,8 @@ class Holding {
   }
 
  private:
-  // True for no more volts on any electrode that pulls the beam to the contact, and the same on every other drive.
+  // True if no electrode that pulls towards the contact pulls more at `levels` than at `than`, and all other drives have equal
+  // levels.
   [[nodiscard]] bool is_weaker(const std::vector<double>& levels, const std::vector<double>& than) const {
     for (std::size_t k = 0; k < levels.size(); ++k) {
       if (levels[k] == than[k]) continue;
@@ -92,8 +95,8 @@ class Holding {
   std::vector<double> last_, lost_;
 };
 
-// Returns the begin of the fall that brings an electrode to its level just before `time`, or at a jump there; `time` if it does
-// not fall.
+// Returns the begin of the fall that brings an electrode to its level just before `time`, or the jump if it jumps at `time`;
+// `time` if it does not fall.
 double begin_of_fall(const Switch& model, std::size_t electrode, const Signal& signal, double time) {
   if (signal.voltage_before(time) != signal.voltage(time)) return time;
   const std::vector<SignalPiece>& pieces = signal.pieces();
@@ -121,7 +124,7 @@ std::optional<double> loses_hold(const Switch& model, const std::vector<Signal>&
   if (start == StartState::closed) {
     for (std::size_t i = 0; i < all.size() && holding.at(all[i]); ++i) held = i;
   } else {
-    for (std::size_t i = all.size(); i-- > 1 && !held;) {  // the levels before t = 0 have closed nothing
+    for (std::size_t i = all.size(); i-- > 1 && !held;) {  // the levels before t = 0 have not closed the switch
       if (holding.at(all[i])) held = i;
     }
   }

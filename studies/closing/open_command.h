@@ -1,4 +1,4 @@
-// The command to open: the instant from which on the drives of a run keep a closed switch in no closed state.
+// The command to open: the instant from which on the drives of a run no longer hold a closed switch.
 #pragma once
 
 #include <optional>
@@ -12,32 +12,34 @@ namespace softland {
 
 struct OpenCommand {
   double time = 0;           ///< [s]
-  std::vector<Signal> held;  ///< the drives until then, and constant at their levels from then on
+  std::vector<Signal> held;  ///< the drives until the command, and constant at their levels just before it from then on
 };
 
-/// Finds the command of these drives, one per drive of the switch: the begin of their last fall to levels under which no closed
-/// state is stable and the open one is. The levels up to the end of their waveforms count. A switch that starts closed has it
-/// in the first such fall. A fall lasts as long as the voltages of the electrodes that make it only go towards 0 V; that of a
-/// jump begins at the jump. None if the hold levels keep the switch closed, or collapse it, and if the drives would never have
+/// Finds the command to open that these drives give, one per drive of the switch. It is the begin of their last fall to levels
+/// under which no closed state is stable and the open state is. The levels up to the end of the waveforms count. A switch that
+/// starts closed is commanded to open by the first such fall.
+/// A fall is the time in which the voltages of the electrodes that cause it only approach 0 V. A downward jump is a fall that
+/// begins at the jump. There is no command if the hold levels keep the switch closed or collapse it, and if the drives never
 /// held it.
 [[nodiscard]] std::optional<OpenCommand> open_command(const Switch& model, const std::vector<Signal>& signals, StartState start);
 
-/// Finds the command of these drives of a scene: simulate.open_at if the scene has it. It may come after the window.
+/// Finds the command of these drives of a scene: simulate.open_at if the scene has it. The command may come after the window.
 [[nodiscard]] std::optional<OpenCommand> open_command(const PreparedScene& prepared, const std::vector<Signal>& signals);
 
-/// Returns these drives until they command the switch to open, and constant at their levels from then on; unchanged without a
-/// command.
+/// Returns the drives as they are until their command to open, and constant at their levels just before it from then on.
+/// Returns them unchanged if there is no command.
 [[nodiscard]] std::vector<Signal> until_command(const PreparedScene& prepared, std::vector<Signal> signals);
 
-/// Returns the scene until its drives command it to open: its window ends there at the latest, and its drives stay at their
-/// levels just before. Unchanged without a command, and if it starts closed.
+/// Returns the scene without its opening: the window ends at the command to open at the latest, and the drives stay at their
+/// levels just before it. Returns it unchanged if there is no command, and if it starts closed.
 [[nodiscard]] PreparedScene closing_of(const PreparedScene& prepared);
 
-/// The place of the connection in a state of the beam, as observers of a closing get it (model/closing/connection.h) [m].
+/// Returns the deflection of the connection in a state of the beam, as observers of a closing get it
+/// (model/closing/connection.h) [m].
 [[nodiscard]] double connection_deflection(const Switch& model, const Eigen::VectorXd& q);
 
-/// Returns the options for a run that opens on command under these drives: with the place at which the connection comes to
-/// rest.
+/// Returns the options for a run that opens on command under these drives. They contain the deflection at which the connection
+/// comes to rest.
 [[nodiscard]] MetricsOptions with_opening(MetricsOptions options, const Switch& model, const std::vector<Signal>& signals,
                                           const std::optional<OpenCommand>& command);
 

@@ -1,4 +1,5 @@
-// A switch that stays open: the rest position under its hold levels, the way to it, and whether it was meant to close.
+// A switch that stays open: the rest position under its hold levels, the motion to it, and whether its drives are meant to
+// close it.
 #pragma once
 
 #include <vector>
@@ -11,7 +12,8 @@
 
 namespace softland {
 
-/// Share of the largest distance of the contact point from its static deflection: it has settled if it stays this near.
+/// Band in which the contact point has settled: its distance from the static deflection over the largest such distance of the
+/// run.
 inline constexpr double settled_share = 0.02;
 
 /// Sets static_deflection, overshoot and open_settling_time of a run that came to its end without a touch, or that began closed

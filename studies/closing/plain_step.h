@@ -1,4 +1,4 @@
-// The reference of all drives: each voltage steps to its hold level at once.
+// The plain step, with which found waveforms are compared: each voltage steps to its hold level at once.
 #pragma once
 
 #include <string>

@@ -121,7 +121,7 @@ std::string start_words(const PreparedScene& scene) {
   const char *own = is_closed ? "closed" : "open", *other = is_closed ? "open" : "closed";
   if (const auto found = scene.start_equilibrium()) return fmt::format("{}, {}", own, place(*found));
   const auto there = equilibrium_before(scene, is_closed ? StartState::open : StartState::closed);
-  return fmt::format("none: there is no stable {} state under what the drives stand at before t = 0{}", own,
+  return fmt::format("none: there is no stable {} state at the voltages before t = 0{}", own,
                      there ? fmt::format(", but a stable {} one, {}{}", other, place(*there), other_start_hint(scene)) : "");
 }
 
@@ -145,14 +145,14 @@ std::string before_state_path(const PreparedScene& scene) {
   return fmt::format("waveform.{}.before_state", named != nullptr ? named->name : "NAME");
 }
 
-// Returns the loosest tolerance that delivers the accuracy on random scenes: results/accuracy.md.
+// Returns the loosest tolerance that delivers the accuracy on random scenes (results/accuracy.md).
 double tolerance_for(double accuracy, bool stiff) { return std::clamp(accuracy / 10, 1e-12, stiff ? 1e-4 : 1e-3); }
 
 namespace {
 
 constexpr double longest_window = 1e3;  // [s], as the longest simulate.duration
 
-/// Returns the most periods of a waveform's sine in the window.
+/// Returns the number of periods of a waveform's sine in the window.
 double periods_of(const Waveform& waveform, double window) {
   const auto lasts = [&](const auto& sine) { return std::min(sine.end, window) - sine.start; };
   if (const auto* sine = std::get_if<Harmonic>(&waveform))
@@ -163,9 +163,9 @@ double periods_of(const Waveform& waveform, double window) {
   return 0;
 }
 
-/// The window of a scene that names none [s]: it shows the closing under steps to the hold levels, which gas may slow down, and
-/// the time after it. Steps that do not close the switch in ten times that window are not waited for, nor in a thousand times
-/// if their levels leave no open equilibrium: just above pull-in a damped switch creeps.
+/// Returns the default window [s] of a scene that closes. It shows the closing under steps to the hold levels, which gas may
+/// slow down, and the time after it. A damped switch creeps just above pull-in, so the search for the touch ends after ten such
+/// windows, or a thousand if the levels leave no open equilibrium.
 double default_window(const Switch& model, const std::vector<Signal>& signals) {
   constexpr double periods = 6, closings = 4, loose = 1e-4;
   constexpr long most_steps = 100'000;
@@ -179,7 +179,7 @@ double default_window(const Switch& model, const std::vector<Signal>& signals) {
   return closing.touches.empty() ? usual : std::max(usual, closings * closing.touches.front().begin);
 }
 
-/// The window of a scene that names none and opens a closed switch from `begin` on [s]: it shows how the switch comes to rest
+/// Returns the default window [s] of a scene that opens a closed switch from `begin` on. It shows how the switch comes to rest
 /// in its open state, within ten times six periods of the first mode.
 double default_window_of_opening(const Switch& model, const std::vector<Signal>& signals, StartState start, double begin) {
   constexpr double periods = 6, longest = 10, loose = 1e-4, settled = 0.02, margin = 2;
@@ -208,7 +208,7 @@ std::vector<Signal> without_sources(const PreparedScene& p) {
   return signals;
 }
 
-/// The window of a scene that names none [s].
+/// Returns the default window of a scene [s].
 double default_window(const PreparedScene& p) {
   const std::vector<Signal> signals = without_sources(p);
   if (p.start() == StartState::closed) return default_window_of_opening(p.model, signals, StartState::closed, 0);
@@ -223,18 +223,18 @@ void check_open_at(const PreparedScene& p) {
   const double asked = p.scene.simulate.open_at;
   if (!std::isfinite(asked)) return;
   const SceneFile& file = p.scene.file;
-  if (!p.model.has_contact()) file.refuse("simulate.open_at", "needs a [contact], which is what opens");
+  if (!p.model.has_contact()) file.refuse("simulate.open_at", "needs a [contact] section: without one nothing opens");
   if (!(asked < p.duration))
     file.refuse("simulate.open_at", fmt::format("must lie in the window, which ends at {}", engineering(p.duration, "s")));
 }
 
-/// Refuses windows and waveforms that no computer could finish.
+/// Refuses windows that are too long, and waveforms with too many periods, to be computed.
 void check_window(const PreparedScene& p) {
   const SceneFile& file = p.scene.file;
   if (!(p.duration <= longest_window)) {
     file.refuse("structure.kind",
                 fmt::format("the window, where simulate.duration is absent six periods of the first mode or more, is {} "
-                            "and must be at most {}: what moves is too soft or too heavy",
+                            "and must be at most {}: the structure is too soft or too heavy",
                             engineering(p.duration, "s"), engineering(longest_window, "s")));
   }
   constexpr double most_periods = 1e5;
@@ -244,12 +244,12 @@ void check_window(const PreparedScene& p) {
     const std::string section = "waveform." + name + ".";
     const bool in_hertz = file.written(section + "frequency").has_value();
     file.refuse(section + (in_hertz ? "frequency" : "angular_frequency"),
-                fmt::format("makes {} periods in the window of {}; there may be {}", engineering(periods, "", 3),
+                fmt::format("makes {} periods in the window of {}, and at most {} are allowed", engineering(periods, "", 3),
                             engineering(p.duration, "s"), engineering(most_periods, "")));
   }
 }
 
-/// Sets the load of every source: its electrode on the open switch.
+/// Sets the load of every source: the capacitance of its electrode on the open switch.
 void load_sources(PreparedScene& p) {
   const Switch& model = p.model;
   std::vector<double> open(static_cast<std::size_t>(model.modes()), 0.0);
@@ -260,7 +260,7 @@ void load_sources(PreparedScene& p) {
   }
 }
 
-/// Refuses a landing that is so soft that the field pulls the beam through it.
+/// Refuses a dielectric face that is so soft that the field pulls the beam through it.
 void check_landing(const PreparedScene& p) {
   const Landing* landing = p.scene.device.landing();
   if (landing == nullptr || landing->is_wall()) return;
@@ -278,7 +278,7 @@ void check_landing(const PreparedScene& p) {
       const UniformAsperityContact per_area = uniform_contact(rough->summits, rough->height, {.width = 1, .length = 1});
       key = "asperity_density", unit = "1/m^2";
       own = rough->summits.density;
-      least = own * std::pow(most / most_face_voltage(per_area, depth), 2);  // the pressure is proportional to it
+      least = own * std::pow(most / most_face_voltage(per_area, depth), 2);  // the contact pressure is proportional to this key
     }
     if (own > least) continue;
     p.scene.file.refuse(
@@ -295,7 +295,7 @@ std::string rounded_down(double value, std::string_view unit) {
   return engineering(std::floor(value / digit * (1 + rounding)) * digit, unit, 3);
 }
 
-/// Refuses sources that take more samples than a run can follow.
+/// Refuses sources that take more samples than a run may have.
 void check_sources(const PreparedScene& p) {
   constexpr double most_samples = 1e5;
   for (const Drive& drive : p.drives) {
@@ -303,7 +303,8 @@ void check_sources(const PreparedScene& p) {
     if (!rate || *rate * p.duration <= most_samples) continue;
     p.scene.file.refuse(
         "driver." + drive.name + ".sample_rate",
-        fmt::format("takes {} samples in the window of {}; there may be {}: give at most {}, a simulate.duration of at most {}, "
+        fmt::format("takes {} samples in the window of {}, and at most {} are allowed: give at most {}, a simulate.duration of "
+                    "at most {}, "
                     "or no sample_rate",
                     engineering(*rate * p.duration, "", 3), engineering(p.duration, "s"), engineering(most_samples, ""),
                     rounded_down(most_samples / p.duration, "Hz"), rounded_down(most_samples / *rate, "s")));
@@ -320,7 +321,7 @@ std::vector<double> bias_of(const Scene& scene, std::size_t drive) {
 
 namespace {
 
-// Says ", under piezo at 0.3 V": the levels of the other drives that are not 0.
+// Returns the levels of the other drives that are not 0: ", under piezo at 0.3 V".
 std::string under_bias(const PreparedScene& p, std::size_t electrode) {
   const std::vector<double> bias = bias_of(p.scene, electrode);
   const std::vector<std::string> names = p.drive_names();
@@ -346,8 +347,8 @@ ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, Bi
 
 namespace {
 
-// Takes pull-in voltages of limits with the other drives at 0 V, if the switch has no open state under their levels: a limit
-// belongs to the source, whatever the other drives do. A waveform in these units has no voltage then.
+// Takes the pull-in voltages of limits with the other drives at 0 V, if the switch has no open state under their levels. A
+// limit belongs to the source, whatever the other drives do. A waveform in these units has no voltage in that case.
 bool take_limits_at_rest(PreparedScene& p, std::size_t electrode, const PullInFinder& find_pull_in, const Watch& watch) {
   const std::vector<std::string> names = p.drive_names();
   if (std::ranges::find(p.scene.limits_in_pull_in, names[electrode]) == p.scene.limits_in_pull_in.end()) return false;

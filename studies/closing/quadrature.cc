@@ -9,8 +9,8 @@
 namespace softland {
 namespace {
 
-// Returns the modal forces of every drive at unit strength, then of the gas as the beam goes on, each over the frequency of its
-// mode.
+// Returns the modal forces of every drive at unit strength, then those of the gas on the moving beam, each over the frequency
+// of its mode.
 Eigen::MatrixXd loads_at(const Switch& model, const Eigen::VectorXd& q) {
   const Eigen::Index n = model.modes(), drives = static_cast<Eigen::Index>(model.drives());
   Switch::Workspace work = model.workspace();
@@ -27,7 +27,8 @@ Eigen::MatrixXd loads_at(const Switch& model, const Eigen::VectorXd& q) {
   return model.basis().angular_frequencies().cwiseInverse().asDiagonal() * loads;
 }
 
-// Returns the beam as it touches: held at the contact plane by each drive that can hold it, else by a force at the contact.
+// Returns the states of the beam at touch: held at the contact plane by each drive that can do so, else by a force at the
+// contact.
 std::vector<Eigen::VectorXd> at_touch(const Switch& model) {
   const double plane = model.contact_gap();
   std::vector<Eigen::VectorXd> states;
@@ -44,7 +45,7 @@ std::vector<Eigen::VectorXd> at_touch(const Switch& model) {
 }  // namespace
 
 SwitchOptions quadrature_for(double accuracy, int modes) {
-  constexpr double points_per_digit = 4, fewest = 8;  // and two per mode, which has about half a wave more than the last
+  constexpr double points_per_digit = 4, fewest = 8;  // two more per mode: each mode has half a wave more than the one before
   return {.points_per_length = std::max({fewest, points_per_digit * -std::log10(accuracy), 2.0 * modes + 4})};
 }
 
@@ -62,8 +63,8 @@ double load_difference(const Switch& one, const Switch& other, const Eigen::Vect
 
 ResolvedSwitch resolved_switch(const Device& device, double accuracy, std::optional<int> modes) {
   constexpr double growth = 1.25, most_growth = 16;
-  constexpr double helps = 0.5;    // share of the error that a refinement must undercut to help
-  constexpr int most_in_vain = 4;  // refinements in a row: loads whose error does not fall by then are not smooth
+  constexpr double helps = 0.5;    // error after a refinement over the error before, below which it helped
+  constexpr int most_in_vain = 4;  // refinements in a row without help, after which the loads are taken as not smooth
   const auto with_modes = [&](SwitchOptions q) {
     q.modes = modes;
     return q;
@@ -103,7 +104,7 @@ ResolvedSwitch resolved_switch(const Device& device, double accuracy, std::optio
 }
 
 Switch switch_like(const Device& device, const Switch& nominal, const SwitchOptions& quadrature, double accuracy) {
-  constexpr double nearer = 0.95;  // share of the nominal touch distance: a smaller change does not affect the points
+  constexpr double nearer = 0.95;  // touch distance over the nominal one, below which the points are checked again
   const auto gap_at_touch = [](const Device& d) { return 1 - d.gap.contact / d.gap.electrode; };
   Switch own(device, quadrature, &nominal);
   if (gap_at_touch(own.device()) >= nearer * gap_at_touch(nominal.device())) return own;

@@ -1,8 +1,8 @@
-// The number of quadrature points of a switch.
+// The number of quadrature points along a switch.
 //
-// Loads grow as 1/h^2 and faster, so that they are steepest where the beam comes next to an electrode: a dip of gap h and
-// curvature h'' is sqrt(2 h / h'') wide. The dip is narrowest at touch on the way to the contact, and the points are checked
-// there by doubling.
+// Loads grow as 1/h^2 and faster with decreasing gap h, so they are steepest where the beam is closest to an electrode. With
+// the curvature h'' of the gap there, the region of large load is sqrt(2 h / h'') wide. It is narrowest at touch, where the
+// number of points is checked by doubling it.
 #pragma once
 
 #include <optional>
@@ -11,26 +11,26 @@
 
 namespace softland {
 
-/// Quadrature for a smooth load at a relative accuracy.
+/// Returns the quadrature for a smooth load at a relative accuracy.
 [[nodiscard]] SwitchOptions quadrature_for(double accuracy, int modes);
-/// Returns twice the points.
+/// Returns a quadrature with twice the points.
 [[nodiscard]] SwitchOptions finer_than(const SwitchOptions& quadrature);
 
-/// Relative difference of the loads in a state q between two quadratures of one switch, in the norm of the static energy: the
-/// largest of every drive and of the gas.
+/// Returns the relative difference of the modal loads in a state q between two quadratures of one switch, in the norm of the
+/// static energy. It is the largest one of all drives and of the gas.
 [[nodiscard]] double load_difference(const Switch& one, const Switch& other, const Eigen::VectorXd& q);
 
 /// A switch whose quadrature delivers a relative accuracy at touch.
 struct ResolvedSwitch {
   Switch model;
   SwitchOptions quadrature;
-  double error = 0;  ///< relative, of the loads at touch
+  double error = 0;  ///< relative error of the loads at touch
 };
-/// Finds few points that deliver the accuracy, from quadrature_for(accuracy, modes) on. `error` is above `accuracy` if more
-/// points do not help, since the loads are not smooth. `modes` takes the place of the structure's.
+/// Finds a small number of points that delivers the accuracy, beginning with quadrature_for(accuracy, modes). If more points do
+/// not help, since the loads are not smooth, `error` is above `accuracy`. `modes` replaces the structure's number of modes.
 [[nodiscard]] ResolvedSwitch resolved_switch(const Device& device, double accuracy, std::optional<int> modes = {});
-/// Returns a varied device of a nominal one whose `quadrature` delivers `accuracy`: with that quadrature, or with a finer one
-/// if it touches nearer to the electrode.
+/// Returns the switch of a varied device. `quadrature` delivers `accuracy` for the nominal switch. A varied device that touches
+/// nearer to the electrode gets a finer quadrature.
 [[nodiscard]] Switch switch_like(const Device& device, const Switch& nominal, const SwitchOptions& quadrature, double accuracy);
 
 }  // namespace softland

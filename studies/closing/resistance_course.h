@@ -1,4 +1,4 @@
-// The resistance of a connection along a run.
+// The resistance of a connection over time in a run.
 #pragma once
 
 #include <cstddef>
@@ -11,12 +11,12 @@
 
 namespace softland {
 
-/// Resistance of the connection, or of one of several contacts, at these times [Ohm], which increase; NaN where it is open.
-/// Between the knots of a contact, which may be thinned, its place is that of the quintic and its force goes on a line. Empty
-/// where it does not conduct, or no knots are kept.
+/// Returns the resistance of the connection, or of one of several contacts, at these increasing times [Ohm]; NaN where the
+/// contact is open. Between the knots, which may be thinned, the position is interpolated by a quintic and the contact force
+/// linearly. Empty if the contact does not conduct, or if no knots are kept.
 [[nodiscard]] std::vector<double> resistance_course(const Device& device, const Trajectory& run, std::span<const double> times,
                                                     std::optional<std::size_t> contact = {});
-/// Returns whether that resistance is known.
+/// True if the scene describes the resistance of the connection, or of this contact.
 [[nodiscard]] bool conducts(const Device& device, std::optional<std::size_t> contact);
 
 }  // namespace softland

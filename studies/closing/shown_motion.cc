@@ -14,10 +14,10 @@ namespace softland {
 namespace {
 
 constexpr int places_along = 60;
-constexpr std::size_t most_told = 200;   // rebounds, and touches, whose instants are kept whatever lines miss
-constexpr double line_tolerance = 2e-5;  // a share of the contact gap, for each mode
+constexpr std::size_t most_told = 200;   // largest number of touches, and of rebounds, whose instants are kept in any case
+constexpr double line_tolerance = 2e-5;  // error of linear interpolation that is allowed for each mode, over the contact gap
 
-// The modal coordinates at times that rise.
+// Records the modal coordinates at increasing times.
 class MotionSampler final : public ClosingObserver {
  public:
   MotionSampler(const Switch& model, double tolerance, const std::vector<double>& times)
@@ -29,7 +29,7 @@ class MotionSampler final : public ClosingObserver {
       keep(times_[next_] <= begin.time ? begin.state : times_[next_] == end.time ? end.state : between(begin, end));
     last_ = end.state;
   }
-  /// By time, then by mode [m kg^(1/2)]; the last state stands for what comes after it.
+  /// Returns the modal coordinates, ordered by time, then by mode [m kg^(1/2)]. Times after the last step get its last state.
   [[nodiscard]] std::vector<double> take() {
     for (; next_ < times_.size() && !last_.empty(); ++next_) keep(last_);
     return std::move(all_);
@@ -59,8 +59,8 @@ class MotionSampler final : public ClosingObserver {
   std::vector<double> all_, last_, cubic_;
 };
 
-// Instants that a picture must have: the ends of touches, the longest ones where there are many, and the ends and summits of the
-// highest rebounds.
+// Returns instants that the animation must contain: begin and end of touches (of the longest ones if there are many), and
+// begin, end and summit of the highest rebounds.
 std::vector<double> told_instants(const Closing& closing) {
   const Trajectory& run = closing.trajectory;
   std::vector<Touch> touches = run.touches;
@@ -86,7 +86,7 @@ std::vector<double> sorted(std::vector<double> times) {
   return times;
 }
 
-// Rows of a table of so many columns that a straight line between two of them misses.
+// The errors of linear interpolation between two rows of a table with a number of columns.
 class LineError {
  public:
   LineError(const std::vector<double>& times, const std::vector<double>& table, std::size_t columns)
@@ -117,7 +117,8 @@ class LineError {
   std::size_t columns_;
 };
 
-// Adds to the rows that are kept, of which there are two at least, those that lines miss by the most, up to so many.
+// Adds rows to the kept ones (at least two), each time the row that linear interpolation misses by the most, up to a number of
+// rows.
 std::vector<std::size_t> with_worst(std::vector<std::size_t> kept, const LineError& lines, double tolerance, std::size_t most) {
   std::priority_queue<LineError::Stretch> stretches;
   for (std::size_t k = 1; k < kept.size(); ++k) stretches.push(lines.between(kept[k - 1], kept[k]));

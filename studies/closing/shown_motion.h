@@ -1,4 +1,4 @@
-// The motion of a switch in a closing as a picture of it needs it: all modes, at instants close enough for straight lines.
+// The motion of a switch in a closing, for an animation: all modes, at instants so close that straight lines join them.
 #pragma once
 
 #include <cstddef>
@@ -10,36 +10,36 @@
 
 namespace softland {
 
-/// The lower face at x and time t lies at the height rest(x) - sum over modes of amplitude_i(t) shape_i(x), from where a straight
-/// structure has it at rest. Motion towards the near electrode is positive.
+/// At position x and time t the lower face is at the height rest(x) - sum over modes of amplitude_i(t) shape_i(x). Heights are
+/// measured from the face of a straight structure at rest. Deflection towards the near electrode is positive.
 struct ShownMotion {
   struct Contact {
-    std::string name;  ///< may be empty where there is one
-    double at = 0;     ///< [m]
-    double gap = 0;    ///< rest distance of its place to its plane [m]
+    std::string name;  ///< may be empty if there is one contact
+    double at = 0;     ///< position along the structure [m]
+    double gap = 0;    ///< rest distance of the contact to its plane [m]
     bool far_side = false;
   };
   struct Pad {
     std::string electrode;
-    double begin = 0, end = 0;  ///< [m]
-    double gap = 0;             ///< rest distance of its face to a straight structure [m]
+    double begin = 0, end = 0;  ///< range along the structure [m]
+    double gap = 0;             ///< rest distance of the electrode's face to a straight structure [m]
     bool far_side = false;
   };
-  std::vector<double> time;                     ///< rises [s]
-  std::vector<std::vector<double>> amplitudes;  ///< a list for each mode, at these times: its largest deflection [m]
-  std::vector<double> places;                   ///< x, those of the contacts among them [m]
-  std::vector<double> rest;                     ///< one for each place [m]
-  std::vector<std::vector<double>> shapes;      ///< a list for each mode, at these places; the largest size is 1
+  std::vector<double> time;                     ///< increasing times [s]
+  std::vector<std::vector<double>> amplitudes;  ///< largest deflection of each mode at these times [m]
+  std::vector<double> places;                   ///< positions x along the structure, which include those of the contacts [m]
+  std::vector<double> rest;                     ///< height of the face at rest at each position [m]
+  std::vector<std::vector<double>> shapes;      ///< shape of each mode at these positions, scaled to a largest size of 1
   std::vector<Contact> contacts;
   std::vector<Pad> electrodes;
 };
 
-/// Instants of a motion, and modes times instants, at the most.
+/// Largest number of instants, and largest product of the numbers of modes and instants.
 inline constexpr std::size_t most_instants = 2000, most_amplitudes = 24'000;
 
-/// Runs the closing once more to see its modes. The first and the last instant are kept, those at which a touch or one of the
-/// highest rebounds begins, is highest or ends, and between them those that straight lines miss by the most. None where the
-/// run did not come to its end.
+/// Runs the closing once more to record its modes. The kept instants are the first and the last one, the begin, the end and the
+/// extreme of touches and of the highest rebounds, and between them those that linear interpolation misses by the most. None if
+/// the run did not come to its end.
 [[nodiscard]] std::optional<ShownMotion> shown_motion(const PreparedScene& prepared, const Closing& closing);
 
 }  // namespace softland

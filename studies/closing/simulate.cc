@@ -18,17 +18,18 @@
 namespace softland {
 namespace {
 
-// Difference of two runs of one closing, and their common rounding. t_p, t_b and N_B are left to clouds.
+// Returns the difference of two runs of one closing, plus their common rounding. The errors of t_p, t_b and N_B are left to
+// certify().
 FigureValues difference(const Metrics& a, const Metrics& b, double tolerance, double contact_gap) {
-  constexpr double shared = 0.01;              // share of the tolerance, relative to a figure
-  constexpr double lowest_separation = 1e-12;  // share of the contact gap, below which metrics() sees no rebound
+  constexpr double shared = 0.01;              // common error over the tolerance, relative to a figure
+  constexpr double lowest_separation = 1e-12;  // over the contact gap: metrics() ignores lower rebounds
   FigureValues d;
   for (const Figure& figure : all_figures) {
     if (!figure.is_told_by_two_runs()) continue;
     const double own = figure.value(a);
     d[figure] = std::max(std::abs(own - figure.value(b)), shared * tolerance * std::abs(own));
   }
-  // The duration of a rebound that neither run has cannot be wrong.
+  // A rebound that neither run has makes no error of the duration.
   if (a.first_rebound_time == 0 && b.first_rebound_time == 0) d[&Metrics::first_rebound_time] = Metrics::unset;
   double& height = d[&Metrics::major_bounce_height];
   height = std::max(height, lowest_separation * contact_gap);
@@ -47,8 +48,8 @@ struct Run {
   SwitchOptions quadrature;
 };
 
-// Returns the time at which two runs part: the first rebound above a height whose heights differ by a tenth. Infinite if they
-// do not part.
+// Returns the time at which two runs diverge: their first rebound above a height whose heights differ by a tenth. Infinite if
+// they do not diverge.
 double parting_time(const Run& a, const Run& b, double lowest) {
   constexpr double parted = 0.1;
   const std::vector<Rebound>&one = a.rebounds, &two = b.rebounds;
@@ -62,8 +63,8 @@ double parting_time(const Run& a, const Run& b, double lowest) {
   return std::numeric_limits<double>::infinity();
 }
 
-// True if the largest part after the runs have parted might be the largest of all in another run: two runs are two draws of
-// many.
+// True if the largest part after the runs diverge might be the largest of all parts in another run. Two runs are only two
+// samples of a chaotic closing.
 template <class Part, class Size>
 bool chance_decides(const std::vector<Part>& parts, double parting, Size&& size) {
   constexpr double margin = 2;
@@ -81,8 +82,9 @@ double energy_after(const std::vector<Touch>& touches, double parting) {
   return sum;
 }
 
-// Removes the errors of chaotic figures. Anything beyond the point where two runs part is chance: only a cloud gives its error.
-// The same holds for figures that depend on every touch if the runs differ by a thousand times the tolerance.
+// Removes the errors of chaotic figures. After the time at which two runs diverge the figures are random, and only a cloud of
+// runs gives their errors. Figures that depend on every touch count as chaotic if the runs differ by a thousand times the
+// tolerance.
 void forget_what_is_chaotic(FigureValues& errors, const Run& best, const Run& other, const MetricsOptions& options) {
   constexpr double magnified = 1000;
   const double visible = magnified * std::max(best.tolerance, other.tolerance);
@@ -90,7 +92,7 @@ void forget_what_is_chaotic(FigureValues& errors, const Run& best, const Run& ot
     if (figure.conditioning != Conditioning::every_touch) continue;
     if (errors[figure] > visible * std::abs(figure.value(best.metrics))) errors[figure] = Metrics::unset;
   }
-  // Rebounds that do not count may part as well: the energy of later impacts bounds the difference.
+  // Runs may diverge in insignificant rebounds as well: the energy of the later impacts bounds the difference.
   for (const Run* run : {&best, &other}) {
     double& energy = errors[&Metrics::impact_energy];
     energy = std::max(energy, energy_after(run->trajectory.touches, parting_time(best, other, 0)));
@@ -106,7 +108,7 @@ void forget_what_is_chaotic(FigureValues& errors, const Run& best, const Run& ot
   }
 }
 
-// Returns the largest relative difference of the figures that `accuracy` is about.
+// Returns the largest relative difference of t_i, v_i, B_H and the peak force, for which the scene requests an accuracy.
 double error(const Run& run, const Run& other, const PreparedScene& prepared) {
   FigureValues least;
   least[&Metrics::major_bounce_height] = prepared.scene.metrics.significant_rebound;
@@ -121,17 +123,17 @@ double error(const Run& run, const Run& other, const PreparedScene& prepared) {
 
 constexpr double tighter_by = 100;
 constexpr double loosest_tolerance = 0.1;     // largest tolerance of simulate_closing
-constexpr double least_tolerance = 0.99e-13;  // rounding decides below it; 1e-13 itself as quotients give it
-// A fifth-order method is expected to take 2.5 times the steps; a run that needs this many more is not waited for.
+constexpr double least_tolerance = 0.99e-13;  // errors below it are rounding; just below 1e-13, which quotients may miss
+// A fifth-order method needs 2.5 times the steps. A run that needs this many times the steps is stopped.
 constexpr long most_growth = 10, least_steps = 100;
-constexpr double helps = 1.0 / 3;  // share of the error that a tighter run must undercut to help
-constexpr int most_in_vain = 2;    // runs in a row
+constexpr double helps = 1.0 / 3;  // error of a tighter run over the error before, below which it helped
+constexpr int most_in_vain = 2;    // tighter runs in a row without help
 
 bool can_tighten(const Run& r) { return r.tolerance / tighter_by >= least_tolerance; }
 
 bool is_back_stop(const Switch& model, std::size_t contact) { return model.device().contacts[contact].side == Side::far; }
 
-// Sets the figures of an opening on command that need the switch: impacts on its back stops, and whether the run ends open and
+// Sets the figures of an opening on command that need the switch: the impacts on its back stops, and whether it ends open and
 // at rest for at least a period of the first mode.
 void set_commanded_opening(Metrics& m, const Trajectory& run, const Switch& model) {
   if (!m.asked.opening) return;
@@ -146,18 +148,18 @@ void set_commanded_opening(Metrics& m, const Trajectory& run, const Switch& mode
   if (m.status == Status::done && !rests && !run.began_closed) m.status = Status::not_settled;
 }
 
-// Runs of a scene's closing, each reported to the watch.
+// Runs the closing of a scene at different tolerances and reports each run to the watch.
 class ClosingRuns {
  public:
   ClosingRuns(const PreparedScene& prepared, const Watch& watch)
       : prepared_(prepared), watch_(watch), signals_(prepared.signals()), command_(open_command(prepared, signals_)) {}
 
   [[nodiscard]] const std::vector<Signal>& signals() const { return signals_; }
-  /// The command to open, if it comes in the window.
+  /// Returns the command to open, if it comes in the window.
   [[nodiscard]] std::optional<OpenCommand> command() const {
     return command_ && command_->time < prepared_.duration ? command_ : std::nullopt;
   }
-  /// Signals of the closing: until the command to open.
+  /// Returns the signals of the closing, constant from the command to open on.
   [[nodiscard]] const std::vector<Signal>& held() const {
     return command_ && prepared_.start() == StartState::open ? command_->held : signals_;
   }
@@ -218,13 +220,13 @@ class ClosingRuns {
     return r;
   }
 
-  // A command counts only after the first touch.
+  // The command to open counts only after the first touch.
   [[nodiscard]] bool is_before_touch(const Run& r, const OpenCommand& command) const {
     return prepared_.start() == StartState::open && came_to_its_end(r.trajectory) &&
            !(r.metrics.initial_contact_time < command.time);
   }
 
-  // Records the connection, and each of several contacts. Contacts that strike a back stop are recorded to the end.
+  // Records the connection, and each contact if there are several. Contacts that strike a back stop are recorded to the end.
   [[nodiscard]] CourseRecorder recorder_of(const Switch& model, const std::optional<OpenCommand>& command) const {
     const MetricsOptions& plain = prepared_.scene.metrics;
     const MetricsOptions options = with_load(with_opening(plain, model, signals_, command), model, prepared_.start(), held());
@@ -248,16 +250,16 @@ class ClosingRuns {
   bool was_interrupted_ = false;
 };
 
-// A run, its judge, and the largest relative difference of the figures that `accuracy` is about.
+// A run, its judge, and the largest relative difference of t_i, v_i, B_H and the peak force.
 struct JudgedRun {
   Run own, judge;
   double error;
-  const char* why;  // reason for an error that is no smaller
+  const char* why;  // reason why the error is no smaller
 };
 
-// Finds the judge of a run. If runs may be tightened, the judge takes the place of the run, and gets a judge of its own, until
-// the error is within the requested accuracy or tightening no longer helps. The tightest run is then delivered, and a looser
-// one judges it. If rounding forbids a tighter integrator, the quadrature alone is refined.
+// Finds the judge of a run. If runs may be tightened, the judge takes the place of the run and gets a judge of its own, until
+// the error is within the requested accuracy or tightening no longer helps. In the latter case the tightest run is delivered,
+// and a looser run judges it. If rounding forbids a tighter integrator, only the quadrature is refined.
 JudgedRun with_judge(Run own, ClosingRuns& runs, const PreparedScene& prepared, bool may_tighten) {
   const double accuracy = prepared.scene.simulate.accuracy;
   Run judge = runs.judge_of(own);
@@ -275,10 +277,10 @@ JudgedRun with_judge(Run own, ClosingRuns& runs, const PreparedScene& prepared, 
     own = std::move(judge);
     judge = std::move(next);
   }
-  constexpr double enough = 0.2;  // share of a tolerance, for a run to show the error that it leaves
+  constexpr double enough = 0.2;  // ratio of the tolerances: nearer ones show no integration error
   if (judge_is_tighter() && e > accuracy && may_tighten) std::swap(own, judge);
   const double ratio = judge.tolerance / own.tolerance;
-  if (came_to_its_end(judge.trajectory) && ratio > enough && ratio < 1 / enough) {  // it judges the quadrature alone
+  if (came_to_its_end(judge.trajectory) && ratio > enough && ratio < 1 / enough) {  // the judge differs in the quadrature alone
     if (ratio <= 1) own = std::move(judge);
     judge = runs.looser_than(own);
     e = error(own, judge, prepared);
@@ -287,7 +289,7 @@ JudgedRun with_judge(Run own, ClosingRuns& runs, const PreparedScene& prepared, 
   return {.own = std::move(own), .judge = std::move(judge), .error = e, .why = why};
 }
 
-// Writes one digit, or as many as distinguish it from a bound that it is above.
+// Writes one digit, or as many digits as distinguish `above` from the smaller `bound`.
 std::string in_telling_digits(double above, double bound) {
   constexpr int most_digits = 12;
   const std::string other = engineering(bound, "");
@@ -296,7 +298,7 @@ std::string in_telling_digits(double above, double bound) {
   return text;
 }
 
-// Adds the errors that a judge finds, and the warnings.
+// Adds the errors and the warnings that follow from the judge.
 void add_errors(Closing& c, const JudgedRun& run, const PreparedScene& prepared, bool may_tighten) {
   const Run &own = run.own, &judge = run.judge;
   const bool is_tighter = judge.tolerance < own.tolerance;
@@ -325,7 +327,8 @@ void add_errors(Closing& c, const JudgedRun& run, const PreparedScene& prepared,
   }
 }
 
-// Judges a run that began closed with more modes: it loses the state in which it began, or in which it ends, if these deny it.
+// Repeats the statics of a run that began closed with more modes. The run fails if the closed state in which it began, or the
+// open one in which it ends, is not stable with them.
 void judge_opening_with_more_modes(Closing& c, const PreparedScene& prepared, const std::vector<Signal>& signals) {
   const ModeLadder ladder(prepared);
   if (!ladder.exists()) return;
@@ -368,8 +371,8 @@ void warn_of_start(Closing& c, const PreparedScene& prepared) {
   }
 }
 
-// Judges a closing with more modes: a switch that the scene's modes hold has not settled if twice or four times as many release
-// it.
+// Repeats the statics of a closing with more modes. A switch that the scene's modes hold has not settled if it is released with
+// twice or four times as many modes.
 void judge_with_more_modes(Closing& c, const PreparedScene& prepared, const std::vector<Signal>& signals) {
   Metrics& m = c.metrics;
   if (m.status == Status::open) {
@@ -391,7 +394,7 @@ void judge_with_more_modes(Closing& c, const PreparedScene& prepared, const std:
     m.*figure = c.errors[figure] = Metrics::unset;
 }
 
-// Marks an interrupted closing: its errors and warnings are not known.
+// Marks an interrupted closing, whose errors and warnings are not known.
 void say_interrupted(Closing& c) {
   const bool complete = c.trajectory.status != Status::interrupted;
   c.metrics.status = Status::interrupted;
@@ -493,7 +496,7 @@ void set_drive_figures(Metrics& metrics, const PreparedScene& prepared, const st
   const bool piezo_only = prepared.scene.device.electrodes.empty();
   for (std::size_t k = 0; k < signals.size(); ++k) {
     const DriveKind kind = prepared.model.drive_kind(k);
-    if (kind == DriveKind::dispersion) continue;  // a force factor is not a voltage
+    if (kind == DriveKind::dispersion) continue;  // the drive of a dispersion force is a factor, not a voltage
     if (kind == DriveKind::electrode || piezo_only)
       metrics.peak_voltage = std::max(metrics.peak_voltage, signals[k].peak(prepared.duration));
     metrics.peak_slew = std::max(metrics.peak_slew, signals[k].peak_slew(prepared.duration));

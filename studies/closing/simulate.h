@@ -17,12 +17,13 @@ namespace softland {
 
 struct Certificate;
 
-/// The run that judges another: a hundredth of its tolerance, twice its quadrature points. If rounding leaves no room for that,
-/// or such a run fails, a hundred times its tolerance: the difference is then the integration error of the judge.
+/// The run that judges another run: its errors are estimated from the difference to the judge. The judge has a hundredth of the
+/// tolerance of the other run and twice its quadrature points. If rounding forbids that, or such a run fails, it has a hundred
+/// times the tolerance, and the difference is the integration error of the judge.
 struct Judge {
   Status status = Status::not_run;
   bool came_to_its_end = false;
-  std::string message = {};  ///< reason if it did not
+  std::string message = {};  ///< reason if the judge did not come to its end
   Metrics metrics;
   double tolerance = 0;
   SwitchOptions quadrature;
@@ -36,52 +37,59 @@ struct ContactClosing {
 
 struct Closing {
   Trajectory trajectory;
-  bool is_thinned = false;             ///< the trajectory lacks knots: it serves plots only (CourseRecorder)
-  std::vector<Rebound> rebounds = {};  ///< rebounds of all knots until the command to open, if there is one
+  bool is_thinned = false;             ///< true if the trajectory lacks knots, so that it serves plots only (CourseRecorder)
+  std::vector<Rebound> rebounds = {};  ///< rebounds in all knots, until the command to open if there is one
   Metrics metrics;
-  std::optional<OpenCommand> command = {};    ///< command of the drives to open the switch
+  std::optional<OpenCommand> command = {};    ///< command to open that the drives give
   std::vector<ContactClosing> contacts = {};  ///< ordered as Trajectory::contacts; empty for a single contact
-  /// Absolute error estimates: the difference to the judge's figures plus rounding, for the drive energy at least the residual
-  /// of the energies, or the errors of certify(). NaN if not estimated. Only certify() estimates those of t_p, t_b and N_B, and
-  /// of everything after the runs part in a rebound's height, since no two runs tell the range of a chaotic figure.
+  /// Absolute error estimates: the difference to the judge's figures plus rounding, or the errors of certify(). The error of the
+  /// drive energy is at least the residual of the energy balance. NaN if not estimated. Two runs do not give the range of a
+  /// chaotic figure, so only certify() estimates the errors of t_p, t_b and N_B, and of figures of the time after the two runs
+  /// diverge in the height of a rebound.
   FigureValues errors;
-  double tolerance = 0;        ///< tolerance of the integrator, in the run of the figures
-  SwitchOptions quadrature;    ///< quadrature of that run
-  std::optional<Judge> judge;  ///< judge of that run, if errors are estimated
-  /// True for a touch that does not last: the hold levels neither keep the switch closed (its closed equilibrium is unstable,
-  /// or does not exist) nor leave it an open equilibrium to return to.
+  double tolerance = 0;        ///< tolerance of the integrator in the run of the figures
+  SwitchOptions quadrature;    ///< quadrature of the run of the figures
+  std::optional<Judge> judge;  ///< judge of the run of the figures, if errors are estimated
+  /// True for a touch that does not last: under the hold levels the switch has neither a stable closed equilibrium nor an open
+  /// equilibrium to return to.
   bool is_pulled_through = false;
   std::vector<std::string> warnings;                    ///< warnings of the scene, of the laws, and of ill-conditioned figures
   std::shared_ptr<const Certificate> certificate = {};  ///< set by certify() only
 };
 
-/// Factor of a stated error over the difference of two runs, of which the tighter one errs as well.
+/// Ratio of a stated error to the difference of two runs: the tighter run has an error as well.
 inline constexpr double stated_safety = 2;
 
-/// True if the figures of a run can be judged by another: it ran through its window, or it touched and then collapsed onto the
-/// electrode, which leaves t_i and v_i.
+/// True if the figures of a run can be judged by another run. It ran through its window, or it touched and then collapsed onto
+/// the electrode, so that t_i and v_i are known.
 [[nodiscard]] bool came_to_its_end(const Trajectory& run);
 
-/// Raises the error of the drive energy to the residual of the energy balance, which the drives may have given.
+/// Raises the error of the drive energy to the residual of the energy balance, all of which may be an error of the drive
+/// energy.
 void allow_for_residual(FigureValues& errors, const Trajectory& run);
 
-/// Peak contact force that counts as none [N]: a hundredth of the force that bends the beam by the contact gap.
+/// Returns the peak contact force that counts as zero [N]: a hundredth of the force that bends the beam by the contact gap.
 [[nodiscard]] double least_peak_force(const PreparedScene& prepared);
 
-/// Sets peak voltage and peak slew of these drives in the window.
+/// Sets the peak voltage and the peak slew rate of these drives in the window.
 void set_drive_figures(Metrics& metrics, const PreparedScene& prepared, const std::vector<Signal>& signals);
 
-/// Runs the scene's own waveforms. With `estimate_errors` a second, tighter run measures the error of each figure. A scene may
-/// ask for an accuracy that t_i, v_i, B_H or the peak force do not have (relative; B_H to at least the significant rebound, the
-/// force to at least least_peak_force()). Tolerance and quadrature are then tightened until they have it, or until that no
-/// longer helps, and the figures are those of the tightest run. No run is its own judge, and no error is 0. After a stop the
-/// status of the figures is interrupted: they are those of the last complete run, without errors, or of the finished part of
-/// the first one. A switch that is not held (see set_hold()) has not settled, however quiet it is at the end of the window.
-/// A switch that its drives command to open (open_command.h) has the figures of its landing until then, with the hold force
-/// under the levels before the command. The opening has its own figures: the run is done if it landed and settled before, and
-/// is open and at rest at the end. A run that began closed (PreparedScene::start()) has no figures of a landing, and is done if
-/// it ends open and at rest. The status is collapsed_at_rest if the state in which it has to begin does not exist, and the
-/// message names the other one. A run that has not touched, and was not meant to (see stays_open()), has the status `open`.
+/// Runs the scene's own waveforms. With `estimate_errors` a second, tighter run gives the error of each figure.
+/// - Accuracy: if t_i, v_i, B_H or the peak force miss the accuracy that the scene requests, tolerance and quadrature are
+///   tightened until they reach it or until that no longer helps. The figures are those of the tightest run. Errors are
+///   relative; that of B_H is relative to at least the significant rebound, that of the force to at least least_peak_force().
+///   No run is its own judge, and no error is 0.
+/// - Interruption: after a stop the status of the figures is interrupted. They are those of the last complete run, without
+///   errors, or of the finished part of the first run.
+/// - Hold: a switch that is not held (set_hold()) has not settled, even if it is quiet at the end of the window.
+/// - Command to open (open_command.h): until the command the switch has the figures of its landing, with the hold force under
+///   the levels before it. The opening has its own figures. The run is done if the switch settled closed before the command,
+///   and is open and at rest at the end.
+/// - Closed start (PreparedScene::start()): the run has no figures of a landing, and is done if the switch ends open and at
+///   rest.
+/// - The status is collapsed_at_rest if the state in which the run has to begin does not exist. The message names the other
+///   state.
+/// - The status is `open` if the switch did not touch and its drives are not meant to close it (stays_open()).
 [[nodiscard]] Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Watch& watch = {});
 
 }  // namespace softland

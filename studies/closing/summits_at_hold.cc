@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view touch_at_hold = "summits touch under the hold levels", too_few = ": fewer than one";
 
-// Share of the summits that touch in a contact with interference d.
+// Returns the share of the summits that touch in a contact with interference d.
 template <class Law>
 double touching_share(const Law& law, double d) {
   if constexpr (requires { law.deviation; }) {
@@ -31,7 +31,7 @@ double touching_share(const Law& law, double d) {
 
 std::optional<SummitsAtHold> summits_at_hold(const Switch& model, const ClosedEquilibrium& closed) {
   const Device& device = model.device();
-  // A beam lies on a pad or a face with another depth at every point.
+  // A beam that lies on a pad or a face has another interference at every point.
   if (!device.has_contact() || device.touches_along_pad() || device.contacts.front().along_face) return std::nullopt;
   const double d = model.contact_deflection(closed.q.data()) - device.contact_gap();
   return std::visit(

@@ -8,18 +8,18 @@
 namespace softland {
 namespace {
 
-// A switch that follows its voltage quasi-statically.
+// A switch in equilibrium at each voltage, whose state depends on the voltages before.
 class SlowSwitch {
  public:
   SlowSwitch(const Switch& model, std::size_t drive, Bias bias)
       : model_(model), drive_(drive), values_(bias.begin(), bias.end()), work_(model.workspace()) {
-    require(bias.empty() || bias.size() == model.drives(), "a bias needs a value for every drive of the switch");
+    require(bias.empty() || bias.size() == model.drives(), "a bias must have a value for every drive of the switch");
     values_.resize(model.drives(), 0.0);
   }
 
   SweepPoint follow(double voltage, bool is_up) {
     values_[drive_] = voltage;
-    // No law describes how a beam comes off an electrode onto which it has collapsed.
+    // No law describes how a collapsed beam leaves the electrode.
     if (state_ == SweepState::none) return {.voltage = voltage, .is_up = is_up};
     std::optional<Eigen::VectorXd> q;
     const bool was_closed = state_ == SweepState::closed;
@@ -69,7 +69,7 @@ std::string_view to_string(SweepState state) {
 
 std::vector<SweepPoint> static_sweep(const Switch& model, std::size_t drive, Bias bias, const SweepRange& range,
                                      const Watch& watch) {
-  require(range.points >= 2, "a sweep has at least 2 points");
+  require(range.points >= 2, "a sweep must have at least 2 points");
   SlowSwitch slow(model, drive, bias);
   std::vector<SweepPoint> points;
   const int last = range.points - 1;

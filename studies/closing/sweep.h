@@ -1,5 +1,5 @@
-// The static course of a switch whose voltage is swept slowly up and down again: open up to the pull-in voltage, closed on the
-// way back down to the release voltage.
+// A quasi-static sweep: the voltage of a switch rises slowly and falls again. The switch is open up to the pull-in voltage, and
+// on the way down closed until the release voltage.
 #pragma once
 
 #include <limits>
@@ -15,7 +15,7 @@ namespace softland {
 enum class SweepState {
   open,
   closed,  ///< closed on the contact
-  none     ///< no stable equilibrium that a scene describes: the beam has collapsed onto the electrode, or there is no contact
+  none     ///< no stable equilibrium: the beam has collapsed onto the electrode, or the switch has no contact
 };
 
 /// "open", "closed" or "collapsed_onto_electrode".
@@ -31,13 +31,13 @@ struct SweepPoint {
 
 struct SweepRange {
   double first = 0, last = 0;  ///< [V]
-  int points = 0;              ///< at least 2, evenly spaced, both ends among them
+  int points = 0;              ///< number of evenly spaced voltages, ends included; at least 2
 };
 
-/// Returns as many points on the way to the last voltage as on the way back, in order; the last of the first half is the first
-/// of the second. The switch stays open while it has a stable open equilibrium, and closed while it has a closed one that it
-/// does not leave; it begins open if it can. The electrode must pull towards the contact. A sweep that `watch` asks to stop
-/// returns its points so far. Throws InvalidInput for fewer than 2 points and as static_pull_in() does.
+/// Returns the points of the sweep in order: `range.points` up to the last voltage and as many down, so that the last voltage
+/// occurs twice. The switch begins open if it can. It stays open while it has a stable open equilibrium. It stays closed while
+/// it has a closed equilibrium that it does not leave. The electrode must pull towards the contact. A sweep that `watch` asks
+/// to stop returns its points so far. Throws InvalidInput for fewer than 2 points, and as static_pull_in() does.
 [[nodiscard]] std::vector<SweepPoint> static_sweep(const Switch& model, std::size_t drive, Bias bias, const SweepRange& range,
                                                    const Watch& watch = {});
 

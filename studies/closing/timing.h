@@ -1,4 +1,4 @@
-// The cost of a right-hand side on this machine.
+// The time that an evaluation of the right-hand side takes on this machine.
 #pragma once
 
 #include <vector>
@@ -8,19 +8,19 @@
 
 namespace softland {
 
-/// Adds a state of a closing (q, v and the states after them), while there are fewer than 20,000 states.
+/// Adds a state of a closing (q, v and further states of the laws) to `states`, up to 20,000 states.
 void keep_state(const Switch& model, const double* q, std::vector<double>& states);
 
-/// Seconds per Switch::accelerations over these states, one after the other, under these volts: the median of `repeats` passes;
-/// NaN without states.
+/// Returns the median time of a call of Switch::accelerations [s], over `repeats` passes through these states, under these
+/// voltages; NaN without states.
 [[nodiscard]] double right_hand_side_seconds(const Switch& model, const std::vector<double>& volts,
                                              const std::vector<double>& states, int repeats = 9);
 
-/// The same over the first states of a closing, in flight and in contact in their true proportion.
+/// Does the same over the first states of a closing, which contain flight and contact in their true proportion.
 [[nodiscard]] double right_hand_side_seconds(const Switch& model, const std::vector<Signal>& signals, double duration,
                                              int repeats = 9);
 
-/// Processor time of this thread [s].
+/// Returns the processor time of this thread [s].
 [[nodiscard]] double processor_seconds();
 
 }  // namespace softland

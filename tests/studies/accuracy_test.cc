@@ -159,8 +159,8 @@ TEST(Accuracy, CutsWhatIsSlowAndListsIt) {
   options.all_seconds = 0;
   const AccuracyStudy late = study_accuracy(first_bounces(), options);
   EXPECT_EQ(late.rows.size(), slow.rows.size());
-  EXPECT_EQ(late.rows.front().missing, "not tried: the 0 s of the study are over");
-  EXPECT_EQ(late.modes.front().missing, "not tried: the 0 s of the study are over");
+  EXPECT_TRUE(late.rows.front().missing.starts_with("not tried: the time limit of the study")) << late.rows.front().missing;
+  EXPECT_TRUE(late.modes.front().missing.starts_with("not tried: the time limit of the study")) << late.modes.front().missing;
 
   options.reference_seconds = 0;
   const AccuracyStudy none = study_accuracy(first_bounces(), options);
@@ -218,7 +218,7 @@ TEST(Accuracy, OfASlowSceneHasTheReferenceThatItsTimeAllows) {
         row.tolerance > 9 * study.reference.tolerance && 2 * *row.points_per_length <= study.reference.points_per_length;
     const bool cut = row.missing.starts_with("cut") || row.missing.find("took more") != std::string::npos;
     if (!cut) {
-      EXPECT_EQ(row.missing == "not tried: the reference is not better", !judged) << row.tolerance << row.missing;
+      EXPECT_EQ(row.missing.starts_with("not tried: the reference"), !judged) << row.tolerance << row.missing;
     }
   }
 }

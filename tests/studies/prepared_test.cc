@@ -148,11 +148,12 @@ TEST(Prepare, LoadsASourceWithTheCapacitanceOfTheOpenSwitch) {
 }
 
 TEST(Prepare, RefusesMoreSamplesThanARunCanFollow) {
-  EXPECT_EQ(refusal([] {
-              (void)prepare(gold({"waveform.main.level=30 V", "driver.main.max_voltage=90 V", "driver.main.sample_rate=1 GHz"}));
-            }),
-            "--set driver.main.sample_rate=1 GHz: takes 600000 samples in the window of 600 us; there may be 100000: give at "
-            "most 166 MHz, a simulate.duration of at most 100 us, or no sample_rate");
+  const std::string words = refusal([] {
+    (void)prepare(gold({"waveform.main.level=30 V", "driver.main.max_voltage=90 V", "driver.main.sample_rate=1 GHz"}));
+  });
+  EXPECT_THAT(words, testing::StartsWith("--set driver.main.sample_rate=1 GHz: takes 600000 samples in the window of 600 us"));
+  for (const char* way : {"at most 100000", "at most 166 MHz", "simulate.duration of at most 100 us", "or no sample_rate"})
+    EXPECT_THAT(words, testing::HasSubstr(way));
 }
 
 // A bridge at its hold voltage of 30 V, and at 40 V, the limit of its driver.
@@ -214,8 +215,10 @@ TEST(Prepare, RefusesWhatNoComputerWouldSeeTheEndOf) {
     for (const std::string& option : more) file.set(option);
     return file;
   };
-  EXPECT_EQ(refusal([&] { (void)prepare(with({"waveform.main.frequency=1e15 Hz"})); }),
-            "--set waveform.main.frequency=1e15 Hz: makes 6e11 periods in the window of 600 us; there may be 100000");
+  EXPECT_THAT(
+      refusal([&] { (void)prepare(with({"waveform.main.frequency=1e15 Hz"})); }),
+      testing::AllOf(testing::StartsWith("--set waveform.main.frequency=1e15 Hz: makes 6e11 periods in the window of 600 us"),
+                     testing::HasSubstr("at most 100000")));
   EXPECT_THAT(refusal([&] { (void)prepare(with({"waveform.main.angular_frequency=1e15 rad/s"})); }),
               testing::StartsWith("--set waveform.main.angular_frequency=1e15 rad/s: makes "));
   for (const char* quick : {"waveform.main.frequency=100 MHz", "waveform.main.end=1 ns"})
