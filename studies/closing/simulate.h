@@ -42,8 +42,8 @@ struct Closing {
   Metrics metrics;
   std::optional<OpenCommand> command = {};    ///< command to open that the drives give
   std::vector<ContactClosing> contacts = {};  ///< ordered as Trajectory::contacts; empty for a single contact
-  /// Absolute error estimates: the difference to the judge's figures plus rounding, or the errors of certify(). The error of the
-  /// drive energy is at least the residual of the energy balance. NaN if not estimated. Two runs do not give the range of a
+  /// Absolute error estimates: the difference to the judge's figures plus rounding, or the errors of certify(). The error of
+  /// the drive energy is at least the residual of the energy balance. NaN if not estimated. Two runs do not give the range of a
   /// chaotic figure, so only certify() estimates the errors of t_p, t_b and N_B, and of figures of the time after the two runs
   /// diverge in the height of a rebound.
   FigureValues errors;

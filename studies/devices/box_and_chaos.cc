@@ -43,11 +43,11 @@ class Box {
   }
 
   const Ensemble* ensemble_;
-  std::vector<EnsembleDrive> drives_;  // the closer refers to it
+  std::vector<EnsembleDrive> drives_;  // `closer_` keeps a reference to it
   DeviceCloser closer_;
 };
 
-/// The devices of the sample that are in the box.
+/// The devices of the sample that lie in the box.
 struct SampledInside {
   std::vector<std::size_t> devices;
   std::vector<std::vector<double>> z;
@@ -65,7 +65,7 @@ SampledInside sampled_inside(const Ensemble& ensemble, std::size_t sampled, doub
   return inside;
 }
 
-/// Returns the middle of the box, and all its corners if they take at most a fifth of the evaluations.
+/// Returns the middle of the box, and all its corners if that takes at most a fifth of the evaluations.
 std::vector<std::vector<double>> corners(std::size_t d, double half_width, std::size_t evaluations) {
   std::vector<std::vector<double>> points{std::vector<double>(d, 0)};
   constexpr std::size_t most_bits = 16;
@@ -85,7 +85,7 @@ Interval range_of(const std::vector<double>& figures) {
   return {.low = *least, .high = *most};
 }
 
-/// Returns 1 - sum (y - prediction)^2 / sum (y - mean)^2.
+/// Returns the predicted share of the variance, 1 - sum (y - prediction)^2 / sum (y - mean)^2.
 double predicted_share(const PolynomialChaos& chaos, const Eigen::MatrixXd& points, const std::vector<double>& figures) {
   const double mean = sample_mean(figures);
   double missed = 0, all = 0;
@@ -97,7 +97,7 @@ double predicted_share(const PolynomialChaos& chaos, const Eigen::MatrixXd& poin
   return all > 0 ? 1 - missed / all : Metrics::unset;
 }
 
-/// Points of the devices [first, last) that have the figure, and their figures.
+/// Those of the devices [first, last) that have the figure: their points, and their figures.
 struct Taught {
   Eigen::MatrixXd points;
   std::vector<double> figures;
@@ -127,7 +127,7 @@ FigureChaos chaos_of(const Ensemble& ensemble, const DriveRobustness& drive, std
   const std::size_t teachers = std::min(most_taught, drive.outcomes.size());
   const Taught taught = taught_by(ensemble, drive, figure, 0, teachers);
   FigureChaos found{.key = key, .taught = taught.figures.size()};
-  constexpr std::size_t least_taught = 20;  // two for each fold of the cross-validation
+  constexpr std::size_t least_taught = 20;  // two for each part of the cross-validation
   if (found.taught < least_taught) return found;
   std::vector<Germ> germs_of_variables;
   for (const SpreadVariable& variable : spread.variables) {
@@ -183,7 +183,7 @@ BoxAndChaos box_and_chaos(const PreparedScene& nominal, const DriveRobustness& d
     FigureRange range{.key = key, .least = {}, .most = {}, .of_sample = range_of(sampled)};
     for (const double sign : {1.0, -1.0}) {
       problem.starts = middle_and_corners;
-      if (!sampled.empty()) {  // the best of the sample; which of equals does not matter
+      if (!sampled.empty()) {  // the best device of the sample; ties are broken arbitrarily
         const auto best =
             std::min_element(sampled.begin(), sampled.end(), [&](double a, double b) { return sign * a < sign * b; });
         problem.starts.push_back(inside.z[static_cast<std::size_t>(best - sampled.begin())]);
@@ -194,7 +194,7 @@ BoxAndChaos box_and_chaos(const PreparedScene& nominal, const DriveRobustness& d
       };
       OptimizerOptions search{
           .max_evaluations = static_cast<long>(effort.closings_per_search), .jobs = options.jobs, .stop = watch.stop};
-      search.target = not_closed;  // nothing is worse
+      search.target = not_closed;  // a device that does not close is the worst: the search ends
       const OptimizerResult result = minimize(problem, search);
       if (watch.stopped()) return {.why_none = "interrupted"};
       found.closings += result.evaluations;

@@ -21,7 +21,7 @@
 namespace softland {
 namespace {
 
-// Receives the states of a run, and its course where the resistance is known.
+// Records the states of a run, and the knots of its motion where the resistance is known.
 class StatesObserver final : public ClosingObserver {
  public:
   explicit StatesObserver(const Switch& model)
@@ -44,7 +44,7 @@ class StatesObserver final : public ClosingObserver {
   [[nodiscard]] ClosingObserver* contact(std::size_t number) override { return conducts_ ? course_.contact(number) : nullptr; }
   void hand_over(Trajectory& run) { course_.hand_over(run); }
 
-  /// The spans are those of the connection, and of each of several contacts.
+  /// Returns the spans of the connection, then of each of several contacts.
   [[nodiscard]] std::vector<std::vector<ClosedSpan>>& spans() { return spans_; }
 
  private:
@@ -53,9 +53,9 @@ class StatesObserver final : public ClosingObserver {
   CourseRecorder course_;
 };
 
-// Joins spans between which the contact is open for no longer than counts.
+// Joins spans that are separated by an opening of at most `shortest_opening`.
 void join(std::vector<ClosedSpan>& spans, double shortest_opening) {
-  constexpr double rounding = 1e-12;  // a share of the time at which two steps meet
+  constexpr double rounding = 1e-12;  // relative difference of two times that count as equal
   std::vector<ClosedSpan> joined;
   for (ClosedSpan& span : spans) {
     if (!joined.empty() && span.begin - joined.back().end <= std::max(shortest_opening, rounding * span.begin))
@@ -66,12 +66,12 @@ void join(std::vector<ClosedSpan>& spans, double shortest_opening) {
   spans = std::move(joined);
 }
 
-// Leaves out points that straight lines between the others meet.
+// Leaves out the points that linear interpolation between the others reproduces.
 ResistanceLine on_lines(const ResistanceLine& points) {
-  constexpr double near = 1e-3;  // a share of the resistance
+  constexpr double near = 1e-3;  // relative error of the resistance that is allowed
   constexpr double any = std::numeric_limits<double>::infinity();
   ResistanceLine kept;
-  double least = -any, most = any;  // slopes from the last point kept that meet those between
+  double least = -any, most = any;  // range of slopes from the last kept point that reproduce the points since then
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto slope_to = [&](std::size_t k, double factor) {
       return (factor * points[k].second - kept.back().second) / (points[k].first - kept.back().first);
@@ -92,18 +92,19 @@ ResistanceLine on_lines(const ResistanceLine& points) {
 }
 
 struct ResistanceSample {
-  double time = 0, resistance = 0;  // [s], [Ohm]; NaN where it is not told
-  bool ends = false;                // a span
-  bool is_on_line = false;          // says whether no point between this and the next one is needed
+  double time = 0, resistance = 0;  // [s], [Ohm]; NaN if it is not reported
+  bool ends = false;                // true at the end of a span
+  bool is_on_line = false;          // true if linear interpolation to the next sample is accurate enough
 };
 
-/// Resistances at times that increase [Ohm], NaN where they are not told.
+/// Returns the resistances at increasing times [Ohm]; NaN where they are not reported.
 using ResistanceCourse = std::function<std::vector<double>(const std::vector<double>&)>;
 
-// The resistance over the closed spans at the knots of the run, and between them as long as it is not on straight lines.
+// Returns the resistance over the closed spans at the knots of the run, and between them until linear interpolation is
+// accurate.
 std::vector<ResistanceSample> resistance_samples(const std::vector<ClosedSpan>& spans, const ResistanceCourse& course,
                                                  const std::vector<double>& knots, double end) {
-  constexpr double near = 1e-2, shortest = 2e-12;  // a share of the resistance, [s]
+  constexpr double near = 1e-2, shortest = 2e-12;  // relative error of the resistance, and shortest interval [s]
   std::vector<ResistanceSample> samples;
   for (const ClosedSpan& span : spans) {
     const double last = std::min(span.end, end);
@@ -140,7 +141,8 @@ std::vector<ResistanceSample> resistance_samples(const std::vector<ClosedSpan>& 
   return samples;
 }
 
-// An edge of a span at which the resistance is not told has that of the nearest time at which it is.
+// Adds the resistance to the spans. An edge of a span at which the resistance is not reported gets that of the nearest time at
+// which it is.
 void add_resistance(std::vector<ClosedSpan>& spans, const ResistanceCourse& course, const std::vector<double>& knots,
                     double end) {
   auto span = spans.begin();
@@ -203,13 +205,13 @@ StatesOfRun states_of(const Switch& model, const std::vector<Signal>& signals, c
 
 void require_contact(const PreparedScene& prepared) {
   if (!prepared.model.has_contact())
-    throw InvalidInput(fmt::format("{}: there is no [contact]: nothing is closed or open", prepared.scene.file.name()));
+    throw InvalidInput(
+        fmt::format("{}: needs a [contact] section: without one nothing closes or opens", prepared.scene.file.name()));
 }
 
 void say_of_run(const StatesOfRun& run, const std::string& whose, const SayLine& say) {
   if (!run.why_not_done.empty())
-    say(fmt::format("{}the run does not come to its end, from where on its states stay as they are: {}", whose,
-                    run.why_not_done));
+    say(fmt::format("{}the run does not come to its end; its last states are kept from there on: {}", whose, run.why_not_done));
 }
 
 }  // namespace
@@ -218,7 +220,7 @@ StateRecord contact_states(const PreparedScene& prepared, const Watch& watch, co
   require_contact(prepared);
   const Closing closing = simulate(prepared, true, watch);
   watch.throw_if_stopped();
-  // The run of the figures once more, by whoever follows its states.
+  // Repeat the run of the figures with an observer of its states.
   const bool is_tighter = closing.tolerance != prepared.tolerance;
   const Switch tighter = is_tighter ? Switch(prepared.scene.device, closing.quadrature) : prepared.model;
   constexpr double never = std::numeric_limits<double>::infinity();

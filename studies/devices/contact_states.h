@@ -1,9 +1,9 @@
-// When the contact of a switch is closed and open along a run, and its resistance while it is closed, as a circuit or a
-// firmware sees it: of the run of a scene, and of devices of its [spread].
+// When the contact of a switch is closed and open in a run, and its resistance while it is closed, as a circuit or firmware
+// observes it. The run is that of a scene, or those of devices of its [spread].
 //
-// Closed is electrically closed (model/closing/electrical_record.h): in touch where the scene has neither metrics.closed_force
-// nor metrics.closed_resistance. An opening that is not longer than metrics.closed_after is none. An impact on a rigid contact,
-// which lasts for no time, is no closed state.
+// Closed means electrically closed (model/closing/electrical_record.h). A scene with neither metrics.closed_force nor
+// metrics.closed_resistance is closed while in touch. Openings that last no longer than metrics.closed_after are ignored. An
+// impact on a rigid contact has no duration, and so is no closed state.
 #pragma once
 
 #include <cstddef>
@@ -20,41 +20,43 @@
 
 namespace softland {
 
-/// Above this the resistance of a closed contact is not told: it is at the edge of a touch, where nothing presses yet [Ohm].
+/// Largest resistance of a closed contact that is reported [Ohm]. A larger one occurs at the edge of a touch, where nothing
+/// presses yet.
 inline constexpr double largest_resistance = 1e6;
 
-/// Resistances at times, on straight lines between them [s, Ohm].
+/// A resistance over time, interpolated linearly between these points [s, Ohm].
 using ResistanceLine = std::vector<std::pair<double, double>>;
 
-/// A time in which a contact is closed.
+/// A time span in which a contact is closed.
 struct ClosedSpan {
   double begin = 0;                                      ///< [s]
-  double end = std::numeric_limits<double>::infinity();  ///< [s]; infinite where it is closed when the run ends
-  ResistanceLine resistance = {};                        ///< from `begin` to the end; empty where it is not known
+  double end = std::numeric_limits<double>::infinity();  ///< [s]; infinite if the contact is closed when the run ends
+  ResistanceLine resistance = {};                        ///< from `begin` to the end of the span; empty if it is not known
 };
 
-/// The connection of a switch, or one of its contacts, over a run from t = 0 on.
+/// The states of the connection of a switch, or of one of its contacts, over a run from t = 0 on.
 struct StateChannel {
-  std::optional<std::size_t> device = {};  ///< its number in the ensemble, from 0; none: the scene itself
-  std::string contact = {};                ///< the name of one of several contacts; empty: the connection
+  std::optional<std::size_t> device = {};  ///< number of the device in the ensemble, from 0; none for the nominal design
+  std::string contact = {};                ///< name of one of several contacts; empty for the connection
   bool has_resistance = false;
-  std::vector<ClosedSpan> spans = {};  ///< increase in time
+  std::vector<ClosedSpan> spans = {};  ///< closed spans, in order of time
 };
 
 struct StateRecord {
-  double end = 0;  ///< the end of the window [s]
+  double end = 0;  ///< end of the window [s]
   std::vector<StateChannel> channels;
 };
 
-/// Takes a line about a run that did not come to its end, or a device that cannot be described.
+/// Receives a message about a run that did not come to its end, or about a device that cannot be described.
 using SayLine = std::function<void(const std::string&)>;
 
-/// The run of simulate() with errors: its channels are the connection and, of several contacts, each. Throws InvalidInput for a
-/// switch without a contact, Interrupted where `watch` asks to stop.
+/// Returns the states in the run of simulate() with errors. Its channels are the connection and, if there are several contacts,
+/// each of them. Throws InvalidInput for a switch without a contact, and Interrupted if `watch` asks to stop.
 [[nodiscard]] StateRecord contact_states(const PreparedScene& prepared, const Watch& watch, const SayLine& say);
 
-/// The same for the first `devices` devices of the spread with this seed, at the tolerance of the scene. The waveforms of the
-/// nominal device drive them, with the errors of their own sources. `jobs`: threads, on which nothing depends.
+/// Returns the states for the first `devices` devices of the spread with this seed, at the tolerance of the scene. The drives
+/// have the waveforms of the nominal device, and the errors of each device's own sources. The result does not depend on `jobs`,
+/// the number of threads.
 [[nodiscard]] StateRecord contact_states_of_devices(const PreparedScene& nominal, std::size_t devices, std::uint64_t seed,
                                                     int jobs, const Watch& watch, const SayLine& say);
 

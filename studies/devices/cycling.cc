@@ -20,11 +20,11 @@
 namespace softland {
 namespace {
 
-constexpr double slower = 1.5;             // a scan begins lower by this factor if its first rate is not steady
-constexpr int most_slower = 6;             // most such steps
-constexpr double periods_of_opening = 60;  // periods within which an opening has to come to rest
+constexpr double slower = 1.5;             // factor by which the first rate of a scan is lowered if it is not steady
+constexpr int most_slower = 6;             // largest number of such reductions
+constexpr double periods_of_opening = 60;  // periods of the first mode within which an opening has to come to rest
 
-// Appends the pieces of a signal that begin before `until`, shifted by `later`.
+// Appends the pieces of a signal that begin before `until`, shifted in time by `later`.
 void append(std::vector<SignalPiece>& pieces, const Signal& signal, double until, double later) {
   for (SignalPiece piece : signal.pieces()) {
     if (piece.begin >= until) break;
@@ -34,7 +34,7 @@ void append(std::vector<SignalPiece>& pieces, const Signal& signal, double until
   }
 }
 
-// Records a cycle, and keeps the course, too.
+// Records the cycles, and the course of the contact point.
 class KeptCourse final : public ClosingObserver {
  public:
   explicit KeptCourse(CycleRecorder& recorder, double contact_gap) : recorder_(recorder), contact_gap_(contact_gap) {}
@@ -122,8 +122,8 @@ Cycles CycledSwitch::run(const CycleTimes& times, bool is_told, const Watch& wat
   return found;
 }
 
-// Returns true if all cycles are steady. A touch is known once the next one has begun: a cycle is judged when the next has
-// ended.
+// Returns true if all cycles are steady. A touch is known only after the next one has begun, so a cycle is judged when the next
+// cycle has ended.
 bool CycledSwitch::is_steady(const CycleTimes& times, const CycleTolerances& tolerances, const Watch& watch) const {
   CycleRecorder recorder(model_.contact_gap(), options_, times);
   Trajectory so_far;
@@ -172,7 +172,7 @@ RateScan scan_rates(const CycledSwitch& cycled, const ScanOptions& options, cons
   double lowest = rate_of(times.rest_on, times.rest_off);
   const double highest = rate_of(times.least_on, times.least_off);
   if (!(lowest > 0)) return scan;
-  // The remaining vibration at rest may still matter.
+  // At the lowest rate a remaining vibration may still affect the next landing.
   for (int k = 0; k < most_slower && !watch.stopped() && !is_steady_at(lowest); ++k) lowest /= slower;
   bool is_below = true;  // true up to the first rate that is not steady
   for (double rate = lowest; rate <= highest && !watch.stopped(); rate *= 1 + options.step) {
@@ -260,7 +260,7 @@ std::vector<double> rates_of_devices(const PreparedScene& given, const CycleWave
 }  // namespace
 
 Cycling cycling(const PreparedScene& given, const CycleWaveforms& waveforms, const CyclingOptions& options, const Watch& watch) {
-  require(given.model.has_contact(), "cycle needs a [contact] section, which is what closes and opens, and the scene has none");
+  require(given.model.has_contact(), "cycle needs a [contact] section: without one nothing closes or opens");
   for (std::size_t k = 0; k < waveforms.closing.size(); ++k) {
     const double held = waveforms.closing[k].hold_level(), begin = waveforms.opening[k].before();
     constexpr double alike = 1e-9;

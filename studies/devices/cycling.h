@@ -1,5 +1,5 @@
-// A switch that is closed and opened at a rate: the figures of its cycles, and the largest rate at which it lands as it does
-// from rest. A rate is too high if the beam has not come to rest from one cycle to the next, or if the closing is cut short.
+// A switch that is closed and opened periodically: the figures of its cycles, and the largest rate at which it lands as it does
+// from rest. At higher rates the beam has not come to rest before the next cycle, or the closing is cut short.
 #pragma once
 
 #include <cstddef>
@@ -18,47 +18,49 @@
 
 namespace softland {
 
-/// Commanded waveforms of one cycle, one per drive of the switch: `closing` from the begin of the cycle on, `opening` from the
-/// command to open on.
+/// Commanded waveforms of one cycle, one per drive of the switch. `closing` starts with the cycle, `opening` with the command
+/// to open.
 struct CycleWaveforms {
   std::string name;
   std::vector<Signal> closing, opening;
 };
 
-/// Repeats the waveforms, from the rest before the first closing on.
+/// Returns the waveforms repeated from the rest before the first closing on.
 [[nodiscard]] std::vector<Signal> cycled(const CycleWaveforms& waveforms, const CycleTimes& times);
 
 struct Cycles {
   CycleTimes times;
   Status status = Status::not_run;   ///< done if the run came to its end
-  std::string message = {};          ///< reason if it did not
+  std::string message = {};          ///< reason if the run did not come to its end
   std::vector<CycleFigures> cycles;  ///< completed cycles
-  /// Position of the contact point: time [s] and distance to the contact plane [m]; on request.
+  /// Distance of the contact point to the contact plane [m] over time [s]; only if requested.
   std::vector<std::pair<double, double>> gap = {};
-  std::vector<Touch> touches = {};  ///< those of the course
+  std::vector<Touch> touches = {};  ///< touches in that course; only if requested
 };
 
 /// Permitted differences of a cycle from the first one.
 struct CycleTolerances {
   double share = 0.05;    ///< relative difference of the largest impact velocity and the highest rebound
-  double rebound = 1e-9;  ///< difference of the highest rebound that never counts [m]
+  double rebound = 1e-9;  ///< difference of the highest rebound that is always permitted [m]
 };
 
-/// True if a cycle closes and opens, and lands as the first one does.
+/// True if the switch closes and opens in a cycle, and lands as in the first one.
 [[nodiscard]] bool lands_alike(const CycleFigures& cycle, const CycleFigures& first, const CycleTolerances& tolerances);
 
-/// The cycles of one switch, that of a scene or of one of its devices.
+/// The cycles of one switch: the nominal design of a scene, or one of its devices.
 class CycledSwitch {
  public:
-  /// Keeps references. `driven` is the scene whose sources give the waveforms.
+  /// Keeps references. `driven` is the scene whose sources apply the waveforms.
   CycledSwitch(const PreparedScene& driven, const Switch& model, const CycleWaveforms& waveforms);
 
-  /// Runs cycles. If `is_told` is true, it keeps their course, and they have the figures of a load and of the electrical state.
+  /// Runs cycles. With `is_told` it also records their course, and their figures include those of a load and of the electrical
+  /// state.
   [[nodiscard]] Cycles run(const CycleTimes& times, bool is_told, const Watch& watch = {}) const;
-  /// True if all of these cycles land like the first one; ends at the first that does not.
+  /// True if the switch lands in all cycles as in the first one. The run ends at the first cycle in which it does not.
   [[nodiscard]] bool is_steady(const CycleTimes& times, const CycleTolerances& tolerances, const Watch& watch = {}) const;
-  /// Times that a cycle needs for its closing and for its opening [s]. `rest` is the time to come to rest, in windows that show
-  /// it; `least` is that until the first touch or the end of the waveform. Infinite if it does not get there.
+  /// Times that a cycle needs for its closing and for its opening [s]. `rest` is the time until the switch is at rest, within
+  /// windows that are long enough to show it. `least` is the time until the first touch or the end of the waveform. Infinite if
+  /// the switch does not get there.
   struct PartTimes {
     double rest_on = std::numeric_limits<double>::infinity(), rest_off = std::numeric_limits<double>::infinity();
     double least_on = std::numeric_limits<double>::infinity(), least_off = std::numeric_limits<double>::infinity();
@@ -66,7 +68,7 @@ class CycledSwitch {
   [[nodiscard]] PartTimes part_times(const Watch& watch = {}) const;
 
  private:
-  // `is_enough` returns true to end the run; may be null.
+  // `is_enough` returns true to end the run; it may be null.
   [[nodiscard]] Trajectory observe(const CycleTimes& times, ClosingObserver& observer, const Watch& watch,
                                    const std::function<bool()>& is_enough) const;
 
@@ -81,59 +83,59 @@ struct RateScan {
     double rate = 0;  ///< [Hz]
     bool is_steady = false;
   };
-  std::vector<Rate> rates;  ///< tried rates, in rising order
-  /// The largest rate below which every rate of the scan is steady [Hz]; NaN if no rate is.
+  std::vector<Rate> rates;  ///< tried rates, in increasing order
+  /// Largest rate up to which every tried rate is steady [Hz]; NaN if there is none.
   double largest = std::numeric_limits<double>::quiet_NaN();
-  /// Ranges of steady rates above it [Hz].
+  /// Ranges of steady rates above `largest` [Hz].
   std::vector<std::pair<double, double>> windows = {};
 };
 
 struct ScanOptions {
-  double duty = 0.5;         ///< share of a cycle before its command to open
+  double duty = 0.5;         ///< part of a cycle before its command to open
   double step = 0.05;        ///< relative step from one rate to the next
-  std::size_t cycles = 10;   ///< all but the first are compared with it
-  bool beyond_first = true;  ///< continues above the first rate that is not steady
+  std::size_t cycles = 10;   ///< number of cycles; all others are compared with the first
+  bool beyond_first = true;  ///< true to continue above the first rate that is not steady
   CycleTolerances tolerances = {};
 };
 
-/// Scans rates. At the first one every cycle begins and ends at rest; it is lowered if it is not steady. At the last one a part
-/// of the cycle becomes too short for its waveform.
+/// Scans rates. At the first rate every cycle begins and ends at rest; it is lowered until it is steady. At the last rate the
+/// closing or the opening is too short for its waveform.
 [[nodiscard]] RateScan scan_rates(const CycledSwitch& cycled, const ScanOptions& options, const Watch& watch = {});
 
 struct CyclingOptions {
-  std::optional<double> rate = {};  ///< rate of the reported cycles [Hz]; none: the largest found for the last waveforms
-  bool scans = true;                ///< false: only the cycles at that rate
+  std::optional<double> rate = {};  ///< rate of the reported cycles [Hz]; none for the largest steady rate of the last waveforms
+  bool scans = true;                ///< false to run only the cycles at `rate`
   double duty = ScanOptions{}.duty;
   std::size_t cycles = ScanOptions{}.cycles;
-  std::uint64_t devices = 50;  ///< number of devices of [spread] that are scanned too; 0: none
+  std::uint64_t devices = 50;  ///< number of devices of [spread] that are scanned as well; 0 for none
   std::uint64_t seed = 1;
   int jobs = 1;
 };
 
-/// A switch that is cycled by one pair of waveforms.
+/// A switch that is cycled by one pair of waveforms, and the results.
 struct CycledDrive {
   CycleWaveforms waveforms;
   RateScan scan;                        ///< rates of the nominal design
-  std::vector<double> of_devices = {};  ///< RateScan::largest of each device, 0 if none [Hz]
+  std::vector<double> of_devices = {};  ///< RateScan::largest of each device [Hz]; 0 if none
   std::optional<Cycles> cycles = {};    ///< cycles of the nominal design at the reported rate
 };
 
 struct Cycling {
   CyclingOptions options;
-  double rate = std::numeric_limits<double>::quiet_NaN();  ///< rate of the reported cycles [Hz]; NaN: none
-  std::vector<CycledDrive> drives;                         ///< the plain one first, alone if no other waveforms were given
+  double rate = std::numeric_limits<double>::quiet_NaN();  ///< rate of the reported cycles [Hz]; NaN without them
+  std::vector<CycledDrive> drives;                         ///< the plain waveforms first; only these if no others were given
   bool interrupted = false;
 };
 
-/// Adds missing waveforms: every drive goes at once to the begin of the opening, or to 0 V.
+/// Completes the waveforms: a missing one goes at once to the begin of the opening, or to 0 V.
 void complete(CycleWaveforms& waveforms, const PreparedScene& given);
-/// Returns the plain cycle: every drive goes to its last level of the closing at once, as fast as its driver can, and to that
-/// of the opening on command.
+/// Returns the plain cycle. Every drive goes at once, as fast as its driver permits, to the last level of the closing, and on
+/// command to the last level of the opening.
 [[nodiscard]] CycleWaveforms plain_cycle(const PreparedScene& given, const CycleWaveforms& waveforms);
 
-/// Scans the rates of the plain waveforms and of these, and runs the cycles at one rate. Devices have the drives of the nominal
-/// design, without errors of the sources. Throws InvalidInput for a scene without contact, and for waveforms that are longer
-/// than their part of a cycle at the requested rate.
+/// Scans the rates of the plain waveforms and of the given ones, and runs the cycles at one rate. Devices have the drives of
+/// the nominal design, without errors of the sources. Throws InvalidInput for a scene without contact, and for waveforms that
+/// are longer than their part of a cycle at the requested rate.
 [[nodiscard]] Cycling cycling(const PreparedScene& given, const CycleWaveforms& waveforms, const CyclingOptions& options,
                               const Watch& watch = {});
 

@@ -17,10 +17,11 @@ namespace {
 
 constexpr double no_derivative = Metrics::unset;
 constexpr double usual_tolerance = 1e-8;
-constexpr double largest_disagreement = 0.05;  // largest difference of derivatives from those of a looser run
-constexpr double no_change = 1e-5;  // a derivative is 0 if its error for a standard deviation is this part of the figure
+constexpr double largest_disagreement = 0.05;  // largest relative difference to the derivatives of a looser run
+constexpr double no_change =
+    1e-5;  // a derivative counts as 0 if its error, times the standard deviation, is below this share of the figure
 
-// Returns the scene without jitter, whose edges every device draws anew.
+// Returns the scene without jitter, which is random for every edge and so has no derivatives.
 PreparedScene without_jitter(const PreparedScene& scene) {
   PreparedScene own = scene;
   std::erase_if(own.scene.spread.variables, [](const SpreadVariable& v) { return v.is_drawn_per_edge; });
@@ -28,7 +29,7 @@ PreparedScene without_jitter(const PreparedScene& scene) {
   return own;
 }
 
-// Returns the changes by the varied quantities near the nominal device, for those with derivatives.
+// Returns the changes of switch and drives by the varied quantities near the nominal device, for quantities with derivatives.
 DeviceChanges changes_near(NearbyDevices& near, const Switch& model, std::vector<Derivatives::Variable*>& variables,
                            const Watch& watch) {
   std::vector<std::string> why_none(variables.size());
@@ -39,7 +40,7 @@ DeviceChanges changes_near(NearbyDevices& near, const Switch& model, std::vector
   return changes;
 }
 
-// Returns the figure's change for a standard deviation of each quantity; 0 if it has no derivative.
+// Returns the change of a figure by a standard deviation of each quantity; 0 if the figure has no derivative by it.
 Eigen::VectorXd changes_of(const std::vector<double>& by_variable, const std::vector<Derivatives::Variable>& variables) {
   Eigen::VectorXd changes(static_cast<Eigen::Index>(variables.size()));
   for (std::size_t k = 0; k < variables.size(); ++k)
@@ -53,16 +54,16 @@ std::string why_no_derivative(const Figure& figure, double value, const CostSlop
   return std::string(slopes.why_none[figure]);
 }
 
-// The closing of the nominal device, with the data that its derivatives need.
+// The closing of the nominal device, with its derivatives.
 struct NominalClosing {
   DeviceOutcome outcome;
   CostSlopes slopes;
   Eigen::MatrixXd gradient = {};  // a row for each of derived_figures; empty if the device does not close
 };
 
-// Changes of the switch and of its signals, by which figures are derived.
+// Changes of the switch and of its signals, from which derivatives of figures follow.
 struct Changes {
-  SwitchSlopes* of_switch = nullptr;  // null: it does not change
+  SwitchSlopes* of_switch = nullptr;  // null if the switch does not change
   const SignalSlopes& of_signals;
 };
 
@@ -110,7 +111,7 @@ std::vector<Derivatives::Variable> variables_of(const DeviceSpread& spread) {
   return all;
 }
 
-// Derives the figures of the closing under these signals; `places` are those of the changes among the variables.
+// Computes the derivatives of the figures under these signals. `places` are the indices of the changes among the variables.
 void derive(Derivatives& found, const PreparedScene& nominal, const std::vector<Signal>& signals, const Changes& by,
             const std::vector<std::size_t>& places, const Eigen::MatrixXd& correlation, const DerivativeOptions& options,
             const Watch& watch) {
@@ -155,7 +156,7 @@ Derivatives derivatives(const PreparedScene& scene, const EnsembleDrive& drive, 
   require_open_start(scene.scene, "derivatives are those of a closing that begins");
   const DeviceSpread& spread = scene.scene.spread;
   Derivatives found{.variables = variables_of(spread), .figures = {}};
-  std::vector<std::size_t> places;  // indices of the variables that are not drawn for every edge
+  std::vector<std::size_t> places;  // indices of the variables with one value per device, not one per edge
   std::vector<Derivatives::Variable*> variables;
   for (std::size_t i = 0; i < found.variables.size(); ++i) {
     if (spread.variables[i].is_drawn_per_edge) continue;

@@ -20,7 +20,7 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t chunk = 128;  // devices of one task: many for a lane, few between two checks of a Watch
+constexpr std::size_t chunk = 128;  // devices of one task: enough to fill a lane, few enough to check the Watch often
 
 // Records the figures of a lane.
 class LaneFigures final : public LandingObserver {
@@ -54,7 +54,7 @@ class LaneFigures final : public LandingObserver {
   LandingFigures::Course course_;
 };
 
-// Devices that define the classes.
+// Seed of the devices from which classes are made.
 constexpr std::uint64_t reference_seed = random_bits(0, Stream::classes, 0);
 std::size_t reference_size(const Calibration& calibration) {
   constexpr std::size_t fewest = 512, of_a_class = 8;
@@ -66,10 +66,9 @@ std::size_t reference_size(const Calibration& calibration) {
 Ensemble::Ensemble(const PreparedScene& nominal, std::uint64_t size, std::function<void(std::uint64_t, std::span<double>)> point)
     : nominal_(&nominal), size_(size), point_(std::move(point)), resolved_(nominal.resolved()) {
   require(!nominal.scene.spread.empty(), [&] {
-    return fmt::format("{}: there is no [spread]: nothing tells how devices differ (see softland new)",
-                       nominal.scene.file.name());
+    return fmt::format("{}: a [spread] section must say how devices differ (softland new writes one)", nominal.scene.file.name());
   });
-  reads_anew_ = nominal.scene.device.structure.is_rigid();  // its length follows its area and width
+  reads_anew_ = nominal.scene.device.structure.is_rigid();  // the length of a plate depends on its area and width
   for (const SpreadVariable& variable : nominal.scene.spread.variables) {
     for (const VariedKey& key : variable.keys) reads_anew_ = reads_anew_ || (!key.member && !key.drive);
   }
@@ -177,7 +176,7 @@ double DeviceMeter::time_of(const Switch& model, double step) const {
   return softland::closing_time(model, electrode_, step, bias_of(nominal_->scene, electrode_), periods_to_close / frequency());
 }
 
-// Measures the nominal device under steps from 0.75 to 1.19 times closing_step over the factor of the volts.
+// Measures the closing times of the nominal device under steps to closing_step Vdp / s, for s from 0.75 to 1.19.
 void DeviceMeter::learn_times() {
   constexpr double least = 0.75, most = 1.19;
   constexpr int steps = 88;
@@ -196,7 +195,7 @@ double DeviceMeter::closing_time() const {
   return gauges_.closing_time ? time_of(nominal_->model, closing_step * pull_in_) : Metrics::unset;
 }
 
-// Interpolates between two steps of the nominal device; extrapolates the last line beyond them.
+// Interpolates linearly between two steps of the nominal device, and extrapolates beyond the first and the last.
 DeviceUnits DeviceMeter::told_by(double time) const {
   if (!std::isfinite(time)) return {.volts = Metrics::unset, .time = 1};
   const auto above = std::ranges::upper_bound(told_, time, {}, &ToldVolts::time);
@@ -211,7 +210,7 @@ double DeviceMeter::piezo_unit(const Switch& model) { return std::abs(model.basi
 double DeviceMeter::frequency() const { return nominal_->model.basis().angular_frequencies()[0] / (2 * pi); }
 
 double DeviceMeter::pull_in(const Switch& model, double precision) const {
-  constexpr double looser = 10;  // for the integrator: no measurement is as good
+  constexpr double looser = 10;  // tolerance of the integrator over the precision; measurements are less precise
   const std::vector<double> bias = bias_of(nominal_->scene, electrode_);
   const StaticPullIn statically = static_pull_in(model, electrode_, bias);
   return dynamic_pull_in(model, electrode_, statically, bias, {}, looser * precision, precision).voltage;
@@ -227,7 +226,7 @@ DeviceUnits DeviceMeter::exact(const Switch& model) const {
 }
 
 DeviceUnits DeviceMeter::measured(const DeviceUnits& exact, const Calibration& calibration, std::uint64_t seed, std::uint64_t k) {
-  constexpr double least_volts = 0.1;  // no instrument reads a negative voltage
+  constexpr double least_volts = 0.1;  // floor for a measured voltage: an instrument reads none below 0
   const auto reading = [&](double error, Stream stream, std::uint64_t counter) {
     return std::max(least_volts, 1 + error * random_normal(seed, stream, counter));
   };
@@ -244,7 +243,7 @@ DeviceUnits DeviceMeter::measured(const DeviceUnits& exact, const Calibration& c
 
 namespace {
 
-// Returns the true units of each reference device, without measurement error.
+// Returns the units of each reference device, without measurement error.
 std::vector<DeviceUnits> reference_units(const PreparedScene& nominal, const Gauges& gauges, std::size_t size, int jobs,
                                          const Watch& watch) {
   const DeviceMeter meter(nominal, gauges);
@@ -261,14 +260,14 @@ std::vector<DeviceUnits> reference_units(const PreparedScene& nominal, const Gau
       units[k] = device.model ? meter.exact(*device.model) : DeviceUnits{.volts = Metrics::unset, .time = Metrics::unset};
     }
     const std::scoped_lock lock(telling);
-    watch.tell("devices that classes are made of", static_cast<double>(++done) / static_cast<double>(chunks));
+    watch.tell("devices from which classes are made", static_cast<double>(++done) / static_cast<double>(chunks));
   };
   run_tasks(chunks, jobs, task, watch.stop);
   watch.throw_if_stopped();
   return units;
 }
 
-// Coordinates in which relative errors of volts and time count alike.
+// Coordinates in which equal relative errors of voltages and of time are equal distances.
 SpacePoint logarithms(const DeviceUnits& units) { return {std::log(units.volts), std::log(units.time), std::log(units.piezo)}; }
 DeviceUnits units_at(const SpacePoint& point) {
   return {.volts = std::exp(point[0]), .time = std::exp(point[1]), .piezo = std::exp(point[2])};
@@ -283,7 +282,7 @@ KnownUnits::KnownUnits(const Calibration& calibration, std::span<const DeviceUni
     const SpacePoint point = logarithms(DeviceMeter::measured(reference[k], calibration, reference_seed, k));
     if (is_finite(point)) points.push_back(point);
   }
-  require(!points.empty(), "no device of the spread can be measured: there is nothing to sort into classes");
+  require(!points.empty(), "classes need devices that can be measured, and no device of the spread can");
   classes_ = classes_of(points, static_cast<std::size_t>(*calibration.classes), reference_seed);
 }
 
@@ -314,8 +313,8 @@ KnownUnits KnownUnits::without_errors() const {
 
 std::vector<KnownUnits> known_units(const PreparedScene& nominal, std::span<const Calibration> calibrations, int jobs,
                                     const Watch& watch) {
-  // Volts by a closing time differ from those by Vdp.
-  std::map<bool, std::vector<DeviceUnits>> references;  // by whether a closing time gives the volts
+  // Voltages from a closing time differ from those from Vdp.
+  std::map<bool, std::vector<DeviceUnits>> references;  // key: true if a closing time gives the voltages
   for (const bool by_time : {false, true}) {
     std::size_t size = 0;
     Gauges gauges;
@@ -332,7 +331,7 @@ std::vector<KnownUnits> known_units(const PreparedScene& nominal, std::span<cons
 }
 
 DeviceUnits deviation_of_units(const PreparedScene& nominal, bool need_pull_in, int jobs, const Watch& watch) {
-  constexpr std::size_t devices = 128;  // deviation within 6 %
+  constexpr std::size_t devices = 128;  // gives the deviations within 6 %
   DeviceUnits squares{.volts = 0, .time = 0, .piezo = 0};
   double known = 0;
   for (const DeviceUnits& one : reference_units(nominal, {.pull_in = need_pull_in}, devices, jobs, watch)) {
@@ -405,7 +404,7 @@ std::vector<DeviceOutcome> close_devices(std::span<const DeviceClosing> closings
 
 namespace {
 
-// A device that is quiet at the end of the window has not settled if its hold levels do not keep it closed.
+// A device that is at rest at the end of the window has not settled if its hold levels do not keep it closed.
 void judge_hold(DeviceOutcome& outcome, const Hold& hold) {
   Metrics& m = outcome.metrics;
   if (outcome.closed()) m.resistance = hold.resistance;
@@ -519,7 +518,7 @@ std::vector<std::vector<DeviceOutcome>> close_all(const Ensemble& ensemble, cons
   };
   const std::size_t chunks = (ensemble.size() + chunk - 1) / chunk;
   std::size_t complete = std::min<std::size_t>(ensemble.size(), chunk * run_tasks(chunks, run.jobs, task, watch.stop));
-  // After a stop, some chunks hold devices that were not begun, or not ended.
+  // After a stop, some chunks hold devices whose closing was not begun, or not ended.
   const auto missing = [](const DeviceOutcome& o) {
     return o.failure.empty() && (o.metrics.status == Status::not_run || o.metrics.status == Status::interrupted);
   };

@@ -23,9 +23,9 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t rows_of_task = 64;  // rows of one task: many for a lane, few between two checks of a Watch
+constexpr std::size_t rows_of_task = 64;  // rows of one task: enough to fill a lane, few enough to check the Watch often
 
-// Splits "electrode.main.span[2]" into its path and 2; without an element into the path and 0.
+// Splits "electrode.main.span[2]" into its path and 2. A key without an element gives its path and 0.
 std::pair<std::string, std::size_t> key_and_element(const std::string& key) {
   const std::size_t open = key.rfind('[');
   if (open == std::string::npos || !key.ends_with("]")) return {key, 0};
@@ -34,7 +34,7 @@ std::pair<std::string, std::size_t> key_and_element(const std::string& key) {
   return is_number ? std::pair(key.substr(0, open), std::stoul(inside)) : std::pair(key, std::size_t{0});
 }
 
-// Splits "waveform.main.level" into main and level.
+// Splits "waveform.main.level" into "main" and "level".
 std::optional<std::pair<std::string, std::string>> waveform_key(const std::string& path) {
   constexpr std::string_view before = "waveform.";
   if (!path.starts_with(before)) return std::nullopt;
@@ -79,7 +79,7 @@ std::string unit_of_parameter(ParameterKind kind, const std::string& drive) {
   return "";
 }
 
-// Returns the quantity that the scene writes at a key; none if it writes no quantity there.
+// Returns the quantity that the scene has at a key; none if it has no quantity there.
 std::optional<Quantity> written_quantity(const SceneFile& file, const std::string& path, std::size_t element) {
   std::optional<std::string> text = file.written(path);
   if (!text) return std::nullopt;
@@ -98,7 +98,7 @@ std::optional<Quantity> written_quantity(const SceneFile& file, const std::strin
 
 std::string spread_entry(const std::string& key) { return fmt::format("spread.\"{}\"", key); }
 
-// Returns a scene in which these keys vary, each by its own value: a factor would cost the last bit.
+// Returns a scene in which these keys vary, each by its own value: rounding makes a factor inexact.
 SceneFile scene_that_varies(SceneFile file, const std::vector<std::string>& keys) {
   file.erase("spread");
   file.erase("calibration");
@@ -116,9 +116,9 @@ SceneFile scene_that_varies(SceneFile file, const std::vector<std::string>& keys
 }  // namespace
 
 struct Evaluator::Row {
-  SampledDevice own;                      // device of the row, unless it is the nominal one
+  SampledDevice own;                      // device of the row, unless that is the nominal one
   const SampledDevice* device = nullptr;  // device to close
-  std::vector<Signal> signals;            // signals of the row, if they differ from the scene's
+  std::vector<Signal> signals;            // signals of the row, if they differ from those of the scene
   std::string refusal = {};
   double duration = 0;
   bool has_signals = false;
@@ -134,17 +134,16 @@ Evaluator::Evaluator(const SceneFile& file, std::vector<std::string> keys, std::
                      const EvaluatorOptions& options, const Watch& watch)
     : keys_(std::move(keys)), figures_(std::move(figures)), options_(options) {
   require_open_start(read_scene(file), "evaluator closes the switch");
-  require(!keys_.empty(), "evaluator: there is no key to vary");
-  require(!figures_.empty(), "evaluator: there is no figure to tell");
+  require(!keys_.empty(), "evaluator: needs at least one key");
+  require(!figures_.empty(), "evaluator: needs at least one figure");
   require(options.tolerance > 0 && options.tolerance <= 0.1, "evaluator: the tolerance must be above 0 and at most 0.1");
   for (const Figure& figure : figures_)
-    require(measured(figure), [&] {
-      return fmt::format("evaluator: {} is not measured of devices in lanes: simulate() tells it", figure.quantity());
-    });
+    require(measured(figure),
+            [&] { return fmt::format("evaluator: {} is not available in lanes; simulate() gives it", figure.quantity()); });
   for (std::size_t i = 0; i < keys_.size(); ++i)
     require(std::find(keys_.begin(), keys_.begin() + static_cast<std::ptrdiff_t>(i), keys_[i]) ==
                 keys_.begin() + static_cast<std::ptrdiff_t>(i),
-            [&] { return fmt::format("evaluator: the key '{}' stands twice", keys_[i]); });
+            [&] { return fmt::format("evaluator: the key '{}' occurs twice", keys_[i]); });
   units_.resize(keys_.size());
   values_.assign(keys_.size(), Metrics::unset);
   vary_device(file, watch);
@@ -159,7 +158,7 @@ Evaluator::Evaluator(const SceneFile& file, std::vector<std::string> keys, std::
   drives_ = std::make_unique<DeviceDrives>(*nominal_);
 }
 
-// Finds the columns of the device, and makes the scene ready.
+// Finds the columns of the device, and prepares the scene.
 void Evaluator::vary_device(const SceneFile& file, const Watch& watch) {
   if (options_.volts == VoltsOf::each) {
     SceneFile scene = file;
@@ -169,10 +168,10 @@ void Evaluator::vary_device(const SceneFile& file, const Watch& watch) {
     for (std::size_t i = 0; i < keys_.size(); ++i) {
       const auto [path, element] = key_and_element(keys_[i]);
       require(!path.starts_with("metrics."),
-              [&] { return fmt::format("evaluator: {} cannot vary: all rows are judged alike", keys_[i]); });
+              [&] { return fmt::format("evaluator: {} cannot vary: it applies to all rows", keys_[i]); });
       const std::optional<Quantity> given = written_quantity(scene, path, element);
       require(given.has_value(), [&] {
-        return fmt::format("{}: {} holds no number that could vary: write it in the scene first", scene.name(), keys_[i]);
+        return fmt::format("{}: {} must be a number in the scene to vary: write it there first", scene.name(), keys_[i]);
       });
       values_[i] = given->value;
       units_[i] = unit_symbol(given->dimension);
@@ -230,7 +229,7 @@ std::vector<Waveform> Evaluator::waveforms_of(std::span<const double> values) co
   return all;
 }
 
-// Returns why a driver cannot give the waveforms of a row; empty if it can.
+// Returns the reason why a driver cannot give the waveforms of a row; empty if it can.
 std::string Evaluator::violation_of(const std::vector<Waveform>& own) const {
   for (const WaveformKey& key : of_waveforms_) {
     const std::optional<DriverLimits>& limits = nominal_->drives[key.drive].limits;
@@ -323,7 +322,8 @@ void Evaluator::evaluate(std::span<const double> rows, std::span<double> figures
                          const Watch& watch) const {
   const std::size_t count = ends.size();
   require(rows.size() == count * keys_.size() && figures.size() == count * figures_.size(), [&] {
-    return fmt::format("evaluator: rows of {} numbers and {} figures do not fit each other", keys_.size(), figures_.size());
+    return fmt::format("evaluator: `rows`, `figures` and `ends` must have as many rows, of {} numbers and {} figures",
+                       keys_.size(), figures_.size());
   });
   const bool measures_energy = std::any_of(
       figures_.begin(), figures_.end(), [](const Figure& one) { return one.member == Figure::Member(&Metrics::drive_energy); });
@@ -364,7 +364,7 @@ void Evaluator::evaluate(std::span<const double> rows, std::span<double> figures
 
 namespace {
 
-// Drives with volts in the unit Vdp, which follow the device, and drives in volts.
+// Whether voltages are written in Vdp, so that they scale with the device, or in volts, or in other units.
 struct WrittenVolts {
   bool in_volts = false, in_pull_in = false, in_other_units = false;
 };
@@ -397,12 +397,12 @@ WrittenVolts written_volts(const SceneFile& file, const PreparedScene& there) {
   return found;
 }
 
-// Returns the row of derivatives of a figure; throws if it has none.
+// Returns the derivatives of a figure by the variables; throws if it has none.
 const FigureDerivatives& derived(const Derivatives& found, const Figure& figure) {
   require(found.why_none.empty(), [&] { return "jacobian: no derivatives here: " + found.why_none; });
   const auto of = std::find_if(found.figures.begin(), found.figures.end(),
                                [&](const FigureDerivatives& one) { return one.key == figure.key; });
-  require(of != found.figures.end(), [&] { return fmt::format("jacobian: {} has no slope: it jumps", figure.quantity()); });
+  require(of != found.figures.end(), [&] { return fmt::format("jacobian: {} has no derivative: it jumps", figure.quantity()); });
   require(of->is_known(),
           [&] { return fmt::format("jacobian: {} has no derivative here: {}", figure.quantity(), of->why_none); });
   return *of;
@@ -415,12 +415,12 @@ void require_derived(const Derivatives::Variable& variable) {
 
 }  // namespace
 
-// The scene of a row, in volts, with the data that a derivative by its columns needs.
+// The scene of a row, in volts, with what its derivatives by the columns need.
 struct Evaluator::Place {
-  PreparedScene scene;                 ///< its [spread] is that of the columns of the device
-  std::vector<std::size_t> of_device;  ///< columns, in the order of its variables
+  PreparedScene scene;                 ///< its [spread] has the columns of the device
+  std::vector<std::size_t> of_device;  ///< index of the column for each variable of that [spread]
   std::vector<WaveformKey> of_waveforms;
-  KnownUnits known;  ///< units by which volts follow the device
+  KnownUnits known;  ///< units by which the voltages scale with the device
 };
 
 Evaluator::Place Evaluator::place_of(std::span<const double> row, const Watch& watch) const {
@@ -466,7 +466,7 @@ Evaluator::Place Evaluator::place_of(std::span<const double> row, const Watch& w
   return with_columns(std::move(there), keys_of_row(in_volts, row), std::move(known));
 }
 
-// Returns the parameters of waveforms among the columns, by the units that they are written in.
+// Returns the columns that are parameters of waveforms, with the factors from the units in which they are written.
 std::vector<Evaluator::WaveformKey> Evaluator::keys_of_row(const PreparedScene& in_volts, std::span<const double> row) const {
   std::vector<WaveformKey> all;
   std::vector<Waveform> waveforms = in_volts.waveforms();
@@ -484,22 +484,24 @@ std::vector<Evaluator::WaveformKey> Evaluator::keys_of_row(const PreparedScene& 
     ParameterKind kind{};
     const double* const number =
         key.drive < drives.size() ? waveform_parameter(waveforms[key.drive], key.parameter, element, names, kind) : nullptr;
-    require(number != nullptr, [&] { return fmt::format("jacobian: {} is no number of a waveform in volts", keys_[i]); });
-    require(row[i] != 0, [&] { return fmt::format("jacobian: {} is 0, which does not tell its unit", keys_[i]); });
+    require(number != nullptr, [&] { return fmt::format("jacobian: {} must be a number of a waveform in volts", keys_[i]); });
+    require(row[i] != 0,
+            [&] { return fmt::format("jacobian: {} must differ from 0, since its unit follows from its value", keys_[i]); });
     key.factor = *number / row[i];
     all.push_back(std::move(key));
   }
   return all;
 }
 
-// Derives figures by parameters of waveforms.
+// Computes the derivatives of figures by parameters of waveforms.
 void Evaluator::derive_by_waveforms(const Place& place, std::span<const double> row, Eigen::MatrixXd& all,
                                     const Watch& watch) const {
   const std::vector<Waveform> here = place.scene.waveforms();
   std::vector<WaveformParameter> parameters;
   for (const WaveformKey& key : place.of_waveforms) {
     require(!place.scene.drives[key.drive].source.bits, [&] {
-      return fmt::format("jacobian: no derivative by {}: its source rounds to so many bits, and jumps", keys_[key.column]);
+      return fmt::format("jacobian: no derivative by {}: its source rounds to bits, so that the voltage jumps",
+                         keys_[key.column]);
     });
     const Signal told = place.scene.told(key.drive, here[key.drive]);
     Waveform one = here[key.drive];
@@ -533,7 +535,7 @@ void Evaluator::derive_by_waveforms(const Place& place, std::span<const double> 
 }
 
 Eigen::MatrixXd Evaluator::jacobian(std::span<const double> row, const Watch& watch) const {
-  require(row.size() == keys_.size(), [&] { return fmt::format("jacobian: a row has {} numbers", keys_.size()); });
+  require(row.size() == keys_.size(), [&] { return fmt::format("jacobian: a row must have {} numbers", keys_.size()); });
   const Place place = place_of(row, watch);
   Eigen::MatrixXd all(static_cast<Eigen::Index>(figures_.size()), static_cast<Eigen::Index>(keys_.size()));
   if (!place.of_waveforms.empty()) derive_by_waveforms(place, row, all, watch);

@@ -1,11 +1,12 @@
-// Figures of merit as a function of numbers of a scene: many rows at once, in lanes and on all cores, with a scene that is
-// prepared once. It serves optimizers, samplers and surrogates from outside.
+// Figures of merit as a function of numbers of a scene: many rows at once, in lanes and on all cores. The scene is prepared
+// once. It serves optimizers, samplers and surrogates outside of softland.
 //
-// A column is a number of the scene. A column of the device, or of an error of a drive, has a name of [spread]: "gap.contact",
-// "electrode.main.span[2]", "driver.main.gain". A row is then the device that a spread would have with these values, and its
-// figures have the bits that `robustness` gives such a device. A column of a waveform is a parameter: "waveform.main.level",
-// "waveform.main.times[1]" [V], [s], [rad/s], [rad]. Volts are those of the nominal scene, or follow the pull-in voltages of
-// each row (VoltsOf).
+// A column is a number of the scene.
+// - A column of the device, or of an error of a drive, has a name as in [spread]: "gap.contact", "electrode.main.span[2]",
+//   "driver.main.gain". The row describes the device that a spread would have with these values. Its figures are bit for bit
+//   those of `robustness`.
+// - A column of a waveform is a parameter of it: "waveform.main.level", "waveform.main.times[1]" [V], [s], [rad/s], [rad].
+// Voltages are those of the nominal scene, or scale with the pull-in voltages of each row (VoltsOf).
 #pragma once
 
 #include <Eigen/Core>
@@ -24,10 +25,10 @@
 
 namespace softland {
 
-/// The device whose pull-in voltages Vsp and Vdp stand for.
+/// Whose pull-in voltages the units Vsp and Vdp are.
 enum class VoltsOf {
-  nominal,  ///< the scene's: every row gets the same volts
-  each      ///< the row's: any key of the scene may vary, and every row is prepared anew, which takes several closings
+  nominal,  ///< those of the scene: every row has the same voltages
+  each      ///< those of the row: any key of the scene may vary; every row is prepared anew, which takes several closings
 };
 
 struct EvaluatorOptions {
@@ -37,14 +38,14 @@ struct EvaluatorOptions {
 
 /// The status of a row.
 struct RowEnd {
-  std::string status;       ///< "done", as in results, or "infeasible": the device, or the waveform, is impossible
+  std::string status;       ///< "done" or another status of a result, or "infeasible" if the device or the waveform is impossible
   std::string reason = {};  ///< reason for missing figures
 };
 
 class Evaluator {
  public:
   /// Throws InvalidInput for a scene that cannot be run, for a key that cannot vary or occurs twice, and for a figure that is
-  /// not measured on devices: see measured().
+  /// not available in lanes (measured()).
   Evaluator(const SceneFile& file, std::vector<std::string> keys, std::vector<Figure> figures,
             const EvaluatorOptions& options = {}, const Watch& watch = {});
   Evaluator(const Evaluator&) = delete;
@@ -59,15 +60,16 @@ class Evaluator {
   [[nodiscard]] const std::vector<Figure>& figures() const { return figures_; }
   [[nodiscard]] const PreparedScene& scene() const { return *nominal_; }
 
-  /// Evaluates rows. `rows` holds them one after another, a number for each key [SI unit]; `figures` likewise, NaN for a
-  /// missing one; `ends` has one entry per row. The results do not depend on `jobs`, nor on the other rows. Throws InvalidInput
-  /// if the sizes do not fit, Interrupted if `watch` asks to stop. May be called by several threads at once.
+  /// Evaluates rows. `rows` holds them one after another, with a number for each key [SI unit]. `figures` holds the figures of
+  /// each row in the same way, NaN if missing, and `ends` has one entry per row. The results depend neither on `jobs` nor on
+  /// the other rows. Throws InvalidInput if the sizes do not match, and Interrupted if `watch` asks to stop. May be called by
+  /// several threads at once.
   void evaluate(std::span<const double> rows, std::span<double> figures, std::span<RowEnd> ends, int jobs,
                 const Watch& watch = {}) const;
 
-  /// The derivatives of the figures by the keys at a row, figures x keys [unit of the figure over that of the key]: exact ones
-  /// of the closing (studies/devices/derivatives.h). Volts that follow each row have them if all are written in Vdp of one
-  /// electrode, or none. Throws InvalidInput with the reason if a figure has none there.
+  /// Returns the derivatives of the figures by the keys at a row, figures x keys [unit of the figure over that of the key].
+  /// They are exact derivatives of the closing (studies/devices/derivatives.h). With VoltsOf::each all voltages must be written
+  /// in Vdp of one electrode, or none may be. Throws InvalidInput with the reason if a derivative is missing.
   [[nodiscard]] Eigen::MatrixXd jacobian(std::span<const double> row, const Watch& watch = {}) const;
 
  private:
@@ -75,8 +77,8 @@ class Evaluator {
   struct WaveformKey {
     std::size_t column, drive;
     std::string parameter;
-    std::size_t element = 0;  ///< element of a list, counted from 1; 0: not a list
-    double factor = 1;        ///< factor of the parameter for one unit of the column
+    std::size_t element = 0;  ///< element of a list, counted from 1; 0 for a parameter that is no list
+    double factor = 1;        ///< factor from the column's unit to the parameter's
   };
   struct Row;
   struct Place;
@@ -100,14 +102,14 @@ class Evaluator {
   EvaluatorOptions options_;
   std::vector<WaveformKey> of_waveforms_;
   std::vector<std::size_t> of_device_;      ///< columns of the device, in the order of the spread's variables
-  std::unique_ptr<PreparedScene> nominal_;  ///< its spread is that of the columns
-  std::unique_ptr<Ensemble> ensemble_;      ///< none if no column is of the device
+  std::unique_ptr<PreparedScene> nominal_;  ///< prepared scene, whose [spread] has the columns of the device
+  std::unique_ptr<Ensemble> ensemble_;      ///< none if there is no column of the device
   std::unique_ptr<DeviceDrives> drives_;
   std::vector<Waveform> waveforms_;  ///< waveforms of the scene, in the order of the drives
-  std::vector<Signal> signals_;      ///< their signals
+  std::vector<Signal> signals_;      ///< applied voltages of these waveforms
   std::optional<ClosedEquilibrium> closed_;
   mutable std::mutex builders_lock_;
-  mutable std::vector<std::unique_ptr<DeviceBuilder>> builders_;  ///< idle builders: a row does not wait for a new one
+  mutable std::vector<std::unique_ptr<DeviceBuilder>> builders_;  ///< builders that no task uses, kept for later rows
 };
 
 }  // namespace softland

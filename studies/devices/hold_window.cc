@@ -16,7 +16,7 @@ namespace {
 
 bool is_held(const ClosedRange& device, double level) { return device.release <= level && !(device.pulled_through < level); }
 
-// Starting point for the collapse voltage of a device: a little below that of the nominal one.
+// Starting point for the collapse voltage of a device: a level a little below the collapse voltage of the nominal one.
 struct Nominal {
   double level = std::numeric_limits<double>::quiet_NaN();  // [V]
   std::optional<ClosedEquilibrium> closed;                  // closed equilibrium at that level
@@ -33,7 +33,7 @@ Nominal nominal_of(const Switch& model, std::size_t electrode, std::vector<doubl
 }
 
 ClosedRange range_of_device(const Switch& model, std::size_t electrode, std::vector<double> volts, const Nominal& nominal) {
-  constexpr double precision = 1e-4;  // precision of the reports
+  constexpr double precision = 1e-4;  // relative precision that reports show
   ClosedRange range{.release = release_voltage(model, electrode, volts)};
   if (!std::isfinite(range.release)) return range;
   volts[electrode] = nominal.closed ? std::max(nominal.level, range.release) : range.release;
@@ -50,7 +50,8 @@ HoldWindow hold_window(std::span<const ClosedRange> devices) {
     const auto lost = std::ranges::count_if(devices, [&](const ClosedRange& one) { return !is_held(one, level); });
     return static_cast<double>(lost) <= most_lost;
   };
-  // Levels at which enough devices are held begin at the release voltage of one, and end at the collapse voltage of another.
+  // The range of levels that hold enough devices begins at the release voltage of a device, and ends at the collapse voltage of
+  // one.
   HoldWindow window;
   double beyond_all = 0;
   for (const ClosedRange& one : devices) {

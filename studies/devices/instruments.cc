@@ -20,7 +20,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double tolerance_of_readings = 1e-9;  // tolerance of closings whose differences are taken
+constexpr double tolerance_of_readings = 1e-9;  // tolerance of the closings whose differences give derivatives
 
 VectorXd single(double value) { return VectorXd::Constant(1, value); }
 
@@ -135,7 +135,7 @@ DeviceReader::Reading DeviceReader::read(const Instrument& instrument, bool with
   }
 }
 
-// Reads a static voltage, by V = gain * commanded + offset.
+// Reads a static voltage, with V = gain * commanded + offset.
 DeviceReader::Reading DeviceReader::static_voltage(const Instrument& instrument, bool with_slopes) {
   const std::size_t k = instrument.drive;
   const std::vector<double> bias = bias_of(nominal_.scene, k);

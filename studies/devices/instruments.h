@@ -1,20 +1,20 @@
 // Readings of instruments on a device, and their derivatives by the varied quantities.
 //
-//   pull_in       static pull-in voltage [V]: a slow ramp closes the switch (model/pull_in.h)
-//   release       voltage at which a slow ramp opens it again [V]
-//   frequency     small undamped vibrations of the open switch about its rest at a level [Hz]
-//   capacitance   an electrode of the open switch at rest at a level [F]
-//   closing_time  first touch under a step to a level, or under waveforms [s]
-//   contact       times of the first edges of the contact's state under waveforms [s]: touch, first opening, next touch
-//   position      contact point over times, under waveforms [m]: towards the contact, from its place in the straight beam
-//   velocity      likewise [m/s]
+//   pull_in       static pull-in voltage, at which a slow ramp closes the switch (model/pull_in.h) [V]
+//   release       voltage at which a slow ramp opens the switch again [V]
+//   frequency     of small undamped vibrations of the open switch about its rest at a level [Hz]
+//   capacitance   of an electrode of the open switch at rest at a level [F]
+//   closing_time  time of the first touch under a step to a level, or under waveforms [s]
+//   contact       times of the first edges of the contact's state under waveforms: touch, first opening, next touch [s]
+//   position      of the contact point at given times, under waveforms: towards the contact, from a straight beam [m]
+//   velocity      of the contact point at given times, under waveforms [m/s]
 //
-// Voltages and levels are commanded: the gain and offset of the source stand between them and the switch, V = gain * commanded
-// + offset. The other drives stand at their bias (bias_of()), at 0 V for frequencies and capacitances. `fit` and `calibrate`
-// use the same readings.
+// Voltages and levels are commanded voltages. The gain and the offset of the source act between them and the switch: V = gain *
+// commanded + offset. The other drives are at their bias (bias_of()), or at 0 V for frequencies and capacitances. `fit` and
+// `calibrate` use the same readings.
 //
-// Slopes of the first four are those of model/static_slopes.h, those of the first touch of model/linearized_closing.h. The
-// others have no exact derivative: their slopes are differences of closings on either side.
+// Derivatives of the first four come from model/static_slopes.h, those of the first touch from model/linearized_closing.h. The
+// other readings have no exact derivatives: theirs are differences between closings on either side.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,7 +35,7 @@ struct MeasurableRow {
   Measurable value;
   std::string_view name;
   std::string_view unit;   ///< SI
-  std::string_view words;  ///< name for people
+  std::string_view words;  ///< name in sentences
 };
 inline constexpr std::array measurables{
     MeasurableRow{Measurable::pull_in, "pull_in", "V", "pull-in voltage"},
@@ -55,25 +55,25 @@ struct Instrument {
   std::size_t drive = 0;                 ///< index among Switch::drives()
   double level = 0;                      ///< commanded level [V]
   std::size_t mode = 0;                  ///< mode of a frequency, from 0
-  std::vector<Waveform> waveforms = {};  ///< commanded waveforms of every drive; empty: a step of `drive` to the level
+  std::vector<Waveform> waveforms = {};  ///< commanded waveforms of every drive; empty for a step of `drive` to the level
   std::vector<double> times = {};        ///< times of a position or velocity [s]
-  std::size_t edges = 1;                 ///< number of edges of a contact
+  std::size_t edges = 1;                 ///< number of edges of the contact's state to read
 
-  /// The number of values that it reads.
+  /// Returns the number of values that the instrument reads.
   [[nodiscard]] std::size_t size() const;
 };
 
-/// Reads a figure of a switch whose drive gets `level` itself: a single number, and no closing under waveforms. NaN if the
-/// switch does not have it. `duration` is the time in which a step must close it [s].
+/// Reads one figure of a switch, with `level` as the applied voltage. The figure must be a single number, and no closing under
+/// waveforms. NaN if the switch does not have it. `duration` is the time within which a step must close the switch [s].
 [[nodiscard]] double read(const Instrument& instrument, const Switch& model, Bias bias, double duration);
 
-/// Reads devices of a scene by the values of the varied quantities.
+/// Reads the devices of a scene by the values of their varied quantities.
 class DeviceReader {
  public:
-  /// The scene's [spread] must have no jitter. Keeps a reference.
+  /// The scene's [spread] must have no jitter. Keeps a reference to `nominal`.
   explicit DeviceReader(const PreparedScene& nominal) : nominal_(nominal), near_(nominal) {}
 
-  /// Moves to the device with these values, as DeviceSpread::to_values. Returns false if that device is impossible.
+  /// Moves to the device with these values (DeviceSpread::to_values). Returns false if that device is impossible.
   [[nodiscard]] bool move_to(const std::vector<double>& values);
 
   struct Reading {

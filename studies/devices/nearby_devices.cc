@@ -27,7 +27,7 @@ NearbyDevices::NearbyDevices(const PreparedScene& nominal, const EnsembleDrive& 
   drive_ = &drive;
   known_ = drive.known.without_errors();
   const Calibration& calibration = known_.calibration();
-  constexpr double precision = 1e-11;  // precision of pull-in voltages, whose differences are taken
+  constexpr double precision = 1e-11;  // relative precision of pull-in voltages whose differences give derivatives
   if (!calibration.is_empty()) meter_.emplace(nominal, Gauges::of(calibration), precision);
 }
 
@@ -49,11 +49,11 @@ bool NearbyDevices::changes_switch(std::size_t i) const {
   return std::any_of(keys.begin(), keys.end(), [](const VariedKey& key) { return !key.drive; });
 }
 
-// Returns the two devices beside it. Throws InvalidInput if one of them cannot be described.
+// Returns the two devices beside the current one. Throws InvalidInput if one of them cannot be described.
 SwitchSlopes::Neighbours NearbyDevices::neighbours(std::size_t i) {
   Switch above = device_beside(i, 1), below = device_beside(i, -1);
   SwitchOptions finer = nominal_.quadrature;
-  // A panel with one point more than on the other side would look like a change of the device.
+  // Both devices need the same quadrature points: another point would look like a change of the device.
   while (above.quadrature().points() != below.quadrature().points()) {
     constexpr double little = 1.01;
     finer.points_per_length *= little;
@@ -89,7 +89,8 @@ bool NearbyDevices::changes_signals(std::size_t i) const {
   return meter_ || std::any_of(keys.begin(), keys.end(), [](const VariedKey& key) { return key.drive.has_value(); });
 }
 
-// True if both sides have the same pieces: a step of a waveform that comes, goes or begins the clock is not a small change.
+// True if both sides have the same pieces. A step of a waveform that appears, disappears or begins the clock is not a small
+// change.
 bool NearbyDevices::keeps_pieces(std::size_t i) {
   const auto pieces = [&](double side) {
     std::vector<std::size_t> counts;

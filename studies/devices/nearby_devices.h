@@ -1,5 +1,5 @@
-// The devices on either side of one device, a small step apart in each varied quantity, from which derivatives by these
-// quantities are computed.
+// The devices on either side of one device, a small step apart in each varied quantity. Derivatives by these quantities are
+// computed from them.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@
 
 namespace softland {
 
-/// Changes of a switch and of its drives by the varied quantities.
+/// Derivatives of a switch and of its drives by the varied quantities.
 struct DeviceChanges {
   SwitchSlopes of_switch;
   SignalSlopes of_signals;
@@ -24,36 +24,36 @@ class NearbyDevices {
  public:
   static constexpr const char* other_pieces = "the waveforms have other pieces on either side of its nominal value";
 
-  /// Starts at the nominal device of a scene whose [spread] has no jitter, under this drive. Keeps references.
+  /// Starts at the nominal device of a scene under this drive. The scene's [spread] must have no jitter. Keeps references.
   NearbyDevices(const PreparedScene& nominal, const EnsembleDrive& drive);
 
-  /// The same without a drive yet: call drive_by() before asking for signals.
+  /// Does the same without a drive: call drive_by() before asking for signals.
   explicit NearbyDevices(const PreparedScene& nominal);
   NearbyDevices(const NearbyDevices&) = delete;
   NearbyDevices& operator=(const NearbyDevices&) = delete;
-  /// Takes another drive, of the same calibration. Keeps a reference.
+  /// Replaces the drive by one with the same calibration. Keeps a reference.
   void drive_by(const EnsembleDrive& drive) { drive_ = &drive; }
 
-  /// Moves to the device with these values, as DeviceSpread::to_values.
+  /// Moves to the device with these values (DeviceSpread::to_values).
   void move_to(const std::vector<double>& values);
   [[nodiscard]] const std::vector<double>& values() const { return values_; }
-  /// The device there. Throws InvalidInput if it cannot be described.
+  /// Returns the current device. Throws InvalidInput if it cannot be described.
   [[nodiscard]] Switch device() { return device_at(values_); }
-  /// The change of a quantity to either side [unit of its value].
+  /// Returns the step to either side in quantity i [unit of its value].
   [[nodiscard]] double step(std::size_t i) const { return steps_[i]; }
-  /// The device a step above it in one quantity (`side` 1) or below (-1). Throws as device() does.
+  /// Returns the device one step above the current one in quantity i (`side` 1) or below it (-1). Throws as device() does.
   [[nodiscard]] Switch device_beside(std::size_t i, double side) { return device_at(beside(i, side)); }
-  /// The signals of the device, and of those beside it.
+  /// Return the signals of the current device, and of the device beside it.
   [[nodiscard]] std::vector<Signal> signals() { return signals_of(values_); }
   [[nodiscard]] std::vector<Signal> signals_beside(std::size_t i, double side) { return signals_of(beside(i, side)); }
 
-  /// Changes of `model`, which is device(), and of its signals. Gives the reason for each quantity without derivatives, if that
-  /// is empty.
+  /// Returns the derivatives of device(), which is `model`, and of its signals. If `why_none` of a quantity is empty and the
+  /// quantity has no derivatives, it receives the reason.
   [[nodiscard]] DeviceChanges changes(const Switch& model, std::vector<std::string>& why_none, const Watch& watch = {});
-  /// The same for the switch alone, and for the signals alone. Throw as device() does.
+  /// Return the derivatives of the switch alone, and of the signals alone. They throw as device() does.
   [[nodiscard]] SwitchSlopes changes_of_switch(const Switch& model);
   [[nodiscard]] SignalSlopes changes_of_signals();
-  /// The errors of the source of drive k on this device, except its jitter.
+  /// Returns the errors of the source of drive k on the current device, except its jitter.
   [[nodiscard]] SourceErrors source_errors(std::size_t k) const { return drives_.errors(k, values_); }
   [[nodiscard]] SourceErrors source_errors_by(std::size_t k, std::size_t i) const { return drives_.errors_by(k, i); }
 

@@ -63,12 +63,12 @@ void summarise(DriveRobustness& drive) {
   drive.worst.resize(static_cast<std::size_t>(kept));
 }
 
-// Returns the gap of the contact at `instants` instants from 0 to `end`; its last value after the end of the closing.
+// Returns the gap of the contact at `instants` instants from 0 to `end`. After the end of the closing it keeps the last value.
 std::vector<double> sampled_gap(const Trajectory& closing, std::size_t instants, double end) {
   const std::vector<TrajectoryPoint>& knots = closing.points;
   if (knots.empty()) return {};
   std::vector<double> gap;
-  std::size_t next = 0;  // knot
+  std::size_t next = 0;  // index of the knot before the instant
   for (std::size_t i = 0; i < instants; ++i) {
     const double t = end * static_cast<double>(i) / static_cast<double>(instants - 1);
     while (next < knots.size() && knots[next].time <= t) ++next;
@@ -83,12 +83,12 @@ std::vector<double> sampled_gap(const Trajectory& closing, std::size_t instants,
   return gap;
 }
 
-// Returns the waveforms in the order of Switch::drives(); drives without a waveform stay at 0 V.
+// Returns the waveforms in the order of Switch::drives(). Drives without a waveform stay at 0 V.
 std::vector<Waveform> waveforms_of(const PreparedScene& nominal, const NamedDrive& drive) {
   for (const auto& [name, waveform] : drive.waveforms) {
     const Drive* const given = nominal.drives.find(name);
     require(given != nullptr,
-            [&] { return fmt::format("{}: drives '{}', which the first scene does not have", drive.name, name); });
+            [&] { return fmt::format("{}: its drive '{}' must be a drive of the first scene", drive.name, name); });
     if (!given->limits) continue;
     const DriverLimits own = limits_for(waveform, *given->limits);
     const bool may_be_samples = std::holds_alternative<Table>(waveform);
@@ -99,7 +99,8 @@ std::vector<Waveform> waveforms_of(const PreparedScene& nominal, const NamedDriv
   return nominal.in_drive_order(drive.waveforms);
 }
 
-// Widens the limits of a source whose own units or errors are larger than those of the nominal device.
+// Widens the limits of a driver so that the signal of a device, whose units or errors may be larger than nominal, is within
+// them.
 void allow(SceneFile& file, const std::string& driver, const Signal& signal, const DriverLimits& limits) {
   if (violation(signal, limits).empty()) return;
   if (signal.maximum() > limits.max_voltage) file.assign(driver + ".max_voltage", signal.maximum());
@@ -108,7 +109,7 @@ void allow(SceneFile& file, const std::string& driver, const Signal& signal, con
   if (std::isfinite(signal.peak_slew())) {
     file.assign(driver + ".max_slew", signal.peak_slew());
   } else {
-    file.erase(driver + ".max_slew");  // an offset acts at once
+    file.erase(driver + ".max_slew");  // an offset is applied at once
   }
 }
 
@@ -130,8 +131,8 @@ constexpr std::array all_measurements{
     Measurement{measured_pull_in, &Calibration::pull_in_error}, Measurement{"closing time", &Calibration::time_error},
     Measurement{measured_frequency, &Calibration::frequency_error}, Measurement{measured_piezo, &Calibration::piezo_error}};
 
-// Returns the same drive for every calibration of a device, without errors: from none to all measurements, first with the class
-// of the device, then with its own units.
+// Returns the drive with every calibration of a device, without errors: from no measurements to all of them. With all of them
+// devices are sorted into classes first, then have their own units.
 std::vector<NamedDrive> by_knowledge(const NamedDrive& drive) {
   std::vector<NamedDrive> all;
   const auto add = [&](const std::string& name, const Calibration& calibration) {
@@ -154,7 +155,7 @@ std::vector<NamedDrive> by_knowledge(const NamedDrive& drive) {
   };
   for (std::size_t i = 0; i < measured.size() && measured.size() > 1; ++i)
     add(std::string(measured[i].name), exactly(std::span(measured).subspan(i, 1)));
-  if (measured.size() > 2 && drive.calibration.piezo_error) {  // the value of the last measurement beside the others
+  if (measured.size() > 2 && drive.calibration.piezo_error) {  // the value of the piezo's measurement beside the others
     const auto others = std::span(measured).first(measured.size() - 1);
     add(named(others), exactly(others));
   }
@@ -187,14 +188,14 @@ Yield yield_of(std::size_t devices, std::size_t all) {
 
 Robustness robustness(const PreparedScene& nominal, const std::vector<NamedDrive>& drives, const RobustnessOptions& options,
                       const Watch& watch) {
-  require(nominal.model.has_contact(), "robustness needs a [contact] section: without contact there is nothing to land on");
+  require(nominal.model.has_contact(), "robustness needs a [contact] section: without contact there is no landing");
   require_open_start(nominal.scene, "robustness closes every device");
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   const EnsembleRun run = internal::run_of(nominal, options);
   Robustness result{.duration = run.duration, .tolerance = run.tolerance};
   const Actuator driven = has_pulling_electrode(nominal.scene.device) ? Actuator::both : Actuator::pzt;
   NamedDrive plain{.name = "plain step", .waveforms = plain_step(nominal, driven)};
-  plain.waveforms.merge(nominal.drives.waveforms());  // drives that do not step
+  plain.waveforms.merge(nominal.drives.waveforms());  // drives that the plain step leaves out
   std::vector<NamedDrive> all;
   const auto is_judged = [&](const NamedDrive& drive) {  // the scene's own drive may be the plain step
     const std::vector<Signal> own = nominal.told(waveforms_of(nominal, drive));
@@ -232,8 +233,8 @@ Sensitivity sensitivity(const PreparedScene& nominal, const DriveRobustness& dri
   const DeviceSpread& spread = nominal.scene.spread;
   Sensitivity found;
   for (const SpreadVariable& variable : spread.variables) found.variables.push_back(variable.name);
-  if (spread.copula) found.why_none = "what varies is correlated: shares of the variance cannot be told apart";
-  if (spread.variables.size() < 2) found.why_none = "only one quantity varies: all is due to it";
+  if (spread.copula) found.why_none = "the varied quantities are correlated: their shares of the variance cannot be separated";
+  if (spread.variables.size() < 2) found.why_none = "only one quantity varies, and causes all of the variance";
   if (!found.why_none.empty()) return found;
   const Ensemble ensemble(nominal, SobolDesign(PointSet::sobol, spread.variables.size(), options.seed, rows));
   const std::vector<DeviceOutcome> outcomes =
@@ -342,7 +343,7 @@ SceneFile scene_of_values(const Ensemble& ensemble, const DriveRobustness& drive
       units = drive.known.of(meter.exact(*sampled.model), seed, device);
       if (!units.are_known()) units = {};
     }
-    file.erase("calibration");  // it is applied already
+    file.erase("calibration");  // the waveforms are scaled already
   }
   const DeviceDrives drives(nominal);
   const std::vector<DeviceDrives::Written> own =

@@ -20,7 +20,7 @@ inline constexpr std::array robustness_quantiles{0.05, 0.5, 0.95, 0.99};
 
 struct EstimatedQuantile {
   double value = Metrics::unset;
-  Interval interval = {};  ///< 95 %, from order statistics; a side is infinite if there are too few devices
+  Interval interval = {};  ///< 95 % confidence interval, from order statistics; a side is infinite if there are too few devices
 };
 
 /// Estimates a quantile; a device that does not close counts as +infinity.
@@ -29,15 +29,15 @@ struct EstimatedQuantile {
 struct FigureStatistics {
   double mean = Metrics::unset, standard_deviation = Metrics::unset,
          skewness = Metrics::unset;                                           ///< over the devices that have the figure
-  std::size_t devices = 0;                                                    ///< number of these devices
+  std::size_t devices = 0;                                                    ///< number of devices that have the figure
   std::array<EstimatedQuantile, robustness_quantiles.size()> quantiles = {};  ///< quantiles over all devices
 };
 
-/// A share of all devices.
+/// A share of all devices, such as those that close.
 struct Yield {
   std::size_t devices = 0;
   double value = Metrics::unset;
-  Interval interval = {};  ///< 95 %, Wilson
+  Interval interval = {};  ///< 95 % confidence interval (Wilson)
 };
 
 /// True if a device closes, and settles without a significant rebound.
@@ -47,38 +47,40 @@ struct Yield {
 struct DriveRobustness {
   std::string name;
   DriveWaveforms waveforms;             ///< waveforms of the nominal device, in volts
-  KnownUnits known = {};                ///< units of the devices
+  KnownUnits known = {};                ///< known units of the devices
   std::vector<DeviceOutcome> outcomes;  ///< outcomes by device
   PerFigure<FigureStatistics> figures;  ///< statistics of device_figures
-  Yield closing;                        ///< share that reaches the contact in a run to the end
-  Yield collapsed;                      ///< share whose beam collapses onto the electrode
-  Yield bounce_free;                    ///< share that closes and settles without a significant rebound
-  std::vector<std::size_t> worst;       ///< devices, the highest rebound first; failures before all
+  Yield closing;                        ///< share of devices that touch and are simulated to the end of the window
+  Yield collapsed;                      ///< share of devices whose beam collapses onto the electrode
+  Yield bounce_free;                    ///< share of devices that close and settle without a significant rebound
+  std::vector<std::size_t> worst;       ///< devices in order of decreasing rebound height, after those that fail
 };
 
 struct RobustnessOptions {
   std::uint64_t samples = 2000;
   std::uint64_t seed = 1;
   PointSet points = PointSet::sobol;
-  int jobs = 1;  ///< threads; does not change the result
+  int jobs = 1;  ///< number of threads; does not change the result
   Vectors vectors = vectors_in_use();
-  bool measures_drive_energy = false;  ///< measures it on every device
-  /// Judges a last drive that is calibrated also without a calibration, with each measurement alone, and with all of them
-  /// without error: sorted into classes, and each device in its own units.
+  bool measures_drive_energy = false;  ///< true to measure it on every device
+  /// True to repeat the last drive, if it is calibrated, with other calibrations: without one, with each measurement alone, and
+  /// with all measurements without error. The latter is done with the devices sorted into classes, and with each device in its
+  /// own units.
   bool worth_of_measuring = false;
   bool opens_on_command = false;  ///< EnsembleRun::opens_on_command
 };
 
 struct Robustness {
-  std::vector<DriveRobustness> drives;             ///< the plain step first
-  std::vector<DriveRobustness> by_knowledge = {};  ///< the last of them again: the value of its measurements
-  std::size_t devices = 0;                         ///< fewer than requested if interrupted
+  std::vector<DriveRobustness> drives;  ///< results of the drives, the plain step first
+  std::vector<DriveRobustness> by_knowledge =
+      {};                   ///< results of the last drive with other calibrations, which give the value of its measurements
+  std::size_t devices = 0;  ///< number of devices; fewer than requested if interrupted
   bool interrupted = false;
   double duration = 0;   ///< window [s]
   double tolerance = 0;  ///< tolerance of the integrator
 };
 
-/// Keys of the figures whose spread sensitivity() and other_ways() explain.
+/// Keys of the figures that sensitivity() and other_ways() explain.
 inline constexpr std::array explained_figures{key_of(&Metrics::initial_contact_time), key_of(&Metrics::largest_impact_velocity),
                                               key_of(&Metrics::major_bounce_height)};
 
@@ -89,66 +91,66 @@ struct FigureSensitivity {
 };
 struct Sensitivity {
   std::vector<std::string> variables;      ///< variables of the spread
-  std::vector<FigureSensitivity> figures;  ///< explained_figures
-  std::string why_none;                    ///< empty if indices exist
+  std::vector<FigureSensitivity> figures;  ///< sensitivities of explained_figures
+  std::string why_none;                    ///< reason for missing indices; empty if they exist
 };
 
-/// The closing of a device that has a certain quantile of the highest rebound.
+/// The closing of the device at a quantile of the highest rebound.
 struct DeviceCourse {
   double probability = 0;
   std::size_t device = 0;
   Trajectory trajectory;
 };
 
-/// The gaps of the contacts of several devices at the same instants, which divide the time from 0 to `end` evenly.
+/// The gaps of the contacts of several devices at common instants, evenly spaced from 0 to `end`.
 struct GapCourses {
   double end = 0;                              ///< [s]
-  std::vector<std::vector<double>> gaps = {};  ///< gaps by device, then by instant; below 0 in the contact [m]
+  std::vector<std::vector<double>> gaps = {};  ///< gaps by device, then by instant [m]; below 0 in contact
 };
 
 /// A drive to judge.
 struct NamedDrive {
   std::string name;
   DriveWaveforms waveforms;      ///< waveforms in volts
-  Calibration calibration = {};  ///< none: every device gets the volts of the nominal one
+  Calibration calibration = {};  ///< none if every device has the voltages of the nominal one
 };
 
-/// Judges the drives on the devices of the spread of `nominal`, and the plain step to the same hold levels before them. Throws
-/// InvalidInput for a scene without [spread] or without contact, and for a drive that the scene lacks or that is beyond its
+/// Closes the devices of the spread of `nominal` under the plain step to the same hold levels, then under each drive. Throws
+/// InvalidInput for a scene without [spread] or without contact, and for a drive that the scene lacks or that exceeds its
 /// limits.
 [[nodiscard]] Robustness robustness(const PreparedScene& nominal, const std::vector<NamedDrive>& drives,
                                     const RobustnessOptions& options, const Watch& watch = {});
 
 /// Computes Sobol' indices of the figures under this drive, from `rows` rows of a design. None for correlated variables, whose
-/// shares cannot be separated, and for a single variable. Measurements count as exact.
+/// shares of the variance cannot be separated, and for a single variable. Measurements are taken as exact.
 [[nodiscard]] Sensitivity sensitivity(const PreparedScene& nominal, const DriveRobustness& drive, std::uint64_t rows,
                                       const RobustnessOptions& options, const Watch& watch = {});
 
-/// Returns the devices whose highest rebound is the 5th, 50th and 95th percentile of all, and their closings.
+/// Returns the devices with the 5th, 50th and 95th percentile of the highest rebound, and their closings.
 [[nodiscard]] std::vector<DeviceCourse> device_courses(const PreparedScene& nominal, const DriveRobustness& drive,
                                                        const Robustness& found, const RobustnessOptions& options);
 
-/// Returns the closings of the first `devices` devices until `end` [s], at `instants` instants, without devices that cannot be
-/// described. Throws Interrupted if `watch` asks to stop.
+/// Returns the gaps of the first `devices` devices until `end` [s], at `instants` instants. Devices that cannot be described
+/// are left out. Throws Interrupted if `watch` asks to stop.
 [[nodiscard]] GapCourses gap_courses(const PreparedScene& nominal, const DriveRobustness& drive, std::size_t devices,
                                      std::size_t instants, double end, const RobustnessOptions& options, const Watch& watch = {});
 
-/// Returns the scene of a device of that ensemble under one of its drives, with the errors of its sources written out. The
-/// closing under `simulate` is the same, as Ensemble::scene(), except for a sine whose times or volts are off
-/// (DeviceDrives::waveforms).
+/// Returns the scene of a device of that ensemble under one of its drives, with the errors of its sources written out.
+/// `simulate` runs it to the same closing, as for Ensemble::scene(). An exception is a sine with errors of times or voltages,
+/// which becomes a table (DeviceDrives::written).
 [[nodiscard]] SceneFile scene_of_device(const PreparedScene& nominal, const DriveRobustness& drive, std::size_t device,
                                         const RobustnessOptions& options);
 
 namespace internal {
 
-/// Returns the statistics of these outcomes, by device.
+/// Returns the statistics of these outcomes, which are ordered by device.
 [[nodiscard]] DriveRobustness summarised(NamedDrive drive, KnownUnits known, std::vector<DeviceOutcome> outcomes);
-/// Options of runs that look closer at a drive of a Robustness.
+/// Returns the options of further runs of a drive of a Robustness.
 [[nodiscard]] EnsembleRun run_of(const PreparedScene& nominal, const RobustnessOptions& options);
 /// Returns the drive with exact measurements.
 [[nodiscard]] EnsembleDrive exactly_measured(const PreparedScene& nominal, const DriveRobustness& drive);
-/// Returns the scene of the device with these values of the varied quantities; `device` is the number to which the errors of
-/// its measurements belong.
+/// Returns the scene of the device with these values of the varied quantities. `device` is the number on which the errors of
+/// its measurements depend.
 [[nodiscard]] SceneFile scene_of_values(const Ensemble& ensemble, const DriveRobustness& drive, const std::vector<double>& values,
                                         std::uint64_t seed, std::size_t device);
 

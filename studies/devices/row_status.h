@@ -1,15 +1,15 @@
-// The status of a row without a closing's own status: of a point of an exploration, or of an evaluator.
+// Statuses of a row of an exploration or of an evaluator that has no status of a closing.
 #pragma once
 
 #include <string_view>
 
 namespace softland {
 
-/// The scene is impossible, or cannot be studied: the reason says why.
+/// The scene of the row is impossible or cannot be studied; the row has the reason.
 inline constexpr std::string_view infeasible = "infeasible";
-/// The program itself failed.
+/// An error of the program itself.
 inline constexpr std::string_view internal_fault = "internal_error";
-/// A search found nothing better than the plain step.
+/// The search found nothing better than the plain step.
 inline constexpr std::string_view no_success = "no_success";
 
 }  // namespace softland

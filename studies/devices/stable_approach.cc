@@ -14,11 +14,11 @@
 namespace softland {
 namespace {
 
-// Levels of an electrode before contact, over its hold level, from the lowest on.
+// Levels of the holder before contact, over its hold level, in increasing order.
 constexpr std::array low_levels{0.0, 0.12, 0.24, 0.36};
-// Least distance of a driver's limit from the touching voltage, in standard deviations of that.
+// Distance from the touching voltage to the limit of the driver that suffices, in standard deviations of the touching voltage.
 constexpr double enough_deviations = 2.5;
-// Coordinates of the unit cube one standard deviation of a normal number to either side of the middle.
+// Coordinates of the unit cube that lie one standard deviation of a normal number below and above the middle.
 constexpr double one_below = 0.15865525393145707, one_above = 1 - one_below;
 
 // Returns the commanded voltage at which the contact point of a device touches.
@@ -49,7 +49,7 @@ class Finder {
     if (!nominal.scene.spread.empty()) ensemble_.emplace(nominal, 1);
   }
 
-  // Returns none if the nominal design has no path within the limits.
+  // Returns the approach by this drive; none if the nominal design has no path within the limits.
   [[nodiscard]] std::optional<StableApproach> along(const std::string& drive, const std::string& holder, double low) const {
     const Drive& carries = nominal_.drives.at(drive);
     if (!carries.limits) return std::nullopt;
@@ -67,7 +67,8 @@ class Finder {
   }
 
  private:
-  // Takes central differences by one standard deviation of each varying quantity.
+  // Returns the standard deviation of the touching voltage, by differences over one standard deviation of each varying
+  // quantity.
   [[nodiscard]] double deviation(const StableApproach& found) const {
     if (!ensemble_) return 0;
     const DeviceSpread& spread = nominal_.scene.spread;
@@ -81,7 +82,7 @@ class Finder {
         return touching_voltage(nominal_, builder.device(std::move(u)), found);
       };
       const std::optional<double> above = at(one_above), below = at(one_below);
-      // If one side has no path so near the nominal design, the other side is assumed to be as far.
+      // A device to one side may have no path: its distance is then taken from the other side, or else from the limit.
       const double slope = above && below ? (*above - *below) / 2
                            : above        ? *above - found.reaches
                            : below        ? found.reaches - *below
@@ -101,12 +102,12 @@ double room(const StableApproach& found) { return std::abs(found.limit - found.r
 }  // namespace
 
 double StableApproach::touch_places() const {
-  constexpr double of_a_normal = 2 * 1.6448536269514722;  // deviations from its 5th to its 95th percentile
+  constexpr double of_a_normal = 2 * 1.6448536269514722;  // standard deviations between the 5th and the 95th percentile
   return of_a_normal * deviation * std::abs(slope);
 }
 
 double shortest_rise(const PreparedScene& nominal) {
-  constexpr double periods = 1.5;  // a line of one period, and half a period between the impulses
+  constexpr double periods = 1.5;  // a ramp of one period, and half a period between the two impulses
   return periods * 2 * pi / nominal.model.basis().angular_frequencies()[0];
 }
 
