@@ -32,7 +32,7 @@ struct FigureDerivatives {
   std::string_view key;           ///< key of device_figures
   double value = Metrics::unset;  ///< value of the nominal device
   std::vector<double>
-      by_variable;  ///< derivative by each variable [unit of the figure over that of the variable]; NaN if there is none
+      by_variable;  ///< derivative by each variable [unit of the figure over that of the variable]; NaN if it does not exist
   double deviation = Metrics::unset;  ///< sigma_f, from the variables with derivatives
   double error = Metrics::unset;  ///< largest difference of the derivatives to those of a looser run, over the largest derivative
   std::string why_none = {};      ///< reason for missing derivatives; empty if they exist

@@ -364,7 +364,7 @@ void Evaluator::evaluate(std::span<const double> rows, std::span<double> figures
 
 namespace {
 
-// Whether voltages are written in Vdp, so that they scale with the device, or in volts, or in other units.
+// The units in which the voltages of drives are written. Voltages in Vdp scale with the device.
 struct WrittenVolts {
   bool in_volts = false, in_pull_in = false, in_other_units = false;
 };

@@ -77,7 +77,7 @@ class Evaluator {
   struct WaveformKey {
     std::size_t column, drive;
     std::string parameter;
-    std::size_t element = 0;  ///< element of a list, counted from 1; 0 for a parameter that is no list
+    std::size_t element = 0;  ///< element of a list, counted from 1; 0 for a parameter that is not a list
     double factor = 1;        ///< factor from the column's unit to the parameter's
   };
   struct Row;

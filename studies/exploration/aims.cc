@@ -40,7 +40,7 @@ std::vector<ExploredAim> explored_aims(const std::vector<ExploredColumn>& column
     });
     aim.column = static_cast<std::size_t>(found - columns.begin());
     require_field(std::none_of(aims.begin(), aims.end(), [&](const ExploredAim& other) { return other.column == aim.column; }),
-                  "pareto", list, [&] { return fmt::format("{} stands twice", name); });
+                  "pareto", list, [&] { return fmt::format("{} occurs twice", name); });
     aims.push_back(aim);
   }
   require_field(aims.size() >= 2, "pareto", list, [] { return "a front needs at least two figures"; });

@@ -1,4 +1,4 @@
-// The aims of a front of an exploration: figures that are to be small, or large.
+// The aims of an exploration that searches a Pareto front: figures to minimise or to maximise.
 #pragma once
 
 #include <cstddef>
@@ -13,28 +13,28 @@ namespace softland {
 /// A variable or a figure of an exploration.
 struct ExploredColumn {
   std::string key;   ///< key in options and files: "impact_velocity_m_s"
-  std::string name;  ///< name for people: "Impact speed", or the key of the scene
-  std::string unit;  ///< SI unit; empty: a plain number
+  std::string name;  ///< displayed name: "Impact speed", or the key of the scene
+  std::string unit;  ///< SI unit; empty for a dimensionless number
   bool is_variable = false;
 };
 [[nodiscard]] std::vector<ExploredColumn> explored_columns(const StoredPlan& plan);
 
-/// A figure that is to be small, or large.
+/// A figure to minimise or to maximise.
 struct ExploredAim {
   std::size_t column = 0;
   bool is_largest = false;
 };
-/// Prefix of a figure that is to be large.
+/// Prefix of a figure to maximise.
 inline constexpr std::string_view largest_mark = "max:";
 
-/// True if this is the name of a column: its key, its key without the unit, or its name for people.
+/// True if `name` is a name of the column: its key, its key without the unit, or its displayed name.
 [[nodiscard]] bool goes_by(const ExploredColumn& column, const std::string& name);
 
-/// The aims that a list names: "impact_velocity,max:bounce_free". Throws InvalidRequest of the field `pareto` for a name that
-/// is not a figure or occurs twice, and for fewer than two.
+/// Returns the aims in a list such as "impact_velocity,max:bounce_free". Throws InvalidRequest about the field `pareto` for a
+/// name that is not a figure or occurs twice, and for fewer than two aims.
 [[nodiscard]] std::vector<ExploredAim> explored_aims(const std::vector<ExploredColumn>& columns, const std::string& list);
 
-/// True if a point with this status may lead a front: a closing that still bounces when the window ends must not beat others.
+/// True if a point with this status may be on a front. A closing that still bounces when the window ends must not beat others.
 [[nodiscard]] bool may_lead(std::string_view status);
 
 }  // namespace softland

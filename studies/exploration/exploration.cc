@@ -26,14 +26,15 @@
 namespace softland {
 namespace {
 
-constexpr std::uint64_t default_devices = 500;  // devices of a robustness study: the verb's 2000 are for one drive, not a map
+constexpr std::uint64_t default_devices =
+    500;  // default devices of a robustness study; the verb's 2000 serve one drive, not a map
 constexpr std::array shown_quantiles{0.5, 0.95};
 constexpr std::array step_figures{figure_of(&Metrics::permanent_contact_time), figure_of(&Metrics::bounce_count),
                                   figure_of(&Metrics::major_bounce_height), figure_of(&Metrics::impact_velocity)};
 
 struct OptionRow {
   std::string_view name;
-  PointStudy study;  // study of the option
+  PointStudy study;  // study to which the option belongs
 };
 constexpr std::array options{OptionRow{"certify", PointStudy::simulate},  OptionRow{"samples", PointStudy::robustness},
                              OptionRow{"target", PointStudy::optimize},   OptionRow{"actuator", PointStudy::optimize},
@@ -85,7 +86,8 @@ void complete_search(std::map<std::string, std::string>& given, const SceneFile&
   });
 }
 
-/// Returns the drives whose pull-in is a figure: the electrodes that pull in, or the dispersion force if there are none.
+/// Returns the drives whose pull-in voltage is a figure: the electrodes that pull in, or the dispersion force if there are
+/// none.
 std::vector<std::size_t> pulling_drives(const Device& device) {
   std::vector<std::size_t> drives;
   for (std::size_t k = 0; k < device.electrodes.size(); ++k) {
@@ -95,7 +97,7 @@ std::vector<std::size_t> pulling_drives(const Device& device) {
   return drives;
 }
 
-/// Returns the drives as straight lines: exact for steps and pulses, within a thousandth of the swing for sines.
+/// Returns the drives as straight lines: exact for steps and pulses, within a thousandth of the range of voltages for sines.
 std::map<std::string, std::vector<std::pair<double, double>>> lines_of(const PreparedScene& p) {
   std::map<std::string, std::vector<std::pair<double, double>>> all;
   const std::vector<std::string> names = p.drive_names();
@@ -109,7 +111,7 @@ std::map<std::string, std::vector<std::pair<double, double>>> lines_of(const Pre
 
 double finite(double value) { return std::isfinite(value) ? value : Metrics::unset; }
 
-/// Removes the file name from a message: the scene of a plan is not a file of the user's.
+/// Removes the file name from a message: the scene of a point is in no file of the user.
 std::string without_file(std::string_view message) {
   constexpr std::string_view file = "scene: ";
   if (message.starts_with(file)) message.remove_prefix(file.size());
@@ -152,7 +154,7 @@ std::vector<PointFigure> robustness_figures(const AskedFigures& asked) {
 
 namespace {
 
-// Reads "touch.least_time_s" as "touch.least_time" in s.
+// Splits "touch.least_time_s" into "touch.least_time" and the unit s.
 PointFigure figure_of_key(const std::string& key) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 13> suffixes{{{"_rad_s", "rad/s"},
                                                                                     {"_m_s", "m/s"},
@@ -167,7 +169,7 @@ PointFigure figure_of_key(const std::string& key) {
                                                                                     {"_J", "J"},
                                                                                     {"_F", "F"},
                                                                                     {"_W", "W"}}};
-  // The unit may precede the number of a list, or the name of an electrode: "natural_frequencies_rad_s.1".
+  // The unit may precede an index of a list, or the name of an electrode: "natural_frequencies_rad_s.1".
   for (std::size_t end = key.size(); end != std::string::npos && end > 0; end = key.rfind('.', end - 1)) {
     const std::string_view head = std::string_view(key).substr(0, end);
     for (const auto& [suffix, unit] : suffixes) {
@@ -386,7 +388,7 @@ PointRow Exploration::pulled_in(const SceneFile& scene, const Watch& watch) {
     const ElectrodePullIn found = known != p.pull_in.end() ? known->second : electrode_pull_in(p.model, k, bias, watch);
     const Status status = found.statically.status == Status::done ? found.dynamically.status : found.statically.status;
     if (status != Status::done) row.status = to_string(status);
-    const double offset = is_electrode ? 0 : 1;  // the value of the dispersion force is its factor less one
+    const double offset = is_electrode ? 0 : 1;  // the drive of a dispersion force is its factor less one
     row.figures.push_back(finite(offset + found.statically.voltage));
     row.figures.push_back(finite(offset + found.dynamically.voltage));
     if (!is_electrode) continue;
@@ -396,7 +398,7 @@ PointRow Exploration::pulled_in(const SceneFile& scene, const Watch& watch) {
   return row;
 }
 
-// Returns the recorded row. Numbers that the record of the plan's scene has, and this one has not, stay unset.
+// Returns the numbers of a record as a row. A number that this record lacks, but that of the plan's scene has, stays unset.
 PointRow Exploration::recorded(const SceneFile& scene, int jobs, const Watch& watch) {
   const OtherStudy::Record record = other_->record(scene, plan_.options(), plan_.seed(), jobs, watch);
   PointRow row{.status = record.status, .reason = {}, .figures = std::vector<double>(figures_.size(), Metrics::unset)};
@@ -427,11 +429,11 @@ PointRow Exploration::on_devices(const SceneFile& scene, int jobs, const Watch& 
 
 PointRow Exploration::optimized(const SceneFile& scene, int jobs, const Watch& watch) {
   OptimizeOptions search = planned(request_of(plan_.options()), scene, {}).options;
-  search.begins_with_half = false;  // the rows of a plan have one budget
+  search.begins_with_half = false;  // all rows of a plan have the same budget
   search.seed = plan_.seed();
   search.jobs = jobs;
   search.stop = watch.stop;
-  // A stopped search would still verify its results, for a row that is not kept.
+  // Stop here: a stopped search would still verify results that no row keeps.
   search.on_preparation = [&watch](std::string_view, double) { watch.throw_if_stopped(); };
   const OptimizeResult found = optimize(scene, search);
   if (found.search.termination == Termination::interrupted) throw Interrupted();

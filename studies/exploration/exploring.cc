@@ -28,7 +28,7 @@ Exploring::Exploring(Exploration& exploration, StudyStore& store, const Explorin
 
 void Exploring::run() {
   const std::int64_t missing = told_.remaining();
-  if (missing > 0)  // too few points for the threads leave more of them for each
+  if (missing > 0)  // with fewer points than threads, several threads work on one point
     inner_jobs_ = missing < options_.jobs ? options_.jobs : 1;
   run_tasks(
       static_cast<std::size_t>(told_.points), options_.jobs, [this](std::size_t i) { take(point(static_cast<std::int64_t>(i))); },

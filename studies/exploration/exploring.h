@@ -1,4 +1,4 @@
-// The computation of the points of a part of a plan into its store.
+// Computes the points of a part of a plan into its store.
 #pragma once
 
 #include <atomic>
@@ -16,14 +16,14 @@ namespace softland {
 
 /// The progress of an exploration.
 struct Explored {
-  std::int64_t points = 0;  ///< points of the part
-  std::int64_t known = 0;   ///< points that the store had when it began
+  std::int64_t points = 0;  ///< number of points of the part
+  std::int64_t known = 0;   ///< number of points in the store at the begin
   std::int64_t computed = 0;
-  std::int64_t reused = 0;     ///< taken over from earlier plans
-  std::int64_t earlier = 0;    ///< rows of earlier plans: at most as many can be taken over
-  double seconds = 0;          ///< time since it began
-  double computing = 0;        ///< time since the first computed point was begun [s]
-  double waited_on_store = 0;  ///< time that all threads waited [s]
+  std::int64_t reused = 0;     ///< number of rows taken over from earlier plans
+  std::int64_t earlier = 0;    ///< number of rows of earlier plans: at most as many can be reused
+  double seconds = 0;          ///< time since the begin [s]
+  double computing = 0;        ///< time since the first new point was begun [s]
+  double waited_on_store = 0;  ///< total time for which threads waited for the store [s]
 
   [[nodiscard]] std::int64_t there() const { return known + computed + reused; }
   [[nodiscard]] std::int64_t remaining() const { return points - there(); }
@@ -32,16 +32,17 @@ struct Explored {
 struct ExploringOptions {
   Shard shard = {};
   int jobs = 1;
-  const std::atomic<bool>* stop = nullptr;                  ///< ends the exploration early, with the points so far
+  const std::atomic<bool>* stop = nullptr;                  ///< ends the exploration early; the points so far are kept
   std::function<void(const Explored&)> on_point = nullptr;  ///< called under a lock after every point
 };
 
 class Exploring {
  public:
-  /// Keeps references. The store must be of stored_plan(exploration, options.shard).
+  /// Keeps references. The store must belong to stored_plan(exploration, options.shard).
   Exploring(Exploration& exploration, StudyStore& store, const ExploringOptions& options);
 
-  /// Computes the points that the store lacks; the same rows on any number of threads. Throws as StudyStore::add().
+  /// Computes the points that the store lacks. The rows do not depend on the number of threads. Throws as StudyStore::add()
+  /// does.
   void run();
   [[nodiscard]] Explored explored() const;
 
@@ -62,7 +63,7 @@ class Exploring {
   bool reuses_;
   int inner_jobs_ = 1;
   Watch watch_;
-  mutable std::mutex mutex_;  // guards the progress, and the time when computing began
+  mutable std::mutex mutex_;  // guards the progress, and the time at which computing began
   Explored told_;
   std::atomic<double> store_seconds_ = 0;
   Clock::time_point begin_ = Clock::now();

@@ -15,10 +15,10 @@
 namespace softland {
 namespace {
 
-// Population for every number of points, so that a longer search begins with the points of a shorter one.
+// Population for any number of points, so that a longer search begins with the points of a shorter one.
 constexpr std::size_t population = 60;
 
-// Constraint violations of points that are not done: NSGA-II prefers the smaller one.
+// Constraint violations of points whose closing is not done, and of impossible ones. NSGA-II prefers the smaller violation.
 constexpr double not_done = 1, impossible = 2;
 
 class FrontSearch {
@@ -84,7 +84,7 @@ class FrontSearch {
     {
       const std::scoped_lock lock(mutex_);
       const auto found = fresh_.find(evaluation.x);
-      if (found == fresh_.end()) return;  // the program was asked to stop, or the point failed
+      if (found == fresh_.end()) return;  // the search was stopped, or the point failed
       row = std::move(found->second);
       fresh_.erase(found);
       ++found_.asked;
@@ -102,7 +102,7 @@ class FrontSearch {
   const FrontOptions& options_;
   Watch watch_;
   std::mutex mutex_;
-  std::map<std::vector<double>, StoredRow> fresh_;  // rows by place in the box, until their number is known
+  std::map<std::vector<double>, StoredRow> fresh_;  // rows by position in the box, until their number is known
   FrontFound found_;
 };
 

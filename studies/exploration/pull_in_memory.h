@@ -1,4 +1,4 @@
-// A memory of pull-in voltages: many points of an exploration have the same switch and differ only in what drives it.
+// Remembers pull-in voltages: many points of an exploration have the same switch and differ only in their drives.
 #pragma once
 
 #include <deque>
@@ -13,17 +13,18 @@ namespace softland {
 
 class PullInMemory {
  public:
-  /// Returns a finder of the pull-in voltages of the switch of `scene`, and must be called for that switch. It takes voltages
-  /// from the memory where another scene has left them. Such a scene differs only in waveforms (except the voltages of the
-  /// other drives), limits of the drivers, window and reported figures. May be called on any thread; a thread waits for
-  /// voltages that another one is computing. The memory must live as long.
+  /// Returns a finder of the pull-in voltages of the switch of `scene`; it must be called for that switch only. It reuses
+  /// voltages that were found for a scene with the same switch. Such a scene may differ in waveforms (except the voltages of
+  /// the other drives), limits of the drivers, window and reported figures. May be called on any thread: a thread waits while
+  /// another one computes the same voltages. The finder must not outlive this object.
   [[nodiscard]] PullInFinder finder(const SceneFile& scene);
 
  private:
   [[nodiscard]] ElectrodePullIn find(const std::string& switch_text, const Switch& model, std::size_t electrode, Bias bias,
                                      const Watch& watch);
 
-  // Number of kept entries, the newest: a plan visits the points of one switch together, or after those of a thousand others.
+  // Largest number of kept entries, the newest: a plan visits the points of one switch together, or after up to a thousand
+  // others.
   static constexpr std::size_t most_remembered = 16384;
   std::mutex mutex_;
   std::map<std::string, std::shared_future<ElectrodePullIn>> known_;

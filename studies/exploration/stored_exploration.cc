@@ -43,7 +43,7 @@ void require_part(const Exploration& exploration, const Shard& shard) {
   require_field(static_cast<std::uint64_t>(shard.count) <= points, "shard", fmt::format("{}/{}", shard.index, shard.count),
                 [&] { return fmt::format("a study of {} points has at most {} parts", points, points); });
   require_request(shard.count == 1 || !exploration.plan().is_search(), [] {
-    return fmt::format("{}: a search for a front goes from point to point and cannot be divided; {} makes it faster",
+    return fmt::format("{}: a search for a front cannot be divided, since each point depends on those before; {} makes it faster",
                        requested("shard"), requested("jobs"));
   });
 }

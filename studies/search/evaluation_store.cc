@@ -25,7 +25,7 @@ std::vector<StoredColumn> columns_for(const std::vector<std::string>& variables)
   return columns;
 }
 
-// Returns the key of an evaluation: equal keys ask for the same number. `row` has all columns, as in the stores of former
+// Returns the key of an evaluation. Equal keys have the same result. `row` has all columns, as in the stores of earlier
 // versions.
 ContentKey content_of(const EvaluationKey& key, const std::vector<double>& row) {
   std::string text = fmt::format("{} {} {:016x}", key.devices, key.seed, std::bit_cast<std::uint64_t>(key.hopeless));

@@ -1,4 +1,4 @@
-// The evaluations of a search in a store, so that a continued search simulates none of them twice.
+// The evaluations of a search in a store. A continued search simulates none of them again.
 #pragma once
 
 #include <exception>
@@ -18,22 +18,22 @@ namespace softland {
 /// Name of the store in the folder of a search.
 inline constexpr const char* evaluations_file = "evaluations.sqlite";
 
-/// A store with one row per simulated candidate, in the order of their ends. Rows of another plan in the store, a search with
-/// another budget, are taken over on request.
+/// A store with one row per simulated candidate, in the order in which the simulations ended. On request it takes over the rows
+/// of another plan in the store: that of the same search with another budget.
 class EvaluationStore : public EvaluationMemory {
  public:
-  /// `columns` are those of all families. `points` is the largest number of evaluations of the plan; those beyond are not kept.
-  /// Throws as StudyStore does.
+  /// `columns` are those of all waveform families. `points` is the largest number of evaluations of the plan; later ones are
+  /// not kept. Throws as StudyStore does.
   EvaluationStore(const std::filesystem::path& file, const nlohmann::json& plan, std::int64_t points, std::uint64_t seed,
                   FamilyColumns columns, const StoredOrigin& origin);
 
   [[nodiscard]] std::optional<EvaluationValues> recall(const EvaluationKey& key) noexcept override;
   void note(const EvaluationKey& key, const EvaluationValues& values) noexcept override;
 
-  /// Numbers of evaluations that were simulated, and that were read from the store.
+  /// Return the numbers of evaluations that were simulated, and that were read from the store.
   [[nodiscard]] std::int64_t computed() const;
   [[nodiscard]] std::int64_t recalled() const;
-  /// Throws the error that kept it from storing an evaluation.
+  /// Throws the error that an evaluation met when it was stored, if any did.
   void check();
   /// Waits until all evaluations are durable, and closes the file. Throws as check() does.
   void close();
@@ -45,7 +45,7 @@ class EvaluationStore : public EvaluationMemory {
   StudyStore store_;
   std::int64_t points_;
   mutable std::mutex mutex_;
-  std::map<ContentKey, EvaluationValues> known_;  // evaluations of this plan
+  std::map<ContentKey, EvaluationValues> known_;  // evaluations of this plan that the store held at the begin
   std::int64_t next_ = 0, computed_ = 0, recalled_ = 0;
   std::exception_ptr failure_;
 };

@@ -10,13 +10,13 @@ namespace softland {
 /// A column of figures.
 struct PointFigure {
   std::string quantity;  ///< "impact_velocity"
-  std::string name;      ///< name for people: "Impact speed"
-  std::string unit;      ///< SI unit; empty for a count, a share, yes or no (1 or 0)
+  std::string name;      ///< displayed name: "Impact speed"
+  std::string unit;      ///< SI unit; empty for a count, a share, and true or false (1 or 0)
 };
 
-/// Column of a searched parameter: "main.level_1_V" is "main.level_1" in V.
+/// Returns the column of a searched parameter: "main.level_1_V" gives "main.level_1" in V.
 [[nodiscard]] PointFigure parameter_figure(const std::string& name);
-/// Column of a figure of merit, with prefixes of its quantity and additions to its name.
+/// Returns the column of a figure of merit, with `before` in front of its quantity and `words` after its name.
 [[nodiscard]] PointFigure figure_column(const Figure& figure, const std::string& before = {}, const std::string& words = {});
 
 }  // namespace softland

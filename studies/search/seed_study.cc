@@ -105,7 +105,7 @@ void SeedStudy::run(const Listener& listener) {
   store_.flush();
 }
 
-// Runs one search. An interrupted search adds no row; its evaluations are kept, and the study continues with them.
+// Runs one search. An interrupted search adds no row, but its evaluations are kept for the continued study.
 void SeedStudy::search(std::uint64_t k, int jobs, const Listener& listener) {
   OptimizeOptions options = search_.options;
   const Watch watch{.stop = search_.options.stop};

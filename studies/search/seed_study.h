@@ -1,4 +1,4 @@
-// Searches from several seeds as one study: each becomes a row of a store as soon as it is done.
+// Searches from several seeds as one study. The result of each search is stored as a row as soon as the search ends.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ struct SearchOfSeed {
   std::string status, termination;
   double cost = Metrics::unset, evaluations = Metrics::unset;
   bool goal_met = false, confirmed = false, better_than_baseline = false;
-  FigureValues figures = {};  ///< figures of the waveform found
+  FigureValues figures = {};  ///< figures of the found waveform
 };
 
 class SeedStudy {
@@ -30,30 +30,30 @@ class SeedStudy {
   /// The progress of the study.
   struct State {
     std::uint64_t done = 0;  ///< number of finished seeds
-    double part = 0;         ///< share of all evaluations
-    long evaluations = 0;    ///< evaluations of this run
+    double part = 0;         ///< evaluations so far as a share of all
+    long evaluations = 0;    ///< number of evaluations of this run
     double best_cost = Metrics::unset, step_cost = Metrics::unset;
   };
-  /// Callbacks from any thread, one call at a time; either may be null.
+  /// Callbacks. They may be called from any thread, one call at a time; either may be null.
   struct Listener {
     std::function<void(const State&)> progress = {};
-    std::function<void(const SceneFile& best)> improvement = {};  ///< best of all seeds
+    std::function<void(const SceneFile& best)> improvement = {};  ///< receives the best scene of all seeds
   };
 
-  /// `variables` are the searched parameters. Opens the store of the seeds, whose rows are not computed again. Keeps references
-  /// to search and evaluations. Throws as StudyStore does.
+  /// `variables` are the searched parameters. Opens the store of the seeds; seeds with a row in it are not searched again.
+  /// Keeps references to search and evaluations. Throws as StudyStore does.
   SeedStudy(const StoredSearch& search, EvaluationStore& evaluations, const std::filesystem::path& file,
             std::vector<std::string> variables, const StoredOrigin& origin);
 
-  /// Runs the missing searches, several at once if there are as many as threads. A search is the same on any number of them.
-  /// Ends early when asked to stop.
+  /// Runs the missing searches, several at once if there are enough threads. The result of a search does not depend on the
+  /// number of threads. Ends early if it is asked to stop.
   void run(const Listener& listener);
   /// Closes the store.
   void close() { store_.close(); }
 
-  /// The finished searches, in the order of their seeds.
+  /// Returns the finished searches, in the order of their seeds.
   [[nodiscard]] std::vector<SearchOfSeed> searches() const;
-  /// The scene that the search from this seed found; empty if it found nothing.
+  /// Returns the scene that the search from this seed found; empty if it found none.
   [[nodiscard]] std::string scene_of(std::uint64_t seed) const;
   [[nodiscard]] std::uint64_t missing() const { return search_.seeds - done_; }
   [[nodiscard]] State state() const;
@@ -70,7 +70,7 @@ class SeedStudy {
   std::vector<std::uint64_t> to_do_;
 
   mutable std::mutex mutex_;  // guards the members below
-  std::vector<long> made_;    // evaluations, by seed, of the searches that are running or done in this run
+  std::vector<long> made_;    // evaluations by seed, for searches that run or ended in this run
   std::uint64_t done_ = 0;
   double best_cost_ = Metrics::unset, step_cost_ = Metrics::unset;
 };

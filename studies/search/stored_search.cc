@@ -21,7 +21,7 @@ using nlohmann::json;
 constexpr const char* kind = "search";
 constexpr const char* raced_families_key = "raced_waveform";  // key of the families as they were given
 
-// Reads the words of a plan. A plan without the word for devices is of the nominal one.
+// Reads the texts of a plan. A plan without the text for devices belongs to the nominal device.
 SearchRequest request_in(const json& plan) {
   SearchRequest request{.robust = std::string(nominal_alone)};
   const auto take = [&](std::string_view name, auto& word) {
@@ -33,7 +33,7 @@ SearchRequest request_in(const json& plan) {
   return request;
 }
 
-// Returns the scenes to begin with, or those of the plan that is continued.
+// Returns the scenes with which the search begins, or those of the plan that is continued.
 std::vector<StartingScene> starting_scenes(const AskedSearch& asked, const json& known) {
   std::vector<StartingScene> all;
   for (const StartingScene& one : asked.starts) {
@@ -48,7 +48,7 @@ std::vector<StartingScene> starting_scenes(const AskedSearch& asked, const json&
   return all;
 }
 
-// Returns the scene as it was given, or as in the plan that is continued, with the assignments added.
+// Returns the scene as given, or that of the plan that is continued, with the assignments added.
 json given_scene(const AskedSearch& asked, const json& known) {
   json given;
   if (asked.given) {
@@ -67,7 +67,7 @@ SceneFile scene_of(const json& given) {
   return scene;
 }
 
-// Returns the plan: the words are those of the request, with the numbers that were not given.
+// Returns the plan: the texts of the request, with defaults for numbers that were not given.
 json plan_of(SearchRequest request, const PlannedSearch& search, const std::vector<StartingScene>& starts, const json& given) {
   request.seed = std::to_string(search.options.seed);
   request.seeds = std::to_string(search.seeds);
@@ -105,7 +105,7 @@ std::string scene_difference(const std::string& there, const std::string& asked)
       return fmt::format("its scene has {} = {}, not {}", path, shortened(value(before, key)), shortened(value(now, key)));
     }
   }
-  return "its scene is another";
+  return "its scene differs";
 }
 
 std::string start_names(const json& plan) {
@@ -145,7 +145,7 @@ StoredSearch stored_search(const AskedSearch& asked, const std::vector<std::file
   for (const std::filesystem::path& store : stores) {
     const StudyReader reader(store);
     const json plan = json::parse(reader.plan().text, nullptr, false);
-    require(plan.is_object() && plan.contains("kind"), fmt::format("{}: holds no search", store.string()));
+    require(plan.is_object() && plan.contains("kind"), fmt::format("{}: must hold a search", store.string()));
     try {
       StoredSearch search = stored_search(asked, plan);
       const std::string other = difference(plan, search.plan);
@@ -163,7 +163,7 @@ StoredSearch stored_search(const AskedSearch& asked, const std::vector<std::file
 }
 
 std::string difference(const json& there, const json& asked) {
-  if (there.value("kind", "") != kind) return "it holds no search";
+  if (there.value("kind", "") != kind) return "it does not hold a search";
   if (there.at("scene_toml") != asked.at("scene_toml"))
     return scene_difference(there.at("scene_toml").get<std::string>(), asked.at("scene_toml").get<std::string>());
   for (const char* key : {"target", "actuator", "waveform", "optimizer", "robust", "hold-step", "constrain", "samples", "seed"}) {

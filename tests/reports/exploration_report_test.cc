@@ -56,7 +56,7 @@ TEST(ExploredAims, AreRefusedWithTheFiguresThereAre) {
                         "initial_contact_time_s, "));
   EXPECT_THAT(aims_refusal("impact_velocity,structure_length"), HasSubstr("not among the figures")) << "it is a variable";
   EXPECT_THAT(aims_refusal("impact_velocity,"), HasSubstr("not among the figures"));
-  EXPECT_THAT(aims_refusal("impact_velocity,Impact speed"), HasSubstr("stands twice"));
+  EXPECT_THAT(aims_refusal("impact_velocity,Impact speed"), HasSubstr("twice"));
   EXPECT_THAT(aims_refusal("impact_velocity"), HasSubstr("at least two"));
 }
 
