@@ -106,7 +106,7 @@ std::vector<Derivatives::Variable> variables_of(const DeviceSpread& spread) {
     all.push_back({.name = v.name,
                    .nominal = v.nominal(),
                    .deviation = v.distribution.standard_deviation(),
-                   .why_none = v.is_drawn_per_edge ? "it is drawn anew for every edge" : ""});
+                   .why_none = v.is_drawn_per_edge ? "it is random for every edge" : ""});
   }
   return all;
 }
@@ -164,8 +164,8 @@ Derivatives derivatives(const PreparedScene& scene, const EnsembleDrive& drive, 
     variables.push_back(&found.variables[i]);
   }
   found.why_none = LinearizedClosing::refusal(scene.model);
-  if (drive.known.calibration().classes) found.why_none = "devices are sorted into classes, and jump from one to the next";
-  if (places.empty()) found.why_none = "all that varies is drawn anew for every edge";
+  if (drive.known.calibration().classes) found.why_none = "devices are sorted into classes, between which their units jump";
+  if (places.empty()) found.why_none = "all varied quantities are random for every edge";
   if (!found.why_none.empty()) return found;
 
   const PreparedScene nominal = without_jitter(scene);

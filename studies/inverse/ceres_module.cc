@@ -12,7 +12,7 @@
 namespace softland {
 namespace {
 
-// Evaluates all residuals at one x together: Ceres asks for them one by one, so that each has its own loss.
+// Evaluates all residuals at one x together. Ceres asks for them one by one, so that each may have its own loss.
 class Evaluations final : public ceres::EvaluationCallback {
  public:
   Evaluations(const LeastSquares& problem, const std::vector<double>& x, const Watch& watch)
@@ -25,7 +25,7 @@ class Evaluations final : public ceres::EvaluationCallback {
       ++evaluations;
       if (with_jacobian) ++jacobians;
       is_known_ = problem_.evaluate(x_, residuals_, with_jacobian ? jacobian_.data() : nullptr);
-    } catch (...) {  // no exception may pass through Ceres
+    } catch (...) {  // exceptions must not pass through Ceres
       fault = std::current_exception();
       is_known_ = false;
     }
@@ -80,7 +80,7 @@ std::unique_ptr<ceres::LossFunction> loss_function(Loss loss) {
   return nullptr;
 }
 
-// Silences the log of Ceres, which is in its summary too.
+// Silences the log of Ceres; its summary has the same content.
 void silence_log() {
   static std::once_flag once;
   std::call_once(once, [] { FLAGS_minloglevel = google::GLOG_FATAL; });

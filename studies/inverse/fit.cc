@@ -33,16 +33,16 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double unset = Metrics::unset;
-constexpr double scale_without_prior = 0.1;  // share of the value
+constexpr double scale_without_prior = 0.1;  // scale over the value
 constexpr double quantile_95 = 1.959963984540054;
 
-// One number of the bench file.
+// A measured number of the bench file.
 struct Datum {
-  std::size_t device = 0, instrument = 0;  // instrument of the device
-  Index row = 0;                           // row of the reading
+  std::size_t device = 0, instrument = 0;  // indices of the device, and of its instrument
+  Index row = 0;                           // index of the value in the reading
   double measured = 0, error = 0;
   std::size_t measurement = 0;
-  double time = unset;  // time of a row of a trace [s]
+  double time = unset;  // time of the row, for a trace [s]
 };
 
 struct FitDevice {
@@ -51,10 +51,10 @@ struct FitDevice {
   std::vector<Instrument> instruments = {};
 };
 
-// A variable of the spread, of one device or shared by all.
+// An unknown: a variable of the spread, of one device or shared by all.
 struct Parameter {
   std::size_t variable = 0;
-  std::optional<std::size_t> device = {};  // none: shared by all
+  std::optional<std::size_t> device = {};  // none if shared by all
   double mean = 0, scale = 1;              // value = mean + scale z
   bool has_prior = true;
 };
@@ -63,8 +63,8 @@ struct Setup {
   std::vector<FitDevice> devices;
   std::vector<Datum> data;
   std::vector<Parameter> parameters;
-  std::vector<std::vector<std::size_t>> of_device;  // indices of the parameter of each variable
-  MatrixXd prior;                                   // P
+  std::vector<std::vector<std::size_t>> of_device;  // for each device, the indices of the parameters of its variables
+  MatrixXd prior;                                   // information P of the prior
   MatrixXd prior_root;                              // residuals of the prior are prior_root z
   Loss loss = Loss::huber;
 };
@@ -73,7 +73,7 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// Returns the entry of the spread that has this key; else the name itself.
+// Returns the entry of the spread that has this key; the name itself if there is none.
 std::string entry_of(const DeviceSpread& spread, const std::string& name) {
   for (const SpreadVariable& v : spread.variables) {
     if (v.name == name) return v.name;
@@ -84,8 +84,8 @@ std::string entry_of(const DeviceSpread& spread, const std::string& name) {
   return name;
 }
 
-// Returns the scene in volts, with a spread of the unknowns alone. Unknowns without an entry get one, which does not act as a
-// prior.
+// Returns the scene in volts, with the unknowns as its spread. Unknowns without an entry in [spread] get one that does not act
+// as a prior.
 PreparedScene with_unknowns(const PreparedScene& given, std::vector<std::string>& unknowns,
                             std::vector<std::string>& without_prior) {
   const DeviceSpread& spread = given.scene.spread;
@@ -101,8 +101,8 @@ PreparedScene with_unknowns(const PreparedScene& given, std::vector<std::string>
     for (const SpreadVariable& v : spread.variables) {
       const bool follows = std::ranges::any_of(v.keys, [&](const VariedKey& key) { return key.name() == name; });
       require_request(!follows, [&] {
-        return fmt::format("{} {}: it varies with others by the entry '{}' of [spread]: name that", requested("unknown"), name,
-                           v.name);
+        return fmt::format("{} {}: give the entry '{}' of [spread] instead, by which it varies together with others",
+                           requested("unknown"), name, v.name);
       });
     }
     try {
@@ -119,11 +119,12 @@ PreparedScene with_unknowns(const PreparedScene& given, std::vector<std::string>
   DeviceSpread& own = p.scene.spread;
   for (std::size_t i = own.variables.size(); i-- > 0;) {
     require_request(!(own.variables[i].is_drawn_per_edge && has(unknowns, own.variables[i].name)), [&] {
-      return fmt::format("{} {}: it is drawn anew for every edge", requested("unknown"), own.variables[i].name);
+      return fmt::format("{} {}: must have one value per device, but it is random for every edge", requested("unknown"),
+                         own.variables[i].name);
     });
     if (!has(unknowns, own.variables[i].name)) own.leave_out(i);
   }
-  require(!own.variables.empty(), [&] { return fmt::format("{}: there is nothing to fit", given.scene.file.name()); });
+  require(!own.variables.empty(), [&] { return fmt::format("{}: a fit needs at least one unknown", given.scene.file.name()); });
   return p;
 }
 
@@ -133,7 +134,7 @@ class Instruments {
  public:
   explicit Instruments(const FitDevice& device) : device_(device) {}
 
-  // The instrument that reads row `i` of a measurement, or all of its rows.
+  // Returns the instrument that reads row `i` of a measurement, or all of its rows.
   [[nodiscard]] Instrument of(const BenchMeasurement& m, std::size_t i) const {
     const PreparedScene& p = device_.nominal;
     Instrument one{.what = quantity_of(m), .drive = drive_of(m), .mode = static_cast<std::size_t>(m.mode - 1)};
@@ -168,11 +169,11 @@ class Instruments {
               [&] { return wrong(m, fmt::format("the scene has no drive '{}' (it has {})", m.drive, fmt::join(names, ", "))); });
       const auto k = static_cast<std::size_t>(found - names.begin());
       require(p.model.drive_kind(k) == DriveKind::electrode || m.quantity == "frequency" || m.quantity == "closing_time",
-              [&] { return wrong(m, "is of an electrode"); });
+              [&] { return wrong(m, "must be measured on an electrode"); });
       return k;
     }
     require(has_pulling_electrode(p.scene.device) || m.quantity == "frequency",
-            [&] { return wrong(m, "the scene has no electrode that pulls in: say the drive"); });
+            [&] { return wrong(m, "the scene has no electrode that pulls in: give the drive"); });
     return has_pulling_electrode(p.scene.device) ? searched_drive(p.scene.device) : 0;
   }
   [[nodiscard]] std::vector<Waveform> waveforms_of(const BenchMeasurement& m) const {
@@ -239,7 +240,7 @@ void add_parameters(Setup& setup, const std::vector<std::string>& shared, const 
   }
 }
 
-// Unknowns of one device, or the shared ones, are correlated as the spread says.
+// The unknowns of one device, or the shared ones, have the correlations of the spread.
 void add_prior(Setup& setup) {
   const auto n = static_cast<Index>(setup.parameters.size());
   setup.prior = setup.prior_root = MatrixXd::Zero(n, n);
@@ -263,14 +264,14 @@ void add_prior(Setup& setup) {
 
 // ---- residuals
 
-// The readings of all devices at z; each search has a model of its own.
+// Computes the readings of all devices at z. Each search has its own object, so that searches can run in parallel.
 class Model {
  public:
   explicit Model(const Setup& setup) : setup_(setup) {
     for (const FitDevice& device : setup.devices) readers_.emplace_back(device.nominal);
   }
 
-  // Computes the values that the instruments read; false if a device is impossible or cannot be read.
+  // Computes the readings. Returns false if a device is impossible or cannot be read.
   [[nodiscard]] bool read(std::span<const double> z, VectorXd& values, MatrixXd* slopes) {
     const auto n = static_cast<Index>(setup_.parameters.size());
     values.resize(static_cast<Index>(setup_.data.size()));
@@ -298,7 +299,7 @@ class Model {
     return true;
   }
 
-  // The reading of one instrument on a device at z, in its own unit, and its slopes by z.
+  // Returns the reading of one instrument on a device at z, in its own unit, and the derivatives by z.
   [[nodiscard]] std::optional<std::pair<double, VectorXd>> read_one(std::size_t device, std::span<const double> z,
                                                                     const Instrument& instrument) {
     if (!readers_[device].move_to(values_of(device, z))) return std::nullopt;
@@ -363,7 +364,7 @@ std::vector<std::vector<double>> starts_of(const Setup& setup, const FitOptions&
   return all;
 }
 
-// Returns J^T W J of data with these residuals and slopes, both over their errors.
+// Returns J^T W J for data with these residuals and slopes, both in units of the errors.
 MatrixXd information(const MatrixXd& slopes, const VectorXd& residuals, Loss loss) {
   const VectorXd weights = residuals.unaryExpr([&](double r) { return loss_weight(loss, r); });
   return slopes.transpose() * weights.asDiagonal() * slopes;
@@ -396,14 +397,13 @@ class EndOfFit {
 
   void add_next(const Watch& watch);
   void add_population();
-  // Throws for an unknown without a prior that no datum depends on: it would keep the value at which its search began.
+  // Throws if no datum depends on an unknown without a prior: its value would be the one at which the search started.
   void require_all_seen(const std::string& bench) const {
     for (std::size_t i = 0; i < setup_.parameters.size(); ++i) {
       const Parameter& p = setup_.parameters[i];
       require_request(p.has_prior || !slopes_.col(static_cast<Index>(i)).isZero(0), [&] {
         return fmt::format(
-            "{} {}: no measurement of {} depends on it: leave it out, or give it an entry of [spread], which tells what is "
-            "known of it",
+            "{} {}: no measurement of {} depends on it: leave it out, or give it an entry of [spread] as its prior",
             requested("unknown"), fit_.scene.scene.spread.variables[p.variable].name, bench);
       });
     }
@@ -434,7 +434,8 @@ class EndOfFit {
     }
   }
 
-  // Weak directions of the mean of the devices: a direction that is weak on one is weak on all, each in a mixture of its own.
+  // Weak directions of the mean device. A direction that is weak for one device is weak for all, but each has other weak
+  // directions.
   [[nodiscard]] std::vector<WeakDirection> weak_of_a_device() const {
     const auto n = static_cast<Index>(setup_.parameters.size());
     const std::vector<std::size_t>& first = setup_.of_device.front();
@@ -462,7 +463,7 @@ class EndOfFit {
       FittedUnknown one{.name = variable.name,
                         .device = p.device ? setup_.devices[*p.device].name : "",
                         .unit = variable.is_factor ? "" : variable.keys.front().unit};
-      // A factor of one key is shown as the value of that key.
+      // A factor of a single key is shown as the value of that key.
       const bool as_value = variable.is_factor && variable.keys.size() == 1;
       const double unit = as_value ? variable.keys.front().nominal : 1;
       if (as_value) one.unit = variable.keys.front().unit;
@@ -484,12 +485,12 @@ class EndOfFit {
   MatrixXd slopes_;
 };
 
-// A further possible measurement, and its usual error.
+// A possible further measurement, with its typical error.
 struct Candidate {
   std::string name;
   Instrument instrument;
-  double error = 0;           // absolute error [SI unit], or
-  double relative_error = 0;  // error over the value
+  double error = 0;           // absolute error [SI unit]; 0 if relative
+  double relative_error = 0;  // error over the value; 0 if absolute
 };
 
 std::vector<Candidate> candidates(const PreparedScene& p) {
@@ -549,7 +550,7 @@ void EndOfFit::add_next(const Watch& watch) {
   std::ranges::stable_sort(fit_.next, [](const auto& a, const auto& b) { return a.reduction > b.reduction; });
 }
 
-// Adds the population of the devices' own unknowns, with shared unknowns as they were found.
+// Adds the population of the unknowns that belong to single devices, at the fitted values of the shared ones.
 void EndOfFit::add_population() {
   if (setup_.devices.size() < 2) return;
   FittedPopulation found{.variables = {}, .names = {}, .mean = {}, .deviation = {}, .correlation = {}};
@@ -599,7 +600,7 @@ Setup setup_of(const SceneFile& file, const Bench& bench, const FitOptions& opti
     if (!has(names, m.device)) names.push_back(m.device);
   }
   require(names.size() == 1 || !has(names, ""),
-          [&] { return fmt::format("{}: some measurements say of which device they are, and some do not", bench.name); });
+          [&] { return fmt::format("{}: either all measurements must name their device, or none", bench.name); });
   require_open_start(read_scene(file), "fit closes the switch");
   std::vector<std::string> without_prior;
   std::optional<PreparedScene> plain;
@@ -621,7 +622,7 @@ Setup setup_of(const SceneFile& file, const Bench& bench, const FitOptions& opti
   for (const std::string& name : options.shared) {
     const auto& variables = setup.devices.front().nominal.scene.spread.variables;
     require_request(std::ranges::any_of(variables, [&](const SpreadVariable& v) { return v.name == name; }),
-                    [&] { return fmt::format("{} {}: is none of the unknowns", requested("shared"), name); });
+                    [&] { return fmt::format("{} {}: must be one of the unknowns", requested("shared"), name); });
   }
   add_parameters(setup, options.shared, without_prior);
   add_prior(setup);
@@ -674,7 +675,7 @@ void set_spread(SceneFile& file, const Fit& fit) {
       keys.push_back('"' + key.name() + '"');
       weights.push_back(number_text(key.weight));
     }
-    // The width is a share of the mean, which is the scene's value now.
+    // The width is relative to the mean, which is now the scene's value.
     const std::string width =
         variable.is_factor
             ? fmt::format("cov=\"{:.4g} %\"", 100 * all.deviation[i] / all.mean[i])
@@ -683,7 +684,7 @@ void set_spread(SceneFile& file, const Fit& fit) {
     file.set(fmt::format("spread.\"{}\"={{keys=[{}],{}distribution=\"normal\",{}}}", all.names[i], fmt::join(keys, ","), added,
                          width));
     for (std::size_t j = 0; j < i; ++j) {
-      constexpr double most = 0.999;  // a higher correlation would make two variables one
+      constexpr double most = 0.999;  // at a correlation of 1 two variables would be one
       const double correlation = all.correlation(static_cast<Index>(i), static_cast<Index>(j));
       pairs.push_back(fmt::format("[\"{}\",\"{}\",{:.4f}]", all.names[j], all.names[i], std::clamp(correlation, -most, most)));
     }
@@ -695,19 +696,18 @@ namespace {
 
 // Returns the reasons to doubt a fit.
 std::vector<std::string> doubts_of(const Fit& fit, const ManyEnds& all, const LeastSquaresEnd& best) {
-  constexpr double far = 4;              // standard deviations of the prior
-  constexpr double largest_rms = 3;      // in errors
-  constexpr double as_good = 2;          // excess of the cost, half a sum of squares: two standard deviations
-  constexpr double standard_errors = 4;  // least difference of another minimum, in standard errors
+  constexpr double far = 4;              // in standard deviations of the prior
+  constexpr double largest_rms = 3;      // in errors of the data
+  constexpr double as_good = 2;          // largest excess of the cost (half a sum of squares): two standard deviations
+  constexpr double standard_errors = 4;  // least distance of another minimum, in standard errors
   std::vector<std::string> doubts;
   for (const FittedUnknown& u : fit.unknowns) {
     const double off = std::abs(u.value - u.prior_mean) / u.prior_deviation;
     const std::string device = u.device.empty() ? "" : " of " + u.device;
-    if (off > far)
-      doubts.push_back(fmt::format("{}{} is {:.3g} standard deviations away from what was known of it", u.name, device, off));
+    if (off > far) doubts.push_back(fmt::format("{}{} is {:.3g} standard deviations away from its prior", u.name, device, off));
   }
   const double rms = std::sqrt(fit.chi_squared() / static_cast<double>(std::max<std::size_t>(1, fit.residuals.size())));
-  if (rms > largest_rms) doubts.push_back(fmt::format("it is off the data by {:.3g} of their errors", rms));
+  if (rms > largest_rms) doubts.push_back(fmt::format("the fit does not describe the data: RMS residual {:.3g} sigma", rms));
   const auto differs = [&](const LeastSquaresEnd& end) {
     if (!end.converged || end.x.size() != best.x.size() || !(end.cost <= best.cost + as_good)) return false;
     for (std::size_t i = 0; i < std::min(fit.unknowns.size(), end.x.size()); ++i) {
@@ -720,7 +720,7 @@ std::vector<std::string> doubts_of(const Fit& fit, const ManyEnds& all, const Le
   return doubts;
 }
 
-// Returns the fit with the mean of the population in the place of each device's own values.
+// Returns the fit with the mean of the population in place of the values of single devices.
 Fit of_population(Fit fit) {
   if (!fit.population) return fit;
   for (std::size_t i = 0; i < fit.population->names.size(); ++i) {
@@ -748,15 +748,15 @@ std::string fitted_text(const Fit& fit, std::string_view text, const std::string
 
 namespace {
 
-// The data that count, and the ends of the searches from several starts.
+// The data in use, and the ends of the searches from several starts.
 struct Stage {
   std::unique_ptr<const Setup> setup;
   ManyEnds all = {};
 };
 
-// True if two ends are one minimum: the data and the prior separate them by less than their errors.
+// True if two ends are one minimum: their distance is far below the errors from data and prior.
 bool is_one_minimum(const LeastSquaresEnd& a, const LeastSquaresEnd& b) {
-  constexpr double apart = 0.1;  // in standard deviations, and in the cost
+  constexpr double apart = 0.1;  // largest difference of an unknown in standard deviations, and of the cost
   double largest = 0;
   for (std::size_t i = 0; i < a.x.size(); ++i) largest = std::max(largest, std::abs(a.x[i] - b.x[i]));
   return largest <= apart && std::abs(a.cost - b.cost) <= apart;
@@ -768,7 +768,7 @@ Stage solved(Setup setup, const std::vector<std::vector<double>>& starts, const 
   return stage;
 }
 
-// Returns distinct ends, the best first: more rows of the traces may yet prefer one of them.
+// Returns distinct ends, the best first. With more rows of the traces another one of them may become the best.
 std::vector<std::vector<double>> best_ends(const ManyEnds& all) {
   constexpr std::size_t most = 5;
   std::vector<const LeastSquaresEnd*> ranked;
@@ -787,7 +787,7 @@ std::vector<std::vector<double>> best_ends(const ManyEnds& all) {
   return starts;
 }
 
-// Returns the first touch of the nominal design, by measurement; NaN for a measurement that is not a trace.
+// Returns the time of the first touch of the nominal design for each measurement; NaN for a measurement that is not a trace.
 std::vector<double> nominal_touches(const Setup& setup, std::size_t measurements) {
   std::vector<double> touches(measurements, unset);
   for (const Datum& datum : setup.data) {
@@ -804,9 +804,9 @@ std::vector<double> nominal_touches(const Setup& setup, std::size_t measurements
   return touches;
 }
 
-// The residuals of each trace, in errors, of the rows that count or of the newest ones.
+// The residuals of each trace in units of the errors, over all rows in use or over the newest ones.
 struct TraceMisfit {
-  std::vector<double> rms;  // root mean square, by measurement; infinite if the device cannot be read
+  std::vector<double> rms;  // root mean square for each measurement; infinite if the device cannot be read
   std::vector<double> rows;
 };
 
@@ -825,7 +825,7 @@ TraceMisfit misfit(const Stage& stage, std::size_t measurements, const TraceWind
   return of;
 }
 
-// True, by measurement, if the scene describes the newest rows as well as those before the first touch, within chance.
+// For each measurement, true if the scene describes the newest rows as well as those before, within chance.
 std::vector<bool> described(const TraceMisfit& newest, const TraceMisfit& before) {
   constexpr double least = 0.15, deviations = 3;
   std::vector<bool> all;
@@ -836,17 +836,17 @@ std::vector<bool> described(const TraceMisfit& newest, const TraceMisfit& before
   return all;
 }
 
-// True if the data are linear in the unknowns within their standard errors. Past some bounces they are not: slopes of a chaotic
-// motion hold for tiny steps only, and give errors that are far too small.
+// True if the data are linear in the unknowns within their standard errors. After some bounces they are not: the slopes of a
+// chaotic motion are valid for tiny steps only, and give standard errors that are far too small.
 bool is_linear(const Stage& stage) {
-  constexpr double largest = 0.5;  // deviation from linear, in standard deviations
+  constexpr double largest = 0.5;  // largest deviation from linear, in standard deviations
   const Setup& setup = *stage.setup;
   const LeastSquaresEnd& end = stage.all.ends[stage.all.best];
   Model model(setup);
   VectorXd values, moved;
   MatrixXd slopes;
   if (!model.read(end.x, values, &slopes)) return false;
-  VectorXd weights(values.size());  // weights of the residuals, and 1 over their errors
+  VectorXd weights(values.size());  // root of the weight of each residual, over its error
   for (Index i = 0; i < values.size(); ++i) {
     const Datum& datum = setup.data[static_cast<std::size_t>(i)];
     weights[i] = std::sqrt(loss_weight(setup.loss, (values[i] - datum.measured) / datum.error)) / datum.error;
@@ -867,8 +867,8 @@ bool is_linear(const Stage& stage) {
 
 Fit fit(const SceneFile& given, const Bench& bench, const FitOptions& options, const Watch& watch) {
   require(options.starts >= 1 && options.starts <= most_starts,
-          [&] { return fmt::format("{} starts: there must be from 1 to {}", options.starts, most_starts); });
-  require(!bench.measurements.empty(), [&] { return fmt::format("{}: there is no measurement to fit", bench.name); });
+          [&] { return fmt::format("{} starts: must be from 1 to {}", options.starts, most_starts); });
+  require(!bench.measurements.empty(), [&] { return fmt::format("{}: a fit needs at least one measurement", bench.name); });
   SceneFile file = given;
   const bool assumed = options.unknowns.empty() && assume_spread(file);
   const std::size_t measurements = bench.measurements.size();

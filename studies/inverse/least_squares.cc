@@ -27,8 +27,8 @@ std::vector<std::filesystem::path> module_places() {
   return {program.parent_path() / SOFTLAND_CERES_FROM_PROGRAM, SOFTLAND_CERES_BUILT, SOFTLAND_CERES_INSTALLED};
 }
 
-// Loads the module. It brings Ceres and its dependencies (glog, SuiteSparse, a BLAS of its own), which stay separate: a program
-// that does not fit never loads them, and no other library uses their symbols.
+// Loads the module. Its dependencies (glog, SuiteSparse, a BLAS) are kept apart: a program that does not fit never loads them,
+// and no other library uses their symbols.
 CeresSolve* load_module() {
   std::string faults;
   for (const std::filesystem::path& place : module_places()) {

@@ -1,6 +1,6 @@
-// Nonlinear least squares with a robust loss, by Ceres (Agarwal, Mierle and others, ceres-solver.org): Levenberg and Marquardt's
-// method in a trust region, with a dense QR decomposition. Ceres is a module of its own (ceres_module.h), loaded at the first
-// use.
+// Nonlinear least squares with a robust loss, by Ceres (Agarwal, Mierle and others, ceres-solver.org): the trust-region method
+// of Levenberg and Marquardt, with a dense QR decomposition. Ceres is in a module of its own (ceres_module.h), which is loaded
+// at the first use.
 //
 //   minimise  sum over the first `robust` residuals of rho(r_i^2) + sum over the others of r_i^2
 //
@@ -8,7 +8,7 @@
 //   cauchy    rho(s) = a^2 ln(1 + s / a^2)
 //   none      rho(s) = s
 //
-// Residuals are in standard deviations, and so is a.
+// Residuals and the scale a are in standard deviations.
 #pragma once
 
 #include <array>
@@ -28,24 +28,25 @@ inline constexpr std::array losses{Named<Loss>{Loss::huber, "huber"}, Named<Loss
                                    Named<Loss>{Loss::none, "none"}};
 static_assert(is_complete<losses>());
 
-/// Residuals from which on the loss deviates from squares.
+/// The scale a: the residual from which on the loss deviates from the square.
 inline constexpr double loss_scale = 3;
-/// rho'(r^2): the weight that the residual has in the information.
+/// Returns rho'(r^2): the weight of the residual in the information.
 [[nodiscard]] double loss_weight(Loss loss, double residual);
-/// rho(r^2).
+/// Returns rho(r^2).
 [[nodiscard]] double loss_value(Loss loss, double residual);
 
 struct LeastSquares {
   std::size_t unknowns = 0, residuals = 0;
-  std::size_t robust = 0;  ///< number of first residuals under the loss
+  std::size_t robust = 0;  ///< number of residuals, from the first on, to which the loss applies
   Loss loss = Loss::huber;
-  /// Writes the residuals at x and, if `jacobian` is not null, their derivatives, row by row. False if they do not exist.
+  /// Writes the residuals at x and, if `jacobian` is not null, their derivatives, row by row. Returns false if they do not
+  /// exist.
   std::function<bool(std::span<const double> x, std::span<double> residuals, double* jacobian)> evaluate;
 };
 
 struct LeastSquaresEnd {
-  bool converged = false;      ///< true at a point from which no step helps
-  std::vector<double> x = {};  ///< empty if the start has no residuals
+  bool converged = false;      ///< true if the search ended at a minimum
+  std::vector<double> x = {};  ///< empty if the residuals do not exist at the start
   double cost = 0;             ///< half of the minimised sum
   long evaluations = 0, with_jacobian = 0;
   std::string message = {};  ///< message of Ceres
@@ -54,18 +55,18 @@ struct LeastSquaresEnd {
 /// True if Ceres is available.
 [[nodiscard]] bool has_ceres();
 
-/// Minimises from this start. The result does not depend on other solves at the same time. Throws what `evaluate` throws,
-/// Interrupted, and InvalidInput if Ceres is not available.
+/// Minimises from this start. The result does not depend on other solves that run at the same time. Throws what `evaluate`
+/// throws, Interrupted if `watch` asks to stop, and InvalidInput if Ceres is not available.
 [[nodiscard]] LeastSquaresEnd solve(const LeastSquares& problem, std::vector<double> start, const Watch& watch = {});
 
-/// The ends of searches from several starts. The number of threads does not change them.
+/// The ends of searches from several starts. They do not depend on the number of threads.
 struct ManyEnds {
-  std::vector<LeastSquaresEnd> ends;  ///< ends by start
-  std::size_t best = 0;               ///< index of the end with least cost among those that have an x
-  std::size_t minima = 0;             ///< distinct minima among the converged ends; 0 if none converged
+  std::vector<LeastSquaresEnd> ends;  ///< ends in the order of the starts
+  std::size_t best = 0;               ///< index of the end with the least cost among those with an x
+  std::size_t minima = 0;             ///< number of distinct minima among the converged ends
   [[nodiscard]] bool found() const { return !ends.empty() && !ends[best].x.empty(); }
 };
-/// Solves from all starts; `make` gives every search a problem of its own. Two ends are one minimum if `same` says so.
+/// Solves from all starts. `make` gives each search its own problem. `same` decides whether two ends are one minimum.
 [[nodiscard]] ManyEnds solve_from(const std::function<LeastSquares()>& make, const std::vector<std::vector<double>>& starts,
                                   int jobs, const std::function<bool(const LeastSquaresEnd&, const LeastSquaresEnd&)>& same,
                                   const Watch& watch = {});

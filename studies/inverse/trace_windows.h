@@ -1,6 +1,6 @@
-// The rows of a trace that a fit uses: at first those up to the first touch, then ever more, as long as the scene describes
-// them. Past some bounces the least change of a device changes the trace altogether. A search that sees all of it ends in any
-// of many minima.
+// The rows of a trace that a fit uses: first those up to the first touch, then more and more, as long as the scene describes
+// them. After some bounces the smallest change of a device changes the rest of the trace completely, and a search over the
+// whole trace ends in one of many minima.
 #pragma once
 
 #include <limits>
@@ -12,25 +12,25 @@ namespace softland {
 
 class TraceWindows {
  public:
-  /// `touches` are the first touches of the nominal design, by measurement [s]. All rows count from the beginning if that is
-  /// not finite, or if the measurement has an end of its own (`until`).
+  /// `touches` are the times of the first touch of the nominal design, for each measurement [s]. All rows of a measurement are
+  /// used from the beginning if its time is not finite, or if the measurement sets its own end (`until`).
   TraceWindows(const Bench& bench, const std::vector<double>& touches);
 
-  /// The measurements with the rows that count.
+  /// Returns the measurements with the rows in use.
   [[nodiscard]] Bench inside() const;
-  /// Takes the next stretch of every trace that has one; returns false if no trace has.
+  /// Adds the next rows to every trace that has more; returns false if no trace has.
   bool grow();
-  /// True if a time of this measurement is in the newest stretch.
+  /// True if a time of this measurement belongs to the rows that were added last.
   [[nodiscard]] bool is_new(std::size_t measurement, double time) const;
-  /// Keeps the newest stretches if all are described, by measurement. Else all traces go back to their earlier ends, and those
-  /// that are not described stay there. Returns false if the fit to these stretches must be dropped.
+  /// Keeps the rows that were added last if `described` is true for all measurements. Otherwise all traces lose them again, and
+  /// those that are not described get no further rows. Returns false if the fit to the removed rows must be dropped.
   bool keep(const std::vector<bool>& described);
-  /// The end of a trace that counts: the time of its last row [s].
+  /// Returns the time of the last row in use [s].
   [[nodiscard]] double end(std::size_t measurement) const;
 
  private:
   struct Window {
-    double begin = 0, end = std::numeric_limits<double>::infinity();  // newest stretch [s]
+    double begin = 0, end = std::numeric_limits<double>::infinity();  // time span of the rows that were added last [s]
     bool grows = false;
   };
   const Bench& bench_;

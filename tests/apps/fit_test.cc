@@ -132,13 +132,13 @@ TEST_F(FitVerb, DoesNotBelieveWhatCannotBe) {
     return told["doubts"].dump();
   };
   // A volt that was a millivolt, 9 kHz instead of 21.
-  EXPECT_THAT(doubted(edited(bench, "90.3 V", "90.3 mV")), HasSubstr("standard deviations away from what was known"));
+  EXPECT_THAT(doubted(edited(bench, "90.3 V", "90.3 mV")), HasSubstr("standard deviations away from its prior"));
   EXPECT_THAT(doubted("[[measurement]]\nquantity = \"frequency\"\nvalue = \"9 kHz\"\nerror = \"0.01 %\"\n"),
               HasSubstr("structure.stiffness is "));
   // Twice the same, measured to be two things.
   EXPECT_THAT(
       doubted(bench + std::string("[[measurement]]\nquantity = \"frequency\"\nvalue = \"20.9 kHz\"\nerror = \"0.01 %\"\n")),
-      HasSubstr("off the data by"));
+      HasSubstr("RMS residual"));
 }
 
 TEST_F(FitVerb, RefusesDataThatNothingHas) {
