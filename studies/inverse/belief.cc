@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 
 constexpr std::size_t sampled_devices = 160;
 
-// Returns the time in (touch, touch + span) that the contact is open, by openings of at least `least` [s].
+// Returns the time in (touch, touch + span) for which the contact is open, in openings of at least `least` [s].
 double open_time(double touch, std::span<const ContactOpening> openings, double span, double least) {
   double sum = 0;
   for (const ContactOpening& o : openings) {
@@ -28,7 +28,7 @@ double open_time(double touch, std::span<const ContactOpening> openings, double 
   return sum;
 }
 
-// Robust term like that of Student's distribution: a record that the model does not follow weighs little.
+// Robust term as in Student's distribution: a record that the model cannot describe has little weight.
 double gentle(double q) { return -1.2 * std::log1p(q * q / 3); }
 
 }  // namespace
@@ -141,18 +141,18 @@ class Learner {
     find_mode(last);
     return sampled();
   }
-  /// Sets the ratio of the gaps to that of the scene from now on.
+  /// Fixes the ratio of contact to electrode gap at that of the scene from now on.
   void pin_gap_ratio() { pins_ratio_ = true; }
-  /// Returns |z|^2 + sum of r^2 of the best device that is found from `start`.
+  /// Returns |z|^2 + sum of r^2 of the best device that a search from `start` finds.
   [[nodiscard]] double misfit_from(const VectorXd& start) const {
     return misfits(std::vector<VectorXd>{fitted(start).first}).front();
   }
   [[nodiscard]] double misfit_of(const VectorXd& z) const { return misfits(std::vector<VectorXd>{z}).front(); }
-  /// Returns the least misfit that is found; the search ends when it is at most `enough`.
+  /// Returns the least misfit found. The search ends when it is at most `enough`.
   [[nodiscard]] double least_misfit(const Belief& belief, double enough);
 
  private:
-  // Returns the closings of every point under every shot: those of a point stand together.
+  // Returns the closings of every point under every shot, ordered by point.
   [[nodiscard]] std::vector<ImaginedClosing> close(std::span<const VectorXd> points) const {
     const std::vector<ImaginedDevice> devices = scene_.devices(points, watch_);
     std::vector<ImaginedShot> all;
@@ -161,7 +161,7 @@ class Learner {
     }
     return scene_.close(all, watch_);
   }
-  // Returns the log posteriors. A point that occurs several times is closed once.
+  // Returns the log posteriors. A point that occurs several times is simulated once.
   [[nodiscard]] std::vector<double> log_posteriors(std::span<const VectorXd> points) const {
     std::vector<VectorXd> distinct;
     std::vector<std::size_t> places;
@@ -183,7 +183,7 @@ class Learner {
   void climb_from(const std::vector<VectorXd>& starts, std::size_t most, double enough);
   [[nodiscard]] std::pair<VectorXd, MatrixXd> fitted(VectorXd z) const;
   [[nodiscard]] std::vector<double> misfits(std::span<const VectorXd> points) const;
-  // A pinned ratio of the gaps has a residual of one at a thousandth of its standard deviation.
+  // Residual of a fixed ratio of the gaps: a thousandth of the ratio's standard deviation gives a residual of 1.
   [[nodiscard]] double ratio_residual(const VectorXd& z) const {
     constexpr double stiff = 1000;
     return pins_ratio_ ? stiff * scene_.gap_ratio_coordinate(z).value_or(0) : 0;
@@ -206,8 +206,8 @@ class Learner {
   double best_ = -std::numeric_limits<double>::infinity();
 };
 
-// Minimises the squares of the residuals of touch times and of z, those beyond 4 compressed, by Levenberg and Marquardt.
-// Returns the minimum, and the curvature there.
+// Minimises the sum of squared residuals of the touch times and of z by Levenberg and Marquardt's method. Residuals beyond 4
+// are compressed. Returns the minimum and the curvature there.
 std::pair<VectorXd, MatrixXd> Learner::fitted(VectorXd z) const {
   constexpr double apart = 0.01, steepest = 3000, longest = 1.5, enough = 0.02, hopeless = 1e4;
   constexpr int most_rounds = 14;
@@ -253,7 +253,7 @@ std::pair<VectorXd, MatrixXd> Learner::fitted(VectorXd z) const {
   return {best, curvature};
 }
 
-// Climbs from the best `most` of these starts, until an end is as likely as `enough`.
+// Searches from the `most` likeliest of these starts, until an end is as likely as `enough`.
 void Learner::climb_from(const std::vector<VectorXd>& starts, std::size_t most, double enough) {
   const std::vector<double> before = log_posteriors(starts);
   std::vector<std::size_t> order(starts.size());
@@ -261,7 +261,7 @@ void Learner::climb_from(const std::vector<VectorXd>& starts, std::size_t most, 
   std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return before[a] > before[b]; });
   for (std::size_t q = 0; q < std::min(most, order.size()); ++q) {
     const VectorXd& start = starts[order[q]];
-    if (q > 0 && start == starts[order[q - 1]]) continue;  // the end of its climb is known
+    if (q > 0 && start == starts[order[q - 1]]) continue;  // the same start has the same end
     auto [z, curvature] = fitted(start);
     double value = log_posteriors(std::span(&z, 1)).front();
     if (value < before[order[q]]) z = start, value = before[order[q]];
@@ -318,19 +318,19 @@ double Learner::least_misfit(const Belief& belief, double enough) {
     starts = std::move(ranked);
   };
   rank();
-  // A contact that stayed open gives no slope. The least misfit of its devices lies between such a device and the nominal one.
+  // A contact that stays open has no derivative by z. The least misfit then lies between such a device and the nominal one.
   for (std::size_t q = 0, count = starts.size(); q < count; ++q) {
     for (const double share : nearer) starts.push_back(own(share * starts[q]));
   }
   rank();
   for (std::size_t q = 0; q < starts.size() && least > enough; ++q) {
-    if (q > 0 && starts[q] == starts[q - 1]) continue;  // the end of its fit is known
+    if (q > 0 && starts[q] == starts[q - 1]) continue;  // the same start has the same end
     least = std::min(least, misfit_from(starts[q]));
   }
   return least;
 }
 
-// Samples by adaptive importance sampling from normal distributions, with all of the records.
+// Samples the posterior of all records by adaptive importance sampling from normal distributions.
 Belief Learner::sampled() {
   constexpr int most_rounds = 4;
   constexpr double least_share = 0.2, cooler = 0.7, coldest = 1e-3;

@@ -23,7 +23,7 @@ CapacitanceEdges::CapacitanceEdges(const Switch& model, std::size_t drive, doubl
 
 double CapacitanceEdges::above(const double* q) { return model_.capacitance(drive_, q, work_) - threshold_; }
 
-// Each mode follows the cubic through its places and velocities between the knots (Hermite).
+// Each mode is interpolated by the cubic through positions and velocities at the knots (Hermite).
 double CapacitanceEdges::above(const Knot& begin, const Knot& end, double part) {
   const std::size_t n = between_.size();
   const double span = end.time - begin.time, s = part, r = 1 - part;
@@ -42,7 +42,7 @@ void CapacitanceEdges::step(const Knot& begin, const Knot& end, const ContactSta
   const double part = bracketed_zero([&](double at) { return above(begin, end, at); }, 0, 1);
   const double time = begin.time + part * (end.time - begin.time);
   if (last_ > 0) {
-    constexpr double apart = 1e-3;  // share of the step
+    constexpr double apart = 1e-3;  // length of the last bracket, over the step
     const double change = above(begin, end, part + apart) - above(begin, end, part - apart);
     const double rate = change / (2 * apart * (end.time - begin.time));
     rises_.push_back({.begin = time, .end = std::numeric_limits<double>::quiet_NaN(), .rate = rate});
@@ -54,12 +54,12 @@ void CapacitanceEdges::step(const Knot& begin, const Knot& end, const ContactSta
 double capacitance_rise(const PreparedScene& nominal, double threshold) {
   const Switch& model = nominal.model;
   const auto told = [](double farads) { return engineering(farads, "F", 4); };
-  require(has_pulling_electrode(model.device()), "no electrode pulls the switch: no capacitance tells that it has closed");
+  require(has_pulling_electrode(model.device()), "a threshold of the capacitance needs an electrode that pulls the switch");
   const std::size_t drive = searched_drive(model.device());
   const std::vector<Signal> signals = nominal.signals();
   const std::optional<Eigen::VectorXd> open = model.open_equilibrium(values_before(signals));
   const std::optional<ClosedEquilibrium> closed = closed_equilibrium(model, hold_levels(signals));
-  require(open && closed, "no capacitance tells the closed switch from the open one: the nominal design has no such state");
+  require(open && closed, "a threshold of the capacitance needs an open and a closed state of the nominal design");
   Switch::Workspace work = model.workspace();
   const double low = model.capacitance(drive, open->data(), work), high = model.capacitance(drive, closed->q.data(), work);
   require(low < threshold && threshold < high, [&] {

@@ -1,5 +1,5 @@
-// The times at which the capacitance of a switch passes a threshold. An instrument sees them for a closing without a contact
-// current, such as a landing on a dielectric.
+// The times at which the capacitance of a switch passes a threshold. An instrument can record them for a closing without a
+// contact current, such as a landing on a dielectric.
 #pragma once
 
 #include <cstddef>
@@ -14,19 +14,19 @@ namespace softland {
 /// A time span with the capacitance above the threshold.
 struct CapacitanceRise {
   double begin = 0;  ///< [s]
-  double end = 0;    ///< [s]; NaN if it lasts to the end of the run
-  double rate = 0;   ///< rate of the capacitance at its begin [F/s]
+  double end = 0;    ///< [s]; NaN if the capacitance stays above the threshold until the run ends
+  double rate = 0;   ///< time derivative of the capacitance at `begin` [F/s]
 };
 
-/// Follows the capacitance of one electrode, step by step. A rise and a fall within one step of the integrator are not seen.
+/// Records the capacitance of one electrode in every step of the integrator. A rise and a fall within one step are missed.
 class CapacitanceEdges final : public ClosingObserver {
  public:
-  /// `drive` is that of the electrode, `threshold` in F. The object keeps a reference to the switch.
+  /// `drive` is the index of the electrode, `threshold` is in F. Keeps a reference to the switch.
   CapacitanceEdges(const Switch& model, std::size_t drive, double threshold);
 
   [[nodiscard]] bool follows_motion() const override { return true; }
   void step(const Knot& begin, const Knot& end, const ContactState& contact) override;
-  /// Rises in order of time.
+  /// Returns the rises in order of time.
   [[nodiscard]] const std::vector<CapacitanceRise>& rises() const { return rises_; }
 
  private:
@@ -38,12 +38,12 @@ class CapacitanceEdges final : public ClosingObserver {
   double threshold_;
   Switch::Workspace work_;
   std::vector<double> between_;  // modal coordinates between two knots
-  double last_;                  // capacitance above the threshold, after the last step [F]; NaN before the first
+  double last_;                  // capacitance less the threshold after the last step [F]; NaN before the first
   std::vector<CapacitanceRise> rises_;
 };
 
-/// Returns the capacitance of the closed state of the nominal design less that of the open one [F]. Throws InvalidInput if the
-/// threshold does not lie between the two, or if such a state or a pulling electrode is missing.
+/// Returns the capacitance of the nominal design in its closed state less that in its open state [F]. Throws InvalidInput if
+/// the threshold is not between the two, and if one of these states or a pulling electrode is missing.
 [[nodiscard]] double capacitance_rise(const PreparedScene& nominal, double threshold);
 
 }  // namespace softland

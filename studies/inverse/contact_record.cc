@@ -43,7 +43,7 @@ std::string record_fault(const ContactRecord& record, double duration) {
   if (record.closing_time && *record.closing_time > duration) return late("closing_time_s");
   if (record.bounce_count && *record.bounce_count < 0) return "bounce_count: must be at least 0";
   if (record.bounce_count && *record.bounce_count > 0 && !first_touch(record))
-    return "bounce_count: nothing bounces that never closed";
+    return "bounce_count: must be 0 for a contact that stayed open";
   if (record.loudness && !(std::isfinite(*record.loudness) && *record.loudness > 0))
     return "loudness: must be finite and above 0";
   return {};

@@ -19,10 +19,10 @@
 namespace softland {
 namespace {
 
-// Throws if the switch has no contact: only a contact shows that a switch has closed.
+// Throws if the switch has no contact: a laboratory could not record its closing.
 void require_contact(const PreparedScene& nominal) {
   require(nominal.scene.device.has_contact(), [&] {
-    return fmt::format("{}: there is no [contact]: a lab would see nothing of a closing", nominal.scene.file.name());
+    return fmt::format("{}: needs a [contact] section: a laboratory records the state of the contact", nominal.scene.file.name());
   });
 }
 
@@ -64,7 +64,7 @@ void stiffen(SceneFile& file, const Scene& scene, double factor) {
           [&] { return fmt::format("stiffness={}: {}: its contact has no stiffness", number_text(factor), scene.file.name()); });
 }
 
-// Returns the scene of the model, in volts: a waveform means the same whatever the model does to the pull-in voltage.
+// Returns the scene with this model, in volts, so that a change of the pull-in voltage by the model does not change waveforms.
 PreparedScene with_model(const PreparedScene& nominal, const PracticeModel& model) {
   SceneFile file = nominal.resolved();
   if (model.more_modes != 0) add_modes(file, nominal.scene, model.more_modes);
@@ -102,7 +102,7 @@ std::string seen_failure(const Trajectory& closing) {
     case Status::collapsed_at_rest:
       return "the switch is pulled in before the first edge of the drive";
     case Status::collapsed_onto_electrode:
-      return "the switch was pulled through its contact onto the electrode";
+      return "the beam collapsed onto the electrode";
     default:
       return fmt::format("the closing cannot be simulated: {}",
                          closing.message.empty() ? std::string(to_string(closing.status)) : closing.message);
@@ -136,11 +136,11 @@ std::vector<ContactEdge> PracticeDevice::seen_edges(const std::vector<ContactClo
                  opens = touch.end + options_.laboratory.edge_error * random_normal(of_shot, Stream::practice_edges, drawn++);
     const bool stays_open = seen.empty() || closes - seen.back().time > std::max(0.0, options_.laboratory.unseen);
     if (!stays_open) {
-      seen.pop_back();  // remove the opening before it
+      seen.pop_back();  // close the gap in the record
     } else if (!(opens <= closes)) {
       seen.push_back({.time = closes, .closed = true});
     } else {
-      continue;  // a touch too short to be seen
+      continue;  // a touch too short to be recorded
     }
     if (std::isnan(opens)) break;
     seen.push_back({.time = std::max(opens, seen.back().time), .closed = false});

@@ -1,18 +1,19 @@
-// A simulated device in a simulated laboratory, for practice: one device of the spread. It answers a drive by what a laboratory
-// sees of its closing.
+// A simulated device in a simulated laboratory, for practice. The device is one of the spread. For each drive it returns the
+// record that a laboratory would make of the closing.
 //
 //   commanded f(t)  ->  the scene's source  ->  V(t) = (1 + g) (1 + s_n) (1 + d (n - 1)) f(t)  ->  the device  ->  the record
 //
-//   g    error of the gain of a drive, constant and unknown       s_n  its scatter in shot n
-//   d    drift of all volts from one shot to the next
+// g    error of the gain of a drive, constant and unknown       s_n  scatter of the gain in shot n
+//   d    drift of all voltages from one shot to the next
 //
-// The record begins late by the trigger's delay, the same in all shots. It holds the edges of the contact, closed or open, each
-// late by an error of its own. An opening shorter than the resolution of the instrument is not seen, nor is a touch whose edges
-// the errors swap. If the instrument sees the capacitance, the contact counts as closed while that is above its threshold.
-//
+// The record begins late by the delay of the trigger, the same in all shots. It has the edges of the contact, closed or open,
+// each with a random error of its time. An opening shorter than the resolution of the instrument is not recorded, nor is a
+// touch whose edges are swapped by the errors. If the instrument records the capacitance, the contact counts as closed while
+// the capacitance is above a threshold.
 // The device differs from the scene as [spread] says, or the assumed spread (config/assumed_spread.h), and further by its
-// model, which a belief over the scene cannot know. Its random numbers have streams of their own, which no ensemble draws from.
-#pragma once
+// The device differs from the scene as [spread], or the assumed spread (config/assumed_spread.h), describes. Its model may
+// differ as well, which a belief based on the scene cannot know. Its random numbers have their own streams, which no ensemble
+// uses.
 
 #include <cstdint>
 #include <string>
@@ -26,32 +27,32 @@
 
 namespace softland {
 
-/// Differences of the device's model from its scene.
+/// Differences of the device's model from the model of its scene.
 struct PracticeModel {
-  int more_modes = 0;                 ///< modes beside those of the scene
-  std::string gas = {};               ///< law of the film instead of the scene's; empty: the scene's
-  double stiffness = 1;               ///< factor of the stiffness, or modulus, of the contact
+  int more_modes = 0;                 ///< modes in addition to those of the scene
+  std::string gas = {};               ///< law of the film in place of the scene's; empty for the scene's
+  double stiffness = 1;               ///< factor of the contact's stiffness, or modulus
   std::vector<std::string> set = {};  ///< further keys of the scene: "gap.contact=2.05 um"
 };
 
 struct PracticeOptions {
-  std::uint64_t seed = 1;  ///< seed of the device and its errors
+  std::uint64_t seed = 1;  ///< seed of the device and of its measurement errors
   LaboratoryErrors laboratory = {};
-  double drift = 0;          ///< drift of all volts from one shot to the next, relative
-  double trigger_delay = 0;  ///< time by which records begin late; negative: early [s]
+  double drift = 0;          ///< relative drift of all voltages from one shot to the next
+  double trigger_delay = 0;  ///< delay of records behind the drives [s]; negative if records begin early
   PracticeModel model = {};
 };
 
-/// The record of a closing, and the motion that no laboratory sees.
+/// The record of a closing, and the true motion, which no laboratory records.
 struct PracticeClosing {
   ContactRecord record;
   Metrics motion;                                   ///< true motion of the contact point
-  double largest_impact_velocity = Metrics::unset;  ///< largest velocity of all touches [m/s]
+  double largest_impact_velocity = Metrics::unset;  ///< largest impact velocity of all touches [m/s]
 };
 
-/// A closure of the contact.
+/// A time span in which the contact is closed.
 struct ContactClosure {
-  double begin = 0, end = 0;  ///< [s]; the end is NaN if the record ends closed
+  double begin = 0, end = 0;  ///< [s]; the end is NaN if the contact is closed at the end of the record
 };
 
 class PracticeDevice {
@@ -59,14 +60,14 @@ class PracticeDevice {
   /// Throws InvalidInput for a scene that cannot be simulated or has no contact, and for a model that the scene cannot have.
   explicit PracticeDevice(SceneFile file, const PracticeOptions& options = {});
 
-  /// The scene, with the limits of its drivers in volts: the known part of the device.
+  /// Returns the scene, with the limits of its drivers in volts: what is known about the device.
   [[nodiscard]] const PreparedScene& nominal() const { return nominal_; }
-  /// The hidden part: the device, and the values of the varied quantities.
+  /// Return the device, and the values of its varied quantities: what is not known about it.
   [[nodiscard]] const SampledDevice& device() const { return device_; }
 
-  /// Simulates closing number `shot`, from 1 on, under commanded waveforms in the order of Switch::drives() [V], for `duration`
-  /// [s]. Shots do not depend on each other. Throws InvalidInput if a waveform leaves the limits of its driver, `shot` is 0, or
-  /// `duration` is not positive.
+  /// Simulates the closing in shot number `shot`, counted from 1, for `duration` [s]. `waveforms` are the commanded waveforms,
+  /// in the order of Switch::drives() [V]. Shots do not depend on each other. Throws InvalidInput if a waveform exceeds the
+  /// limits of its driver, if `shot` is 0, and if `duration` is not positive.
   [[nodiscard]] PracticeClosing close(std::uint64_t shot, const std::vector<Waveform>& waveforms, double duration) const;
 
  private:
@@ -74,7 +75,7 @@ class PracticeDevice {
   [[nodiscard]] std::vector<ContactEdge> seen_edges(const std::vector<ContactClosure>& closures, std::uint64_t shot) const;
 
   PracticeOptions options_;
-  PreparedScene nominal_, own_;  // the scene, and that of the device's model
+  PreparedScene nominal_, own_;  // the scene, and the scene with the device's own model
   SampledDevice device_;
 };
 

@@ -178,7 +178,7 @@ LandingCost Outlook::expected(const std::vector<Waveform>& waveforms, std::size_
 
 namespace {
 
-// Root mean square of the distances from the middle on one side of it: late touches scatter more than early ones.
+// Returns the root mean square distance from the middle, on one side of it: late touches scatter more than early ones.
 double scatter_of(const std::vector<double>& sample, double middle, double side) {
   double squares = 0, count = 0;
   for (const double one : sample) {
@@ -236,8 +236,8 @@ struct Search {
   const char* optimizer;
   std::size_t devices;
   long evaluations;
-  double step;  // first step, as a part of the box
-  bool fine;    // varies the fine numbers only
+  double step;  // first step, over the width of the box
+  bool fine;    // true to vary only the variables that matter to the landing
 };
 
 std::vector<double> found(const Shapes& shapes, const Outlook& outlook, const std::vector<double>& start, const Search& search,
@@ -269,7 +269,7 @@ namespace {
 
 std::vector<Recipe> searched_recipes(const TunedScene& scene, const Shapes& shapes, std::size_t count, const Watch& watch) {
   constexpr double narrow = 0.1, narrow_nuisances = 0.5;  // scatter of the devices, in standard deviations of the prior
-  constexpr double headroom = 0.92;                       // share of the driver's highest level
+  constexpr double headroom = 0.92;                       // limit of levels, over the driver's highest level
   constexpr double hopeless = 0.9;
   constexpr std::array deviations{0.0, -1.0, 1.0, -2.0, 2.0};
   const std::size_t devices = scene.is_in_lanes() ? 48 : 12;
@@ -345,7 +345,7 @@ std::vector<Recipe> recipes_of(TunedScene& scene, const Watch& watch) {
     scene.choose(Approach::quasi_static);
     return slow;
   }
-  require(known.size() == count, [&] { return fmt::format("there are {} recipes, and there must be {}", known.size(), count); });
+  require(known.size() == count, [&] { return fmt::format("there are {} recipes; there must be {}", known.size(), count); });
   scene.choose(known.front().approach);
   const std::size_t numbers = Shapes(scene).variables().size();
   for (const Recipe& recipe : known) {

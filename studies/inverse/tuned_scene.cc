@@ -26,10 +26,10 @@ namespace {
 
 constexpr double belief_accuracy = 1e-4;  // accuracy of closings
 constexpr double viscosity_deviation = 0.05, contact_deviation = 0.1;
-// Model error in time, over the closing time of the plain step.
+// Error of the model in time, over the closing time of the plain step.
 constexpr double delay_share = 0.003;
 
-// Durations of a closing, in closing times of the plain step: after the first touch, without a touch, and after the last
+// Simulated times over the closing time of the plain step: after the first touch, without a touch, and after the last
 // breakpoint.
 constexpr double after_touch = 1.8, longest_wait = 7.4, tail = 0.75;
 
@@ -56,7 +56,7 @@ std::vector<std::string> shaped_drives_of(const PreparedScene& prepared, Actuato
   return names;
 }
 
-// Returns the keys of this name of the contacts that make the connection; contact.KEY if there is one contact.
+// Returns the keys with this name of the contacts that make the connection; contact.KEY if there is one contact.
 std::vector<std::string> contact_keys(const SceneFile& file, const Device& device, std::string_view key) {
   std::vector<std::string> keys;
   for (const Contact& contact : device.contacts) {
@@ -66,16 +66,16 @@ std::vector<std::string> contact_keys(const SceneFile& file, const Device& devic
   return keys;
 }
 
-// Returns the rest distances of these contacts; none if the contact is the face of a dielectric.
+// Returns the keys of the contact gaps; none if the contact is the face of a dielectric.
 std::vector<std::string> contact_gaps(const PreparedScene& prepared) {
   if (prepared.scene.file.written("gap.contact")) return {"gap.contact"};
   return contact_keys(prepared.scene.file, prepared.scene.device, "gap");
 }
 
-// Returns the name of the quantity that these gaps follow.
+// Returns the name of the quantity for these contact gaps.
 std::string gap_name(const std::vector<std::string>& gaps) { return gaps.size() == 1 ? gaps.front() : "contact gaps"; }
 
-// Returns the scene in volts, with every default written out, and with the nuisances that the belief varies beside the spread.
+// Returns the scene in volts, with every default written out, and with the further quantities that the belief varies.
 SceneFile with_nuisances(const PreparedScene& prepared, const TunerOptions& options) {
   SceneFile file = prepared.resolved();
   const DeviceSpread& spread = prepared.scene.spread;
@@ -99,7 +99,7 @@ SceneFile with_nuisances(const PreparedScene& prepared, const TunerOptions& opti
   return file;
 }
 
-// Observes the landing of one lane.
+// Records the landing of one lane.
 class LaneClosing final : public LandingObserver {
  public:
   void touch(const Touch& touch) override {
@@ -113,7 +113,7 @@ class LaneClosing final : public LandingObserver {
   ImaginedClosing closing = {};
 };
 
-// Observes the same of a closing that is run by itself, and its capacitance if an instrument sees that.
+// Records the landing of a closing that runs alone, and its capacitance if an instrument records it.
 class SingleClosing final : public ClosingObserver {
  public:
   SingleClosing(const Switch& model, double threshold, double speed_per_rate)
@@ -159,8 +159,8 @@ class SingleClosing final : public ClosingObserver {
 
 }  // namespace
 
-// Takes the contact gaps out of the factor that they share with other gaps. They follow it with a deviation of their own:
-// correlated normal factors.
+// Takes the contact gaps out of the factor that they share with other gaps. They then vary together with the other gaps, but
+// with a further deviation of their own, as correlated normal factors.
 void TunedScene::loosen_contact_gap(DeviceSpread& spread, const std::vector<std::string>& gaps) {
   for (std::size_t i = 0; i < spread.variables.size(); ++i) {
     SpreadVariable& shared = spread.variables[i];
@@ -196,7 +196,7 @@ PreparedScene TunedScene::prepared(const SceneFile& given, const Watch& watch) {
   const PreparedScene chosen = prepare_and_choose(file, true, watch);
   require_open_start(chosen.scene, "tune closes the device");
   require(chosen.model.has_contact(),
-          [&] { return fmt::format("{}: without [contact] there is no record to tune by", given.name()); });
+          [&] { return fmt::format("{}: needs a [contact] section: a record has the states of the contact", given.name()); });
   PreparedScene p = prepare(with_nuisances(chosen, options_), true, watch);
   DeviceSpread& spread = p.scene.spread;
   for (std::size_t i = spread.variables.size(); i-- > 0;) {
@@ -221,14 +221,14 @@ TunedScene::TunedScene(const SceneFile& file, const TunerOptions& options, const
   drives_ = std::make_unique<const DeviceDrives>(nominal_);
   const std::vector<Signal> signals = nominal_.driven(nominal_.waveforms(plain_step(nominal_, options.actuator)));
   const double longest = periods_to_close * 2 * std::numbers::pi / nominal_.model.basis().angular_frequencies()[0];
-  // The connection of several contacts may close later than the first of them.
+  // The connection of several contacts may close later than its first contact.
   const double after_contact = nominal_.model.contacts() > 1 ? longest : 0;
   const Trajectory closing = simulate_closing(
       nominal_.model, signals,
       {.duration = longest, .tolerance = nominal_.tolerance, .after_contact = after_contact, .stop = watch.stop});
   watch.throw_if_stopped();
   require(!closing.touches.empty(),
-          [&] { return fmt::format("{}: its hold levels do not close the switch: there is no closing to tune", file.name()); });
+          [&] { return fmt::format("{}: the hold levels must close the switch, but do not", file.name()); });
   scales_ = {.closing_time = closing.touches.front().begin,
              .gap = nominal_.scene.device.contact_gap(),
              .rebound = nominal_.scene.metrics.significant_rebound};
@@ -238,7 +238,7 @@ TunedScene::TunedScene(const SceneFile& file, const TunerOptions& options, const
     step_stays_from_ = std::isfinite(step.permanent_contact_time) ? step.permanent_contact_time : scales_.closing_time;
   }
   if (options.touch) scales_.latest_touch = beside_step(*options.touch, scales_.closing_time).limit;
-  constexpr double coarsest = 0.1;  // share of the closing time
+  constexpr double coarsest = 0.1;  // largest error of an edge, over the closing time
   require(options.laboratory.edge_error < coarsest * scales_.closing_time, [&] {
     return fmt::format("the error of edges, {}, must be below a tenth of the closing time of the plain step, {}",
                        engineering(options.laboratory.edge_error, "s", 3), engineering(scales_.closing_time, "s", 3));
@@ -270,7 +270,7 @@ NormalBelief TunedScene::in_spread(const NormalBelief& belief) const {
 }
 
 std::vector<double> TunedScene::values(const Eigen::VectorXd& point) const {
-  constexpr double furthest = 8;  // standard deviations
+  constexpr double furthest = 8;  // largest coordinate, in standard deviations
   const Eigen::VectorXd z = spread_point(point);
   std::vector<double> u(static_cast<std::size_t>(size() - 1));
   for (std::size_t k = 0; k < u.size(); ++k)
@@ -382,7 +382,7 @@ std::vector<ImaginedClosing> TunedScene::close(std::span<const ImaginedShot> sho
 
 namespace {
 
-// Returns the gain of the source of that drive.
+// Returns the gain of the source of a drive.
 double gain_of(const DeviceSpread& spread, const std::string& drive, const std::vector<double>& values) {
   double gain = 1;
   for (std::size_t i = 0; i < spread.variables.size(); ++i) {
@@ -400,7 +400,7 @@ void TunedScene::find_units(const Watch& watch) {
   const PreparedScene& p = nominal_;
   volts_slope_ = time_slope_ = pulled_through_slope_ = Eigen::VectorXd::Zero(size());
   if (options_.actuator != Actuator::pzt && has_pulling_electrode(p.scene.device)) electrode_ = searched_drive(p.scene.device);
-  constexpr double apart = 0.5;  // standard deviations
+  constexpr double apart = 0.5;  // step of the differences, in standard deviations
   std::vector<double> levels = hold_levels(p.signals()), bias;
   if (electrode_) bias = bias_of(p.scene, *electrode_);
   struct Found {

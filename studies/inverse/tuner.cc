@@ -30,7 +30,7 @@ void check(const TunerOptions& options) {
   require(
       !options.touch || ((options.touch->comparison == Comparison::below || options.touch->comparison == Comparison::at_most) &&
                          options.touch->limit > 0 && options.touch->figure.key == first_touch_key),
-      "a condition must be that initial_contact_time is below a time");
+      "a condition must limit initial_contact_time from above");
   require(options.effort > 0 && std::isfinite(options.effort), "the effort must be above 0");
 }
 
@@ -38,8 +38,8 @@ namespace {
 
 constexpr std::size_t proposal_devices = 32;
 constexpr double enough_devices = 8;                  // effective devices that a belief needs to predict
-constexpr double certain = 3.5;                       // standard errors that establish another ratio of the gaps
-constexpr std::size_t first_ones = 4, last_ones = 8;  // numbers of records that are learned from
+constexpr double certain = 3.5;                       // standard errors from which on the ratio of the gaps differs
+constexpr std::size_t first_ones = 4, last_ones = 8;  // numbers of records from which the belief is computed
 
 double weighted_mean(const std::vector<double>& weights, const std::vector<double>& values) {
   double sum = 0;
@@ -67,12 +67,12 @@ std::optional<BelievedQuantity> believed_gap_ratio(const TunedScene& scene, cons
   return one;
 }
 
-// Start of the random numbers of a closing.
+// Returns the position of the first random number of a closing.
 std::uint64_t first_draw(int closings) { return (static_cast<std::uint64_t>(closings) + 1) << 20; }
 
 }  // namespace
 
-// The part that no closing changes.
+// The members that no closing changes.
 struct Tuner::Setting {
   Setting(const SceneFile& file, const TunerOptions& options, const Watch& watch)
       : scene(file, options, watch), recipes(recipes_of(scene, watch)), shapes(scene) {
@@ -87,14 +87,14 @@ struct Tuner::Setting {
 struct Tuner::State {
   struct Fired {
     LearnedShot shot;
-    std::vector<double> x;  // numbers of its shape
+    std::vector<double> x;  // variables of its shape
     TunerShot as_proposed;
-    int waveform = 0;  // number of the shot that fired it first
+    int waveform = 0;  // number of the first shot with this waveform
   };
-  // A controller that makes the volts follow the touch time of a repeated shot.
+  // A controller by which the voltages of a repeated shot follow its touch time.
   struct Steering {
     std::vector<Waveform> waveforms;  // waveforms at s = 1
-    int waveform = 0;                 // number of the shot that fired it first
+    int waveform = 0;                 // number of the first shot with this waveform
     double slope = Metrics::unset, most = 1, s = 1;
     std::vector<double> touches;  // first touches, whose mean is the reference [s]
     [[nodiscard]] std::vector<Waveform> steered() const {
@@ -113,18 +113,19 @@ struct Tuner::State {
   struct Learned {
     std::vector<Fired> fired;
     int closings = 0, in_a_row = 0;
-    std::size_t forgotten = 0;  // number of first records that are not used any more
+    std::size_t forgotten = 0;  // number of first records that are no longer used
     double hold = 1;            // hold level over the nominal one
     Belief belief;
     std::optional<Steering> steering;
-    std::vector<double> x;  // numbers of the next shot
+    std::vector<double> x;  // variables of the next shot
     TunerShot next, kept;
-    int next_waveform = 0;                           // number of the shot that fired the next waveform first; 0: none did
-    std::vector<double> surprises;                   // errors of predicted touch times, in standard deviations
-    int unexpected_bounces = 0;                      // closings that bounced, where hardly a device of the belief did
-    int unexplained_bounces = 0;                     // long bounces among the records in use that the best device does not have
-    std::optional<BelievedQuantity> gap_ratio = {};  // last value from enough devices, unless the scene's explains the records
-    TouchMisfit misfit = {};                         // misfit of the records that were learned from last
+    int next_waveform = 0;          // number of the first shot with the next waveform; 0 for a new waveform
+    std::vector<double> surprises;  // errors of predicted touch times, in standard deviations
+    int unexpected_bounces = 0;     // number of closings that bounced although hardly a device of the belief did
+    int unexplained_bounces = 0;    // long bounces in the used records that the best device does not have
+    std::optional<BelievedQuantity> gap_ratio =
+        {};                   // last value from enough devices; none if the scene's ratio explains the records
+    TouchMisfit misfit = {};  // misfit of the records that were used last
   };
 
   State(std::shared_ptr<const Setting> of_scene, const Watch& watch)
@@ -174,7 +175,7 @@ struct Tuner::State {
 
 namespace {
 
-// Difference of a recorded first touch from the predicted one, in standard deviations.
+// Returns the difference between recorded and predicted first touch, in standard deviations.
 double surprise(const PredictedRecord& predicted, const ContactRecord& record, double effective_devices) {
   constexpr double both_sides = 1.96;
   const std::optional<double> seen = first_touch(record);
@@ -183,10 +184,9 @@ double surprise(const PredictedRecord& predicted, const ContactRecord& record, d
   return both_sides * (*seen - predicted.touch_median) / (edge - predicted.touch_median);
 }
 
-// True if the contact opened for longer than an error of the model explains: a mode that the model lacks opens it by a
-// nanometre.
+// True if the contact opened for longer than errors of the model explain: a mode that the model lacks opens it by a nanometre.
 bool has_long_bounce(const TunedScene& scene, const ContactRecord& record) {
-  constexpr double share = 0.04;  // share of the closing time of the plain step
+  constexpr double share = 0.04;  // least duration, over the closing time of the plain step
   if (record.edges.empty()) return bounce_count(record).value_or(0) > 0;
   const double least = scene.options().laboratory.unseen + share * scene.scales().closing_time;
   return std::ranges::any_of(openings(record), [&](const ContactOpening& one) { return one.end - one.begin >= least; });
@@ -209,7 +209,7 @@ int unexplained_bounces(const TunedScene& scene, std::span<const LearnedShot> sh
   return count;
 }
 
-// True if the ratio is off by its errors, and by one prior deviation, too.
+// True if the ratio differs by several standard errors, and by at least one standard deviation of the prior.
 bool is_off(const std::optional<BelievedQuantity>& ratio) {
   return ratio && std::abs(ratio->mean - 1) >= std::max(certain * ratio->deviation, ratio->prior_deviation);
 }
@@ -238,7 +238,8 @@ Tuner::State::Learned Tuner::State::learned(Learned known, const ContactRecord& 
     known.next.number += 1;
     return known;
   }
-  if (known.steering) known.forgotten = known.fired.size() - std::min(known.fired.size(), last_ones);  // forget what drifted
+  if (known.steering)
+    known.forgotten = known.fired.size() - std::min(known.fired.size(), last_ones);  // drop records from before the drift
   known.steering.reset();
   propose_next(known, watch);
   return known;
@@ -279,7 +280,7 @@ void Tuner::State::propose_next(Learned& known, const Watch& watch) const {
   if (known.in_a_row >= 2 && proposal.cost.landing < calm) repeat(known, outlook);
 }
 
-// Keeps the best waveform among those that did not bounce when they were fired last, unless the next is clearly better.
+// Keeps the best waveform among those that did not bounce in their last shot, unless the next waveform is clearly better.
 void Tuner::State::keep_best(Learned& known, const Outlook& outlook, double expected) const {
   constexpr double clearly = 0.15;
   known.kept = known.next;
@@ -313,7 +314,7 @@ void Tuner::State::repeat(Learned& known, const Outlook& outlook) const {
 
 void Tuner::State::fire_kept_again() {
   const auto fired = std::ranges::find(now.fired, now.kept.number, [](const Fired& one) { return one.as_proposed.number; });
-  if (fired == now.fired.end() || now.steering) return;  // the steered waveform is the one kept
+  if (fired == now.fired.end() || now.steering) return;  // the repeated waveform is the one kept
   now.x = fired->x;
   now.next_waveform = fired->waveform;
   const int number = now.next.number;
@@ -397,7 +398,7 @@ BeliefSummary Tuner::belief() const {
       const double correlation = covariance / (a.deviation * b.deviation);
       if (!(std::abs(correlation) > alike)) continue;
       summary.correlated.push_back(
-          fmt::format("The records do not tell {} from {} (correlation {:.2f}).", a.name, b.name, correlation));
+          fmt::format("The records do not separate {} from {} (correlation {:.2f}).", a.name, b.name, correlation));
     }
   }
   return summary;
@@ -405,13 +406,13 @@ BeliefSummary Tuner::belief() const {
 
 namespace {
 
-// Says "The device ...: its contact gap is 4.8 % wider ..." Devices of [spread] keep the ratio of the scene.
+// Returns "The device does not match the model: its contact gap is 4.8 % wider ...". The ratio is constant over [spread].
 std::string gap_ratio_words(const BelievedQuantity& ratio) {
   constexpr double percent = 100;
   const double change = percent * (ratio.mean - 1);
   return fmt::format(
-      "The device does not behave like the scene: against the electrode gap its contact gap is {:.1f} % {}, with a standard "
-      "error of {:.1f} %, where devices of the scene keep the ratio of the two.",
+      "The device does not match the model: relative to the electrode gap its contact gap is {:.1f} % {}, with a standard "
+      "error of {:.1f} %. In the model this ratio is the same for all devices.",
       std::abs(change), change > 0 ? "wider" : "narrower", percent * ratio.deviation);
 }
 
@@ -422,14 +423,12 @@ std::optional<std::string> Tuner::broken_assumption() const {
   const State::Learned& now = state_->now;
   if (now.misfit.is_beyond())
     return fmt::format(
-        "The device does not behave like the scene: no device of its spread touches as was recorded. The squares of what the "
-        "best "
-        "one is off by add up to {}, and one device in a thousand exceeds {}.",
+        "The device does not match the model: no device of the spread touches as recorded. The sum of squared residuals of the "
+        "best one is {}, and only one device in a thousand exceeds {}.",
         engineering(now.misfit.least, "", 3), engineering(now.misfit.bound, "", 3));
   if (std::min(now.unexpected_bounces, now.unexplained_bounces) >= too_many)
-    return fmt::format(
-        "The device does not behave like the scene: it bounced in {} closings that were predicted to be free of bounces.",
-        now.unexpected_bounces);
+    return fmt::format("The device does not match the model: it bounced in {} closings that were predicted to be bounce-free.",
+                       now.unexpected_bounces);
   return is_off(now.gap_ratio) ? std::optional(gap_ratio_words(*now.gap_ratio)) : std::nullopt;
 }
 

@@ -28,7 +28,8 @@ void check(const NormalBelief& belief, Index size) {
 }
 
 LinearMeasurement told_by(const TunedBelief& tuned) {
-  constexpr double is_told = 0.5;  // share of the variance before: samples of a belief scatter above it
+  // Largest variance of a measured direction, over that of the prior: a belief from samples scatters around 1.
+  constexpr double is_told = 0.5;
   const Index n = tuned.prior.mean.size();
   const MatrixXd factor = cholesky_factor(tuned.prior.covariance), identity = MatrixXd::Identity(n, n);
   MatrixXd inverse(n, n);
@@ -43,7 +44,7 @@ LinearMeasurement told_by(const TunedBelief& tuned) {
                         .values = VectorXd(static_cast<Index>(told.size()))};
   for (Index i = 0; i < all.values.size(); ++i) {
     const Index k = told[static_cast<std::size_t>(i)];
-    const double variance = eigen.values[k], precision = 1 / variance - 1;  // precision of the records alone
+    const double variance = eigen.values[k], precision = 1 / variance - 1;  // precision from the records alone
     const VectorXd direction = eigen.vectors.col(k);
     all.rows.row(i) = std::sqrt(precision) * direction.transpose() * inverse;
     all.values[i] = direction.dot(mean) / variance / std::sqrt(precision) + all.rows.row(i).dot(tuned.prior.mean);
@@ -62,7 +63,7 @@ WaferBelief believed_of_wafer(std::span<const TunedBelief> tuned, Index size) {
     all.push_back(told_by(one));
     count += all.back().values.size();
   }
-  MatrixXd rows(count, size), own = MatrixXd::Zero(count, count);  // own: J J^T of each device
+  MatrixXd rows(count, size), own = MatrixXd::Zero(count, count);  // `own` has J J^T of each device
   VectorXd values(count);
   Index begin = 0;
   for (const LinearMeasurement& one : all) {
@@ -73,7 +74,7 @@ WaferBelief believed_of_wafer(std::span<const TunedBelief> tuned, Index size) {
     begin += m;
   }
   constexpr int steps = 40;
-  constexpr double least_apart = 0.03;  // deviation of the devices of a wafer, over that of all
+  constexpr double least_apart = 0.03;  // least standard deviation within a wafer, over that of all devices
   const MatrixXd identity = MatrixXd::Identity(count, count), shared = rows * rows.transpose();
   std::vector<double> shares, logarithms;
   std::vector<NormalBelief> nexts;

@@ -295,7 +295,7 @@ TEST_P(EveryVerb, IsPractisedOn_optimized) {
   write(here.path() / "stdin.txt",
         "{\"shot\":1,\"hold_s\":1e-05,\"drives\":{\"main\":{\"time_s\":[0,1e-06],\"V\":[0,0.001]}}}\n");
   const std::vector<std::string> words = scene().quickly({"device", scene().name, "--quiet"});
-  if (!scene().has_contact()) return refused(words, "there is no [contact]: a lab would see nothing of a closing");
+  if (!scene().has_contact()) return refused(words, "needs a [contact] section: a laboratory records");
   const json answer = data(words);
   EXPECT_EQ(answer["shot"], 1);
   EXPECT_NE(answer.contains("edges_s"), answer.contains("error")) << answer;

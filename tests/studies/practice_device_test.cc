@@ -171,7 +171,7 @@ TEST(PracticeDevice, RefusesWhatNoLabWouldDo) {
               testing::AllOf(HasSubstr("drives.main"), HasSubstr("25")));
   EXPECT_THAT(refusal([&] { (void)device.close(0, plain_step(), window); }), HasSubstr("counted from 1"));
   EXPECT_THAT(refusal([&] { (void)device.close(1, plain_step(), std::nan("")); }), HasSubstr("longer than 0 s"));
-  EXPECT_THAT(refusal([] { PracticeDevice(scene("purdue-nickel.toml")); }), HasSubstr("there is no [contact]"));
+  EXPECT_THAT(refusal([] { PracticeDevice(scene("purdue-nickel.toml")); }), HasSubstr("needs a [contact]"));
   EXPECT_THAT(refusal([] { PracticeDevice(gold_at_17_volts(), {.model = {.gas = "air"}}); }), HasSubstr("gas=air: must be "));
   EXPECT_THAT(refusal([] {
                 SceneFile file = gold_at_17_volts();

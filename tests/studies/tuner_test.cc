@@ -166,7 +166,7 @@ TEST(Tuners, ADeviceUnlikeTheSceneIsCalledSo_optimized) {
   const TouchMisfit misfit = soft.belief().touch_misfit;
   ASSERT_TRUE(soft.broken_assumption()) << misfit.least << " of " << misfit.bound;
   EXPECT_TRUE(misfit.is_beyond());
-  EXPECT_THAT(*soft.broken_assumption(), testing::HasSubstr("does not behave like the scene"));
+  EXPECT_THAT(*soft.broken_assumption(), testing::HasSubstr("does not match the model"));
   EXPECT_FALSE(tuned({}).broken_assumption());
 }
 
