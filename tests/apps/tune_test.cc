@@ -475,7 +475,7 @@ TEST_F(TuneVerb, NamesTheOptionThatItCannotTake) {
       {{"--device", "x", "--timeout", "3"}, "--timeout 3: must be a time [s]"},
       {{"--device", "x", "--constrain", "initial_contact_time < 33"}, "--constrain: "},
       {{"--device", "x", "--constrain", "impact_velocity < 1 mm/s"},
-       "a condition must be that initial_contact_time is below a time"},
+       "a condition must limit initial_contact_time from above"},
       {{"--device", "x", "--trigger-delay", "1 V"}, "--trigger-delay 1 V: must be a time [s]"},
       {{"--device", "x", "--format", "csv"},
        "--format, --sample-rate, --bits and --amplifier are of the files that --by-hand writes"},

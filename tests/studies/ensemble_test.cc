@@ -111,7 +111,7 @@ TEST(Ensemble, CountsImpossibleDevicesAsTheWorst) {
 
 TEST(Ensemble, NeedsASpread) {
   const PreparedScene nominal = prepare(without(gold_at_17_volts(), "spread"));
-  EXPECT_NE(refusal([&] { static_cast<void>(Ensemble(nominal, 10)); }).find("there is no [spread]"), std::string::npos);
+  EXPECT_NE(refusal([&] { static_cast<void>(Ensemble(nominal, 10)); }).find("a [spread] section must say"), std::string::npos);
 }
 
 // The pull-in voltage of a device, by another way than the meter's: bisection for a step that touches.
@@ -486,7 +486,7 @@ TEST(Robustness, RefusesDrivesThatTheSceneDoesNotAllow) {
       static_cast<void>(robustness(nominal, {{.name = "x.toml", .waveforms = {{drive, waveform}}}}, {.samples = 1}));
     });
   };
-  EXPECT_EQ(refused("piezo", Step{.level = 1}), "x.toml: drives 'piezo', which the first scene does not have");
+  EXPECT_EQ(refused("piezo", Step{.level = 1}), "x.toml: its drive 'piezo' must be a drive of the first scene");
   EXPECT_EQ(refused("main", Step{.level = 26}).find("x.toml: drive 'main': "), 0U);
 }
 

@@ -132,8 +132,9 @@ TEST(RobustOptimize, SpendsABudgetOfTimeOnAllOfItsHeats_slow) {
 }
 
 TEST(RobustOptimize, NeedsASpread) {
-  EXPECT_NE(refusal([] { static_cast<void>(search(without(quick(), "spread"), aim("worst"))); }).find("there is no [spread]"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal([] { static_cast<void>(search(without(quick(), "spread"), aim("worst"))); }).find("a [spread] section must say"),
+      std::string::npos);
 }
 
 TEST(RobustOptimize, EndsWhenAsked_optimized) {
