@@ -1,12 +1,14 @@
-// Compares the accuracy that a scene asks for with the error of its figures, on random scenes: bench_accuracy [COUNT [SEED
+// Compares the requested accuracy of scenes with the true error of their figures, on random scenes: bench_accuracy [COUNT [SEED
 // [film]]]
 //
-// Every scene is run as `simulate` runs it at accuracies from 1e-2 to 1e-5, and against a reference at an integrator tolerance of
-// 1e-12 with more quadrature points than the finest setting. The argument `film` gives every scene a compressible film in place
-// of its gas. The film's stiff equations take a hundred times longer. The tightest accuracy is then 1e-3, and scenes of more than
-// 3000 steps are left out. The reference is explicit, in as many steps as the film's stiffness asks for. A figure counts if it is
-// well conditioned and known. A change of the contact gap by a billionth, which is invisible, and a tenfold tolerance of the
-// reference must then move it by less than a tenth of the accuracy asked for. Prints Markdown.
+// Every scene is run as by `simulate` at accuracies from 1e-2 to 1e-5. The reference has an integrator tolerance of 1e-12 and
+// more quadrature points than the finest setting. A figure is compared if it is known and well conditioned: an imperceptible
+// change of the contact gap (1e-9), and a tenfold tolerance of the reference, must change it by less than a tenth of the
+// requested accuracy.
+//
+// The argument `film` gives every scene a compressible film in place of its gas. Its stiff equations take a hundred times
+// longer, so the tightest accuracy is 1e-3, and scenes with more than 3000 steps are left out. The reference is explicit, in as
+// many steps as the stiffness requires. Prints Markdown.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
@@ -84,7 +86,7 @@ struct Miss {
 
 struct Tally {
   long figures = 0, within = 0, ill = 0;
-  std::vector<double> share;  // error over accuracy
+  std::vector<double> share;  // error over the requested accuracy
   double seconds = 0;
 };
 
@@ -105,7 +107,7 @@ struct Truth {
   Figures value, spread, least;
 };
 
-/// Counts the figures of a run at the accuracy with number a.
+/// Counts the figures of a run at the accuracy with index a.
 void count(std::uint64_t index, std::size_t a, const Truth& truth, const Figures& found, double seconds, Result& result) {
   for (std::size_t f = 0; f < names.size(); ++f) {
     if (std::isnan(truth.value[f])) continue;

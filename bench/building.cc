@@ -1,5 +1,5 @@
-// Measures the processor time of building a switch, for every scene: its own, and that of a device of an ensemble, which
-// differs in thickness, gap and modulus only.
+// Measures the processor time for building a switch, for every scene: its own switch, and that of a device of an ensemble,
+// which differs in thickness, gap and modulus only.
 //   bench_building [SCENE ...]     (default: every shipped scene)
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
-// Measures how often the errors that --certify gives cover the true ones, and by how much they exceed them, on random scenes.
+// Measures how often the errors of --certify cover the true errors, and by how much they exceed them, on random scenes.
 //
-// The truth is a run at a ten-thousandth of the tolerance of the run that the figures are of, with four times its quadrature
-// points, 96 at least. A figure whose difference from it is below what two such runs differ by counts as covered by any error.
-// Ill-conditioned figures have no truth: of them is said how often the run lies in the range of the cloud, which 16 runs alike in
-// distribution would give 15 of 17 times. With --film yes every scene has a compressible film in the place of its gas, which
-// takes a hundred times longer.
+// The true value comes from a run with a ten-thousandth of the tolerance and four times the quadrature points, at least 96. A
+// difference that is smaller than the difference between two such runs counts as covered. An ill-conditioned figure has no true
+// value. For it the program counts how often the run is in the range of the cloud; of 16 runs with the same distribution that
+// would be 15 of 17. With --film yes every scene has a compressible film in place of its gas, which takes a hundred times
+// longer.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,23 +30,24 @@
 namespace softland {
 namespace {
 
-constexpr double truth_tighter = 1e-4;  // than the tolerance of the run
+constexpr double truth_tighter = 1e-4;  // tolerance of the true run over that of the run
 constexpr double truth_finer = 4;
 constexpr double fewest_truth_points = 96;
 constexpr double stated_rounding = 1e-9, far_off = 10;
-constexpr double truth_rounding = 1e-11;  // relative: smaller differences are not resolved
+constexpr double truth_rounding = 1e-11;  // relative difference that is not resolved
 
 struct Options {
   std::uint64_t seed = 2;
   std::uint64_t scenes = 200;
   double accuracy = 1e-6;
-  long steps = 20000;  // steps of the closing itself: seventeen that are tighter follow
+  long steps = 20000;  // largest number of steps of the closing; seventeen tighter runs follow
   bool film = false;
 };
 
 struct Tally {
   int covered = 0, missed = 0;
-  std::vector<double> excess, needed;  // error over the true one; true one over the difference that the error is a multiple of
+  std::vector<double> excess,
+      needed;  // stated over true error; true error over the difference of which the stated one is a multiple
   int clouds = 0, in_range = 0;
 
   void add(const Tally& other) {
@@ -69,9 +70,9 @@ std::string percent(int part, int all) { return all == 0 ? "-" : fmt::format("{:
 
 enum class Outcome { none, without_touch, failed, too_long, certified };
 
-// Counts of the errors that a run states without --certify.
+// Counts of the errors that simulate() states without --certify.
 struct Stated {
-  int held = 0, missed = 0, none = 0, far_off = 0;  // far off: by more than ten times what is stated
+  int held = 0, missed = 0, none = 0, far_off = 0;  // far_off: the true error is more than ten times the stated one
 };
 
 struct Scene {
@@ -88,7 +89,7 @@ Scene judge(const Options& options, std::uint64_t index) {
   if (!file) return scene;
   file->set(fmt::format("simulate.accuracy={:g}", options.accuracy));
   const PreparedScene p = prepare(*file);
-  if (!options.film && p.model.film_states() > 0) return scene;  // they have a table of their own
+  if (!options.film && p.model.film_states() > 0) return scene;  // compressible films are studied with --film
   const Closing plain = simulate(p, true);
   scene.outcome = Outcome::too_long;
   if (plain.trajectory.work.steps >= options.steps) return scene;
@@ -129,7 +130,7 @@ Scene judge(const Options& options, std::uint64_t index) {
   }
   for (const Figure& figure : all_figures) {
     if (!figure.has_error() || figure.conditioning == Conditioning::rest || figure.conditioning == Conditioning::open)
-      continue;  // no run gives an equilibrium
+      continue;  // no run gives the errors of an equilibrium
     Tally& tally = scene.tallies[figure.key];
     const double own = figure.value(c.metrics), other = figure.value(truth);
     if (!std::isfinite(own)) continue;
@@ -181,7 +182,7 @@ void run(const Options& options) {
   std::map<std::string_view, Stated> stated;
   std::map<Outcome, std::uint64_t> counts;
   std::vector<std::string> misses;
-  for (const auto& [index, scene] : scenes) {  // count in order, so that threads do not matter
+  for (const auto& [index, scene] : scenes) {  // in order, so that the result does not depend on the threads
     if (counts[Outcome::certified] == options.scenes) break;
     ++counts[scene.outcome];
     for (const auto& [key, one] : scene.tallies) tallies[key].add(one);

@@ -1,8 +1,8 @@
-// Tries the claims of Bognash's 2019 thesis ("Bouncing of MEM/NEM switches", University of Western Ontario) on the shipped
-// reconstructions of its switches. The command bench_claims nem-voltage|casimir-size|micro-bounces FOLDER writes a picture and a
-// table into FOLDER.
+// Checks claims of Bognash's 2019 thesis ("Bouncing of MEM/NEM switches", University of Western Ontario) on the shipped
+// reconstructions of its switches. bench_claims nem-voltage|casimir-size|micro-bounces FOLDER writes a figure and a table into
+// FOLDER.
 //
-// The same program gives the same files: runs and searches depend on nothing else.
+// The files depend on the program only.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -49,7 +49,7 @@ std::string number(double value, int digits = 3) {
   return std::abs(value) < 1000 ? fmt::format("{:.{}g}", value, digits) : fmt::format("{:.0f}", value);
 }
 
-/// "6.9" or, where runs that differ by nothing a generator could tell apart differ, "6.9 (6.4 to 7.5)".
+/// The median of a figure over indistinguishable runs, with its range if that is visible: "6.9" or "6.9 (6.4 to 7.5)".
 struct Cloud {
   double middle = missing, least = missing, most = missing;
   explicit Cloud(const std::vector<double>& values) : middle(median(values)) {
@@ -63,13 +63,13 @@ struct Cloud {
   }
 };
 
-/// Figures of a closing and of neighbours whose drive differs by parts in a million.
+/// Figures of a closing and of its neighbours, whose drives differ by parts in a million.
 struct Cloudy {
   Cloud first, settled, count, height, speed;
 };
 
 Cloudy closings(const std::function<SceneFile(double)>& scaled) {
-  constexpr int neighbours = 4;  // neighbours on either side
+  constexpr int neighbours = 4;  // number of neighbours to either side
   std::vector<double> first, settled, count, height, speed;
   for (int k = -neighbours; k <= neighbours; ++k) {
     const Metrics m = simulate(prepare(scaled(1 + 1e-6 * k)), false).metrics;
@@ -94,14 +94,14 @@ std::string made_by(const std::string& study) {
                      study, version);
 }
 
-// ---- switching time and bounce against voltage, and what a shaped waveform gains
+// ---- switching time and bounce against voltage, and the gain by a shaped waveform
 
-/// Figures of steps, and as curves over their height.
+/// Figures of steps by their height, and as curves.
 struct Steps {
   std::map<int, Cloudy> by_percent;  // closings by step height [% of the dynamic pull-in voltage]
   Points first, settled, count, height, speed;
 
-  /// The time that a step of about this height takes: t_p of single heights jumps.
+  /// Returns the median settling time of steps of about this height: that of single heights jumps.
   [[nodiscard]] double usual(int percent) const {
     constexpr int around = 3;
     std::vector<double> times;
@@ -112,7 +112,7 @@ struct Steps {
   }
 };
 
-/// Runs the scenes at(height over the dynamic pull-in voltage).
+/// Runs the scenes at(h) for step heights h over the dynamic pull-in voltage.
 Steps steps_of(const std::function<SceneFile(double)>& at) {
   constexpr int lowest = 101, highest = 200;
   Steps steps;
@@ -173,7 +173,7 @@ void nem_voltage(const std::filesystem::path& folder) {
   const SceneFile scene = shipped("nem-tin.toml");
   const double dynamic = prepare(scene, true).voltage_units().at("main").dynamic_pull_in;
   constexpr double window = 40e-9;
-  constexpr double room = 1.2;  // peak of the shaped waveforms over their hold voltage, as the thesis' dither of 20 %
+  constexpr double room = 1.2;  // peak of the shaped waveforms over their hold voltage: 1.2, as for the dither of the thesis
   const auto at = [&](double level) {
     return with(scene,
                 {fmt::format("waveform.main.level={:.17g} V", level),
@@ -230,15 +230,16 @@ void nem_voltage(const std::filesystem::path& folder) {
 // ---- the switch closed by the Casimir force: size and bounce
 
 struct SizedSwitches {
-  double critical;  // times its strength at rest the force must grow to close the switch quasi-statically
+  double critical;  // factor of the force at rest at which the switch closes quasi-statically
   std::string label;
   Role pen;
   Points height, relative, count, time;
 };
 
-/// The length at which a beam closes quasi-statically under `critical` times the force at rest [m], found from a first one.
+/// Returns the length at which a beam closes quasi-statically under `critical` times its force at rest [m]. `length` is a first
+/// value.
 double critical_length(const std::function<SceneFile(double)>& sized, double length, double critical) {
-  // The force that a beam bears falls with the fourth power of its length.
+  // The force that a beam can balance decreases with the fourth power of its length.
   for (int i = 0; i < 4; ++i) {
     const double bears = 1 + static_pull_in(prepare(sized(length)).model, 0).voltage;
     length *= std::pow(bears / critical, 0.25);
@@ -326,7 +327,7 @@ struct Flight {
   double begin, end, height;
 };
 
-/// The rebounds that are higher than `significant` [m].
+/// Returns the rebounds that are higher than `significant` [m].
 std::vector<Flight> flights(const Trajectory& t, double significant) {
   std::vector<Flight> rebounds;
   for (std::size_t k = 0; k + 1 < t.touches.size(); ++k) {

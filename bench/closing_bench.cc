@@ -1,8 +1,8 @@
-// Measures one closing: wall time, steps, right-hand sides and errors, per integrator and tolerance, on one core.
+// Measures one closing for each integrator and tolerance, on one core: wall time, steps, right-hand sides and errors.
 //
-// The closing is the reference one (gold cantilever, a step of 17.771 V without rise time, 100 us), described by the same scene
-// file a user starts from. `--integrator` and `--tolerance` keep one row, `--runs` sets how often it is repeated. The output is
-// the median, because a shared machine only ever adds time.
+// The closing is the reference closing (gold cantilever, a step of 17.771 V without rise time, 100 us), from the scene file
+// that users start from. `--integrator` and `--tolerance` select one row, `--runs` sets the number of repetitions. The time is
+// the median over the repetitions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double window = 100_us;
 constexpr std::string_view drive = "17.771 V";
-// The figures of a run at this tolerance hold to seven digits (two integrators agree); errors are measured against them.
+// At this tolerance two integrators agree to seven digits. Errors are measured against it.
 constexpr double reference_tolerance = 1e-12;
 constexpr SwitchOptions reference_quadrature{.points_per_length = 48};
 
@@ -39,7 +39,7 @@ struct Options {
   std::string scene = SOFTLAND_SCENES "/mem-gold.toml";
   std::optional<std::string> integrator;
   std::optional<double> tolerance;
-  std::optional<double> accuracy;  // asked for of the scene: chooses tolerance and quadrature
+  std::optional<double> accuracy;  // requested accuracy of the scene, which chooses tolerance and quadrature
   int runs = 25;
   bool json = false;
 };
@@ -137,7 +137,7 @@ Options parse(int argc, char** argv) {
 
 void run(const Options& options) {
   SceneFile file = SceneFile::load(options.scene);
-  // Volts throughout, so that no pull-in voltage has to be computed first.
+  // Give volts everywhere, so that no pull-in voltage has to be computed.
   file.set(fmt::format("waveform.main.level={}", drive));
   file.set("driver.main.max_voltage=25 V");
   if (options.accuracy) file.set(fmt::format("simulate.accuracy={}", *options.accuracy));

@@ -1,8 +1,8 @@
-// Measures what bounds a right-hand side, and how the cost of a closing grows: bench_cost > results/cost.md
+// Measures what limits the speed of a right-hand side, and how the cost of a closing grows: bench_cost > results/cost.md
 //
-// The reference closing (gold cantilever, a step of 17.771 V, 100 us). Operations are counted from the formulas, what the machine
-// can do of each is measured here, and the slowest of them is the bound. Exponents are slopes of least-squares lines through the
-// logarithms. Prints Markdown.
+// The closing is the reference closing (gold cantilever, a step of 17.771 V, 100 us). Operations are counted from the formulas,
+// and the rate of each kind of operation on this machine is measured here. The slowest kind is the bound. Exponents are slopes
+// of least-squares lines through the logarithms. Prints Markdown.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
@@ -28,14 +28,14 @@ using Clock = std::chrono::steady_clock;
 constexpr double window = 100e-6, tolerance = 1e-6;
 constexpr int repeats = 41;
 
-// Operations per second on doubles, of independent vectors of four: what a loop over points can hope for.
+// Returns operations per second on doubles in independent vectors of four: the limit for a loop over points.
 template <class Operation>
 double rate(Operation operation) {
   constexpr int vectors = 12, lanes = 4, passes = 20000;
   Eigen::Array<double, lanes, 1> x[vectors];
   std::vector<double> seconds;
   double keep = 0;
-  volatile double start_value = 1.5;  // unknown to the compiler
+  volatile double start_value = 1.5;  // the compiler must not know it
   for (int r = 0; r < repeats; ++r) {
     for (auto& v : x) v.setConstant(static_cast<double>(start_value));
     const auto start = Clock::now();

@@ -1,5 +1,5 @@
-// evaluator_loop --jobs N: what 10 000 devices of the gold cantilever take in the loop that `robustness` closes ensembles in, and
-// one device alone [s of the processor]: what bench/evaluator.py holds the Python module against.
+// evaluator_loop --jobs N measures the processor time [s] of 10 000 devices of the gold cantilever in the loop of `robustness`,
+// and of one device alone. bench/evaluator.py compares the Python module with it.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

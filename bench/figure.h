@@ -1,4 +1,4 @@
-// Pictures and tables of studies for results/, drawn as the reports draw theirs.
+// Charts and tables of studies for results/, in the style of the reports.
 #pragma once
 
 #include <array>
@@ -13,9 +13,9 @@ namespace softland {
 using Points = std::vector<std::array<double, 2>>;  // x, y in SI units; a y that is not finite is left out
 
 struct Curve {
-  std::string label;  ///< a few words
+  std::string label;  ///< name in the legend
   Points points;
-  internal::Role pen = internal::Role::best;  ///< evaluations: dots
+  internal::Role pen = internal::Role::best;  ///< colour of the curve; evaluations are drawn as dots
 };
 
 /// Axes with curves. Units get their SI prefix from the values; an empty unit is a plain number.
@@ -27,11 +27,11 @@ struct Panel {
   internal::Scale scale = internal::Scale::linear;
 };
 
-/// An SVG document: a headline, smaller words, and the panels row by row.
+/// Returns an SVG document: a headline, a subtitle, and the panels row by row.
 [[nodiscard]] std::string figure(const std::string& headline, const std::string& words, const std::vector<Panel>& panels,
                                  std::size_t per_row = 2);
 
-/// Rows of a table in Markdown; the first is the head.
+/// Returns a table in Markdown; the first row is its head.
 [[nodiscard]] std::string markdown_table(const std::vector<std::vector<std::string>>& rows);
 
 }  // namespace softland

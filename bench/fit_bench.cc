@@ -1,8 +1,9 @@
 // Measures the accuracy of fits: bench_fit FOLDER [CASES] writes fit.md into FOLDER.
 //
-// The first part has synthetic data: devices of the spread of mem-gold, measured with random errors, each fitted on its own. It
-// counts how often the 95 % intervals cover the truth. The second has the gap-closing actuators that Rauf et al. measured: one
-// undercut and one modulus for nine devices, and what they predict of devices and closing times that were not fitted.
+// In the first part devices of the spread of mem-gold have synthetic data with random errors, and each device is fitted. It
+// counts how often the 95 % intervals cover the true values. The second part has the gap-closing actuators that Rauf et al.
+// measured. One undercut and one modulus are fitted to nine devices, and predict devices and closing times that were not
+// fitted.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -49,7 +50,7 @@ struct Case {
   std::optional<Fit> fit = {};
 };
 
-// Data of device k of the spread, with errors that are functions of k.
+// Returns synthetic data of device k of the spread, with errors that are functions of k.
 Bench measured(const PreparedScene& nominal, const std::vector<double>& truth, std::uint64_t k) {
   DeviceReader reader(nominal);
   Bench bench{.name = "bench.toml", .measurements = {}, .changes = {}};
@@ -120,7 +121,7 @@ std::string coverage(std::size_t cases) {
 // ---- measured actuators
 
 constexpr double volts_error = 1;          // [V], as published
-constexpr double undercut_error = 0.1e-6;  // [m] and [Pa]: what is known of an etch and of a crystal before
+constexpr double undercut_error = 0.1e-6;  // standard deviations of the priors of undercut [m] and modulus [Pa]
 constexpr double modulus_error = 0.05 * test::textbook_modulus;
 
 double pull_in(const Device& d) { return static_pull_in(Switch(d), 0).voltage; }
@@ -131,7 +132,7 @@ double closing_time(const Device& d, double volts) {
   return t.touches.empty() ? Metrics::unset : t.touches.front().begin;
 }
 
-// The process parameters, in standard deviations of the prior knowledge.
+// The process parameters, in standard deviations of the prior.
 struct Process {
   double undercut = test::published_undercut, modulus = test::textbook_modulus;
   static Process at(std::span<const double> x) {
@@ -143,7 +144,7 @@ struct Process {
   }
 };
 
-// Computes pull-in voltages of three chips for each of the nine overlaps with such a device.
+// Returns the pull-in voltages of three chips for each of the nine overlaps on a device with these process parameters.
 std::vector<double> readings(const Process& process) {
   std::vector<double> all;
   for (const test::MeasuredPullIn& m : test::measured_pull_in) all.insert(all.end(), 3, pull_in(process.device(m.overlap)));
@@ -181,7 +182,7 @@ LeastSquares actuators() {
           .evaluate = [data](std::span<const double> x, std::span<double> r, double* jacobian) {
             try {
               return evaluate(data, x, r, jacobian);
-            } catch (const InvalidInput&) {  // an undercut that leaves no springs
+            } catch (const InvalidInput&) {  // the undercut leaves no springs
               return false;
             }
           }};
@@ -232,7 +233,7 @@ std::string fitted_actuators() {
     first.push_back(a), second.push_back(b);
   };
   for (const test::MeasuredSprings& m : test::measured_springs) {
-    if (m.width == 3e-6) continue;  // one of the nine
+    if (m.width == 3e-6) continue;  // it is one of the nine fitted devices
     const Device a = published.device(76.5e-6, m.width), b = fitted.device(76.5e-6, m.width);
     add(fmt::format("pull-in, springs of {:g} um", 1e6 * m.width), fmt::format("{:g} V", m.pull_in), pull_in(a) / m.pull_in - 1,
         pull_in(b) / m.pull_in - 1, in_before, in_after);

@@ -1,8 +1,8 @@
-// Times varied devices, one at a time and in lanes: how long it takes to build and close one of them on one core, sampling
-// included, and the error of its B_H against a run at a tight setting.
+// Measures the time to build and close a varied device on one core, one device at a time and in lanes, sampling included. Also
+// measures the error of B_H against a run with a tight tolerance.
 //   bench_fleet [SCENE [DEVICES [ACCURACY [TOLERANCE [key=value ...]]]]]     (default: mem-gold.toml 2000 1e-4 1e-5)
-// ACCURACY chooses the quadrature, as simulate.accuracy does. The output is JSON, times in seconds: medians of five rounds that
-// take the paths in turn.
+// ACCURACY chooses the quadrature, as simulate.accuracy does. The output is JSON with times in seconds: medians of five rounds,
+// in each of which both ways take turns.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -20,13 +20,13 @@ namespace {
 using namespace softland;
 
 constexpr int rounds = 5;
-constexpr std::uint64_t judged_devices = 500;  // number of devices whose error is looked at
-constexpr double tight_tolerance = 1e-10;      // tolerance of the runs that they are judged by
+constexpr std::uint64_t judged_devices = 500;  // number of devices whose error is measured
+constexpr double tight_tolerance = 1e-10;      // tolerance of the reference runs
 constexpr std::string_view tight_accuracy = "1e-8";
 
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-/// Devices of a scene, and the window that a search scores.
+/// The devices of a scene, and the window of a search.
 struct Fleet {
   Fleet(const std::string& scene, const std::vector<std::string>& changes, std::uint64_t count)
       : nominal(prepared(scene, changes)), ensemble(nominal, count), signals(nominal.signals()) {
@@ -66,7 +66,7 @@ struct Fleet {
   double window = 0;  // [s]
 };
 
-/// Relative, of devices that both could follow.
+/// Returns the relative errors of B_H for the devices that could be simulated both ways.
 std::vector<double> errors_of_height(const std::vector<DeviceOutcome>& outcomes, const std::vector<DeviceOutcome>& tight) {
   std::vector<double> errors;
   for (std::size_t k = 0; k < tight.size(); ++k) {

@@ -1,7 +1,8 @@
-// Measures the cost of the gradient of a search's cost, in closings, and its error, by the number of parameters and the number
-// of arcs that a step of the closing is divided into. The parameters that share a difference of waveforms are found before,
-// once, as a search does it. A second table has the gradients of searches of some families, a third the derivatives by parameters
-// of the device, with the building of the two switches beside it for each.
+// Measures the gradient of the cost function of a search: its computing time, in closings, and its error, by the number of
+// parameters and the number of parts into which an integrator step of the closing is divided. Parameters that share a
+// difference of waveforms are found once before, as in a search. A second table has the gradients of searches of some families.
+// A third has derivatives by parameters of the device, and the time for building the two neighbouring switches for each
+// parameter.
 //   bench_gradient [SCENE]     (default: mem-gold.toml)
 #include <fmt/format.h>
 
@@ -22,7 +23,7 @@ namespace {
 
 using namespace softland;
 
-// The time of the processor, so that other work of the machine does not count.
+// Processor time, which other programs on the machine do not change.
 template <class F>
 double milliseconds(F&& f) {
   double least = 1e9;
@@ -34,7 +35,7 @@ double milliseconds(F&& f) {
   return least;
 }
 
-// A rise drawn by so many levels, which lands with a few rebounds.
+// A rise in this number of levels, which lands with a few rebounds.
 struct Rise {
   std::vector<double> x, lower, upper;
 };
@@ -95,7 +96,7 @@ void measure(const SearchSetting& s, std::size_t levels) {
   }
 }
 
-// Numbers of the gold cantilever that its figures depend on.
+// Parameters of the gold cantilever on which its figures depend.
 struct DeviceNumber {
   double& (*of)(Device&);
   bool acts_in_flight = true;
@@ -130,7 +131,7 @@ SwitchSlopes slopes_by_device(const PreparedScene& p, std::size_t parameters) {
   return SwitchSlopes(p.model, std::move(all));
 }
 
-// The scene's own step, which rebounds, by so many parameters of the device, each over its own size.
+// Measures derivatives for the scene's own step, which rebounds, by parameters of the device, each relative to its own size.
 void measure_device(const SearchSetting& s, std::size_t parameters) {
   const std::vector<Signal> signals = s.given.signals();
   const ClosingOptions run = s.run_of(signals);
@@ -171,7 +172,7 @@ void measure_device(const SearchSetting& s, std::size_t parameters) {
              forward / closing, 1 + 0.6 * static_cast<double>(parameters), building / closing, error);
 }
 
-// Measures the gradient as a search takes it, at the first of its starting points.
+// Measures the gradient at the first starting point of a search.
 void measure_search(const std::string& scene, const std::string& family) {
   const SearchSetting s = search_setting(SceneFile::load(scene), Target::bounce, Actuator::electrostatic, family, {});
   const std::vector<ParameterGroup> groups = s.parameter_groups();

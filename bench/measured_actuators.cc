@@ -1,4 +1,5 @@
-// Simulated against measured: bench_measured FOLDER writes measured-actuators.svg and measured-actuators.md into FOLDER.
+// Compares simulation with measurement: bench_measured FOLDER writes measured-actuators.svg and measured-actuators.md into
+// FOLDER.
 //
 // Gap-closing actuators of Rauf, Contreras, Shih, Schindler & Pister, J. MEMS 31(1) (2022) 29-36, in air; nothing is fitted.
 #include "tests/support/measured_actuators.h"

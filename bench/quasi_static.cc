@@ -1,8 +1,8 @@
-// The quasi-static approach of a scene: what its closed form does on devices, and what a search at three paces makes of it.
+// Measures the quasi-static approach of a scene on devices: its closed form, and the result of a search, each at three speeds.
 //
 //   bench_quasi_static SCENE ACTUATOR [--seed N] [--length SHARE] [--tolerance T] [KEY=VALUE ...]
 //
-// Prints a row for each: 95 % and 99 % of 2000 fresh devices, closings and processor time of the search.
+// Prints a row for each: 95th and 99th percentiles over 2000 fresh devices, closings and processor time of the search.
 #include <fmt/format.h>
 
 #include <array>

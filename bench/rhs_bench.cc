@@ -1,7 +1,7 @@
-// Computes right-hand sides of a scene alone, to count their instructions: bench_rhs CALLS SCENE [key=value | -SECTION ...]
+// Evaluates only right-hand sides of a scene, to count their instructions: bench_rhs CALLS SCENE [key=value | -SECTION ...]
 //
-// The contact is closed and every drive stands at its peak. All laws of the scene thus contribute.
-// bench/count_instructions.py runs it under callgrind with two numbers of CALLS and takes the difference.
+// The contact is closed and every drive is at its peak, so that all laws of the scene contribute. bench/count_instructions.py
+// runs the program under callgrind with two values of CALLS and takes the difference.
 #include <cmath>
 #include <cstdlib>
 #include <exception>
@@ -27,7 +27,7 @@ int run(long calls, SceneFile file, const std::vector<std::string>& assignments)
   std::vector<double> volts;
   for (const Signal& signal : prepared.signals()) volts.push_back(signal.peak());
 
-  // The contact point a nanometre beyond the plane, by the first mode, and on its way.
+  // Place the contact point a nanometre beyond the contact plane, in the shape of the first mode, and give it a velocity.
   const auto n = static_cast<std::size_t>(model.modes());
   std::vector<double> state(2 * n + model.film_states()), rates(n + model.film_states());
   state[0] = (model.device().gap.contact + 1e-9) / model.basis().contact_shape()[0];
@@ -38,7 +38,7 @@ int run(long calls, SceneFile file, const std::vector<std::string>& assignments)
     model.rates(state.data(), volts, model.has_contact(), work, rates.data());
     sum += rates[0];
   }
-  return std::isfinite(sum) ? 0 : 3;  // also keeps the loop alive
+  return std::isfinite(sum) ? 0 : 3;  // the use of the sum keeps the compiler from removing the loop
 }
 
 }  // namespace

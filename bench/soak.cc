@@ -1,6 +1,6 @@
 // Checks every invariant on thousands of random scenes. bench_soak [COUNT] [SEED] [--from N] runs scenes N to N + COUNT - 1 of
 // tests/support/random_scenes.h on two threads. It writes a summary in Markdown to standard output and progress to standard
-// error, and ends with 1 when an invariant was violated. bench_soak --print INDEX [SEED] prints a scene.
+// error. The exit status is 1 if an invariant was violated. bench_soak --print INDEX [SEED] prints a scene.
 #include <fmt/format.h>
 #include <sys/utsname.h>
 
@@ -28,18 +28,18 @@
 namespace softland {
 namespace {
 
-constexpr long most_steps = 300'000, most_steps_with_film = 10'000;  // the work bound of a scene
+constexpr long most_steps = 300'000, most_steps_with_film = 10'000;  // largest number of steps of a scene
 constexpr int threads = 2;
 
 struct Outcome {
   std::uint64_t index = 0;
-  std::string what;  // became of it
+  std::string what;  // status of the run, or kind of failure
   long steps = 0;
   double surplus = 0, energy_error = 0;  // energies over the bending energy
-  double balance = 0;                    // energy error over the sources' work where that is more
-  bool implicit = false;                 // true if the run went over to an implicit method
+  double balance = 0;                    // energy error over the work of the sources, if that exceeds the bending energy
+  bool implicit = false;                 // true if the run changed to an implicit method
   double depth = 0;                      // deepest interference over its bound
-  double time = 0, velocity = 0;         // difference of t_i and v_i to a run a hundred times tighter, relative
+  double time = 0, velocity = 0;         // relative difference of t_i and v_i to a run with a hundredth of the tolerance
   std::vector<std::string> violations;
 };
 

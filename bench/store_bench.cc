@@ -1,7 +1,7 @@
 // Measures a store of studies: bench_store FOLDER [ROWS]
 //
-// Rows like those of an exploration, two variables and thirteen figures, are written, read, gone on with, found by content and
-// merged. The files stay in FOLDER, on whose disk the times depend.
+// Writes, continues, reads, finds by content and merges rows like those of an exploration, with two variables and thirteen
+// figures. The files stay in FOLDER; the times depend on its disk.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -34,7 +34,7 @@ StoredPlan plan_of(std::int64_t points, Shard shard = {}) {
   return plan;
 }
 
-// Times and the like take eight bytes, counts one.
+// Times and other real numbers take eight bytes, counts one.
 StoredRow row_of(std::int64_t point) {
   const double at = std::fmod(static_cast<double>(point) * 0.6180339887498949, 1);
   StoredRow row{.point = point, .content = content_key(std::to_string(point)), .status = "done", .values = {}};

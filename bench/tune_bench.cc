@@ -1,10 +1,10 @@
-// Shows how well tuning by the contact does on devices that no belief has seen (results/tune.md). Each device has one mode more
-// than the belief and is simulated as accurately as its scene says. After 1, 2, 3, 4, 6, 8 and 12 closings the waveform that is
-// kept is shot 20 more times. The 95th percentile of the highest rebound of the true motion counts.
+// Measures the tuning by the contact on devices that no belief has seen (results/tune.md). Each device has one mode more than
+// the belief, and is simulated as accurately as its scene requests. After 1, 2, 3, 4, 6, 8 and 12 closings the kept waveform is
+// fired 20 more times, and the 95th percentile of the highest rebound of the true motion is recorded.
 //
-//   bench_tune [--KEY VALUE]...   keys and defaults are those of Arguments below; --model as of `softland device`
+// bench_tune [--KEY VALUE]...   keys and defaults are those of Arguments below; --model is that of `softland device`
 //
-// A line for each device, with all numbers, comes before the table.
+// Prints a line with all numbers for each device, then the table.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -37,17 +37,18 @@ constexpr std::array marks{1, 2, 3, 4, 6, 8, 12};
 struct Arguments {
   std::string scene = "mem-gold.toml", actuator = "electrostatic", method = "belief", gas;
   int devices = 20, closings = 12, jobs = 2, modes = 1, recipes = 1;
-  double first_device = 1, stiffness = 1, late = 0;  // late: by which records begin, of the device [s]
+  double first_device = 1, stiffness = 1, late = 0;  // late: delay of the device's records [s]
   LaboratoryErrors laboratory = {};
   double effort = 1;
   std::string touch;  // condition on the first touch
   double most_volts =
-      std::numeric_limits<double>::infinity();  // devices of higher static pull-in voltage, over the scene's, are passed over
-  double drift_of_1000 = 0;  // relative, of the volts in 1000 closings: the kept waveform is then fired `repeats` times
+      std::numeric_limits<double>::infinity();  // devices with a higher static pull-in voltage, over the scene's, are skipped
+  double drift_of_1000 =
+      0;  // relative drift of the voltages in 1000 closings; with a drift the kept waveform is fired `repeats` times
   int repeats = 1000;
   double good = 10e-9, very_good = 1e-9;
   std::vector<std::string> sets, model_sets;
-  // The latest first touch that is asked for [s].
+  // Returns the requested latest first touch [s].
   [[nodiscard]] double latest(double step_time) const {
     return beside_step(parse_criterion(touch, all_figures), step_time).limit;
   }
@@ -94,22 +95,22 @@ double quantile(const std::vector<double>& sample, double p) {
   return sample.empty() ? Metrics::unset : sample_quantile(sample, p);
 }
 
-// The record of one device.
+// The results of one device.
 struct Course {
-  std::map<int, double> kept;        // highest rebound of the kept waveform, 95 %, after so many closings [m]
+  std::map<int, double> kept;        // 95th percentile of the kept waveform's highest rebound, by number of closings [m]
   std::vector<double> on_the_way;    // highest rebound of each shot [m]
   std::vector<double> touches;       // first touch of each shot [s]
   std::map<int, double> kept_touch;  // first touch of the kept waveform [s]
-  std::vector<double> seconds;       // wall time of each learning and proposal
+  std::vector<double> seconds;       // wall time of each learning and proposal [s]
   std::vector<double> expected;      // expected cost of the next shot
   std::vector<double> surprises;     // Tuner::surprises()
   int unexpected_bounces = 0;
   std::string broken;
   std::optional<BelievedQuantity> gap_ratio, delay;
-  double gaps = 1;               // factor of the contact gap that is believed
-  TouchMisfit misfit;            // the largest over its bound
+  double gaps = 1;               // believed factor of the contact gap
+  TouchMisfit misfit;            // the misfit that exceeds its bound by the most
   std::vector<double> repeated;  // highest rebound of each repetition [m]
-  int learned = 0;               // number of these
+  int learned = 0;               // number of repetitions whose record was learned
 };
 
 class Laboratory {
@@ -118,10 +119,10 @@ class Laboratory {
   PracticeClosing fire(const std::vector<Waveform>& waveforms) {
     return device_.close(++shots_, waveforms, last(waveforms) + hold_time_);
   }
-  // The 95 % quantiles of 20 more shots: highest rebound [m], and the median of the first touch [s].
+  // Returns, over 20 more shots, the 95th percentile of the highest rebound [m] and the median first touch [s].
   std::pair<double, double> judged(const std::vector<Waveform>& waveforms) {
     constexpr int shots = 20;
-    constexpr std::uint64_t others = 1'000'000;  // numbers of shots that no closing has
+    constexpr std::uint64_t others = 1'000'000;  // first shot number, beyond those of all closings
     std::vector<double> heights, touches;
     for (int k = 0; k < shots; ++k) {
       const PracticeClosing closing = device_.close(others + judged_++, waveforms, last(waveforms) + hold_time_);
@@ -162,7 +163,7 @@ Course by_belief(const Arguments& a, const Tuner& fresh, Laboratory& lab) {
     course.touches.push_back(closing.motion.initial_contact_time);
     const auto begin = std::chrono::steady_clock::now();
     ContactRecord record = closing.record;
-    if (!record.error.empty()) record = {};  // collapsed onto the electrode: a lab sees no usable contact
+    if (!record.error.empty()) record = {};  // the beam collapsed onto the electrode: a laboratory has no usable record
     tuner.learn(record);
     if (const TouchMisfit now = tuner.belief().touch_misfit;
         k == 1 || now.least * course.misfit.bound > course.misfit.least * now.bound)
@@ -190,7 +191,8 @@ Course by_belief(const Arguments& a, const Tuner& fresh, Laboratory& lab) {
   return course;
 }
 
-// Baselines: what laboratories do without a model of the device, from the nominal recipe on. Kept is what was open the least.
+// Baselines without a model of the device, as in laboratories, starting from the nominal recipe. They keep the waveform with
+// the shortest open time.
 
 double open_time(const ContactRecord& record) {
   constexpr double never = 1e3;  // [s]
@@ -206,7 +208,7 @@ std::vector<Waveform> in_volts(const std::vector<Waveform>& recipe, double facto
   return own;
 }
 
-// Pulse length and coast of the closing electrode's waveform, all later edges shifted.
+// Returns the recipe with another pulse length and coast of the closing electrode. All later edges are shifted.
 std::vector<Waveform> in_times(const std::vector<Waveform>& recipe, std::size_t drive, double pulse, double coast) {
   std::vector<Waveform> own = recipe;
   auto& catching = std::get<Pulse>(own[drive]);
@@ -230,7 +232,7 @@ void shoot(Course& course, Laboratory& lab, Best& best, const std::vector<Wavefo
   if (open_time(record) < best.open) best = {.waveforms = waveforms, .open = open_time(record)};
 }
 
-// All volts times s: one step tells s, touch times the next by a secant towards that of the nominal device.
+// Scales all voltages by s. The first s follows from a step, the next ones by a secant on the touch time of the nominal device.
 Course by_one_knob(const Arguments& a, const PreparedScene& p, const std::vector<Waveform>& recipe, double limit,
                    Laboratory& lab) {
   Course course;
@@ -261,7 +263,8 @@ Course by_one_knob(const Arguments& a, const PreparedScene& p, const std::vector
   return course;
 }
 
-// The pulse's length by a secant towards the time from the catch to the touch that the nominal device has; one step scales times.
+// Scales times by a step, then finds the pulse length by a secant: the time from braking to touch must be that of the nominal
+// device.
 Course by_secant(const Arguments& a, const PreparedScene& p, const std::vector<Waveform>& recipe, double hold_step,
                  Laboratory& lab) {
   Course course;
@@ -294,7 +297,7 @@ Course by_secant(const Arguments& a, const PreparedScene& p, const std::vector<W
   return course;
 }
 
-// Nelder and Mead on pulse and coast, by the time that the contact is open.
+// Minimises the open time of the contact over pulse and coast by Nelder and Mead's method.
 Course by_nelder_mead(const Arguments& a, const PreparedScene& p, const std::vector<Waveform>& recipe, Laboratory& lab) {
   Course course;
   const std::size_t drive = searched_drive(p.scene.device);
@@ -434,7 +437,7 @@ int main(int count, char** words) try {
     fmt::print("{}\n", c.broken.empty() ? "" : " BROKEN " + c.broken);
     std::fflush(stdout);
     broken += !c.broken.empty();
-    constexpr double repeats = 1e-3;  // [s]: where a shot is repeated, nothing is learned
+    constexpr double repeats = 1e-3;  // [s]; repeated shots take less, since nothing is learned
     std::ranges::copy_if(c.seconds, std::back_inserter(seconds), [](double one) { return one > repeats; });
   }
   print_table(a, all, fresh.step_closing_time());
