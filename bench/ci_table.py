@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""The tables of results/ci.md, of what .ci/run leaves behind.
+"""Prints the tables of results/ci.md from the files that .ci/run writes.
 
     bench/ci_table.py build/release build/optimized.xml build/asan-ubsan build/sanitized.xml
 
-Each build is followed by what `ctest --output-junit` wrote of its tests. Labels are asked of ctest, since its JUnit has none; a test of two labels
-counts in the row of either. Seconds are those of the tests, added up, and not of the clock: two run at a time.
+Each build is followed by the file that `ctest --output-junit` wrote for it. Labels come from ctest, since its JUnit has none; a test with two labels
+counts in both rows. Seconds are the sum over the tests, not wall time: two tests run at a time.
 """
 
 import collections
@@ -18,12 +18,12 @@ import xml.etree.ElementTree as ElementTree
 
 
 def printable(name):
-    """The name without the spaces and odd bytes that JSON and XML write differently."""
+    """Returns the name without spaces and unprintable bytes, which JSON and XML write differently."""
     return re.sub(r"\[NON-UTF-8-BYTE-0x..\]|[^!-~]", "", name)
 
 
 def labels_of(build):
-    """Names and labels of all tests of the build; without touching the log of its last run."""
+    """Returns names and labels of all tests of the build. Keeps the log of its last run."""
     with tempfile.TemporaryDirectory() as here:
         with open(os.path.join(here, "CTestTestfile.cmake"), "w", encoding="utf-8") as file:
             file.write(f"subdirs([==[{os.path.abspath(build)}]==])\n")
@@ -39,11 +39,11 @@ def table(build, junit):
     all_labels = labels_of(build)
     labels = {name.rsplit("/", 1)[0]: of_one for name, of_one in all_labels} | dict(all_labels)
     suite = ElementTree.parse(junit).getroot()
-    rows = collections.defaultdict(lambda: [0, 0, 0.0])  # tests, of these not passed, seconds
+    rows = collections.defaultdict(lambda: [0, 0, 0.0])  # number of tests, number of those that did not pass, seconds
     there = collections.Counter(label for _, of_one in all_labels for label in of_one)
     for case in suite.iter("testcase"):
         name = printable(case.get("name"))
-        # ctest's JSON omits what stands behind an odd byte: then the labels are those of the other parameters.
+        # ctest's JSON ends a name at an unprintable byte: take the labels from the test's other parameters.
         for label in (labels.get(name) or labels.get(name.rsplit("/", 1)[0], ["?"])) + ["all"]:
             row = rows[label]
             row[0] += 1

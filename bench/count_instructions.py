@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""What an effect costs: instructions of one right-hand side, scene by scene, and with one effect added or taken away.
+"""Measures the cost of effects: instructions of one right-hand side for each scene, and with one effect added or removed.
 
     bench/count_instructions.py BUILD/bench/bench_rhs [BEFORE/bench/bench_rhs] > results/instructions.md
 
-Counts with callgrind (needs valgrind): the difference of two runs of bench_rhs that differ in their number of calls only, so the same
-twice whatever else the machine does. BEFORE is the program of an older revision, in which later effects do not exist: scenes that
-do not use them must cost the same there.
+Counts with callgrind (needs valgrind), as the difference of two runs of bench_rhs that differ only in their number of calls. The count does not
+depend on other work of the machine. BEFORE is the program of an older revision without the later effects: scenes that
+do not use these effects must cost the same there.
 """
 import datetime
 import pathlib
@@ -18,7 +18,7 @@ from tables import revision
 
 SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 FEW, MANY = 1000, 3000
-# Levels are in volts: nothing then has to find a pull-in voltage, which takes minutes under callgrind and is not counted.
+# Give levels in volts, so that no pull-in voltage is computed: that takes minutes under callgrind and is not counted.
 VOLTS = {name: ["waveform.main.level=20 V", "driver.main.max_voltage=60 V"] for name in ("mem-gold.toml", "nem-tin.toml")}
 PAD = 'pad_length = "5 um"'
 ROUGH = f'{PAD}, asperity_radius = "100 nm", asperity_density = "1e11 1/m^2", effective_modulus = "48 GPa"'
@@ -34,21 +34,21 @@ CONTACTS = {
 
 
 def gas_laws(without):
-    """The names in the first columns of the tables of gas laws in docs/physics.md, which a test compares with the program's."""
+    """Returns the names of gas laws in the tables of docs/physics.md, which a test compares with the names in the program."""
     part = (SCENES.parent / "docs" / "physics.md").read_text().split("## Gas ")[1].split("\n## ")[0]
     return [name for name in re.findall(r"^\| `([^`]+)` \|", part, re.MULTILINE) if name not in ("model", *without)]
 
 
 def choices(section, key, without):
-    """What docs/scene.md lists for a choice, but for some."""
+    """Returns the values that docs/scene.md lists for a choice, without some of them."""
     part = (SCENES.parent / "docs" / "scene.md").read_text().split(f"## [{section}]")[1].split("\n## ")[0]
     row = next(line for line in part.splitlines() if line.startswith(f"| `{key}` | choice |"))
     return [name for name in re.findall("`([^`]+)`", row.split("|")[3]) if name not in without]
 
 
-# The scene's own law, those with keys of their own, and one that is counted in another place.
+# Left out: the scene's own law, laws with keys of their own, and a law that is counted elsewhere.
 OTHER_GAS = ("strip", "strip-slit", "linear", "reynolds")
-# A scene, what is changed in words, and how: key=value, or -SECTION to take one out.
+# A scene, the change in words, and its arguments: key=value, or -SECTION to remove a section.
 CHANGES = [("mem-gold.toml", words, assignments) for words, assignments in (
     ("no gas", ["-gas"]),
     *((f"gas {model}", [f"gas.model={model}"]) for model in gas_laws(without=OTHER_GAS)),
@@ -89,7 +89,7 @@ def collected(program, calls, scene, assignments):
 
 
 def instructions(program, scene, assignments=()):
-    """Instructions of one right-hand side; None where the program cannot run the scene."""
+    """Returns the instructions of one right-hand side; None if the program cannot run the scene."""
     few, many = (collected(program, calls, scene, [*VOLTS.get(scene.name, []), *assignments]) for calls in (FEW, MANY))
     return None if few is None or many is None else (many - few) / (MANY - FEW)
 

@@ -1,4 +1,4 @@
-"""SVG of the scripts that draw for results/, in the colours of softland's own charts."""
+"""Elements of SVG figures for results/, in the colours of softland's own charts."""
 import bisect
 
 INK, MUTED, GRID = "#1b1f24", "#5f6b76", "#e4e7ea"
@@ -17,7 +17,7 @@ def line(x1, y1, x2, y2, colour=GRID, more=""):
 
 
 def tiles(left, top, right, bottom, columns, rows, colours):
-    """A map of coloured cells, one path for each colour; colours[row][column], the first row at the bottom."""
+    """Returns a map of coloured cells, one path for each colour; colours[row][column], with the first row at the bottom."""
     wide, high = (right - left) / columns, (bottom - top) / rows
     paths = {}
     for row, line_of_colours in enumerate(colours):
@@ -34,8 +34,8 @@ def tiles(left, top, right, bottom, columns, rows, colours):
 
 
 def heat_map(values, bounds, unit, title, box, across, up, missing):
-    """A map of values[row][column], the first row at the bottom, None where there is none; bounds between the colours. An axis is its
-    two ends, its ticks and its label; `missing` says what None means, empty where it does not occur."""
+    """Returns a map of values[row][column], with the first row at the bottom and None for a missing value. `bounds` separate the colours. An axis is
+    a tuple of its two ends, its ticks and its label. `missing` is the legend of None, empty if None does not occur."""
     left, top, right, bottom = box
     colour = lambda v: NOTHING if v is None else COLOURS[bisect.bisect_right(bounds, v)]
     out = [words(left, top - 12, title, 13, colour=INK, more=BOLD)]
@@ -62,7 +62,7 @@ def heat_map(values, bounds, unit, title, box, across, up, missing):
 
 
 def drawing(width, height, headline, explanation, parts):
-    """The whole document: lines of the headline, lines that explain, and what is drawn below them."""
+    """Returns the document: the lines of the headline and of the subtitle, and the elements below them."""
     y, head = 34, []
     for text in headline:
         head.append(words(22, y, text, 17, colour=INK, more=BOLD))

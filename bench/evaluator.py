@@ -1,6 +1,6 @@
-"""evaluator.py PROGRAM: what `Evaluator` takes in Python, beside the same loop in C++ (bench_evaluator_loop). Makes the table of results/python.md.
+"""evaluator.py PROGRAM compares the time of `Evaluator` in Python with that of the same loop in C++ (bench_evaluator_loop). Prints a table of results/python.md.
 
-Times are those of the processor, of all threads: what else the machine does counts little. Both take turns, and the least of each counts.
+Times are processor times of all threads, which depend little on other work of the machine. Both loops take turns, and the least time of each counts.
 """
 
 import re
@@ -18,7 +18,7 @@ FIGURES = ["initial_contact_time", "impact_velocity", "major_bounce_height"]
 
 
 def least(work, times):
-    """Seconds of the processor, the least of several."""
+    """Returns the least processor time of several runs [s]."""
     took = []
     for _ in range(times):
         began = time.process_time()

@@ -1,6 +1,6 @@
-"""own_objective.py: what a search for devices takes by an objective that is a Python function, beside the target that is the same. A table of results/python.md.
+"""own_objective.py compares the time of a search for devices with an objective in Python and with the equal target of softland. Prints a table of results/python.md.
 
-Seconds of the processor, of all threads: what else the machine does counts little.
+Times are processor times of all threads [s], which depend little on other work of the machine.
 """
 
 import time

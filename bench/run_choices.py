@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""The choices that `softland optimize` leaves on switches with a stable path and without: the tables of results/quasi-static.md.
+"""Compares the choices that `softland optimize` offers, on switches with and without a stable path: the tables of results/quasi-static.md.
 
     bench/run_choices.py PROGRAM FOLDER [--seeds 1,2,3] [--only NAME ...] [--scene FILE ...]
 
-A search that FOLDER already has the result of is not run again. One search at a time, on all cores.
+Searches with a result in FOLDER are not run again. Runs one search at a time, on all cores.
 """
 import argparse
 import json
@@ -15,7 +15,7 @@ import time
 from run_race import SCENES, quantity, table
 
 D31 = 'spread."piezo.d31"={ distribution = "normal", cov = "3 %" }'
-# Name, scene, actuator, keys that are set.
+# Name, scene, actuator, assignments of keys.
 SWITCHES = [
     ("PZT switch, pzt", "mem-gold-pzt", "pzt", []),
     ("PZT switch, both", "mem-gold-pzt", "both", []),
@@ -32,7 +32,7 @@ STEADY, TOUCH = "steady_force_time_s", "initial_contact_time_s"
 
 
 def searched(program, folder, switch, seed):
-    """Result and its cost [s]."""
+    """Returns the result and its processor time [s]."""
     name, scene, actuator, keys = switch
     place = folder / f"{name.replace(' ', '-').replace(',', '').replace('%', '')}-{seed}"
     kept = place / "cost.json"
@@ -49,7 +49,7 @@ def searched(program, folder, switch, seed):
 
 
 def cells(row):
-    """95th and 99th percentiles of a row of devices."""
+    """Returns the cells for a row of devices: 95th and 99th percentiles."""
     at, far = row["quantile_95"], row["quantile_99"]
     yields = " / ".join(f"{100 * row['yield'][height]:.0f}" for height in ("1e-9", "1e-8", "1e-7"))
     return [f"{quantity(at[SPEED], 'm/s')} ({quantity(far[SPEED], 'm/s')})", f"{quantity(at[HEIGHT], 'm')} ({quantity(far[HEIGHT], 'm')})",

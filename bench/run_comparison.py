@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Every optimizer and every family against `auto` with the default families, on eight switches: costs, times, a performance profile.
+"""Compares every optimizer and every waveform family with `auto` and the default families, on eight switches: costs, times, a performance profile.
 
     bench/run_comparison.py BUILD/apps/softland STORE.jsonl results [--auto]
 
 Runs `softland optimize --target bounce` with the default budgets, one thread each, two at a time, and appends a line per search to the
-store; what stands there already is not run again. Then writes comparison.md and comparison.svg. Takes about an hour on two cores. With --auto
-only the searches of auto with the default families are run, a quarter of an hour, and held against the least costs of comparison.md;
+store. Searches that are in the store are not run again. Then writes comparison.md and comparison.svg. Takes about an hour on two cores. With --auto
+only the searches of auto with the default families are run (a quarter of an hour) and compared with the least costs in comparison.md;
 their table is printed.
 """
 import concurrent.futures
@@ -39,7 +39,7 @@ SEEDS, AUTO_SEEDS = range(1, 2), range(1, 11)
 
 
 def family_of(case):
-    """That the optimizers are compared with."""
+    """Returns the searches with which the optimizers are compared."""
     return "sines" if CASES[case][1] == "pzt" else "catch"
 
 
@@ -93,7 +93,7 @@ def name_of(row):
 
 
 def ratios(rows, best):
-    """Cost over the best cost of the case; infinite where there is a rebound or nothing was found."""
+    """Returns the cost over the best cost of the case; infinite with a rebound, and if nothing was found."""
     return [row["cost"] / best[row["case"]] if row.get("met") else math.inf for row in rows]
 
 
@@ -157,7 +157,7 @@ def table_of_auto(auto, best, found_by):
 
 
 def print_auto(program, store, folder):
-    """Against the least costs in the tables of comparison.md."""
+    """Compares with the least costs in the tables of comparison.md."""
     auto = run_all(program, store, searches(others=False))
     cells = [line.split(" | ") for line in (folder / "comparison.md").read_text().splitlines() if line.startswith("| ")]
     told = [(row[0][2:], float(row[3]), row[4]) for row in cells if row[0][2:] in CASES]

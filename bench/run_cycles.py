@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""How fast the shipped switches may be cycled, plainly and with found waveforms.
+"""Measures how fast the shipped switches can be cycled, with plain steps and with found waveforms.
 
     bench/run_cycles.py BUILD/apps/softland results [SCENE ...]
 
-Writes cycles.md into the folder, of these scenes or of all. Takes about half an hour.
+Writes cycles.md into the folder, for the named scenes or for all. Takes about half an hour.
 """
 import datetime
 import json
@@ -20,8 +20,8 @@ SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 SWITCHES = (("mem-gold", "electrostatic"), ("mem-gold-pzt", "electrostatic"), ("mem-gold-pzt", "both"), ("ohmic-gold", "electrostatic"),
             ("two-electrodes", "electrostatic"), ("gap-closing-actuator", "electrostatic"), ("nem-tin", "electrostatic"),
             ("capacitive-bridge", "electrostatic"))
-QUICK = {"capacitive-bridge": 150}  # evaluations, where a closing takes a second
-PERIODS = 5  # of the first mode, in a cycle of the second table
+QUICK = {"capacitive-bridge": 150}  # evaluations for a scene whose closing takes a second
+PERIODS = 5  # periods of the first mode in a cycle of the second table
 
 
 def run(program, *words, usual=(0, 4)):
@@ -42,7 +42,7 @@ def rate(value):
 
 
 def hardest(drive):
-    """The largest impact velocity and the highest rebound of all cycles; words where one does not close or open."""
+    """Returns the largest impact velocity and the highest rebound of all cycles, or a text if the switch does not close or open in one."""
     cycles = drive["cycles"]
     if any(c["initial_contact_time_s"] is None for c in cycles):
         return "stays open"

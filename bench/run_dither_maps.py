@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Where a dither on top of the step helps the gold cantilevers, and where it harms: maps over its amplitude and frequency.
+"""Maps over amplitude and frequency of a dither on top of the step: where it helps the gold cantilevers, and where it harms.
 
     bench/run_dither_maps.py BUILD/apps/softland results [STORES]
 
-Writes dither-maps.md and dither-maps-*.svg into the folder. Takes about half an hour on one core. With STORES, a folder, the rows stay
-there, and a second run goes on with them.
+Writes dither-maps.md and dither-maps-*.svg into the folder. Takes about half an hour on one core. With a folder STORES the rows are kept
+there, and a second run reuses them.
 """
 import bisect
 import csv
@@ -23,22 +23,22 @@ from drawing import BOLD, INK, MUTED, drawing, line, tiles, words
 from tables import machine, prefixed, revision
 
 SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
-LEVELS = (1.1, 1.25, 1.5)  # of the step [Vdp]
+LEVELS = (1.1, 1.25, 1.5)  # levels of the step [Vdp]
 CONTACTS = {"lossless": [], "plastic": ["contact.model=elastic-plastic", "contact.hardness=1.5 GPa"]}
 T_I, T_P, B_H, N_B = "initial_contact_time_s", "permanent_contact_time_s", "major_bounce_height_m", "bounce_count"
-NEAR = 0.005  # part by which neighbours of a setting differ in level and frequency
-PHASES = 12  # of the thesis' dithers
-ENDS = 10  # of those that end, from three quarters of the usual end to one and a half of it
-STEPS = 27  # runs of the plain step within the same range
-ROOM = "driver.main.max_voltage=1.9 Vdp"  # a dither on 1.5 Vdp goes beyond the limit of the shipped driver
-CANDIDATES = 1  # settings of each map, by their t_p, whose neighbours are run
+NEAR = 0.005  # relative difference of neighbours of a setting in level and frequency
+PHASES = 12  # number of phases of the thesis' dithers
+ENDS = 10  # number of end times of a dither that ends, from 0.75 to 1.5 times the usual one
+STEPS = 27  # number of runs of the plain step in the same range of levels
+ROOM = "driver.main.max_voltage=1.9 Vdp"  # a dither on 1.5 Vdp exceeds the limit of the shipped driver
+CANDIDATES = 1  # number of settings of each map, those of least t_p, whose neighbours are run
 
 
 class Drive:
     def __init__(self, short, title, scene, key, end, amplitudes, frequencies, natural, ticks, thesis):
         self.name = self.actuator = "electrostatic" if key == "main" else "pzt"
         self.short, self.title, self.scene, self.key = short, title, SCENES / f"{scene}.toml", key
-        self.end = end  # of a dither that ends [us]
+        self.end = end  # end of a dither that ends [us]
         self.amplitudes, self.frequencies = amplitudes, frequencies  # [%], [krad/s]
         self.natural, self.ticks, self.thesis = natural, ticks, thesis  # [krad/s], [krad/s], level: ([%], [krad/s])
 
@@ -46,7 +46,7 @@ class Drive:
         return "waveform.main.base" if self.key == "main" else "waveform.main.level"
 
     def changes(self, level, ended):
-        """What makes the scene's step one with a dither, of whatever amplitude and frequency."""
+        """Returns the assignments that add a dither to the scene's step, with placeholders for amplitude and frequency."""
         dither = 'family = "harmonic", amplitude = "1 %", angular_frequency = "100 krad/s"' + (f', end = "{self.end} us"' if ended else "")
         if self.key == "main":
             return [f'waveform.main={{{dither}, base = "{level} Vdp"}}', ROOM]
@@ -74,7 +74,7 @@ def run(*arguments):
 
 
 def explored(program, store, scene, changes, points):
-    """Rows of an exploration, as numbers, None where there is none."""
+    """Returns the rows of an exploration as numbers, with None for missing ones."""
     begun = ["--resume"] if store.exists() else []
     run(program, "explore", scene, *setting(changes), *points, "--out", store, "--jobs", 1, "--quiet", *begun)
     text = run(program, "table", store, "--csv")
@@ -100,7 +100,7 @@ def mapped(program, stores, d, level, contact, ended):
 
 
 class Cloud:
-    """Runs that differ by what nobody can tell apart: a figure of theirs is its median and its range, a run without it the worst."""
+    """Runs with indistinguishable drives. A figure is given as its median and range; a run without the figure counts as the worst."""
 
     def __init__(self, rows):
         self.rows = rows
@@ -114,14 +114,14 @@ class Cloud:
 
 
 def steps(program, stores, d, level, contact):
-    """The plain step and those a little higher and lower: the middle row is the step itself."""
+    """Returns the runs of the plain step and of slightly higher and lower ones. The middle row is the step itself."""
     store = stores / f"{d.name}-{level}-{contact}-step.sqlite"
     around = f"waveform.main.level={level * (1 - NEAR):.10g} Vdp:{level * (1 + NEAR):.10g} Vdp:{STEPS}"
     return Cloud(explored(program, store, d.scene, [ROOM, *CONTACTS[contact]], ["--vary", around]))
 
 
 def neighbours(program, stores, d, level, contact, ended, settings, factors=(1 - NEAR, 1, 1 + NEAR)):
-    """For each setting (amplitude, frequency) the runs around it in level and frequency: the middle one is the setting itself."""
+    """Returns, for each setting (amplitude, frequency), its neighbours in level and frequency. The middle run is the setting itself."""
     name = label(d, level, contact, ended) + f"-near-{len(factors)}"
     lines = [f"{d.level_key()} [Vdp],waveform.{d.key}.amplitude [%],waveform.{d.key}.angular_frequency [rad/s]"]
     lines += [f"{level * u:.10g},{a},{f * v * 1e3:.10g}" for a, f in settings for u in factors for v in factors]
@@ -133,7 +133,7 @@ def neighbours(program, stores, d, level, contact, ended, settings, factors=(1 -
 
 
 def searched(program, stores, d, level, contact):
-    """The result of a search for a pulse, and nine runs around it in volts and times."""
+    """Returns the result of a search for a pulse, and nine neighbours in voltages and times."""
     out = stores / f"{d.name}-{level}-{contact}-search"
     if not (out / "result.json").exists():
         run(program, "optimize", d.scene, "--robust", "none", *setting([f"waveform.main.level={level} Vdp", *CONTACTS[contact]]),
@@ -149,7 +149,7 @@ def searched(program, stores, d, level, contact):
 
 
 def certified(program, d, changes):
-    """t_p of a drive as its median and range over runs that differ by parts in 1e9."""
+    """Returns t_p of a drive as median and range over runs whose drives differ by parts in 1e9."""
     found = json.loads(run(program, "simulate", d.scene, *setting(changes), "--certify", "--jobs", 1, "--quiet",
                            "--json", "-"))
     cloud = found["certified"].get(T_P)
@@ -158,7 +158,7 @@ def certified(program, d, changes):
 
 
 class Scale:
-    """Colours of a figure over that of the plain step: the bounds between nine classes, from blue, lower, to orange, higher."""
+    """Colours of a figure relative to the plain step: nine classes from blue (lower) to orange (higher), with their bounds."""
 
     colours = ("#08519c", "#3787c0", "#86bde0", "#cfe5f3", "#f7f7f5", "#fde0c5", "#f5ae78", "#dd6f2b", "#993404")
 
@@ -175,7 +175,7 @@ FAILS = ("numerical_failure", "no_contact")
 
 
 def panel(found, key, reference, scale, d, level, box):
-    """One map in its box; reference is the plain step's figure."""
+    """Returns one map in its box; `reference` is the figure of the plain step."""
     left, top, right, bottom = box
     def colour(row):
         if row["status"] in FAILS:
@@ -201,7 +201,7 @@ def amplitudes_beside(d, left, top, bottom):
 
 
 def key_of(scale, x, y, title, states):
-    """The legend of a scale in one line."""
+    """Returns the legend of a scale in one line."""
     out, size = [words(x, y + 11, title, 12, colour=INK)], 46
     x += 8 + 6.4 * len(title)
     for k, colour in enumerate(scale.colours):
@@ -217,7 +217,7 @@ def key_of(scale, x, y, title, states):
 
 
 STATES = ((UNSETTLED, "not settled after 600 µs"), (FAILED, "driven to within 35 nm of the electrode"))
-WIDE, HIGH, APART = 244, 150, 22  # of one map, and what is between two of them
+WIDE, HIGH, APART = 244, 150, 22  # size of a map, and distance between two maps
 LEFT, TOP = 96, 162
 
 
@@ -226,7 +226,7 @@ def of_level(level):
 
 
 def rows_of_maps(columns):
-    """Maps of the three levels, one below the other; a column is its title, its drive, and what makes a panel of a level and a box."""
+    """Returns maps of the three levels, one below the other. A column has a title, a drive, and a function from level and box to a map."""
     out = []
     for j, (title, d, make, first) in enumerate(columns):
         left = LEFT + sum(WIDE + APART + (62 if columns[i + 1][3] else 0) for i in range(j))
@@ -245,7 +245,7 @@ def rows_of_maps(columns):
 
 
 def picture(d, contact, maps, stepped):
-    """t_p and B_H of one drive and contact."""
+    """Returns the maps of t_p and B_H of one drive and contact."""
     def column(title, key, ended):
         def make(level, box):
             step = stepped[d.name, level, contact]
@@ -267,7 +267,7 @@ def picture(d, contact, maps, stepped):
 
 
 def picture_of_contacts(maps, stepped):
-    """t_i and N_B of both drives, lossless contact."""
+    """Returns the maps of t_i and N_B of both drives, with a lossless contact."""
     def column(d, key, ended, scale):
         def make(level, box):
             step = stepped[d.name, level, "lossless"]
@@ -382,7 +382,7 @@ def unit(value, factor, digits=0):
 
 
 def spread_of(cloud, key, factor):
-    """Median and range, where a dash stands for what does not settle, or fails."""
+    """Returns median and range, with a dash for a run that does not settle or fails."""
     return "{} ({} to {})".format(*(unit(v, factor) for v in cloud.range(key)))
 
 
@@ -391,7 +391,7 @@ def at(setting):
 
 
 class Study:
-    """One map, with the plain step that it is compared with, and the neighbours of its best settings."""
+    """One map, with the plain step for comparison and the neighbours of its best settings."""
 
     def __init__(self, program, stores, d, level, contact, ended, step):
         self.d, self.level, self.contact, self.ended, self.step = d, level, contact, ended, step
@@ -403,7 +403,7 @@ class Study:
         of_thesis = [d.thesis[level]]
         settings = list(dict.fromkeys([*self.soonest, self.lowest, *(of_thesis if d.key == "main" else [])]))
         self.near = neighbours(program, stores, d, level, contact, ended, settings)
-        if d.key == "piezo":  # far from what helps: its neighbours tell nothing
+        if d.key == "piezo":  # far from any setting that helps: a few neighbours suffice
             self.near |= neighbours(program, stores, d, level, contact, ended, of_thesis, (1,))
         other = lambda what, values: Cloud(explored(program, stores / f"{label(d, level, contact, ended)}-{what}.sqlite", d.scene,
                                                     self.changes(d.thesis[level]), ["--vary", f"waveform.main.{what}={values}"]))
@@ -421,7 +421,7 @@ class Study:
         return f"{self.d.short} | {self.contact} | {self.level} | {'ends' if self.ended else 'never ends'}"
 
     def helps(self):
-        """Whether half of the neighbours of the surest setting settle before every step of the cloud."""
+        """True if half of the neighbours of the most reliable setting settle before every neighbour of the plain step."""
         return bool(self.surest) and self.near[self.surest].range(T_P)[0] < self.step.range(T_P)[1]
 
     def row_of_times(self):

@@ -32,7 +32,7 @@ class Map:
 
 
 def panel(found, value, bounds, unit, title, box, missing):
-    """A map of value(row), which is None where there is none; bounds between the colours."""
+    """Returns a map of value(row), which is None for a missing value. `bounds` separate the colours."""
     return heat_map(found.values(value), bounds, unit, title, box, (242, 290, (245, 255, 265, 275, 285), "length [µm]"),
                     (1.2, 2.6, (1.2, 1.6, 2.0, 2.4), "contact gap [µm]"), missing)
 
@@ -42,7 +42,7 @@ def number(row, key, unit):
 
 
 def table(found, value, gaps):
-    """Markdown: lengths down, gaps across, of rows near these gaps [µm]."""
+    """Returns a table in Markdown, with a row for each length and a column for each of these gaps [µm]."""
     near = lambda all_of, v: min(all_of, key=lambda x: abs(x - v))
     columns = [near(found.gaps, g * 1e-6) for g in gaps]
     lines = ["| length [µm] | " + " | ".join(f"gap {g * 1e6:.2f} µm" for g in columns) + " |", "|---" * (len(columns) + 1) + "|"]

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Closings of an ensemble per second and core against SciPy's LSODA, all measured in turn in one run.
+"""Compares the closings of an ensemble per second and core with those of SciPy's LSODA. All are measured by turns in one run.
 
     bench/run_lanes.py BUILD > results/lanes.md
     bench/run_lanes.py BUILD --kinds      # the table of kinds of scenes alone
@@ -23,7 +23,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 SCENE = HERE.parent / "scenes" / "mem-gold.toml"
 PYTHON = os.environ.get("PYTHON", "/usr/bin/python3")
 ROUNDS = 5
-# Quadrature and tolerance: what simulate takes for accuracy 1e-4, and the loosest whose B_H is right to 1e-4 for 95 % of the devices.
+# Quadrature and tolerance: those of simulate for accuracy 1e-4, and the loosest with errors of B_H below 1e-4 on 95 % of the devices.
 SETTINGS = (("1e-4", "1e-5"), ("1e-3", "3e-5"))
 PATHS = ("none", "avx2", "avx512")
 SPLINE = 'waveform.main={family="bspline", levels=["0 V", "12 V", "18 V", "16 V", "19 V", "17 V", "18 V", "17.8 V"], duration="120 us"}'
@@ -50,7 +50,7 @@ def json_of(*words):
 
 
 def against_scipy(bench):
-    """For each setting the rounds of bench_fleet, and for each round the seconds of one closing by odeint."""
+    """Returns the rounds of bench_fleet for each setting, and the time of one closing by odeint for each round [s]."""
     settings, odeint = [[] for _ in SETTINGS], []
     for _ in range(ROUNDS):
         odeint.append(json_of(PYTHON, HERE / "peers" / "closing_scipy.py", "--method", "odeint", "--rtol", "1e-6", "--runs", "5")["wall_s"])
@@ -60,7 +60,7 @@ def against_scipy(bench):
 
 
 def timed(program, words, vectors):
-    """Seconds and the most memory [MB] of a run."""
+    """Returns the time [s] and the peak memory [MB] of a run."""
     with tempfile.TemporaryDirectory() as folder:
         begin = time.monotonic()
         child = subprocess.Popen([program, *words, "--quiet", "--out", folder], stdout=subprocess.DEVNULL,
@@ -72,7 +72,7 @@ def timed(program, words, vectors):
 
 
 def kinds(bench):
-    """Closings of each kind of scene, one at a time and in lanes."""
+    """Prints the closings per second of each kind of scene, one at a time and in lanes."""
     print(f"""## Kinds of scenes
 
 Closings of 200 devices per second and core, by one at a time and in lanes: medians of five rounds that take turns, so that their ratio holds where something else runs on the machine too.

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The least time in which any waveform can close the shipped switches softly, and a landing in it.
+"""Finds the least time in which any waveform can close the shipped switches softly, and a waveform that does so.
 
     bench/run_limit.py BUILD/apps/softland results
 

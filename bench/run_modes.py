@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""run_modes.py PROGRAM FOLDER [ROM]: results/modes.md on standard output, and what it takes in FOLDER.
+"""run_modes.py PROGRAM FOLDER [ROM] prints results/modes.md, and writes intermediate files into FOLDER.
 
-Meshes of the beam of scenes/mem-gold.toml through CalculiX (ccx) and softland modes against the beam itself; and, where ROM names it,
+Compares meshes of the beam of scenes/mem-gold.toml, by CalculiX (ccx) and softland modes, with the beam itself, and, if ROM is given,
 the public reduced-order model cbeam_full_2el.rom of an ANSYS cantilever.
 """
 import itertools
@@ -17,7 +17,7 @@ FIGURES = ("initial_contact_time_s", "impact_velocity_m_s", "major_bounce_height
 
 
 class Mesh:
-    """Nodes by their places on a grid, and elements of their numbers."""
+    """A mesh: nodes by their positions on a grid, and elements as lists of node numbers."""
 
     def __init__(self, kind):
         self.kind, self.nodes, self.numbers, self.elements = kind, [], {}, []
@@ -43,7 +43,7 @@ class Mesh:
 
 
 def bricks():
-    """Of 20 nodes, in layers across the axis."""
+    """Returns a mesh of bricks with 20 nodes, in layers across the axis."""
     nx, ny, nz = 50, 4, 2
     mesh = Mesh("C3D20R")
     corners = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2), (1, 0, 0), (2, 1, 0),
@@ -56,7 +56,7 @@ def bricks():
 
 
 def tetrahedra():
-    """Of 10 nodes, whose inner corners are moved at random: no layers."""
+    """Returns a mesh of tetrahedra with 10 nodes, whose inner corners are moved at random, so that it has no layers."""
     nx, ny, nz = 60, 5, 1
     dice = random.Random(1)
     mesh = Mesh("C3D10")
@@ -77,7 +77,7 @@ def tetrahedra():
                 at[direction] += 1
                 nodes.append(mesh.node(tuple(at), lambda at=tuple(at): corner(*at)))
             if order in ((0, 2, 1), (1, 0, 2), (2, 1, 0)):
-                nodes[1], nodes[2] = nodes[2], nodes[1]  # the odd ones stand on their heads
+                nodes[1], nodes[2] = nodes[2], nodes[1]  # odd permutations have the wrong orientation
             a, b, c, d = nodes
             mesh.elements.append(nodes + [middle(a, b), middle(b, c), middle(a, c), middle(a, d), middle(b, d), middle(c, d)])
     return mesh

@@ -37,7 +37,7 @@ class Grid:
 
 
 def table(grid, columns, rows, cell, across, up):
-    """Markdown of some points: rows are places `across`, columns places `up`."""
+    """Returns a table of some points in Markdown, with a row for each position `across` and a column for each position `up`."""
     pick = lambda places, count: [places[round(k * (len(places) - 1) / (count - 1))] for k in range(count)]
     heads = pick(grid.up, columns)
     lines = [f"| {across[0]} | " + " | ".join(f"{up[0]} {u / up[1]:.3g}" for u in heads) + " |", "|---" * (columns + 1) + "|"]

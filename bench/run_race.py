@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""What `softland optimize` comes to with its defaults, over switches, actuators and seeds: the tables of results/race.md.
+"""Runs `softland optimize` with its defaults over switches, actuators and seeds: the tables of results/race.md.
 
     bench/run_race.py PROGRAM FOLDER [--seeds 1,2,3] [--scene FILE ...]
 
-A search that FOLDER already has the result of is not run again. One search at a time, on all cores.
+Searches with a result in FOLDER are not run again. Runs one search at a time, on all cores.
 """
 import argparse
 import json
@@ -20,7 +20,7 @@ SPEED, HEIGHT, TIME, FORCE = ("largest_impact_velocity_m_s", "major_bounce_heigh
 
 
 def searched(program, folder, scene, actuator, seed):
-    """Result, wall time and processor time [s]."""
+    """Returns result, wall time and processor time [s]."""
     place = folder / f"{scene.stem}-{actuator}-{seed}"
     kept = place / "cost.json"
     if not kept.exists():
@@ -36,7 +36,7 @@ def searched(program, folder, scene, actuator, seed):
 
 
 def quantity(value, unit):
-    """With three digits and a prefix."""
+    """Returns the value with three digits and a prefix."""
     if value is None:
         return "∞"
     if value == 0:

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""How the shipped switches open, dropped to 0 V at once and braked by a found waveform.
+"""Compares how the shipped switches open: switched off abruptly, and braked by a found waveform.
 
     bench/run_release.py BUILD/apps/softland results
 

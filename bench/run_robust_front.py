@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""How softly 95 % of the devices can be closed within a given time: one robust search for each ceiling of the closing time.
+"""Finds how softly 95 % of the devices can be closed within a given time, by one robust search for each limit of the closing time.
 
     bench/run_robust_front.py BUILD/apps/softland results
 
@@ -18,12 +18,12 @@ from drawing import BOLD, INK, PENS, drawing, line, words
 from tables import machine, prefixed, revision
 
 SCENE = pathlib.Path(__file__).resolve().parent.parent / "scenes" / "mem-gold.toml"
-CEILINGS = (42, 46, 50, 55, 60, 65, 80, 100, 140, 220)  # of the first contact of 95 % of the devices [us]
+CEILINGS = (42, 46, 50, 55, 60, 65, 80, 100, 140, 220)  # limits of the first contact of 95 % of the devices [us]
 KNOWN = {
     "nothing": [],
     "Vdp to 1 %, period to 0.5 %": ["--calibrate", "Vdp:1 %,frequency:0.5 %"],
 }
-BUDGET = 60000  # closings of one search
+BUDGET = 60000  # number of closings of one search
 FAMILY = "knots:5"
 TIME, SPEED, HEIGHT = "initial_contact_time_s", "largest_impact_velocity_m_s", "major_bounce_height_m"
 
@@ -39,7 +39,7 @@ def words_of(ceiling, known):
 
 
 def search(program, ceiling, known):
-    """The plain step and the winner on devices that the search has not seen, and its seconds."""
+    """Returns the plain step and the winner on devices that are new to the search, and the time of the search [s]."""
     with tempfile.TemporaryDirectory() as folder:
         begin = time.monotonic()
         done = subprocess.run([program, "optimize", SCENE, *words_of(ceiling, known), "--out", folder, "--quiet"],
@@ -52,7 +52,7 @@ def search(program, ceiling, known):
 
 
 def keeps(drive, ceiling):
-    """Whether the ceiling is kept by 95 % of the fresh devices, as far as they tell."""
+    """True if 95 % of the fresh devices are within the limit, as far as their confidence interval shows."""
     return quantile(drive, TIME)[1][0] <= ceiling * 1e-6
 
 

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Searches over devices that differ, each judged on 2000 fresh devices over the whole window.
+"""Runs searches over varied devices, and evaluates each result on 2000 fresh devices over the whole window.
 
     bench/run_robust_search.py BUILD/apps/softland [NAME ...] > results/robust-search.md
 
-With names only those searches. Takes about half an hour on two cores.
+Names select searches. Takes about half an hour on two cores.
 """
 import datetime
 import json
@@ -20,7 +20,7 @@ GOLD = ["mem-gold.toml", "--robust", "cvar:0.9"]
 PZT = ["mem-gold-pzt.toml", "--robust", "cvar:0.9"]
 BOTH_QUICKLY = PZT + ["--actuator", "both", "--waveform", "bspline:8", "--constrain", "initial_contact_time < 45 us", "--budget", "150000"]
 UNITS = ["--calibrate", "Vdp,frequency"]
-# The searches, each with its description; further ones search again, from the winner.
+# The searches, each with its description. The later ones continue from a winner.
 SEARCHES = {
     "gold-65us": ("gold, nothing known, t_i 95 % below 65 us", GOLD + [
         "--waveform", "knots:4", "--constrain", "initial_contact_time < 65 us", "--budget", "150000"]),

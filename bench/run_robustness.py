@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""How the winners of searches do on devices that differ as [spread] says, beside the plain step.
+"""Compares the winners of searches with the plain step on varied devices of [spread].
 
     bench/run_robustness.py BUILD/apps/softland > results/robustness.md
 
-Searches the shipped scenes that bounce, for three seeds, then judges all of them on the same 2000
-devices over the scene's whole window. Takes about four minutes on two cores.
+Searches the shipped scenes that bounce, for three seeds, then closes the same 2000
+devices under all results, over the scene's whole window. Takes about four minutes on two cores.
 """
 import datetime
 import json

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""What `softland optimize` ends with where it has more room: higher limits, longer windows, more drives. The table of results/quasi-static.md (More room).
+"""Compares results of `softland optimize` with more room: higher limits, longer windows, more drives. The table of results/quasi-static.md (More room).
 
     bench/run_room.py PROGRAM FOLDER [--seeds 1,2] [--only NAME ...]
 
-A search that FOLDER already has the result of is not run again. One search at a time, on all cores.
+Searches with a result in FOLDER are not run again. Runs one search at a time, on all cores.
 """
 import argparse
 import pathlib
@@ -13,7 +13,7 @@ from run_race import quantity, table
 
 GOLD, PZT = "mem-gold", "mem-gold-pzt"
 ONE, THREE, TEN = ([f"driver.piezo.min_voltage=-{v} V", f"driver.piezo.max_voltage={v} V"] for v in (1, 3, 10))
-# Name, and what has ever more room: what it is called, scene, actuator, keys that are set.
+# Name, and rows with increasing room: name of the row, scene, actuator, assignments of keys.
 LADDERS = [
     ("limit of the piezo", [("1 V", PZT, "pzt", ONE), ("3 V", PZT, "pzt", THREE), ("10 V", PZT, "pzt", TEN)]),
     ("limit of the electrode", [("1.5 Vdp", GOLD, "electrostatic", ["driver.main.max_voltage=1.5 Vdp"]),

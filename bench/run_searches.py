@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Searches over seeds and variants of the shipped scenes, each winner confirmed by a second program.
+"""Runs searches over seeds and variants of the shipped scenes, and confirms each winner by a second program.
 
     bench/run_searches.py BUILD/apps/softland > results/searches.md
 
-Runs `softland optimize` on all cores, then hands the exported best.csv to peers/closing_scipy.py (LSODA at 1e-9, its own equations).
+Runs `softland optimize` on all cores, then gives the exported best.csv to peers/closing_scipy.py (LSODA at 1e-9, its own equations).
 Needs NumPy and SciPy. Takes about five minutes on two cores.
 """
 import datetime
@@ -19,7 +19,7 @@ from tables import machine, revision
 HERE = pathlib.Path(__file__).resolve().parent
 SCENES = HERE.parent / "scenes"
 SEEDS = range(1, 6)
-# Scene keys against fields of the peer's device [SI]; "" is the scene itself.
+# Keys of the scene, and the same fields of the peer's device [SI]; "" is the scene itself.
 VARIANTS = [("", []), ("structure.length=290 um", ["length=290e-6"]), ("structure.length=245 um", ["length=245e-6"]),
             ("gap.contact=1.6 um", ["contact_gap=1.6e-6"]), ("gap.contact=2.3 um", ["contact_gap=2.3e-6"]),
             ("gap.electrode=3 um", ["gap=3e-6"]), ("gap.electrode=4.2 um", ["gap=4.2e-6"]),
@@ -29,7 +29,7 @@ VARIANTS = [("", []), ("structure.length=290 um", ["length=290e-6"]), ("structur
 
 
 def search(program, scene, actuator, seed, variant):
-    """The result of one search, its wall time [s] and the peer's figures of the exported waveform."""
+    """Returns the result of one search, its wall time [s] and the peer's figures of the exported waveform."""
     with tempfile.TemporaryDirectory() as out:
         command = [program, "optimize", SCENES / scene, "--robust", "none", "--target", "bounce", "--actuator", actuator, "--waveform", "pulse", "--seed",
                    str(seed), "--quiet", "--json", "-", "--out", out]

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Second-order statistics of a closing, each parameter alone, at two steps, as Bognash has them (thesis, 2019).
+"""Second-order statistics of a closing, with each parameter varied alone, at two step heights, as in Bognash's thesis (2019).
 
     bench/run_second_order.py BUILD/apps/softland results
 
-Writes second-order.md and second-order.svg into the folder. Takes about four minutes on a core that does nothing else.
+Writes second-order.md and second-order.svg into the folder. Takes about four minutes on an idle core.
 """
 import csv
 import datetime
@@ -21,7 +21,7 @@ SCENE = pathlib.Path(__file__).resolve().parent.parent / "scenes" / "mem-gold.to
 LEVELS = (1.25, 1.5)  # [Vdp of the nominal device]
 SPREADS = (0.01, 0.02, 0.04)  # standard deviations of the parameter over its mean
 DEVICES = 512
-TOLERANCE = 1e-5  # of the integrator, that of `softland robustness`
+TOLERANCE = 1e-5  # tolerance of the integrator, as in `softland robustness`
 VOLTAGE = "voltage"
 PARAMETERS = {
     "asperity radius": ["contact.asperity_radius"],
@@ -52,7 +52,7 @@ def spread_of(parameter, spread):
 
 
 def devices(program, volts, parameter, spread):
-    """(parameter over its mean, figures by key) per device; a figure that a device does not have is missing."""
+    """Returns (parameter over its mean, figures by key) for each device, without the figures that a device does not have."""
     with tempfile.TemporaryDirectory() as folder:
         run(program, "robustness", SCENE, *step(volts), "--set", f"simulate.tolerance={TOLERANCE!r}", "--set",
             spread_of(parameter, spread), "--samples", str(DEVICES), "--out", folder)
@@ -61,7 +61,7 @@ def devices(program, volts, parameter, spread):
         drive = json.loads(pathlib.Path(folder, "robustness.json").read_text(encoding="utf-8"))["drives"][0]
     found = [(float(row["varied"]), {key: float(row[f"plain step: {key}"]) for key, _ in FIGURES.values()
                                      if row[f"plain step: {key}"]}) for row in rows]
-    for key, _ in FIGURES.values():  # the program's own statistics, once more
+    for key, _ in FIGURES.values():  # repeat the program's own statistics as a check
         own, ours = drive["figures"][key], figures(found, key)
         for name, value in (("mean", statistics.mean(ours)), ("standard_deviation", statistics.stdev(ours))):
             if not abs(own[name] - value) <= 1e-9 * abs(own["mean"]):
@@ -70,7 +70,7 @@ def devices(program, volts, parameter, spread):
 
 
 def voltages(program, volts, spread):
-    """The same of the drive's voltage, which [spread] does not vary: a closing at the middle of each of as many equal shares."""
+    """Returns the same for the drive's voltage, which [spread] does not vary: closings at the middles of equally probable intervals."""
     found = []
     for k in range(DEVICES):
         factor = statistics.NormalDist(1, spread).inv_cdf((k + 0.5) / DEVICES)
@@ -85,7 +85,7 @@ def figures(sample, key):
 
 
 class Statistics:
-    """Of one figure over the devices that have it."""
+    """Statistics of one figure over the devices that have it."""
 
     def __init__(self, sample, key):
         values = figures(sample, key)
@@ -97,7 +97,7 @@ class Statistics:
 
 
 def steepest(sample):
-    """Where B_H changes most within half a per cent of the parameter, at most two deviations away: parameter and B_H, twice."""
+    """Returns the interval of half a per cent of the parameter, within two deviations, in which B_H changes most: parameter and B_H at both ends."""
     key, most = FIGURES["B_H"][0], 2 * max(SPREADS)
     points = sorted((x, of_device[key]) for x, of_device in sample if key in of_device and abs(x - 1) <= most)
     best = None
@@ -122,7 +122,7 @@ def table(head, rows):
 # ---- the picture
 
 def ratios(samples, level, symbol, left, top, width):
-    """Deviation of the figure over that of the parameter, both relative, for each spread: where it grows, variances mislead."""
+    """Draws the deviation of the figure over that of the parameter, both relative, for each spread: if it grows, variances mislead."""
     height, label, most = 24 * len(PARAMETERS), 104, 6.0
     x = lambda ratio: left + label + (width - label - 12) * min(ratio, most) / most
     out = [words(left, top, f"{symbol} at {level:g} V_dp", 14, colour=INK, more=BOLD)]
@@ -140,7 +140,7 @@ def ratios(samples, level, symbol, left, top, width):
 
 
 def courses(samples, level, left, top, width):
-    """B_H against what varies."""
+    """Draws B_H against the varied parameter."""
     height, margin, key = 230, 46, FIGURES["B_H"][0]
     drawn = ("thickness", VOLTAGE, "width", "modulus")
     most_x, most_y = 0.08, 1e-6
@@ -184,7 +184,7 @@ def picture(samples, headline, explanation):
 # ---- the table
 
 def by_influence(samples, level, symbol, spread):
-    """Parameters, the one whose spread moves the figure most first, with what it makes of the figure."""
+    """Returns the parameters with the resulting deviation of the figure, the most influential first."""
     key = FIGURES[symbol][0]
     found = {p: Statistics(samples[level, p, spread], key).variation for p in PARAMETERS}
     return sorted(found.items(), key=lambda item: -item[1])

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""What ngspice makes of switches that `softland export --format spice-bench` wrote: the tables of results/spice.md.
+"""Simulates switches of `softland export --format spice-bench` in ngspice: the tables of results/spice.md.
 
     bench/run_spice.py PROGRAM [FOLDER]
 
-Each shipped scene closes under its own drives, in ngspice and in softland. A second table puts a source of 1 Mohm before the
-electrode, and adds up the current that it gives.
+Each shipped scene closes under its own drives, in ngspice and in softland. A second table has a source resistance of 1 Mohm before the
+electrode, and integrates the current of the source.
 """
 import json
 import pathlib
@@ -39,7 +39,7 @@ def off(value, right):
 
 
 def shortened(folder, name):
-    """The scene with a window that ends before chaos sets in."""
+    """Returns the scene with a window that ends before the closing becomes chaotic."""
     text = (SCENES / f"{name}.toml").read_text()
     if name in WINDOWS:
         line = f'duration = "{WINDOWS[name]}"'
@@ -69,7 +69,7 @@ def main():
         print(f"| {name} | {off(got['t_i'], right['initial_contact_time_s'])} | {off(got['v_i'], right['impact_velocity_m_s'])} | "
               f"{rebound} | {force} | {seconds:.1f} |")
 
-    scene = SCENES / "mem-gold.toml"  # in the whole window, at whose end it has settled
+    scene = SCENES / "mem-gold.toml"  # with the whole window, at the end of which it has settled
     deck = exported(program, scene).stdout
     slow = deck.replace("Xdrive_main main 0 softland_main", "Xdrive_main told 0 softland_main\nRsource told main 1e6")
     charge = slow.replace("meas tran t_i", "meas tran charge integ i(V.Xdrive_main.Vdrive)\nmeas tran t_i", 1)

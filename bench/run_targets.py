@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Every target of a search against every other: does a search for one figure win in that figure?
+"""Compares every target of a search with every other: is a search for a figure the best in that figure?
 
     bench/run_targets.py BUILD/apps/softland [--seeds N] [--targets A,B] [--searches SCENE:ACTUATOR,...] [--optimizer NAME] [--keep FILE] > results/targets.md
 
 Runs `softland optimize` with the default budget for every shipped scene that allows a search, every target and the seeds 1 to N (default 3).
-With --keep the searches are kept in a file and not run again. Takes about ten minutes a seed on two idle cores.
+With --keep the searches are kept in a file and not run again. Takes about ten minutes for each seed on two idle cores.
 """
 import argparse
 import datetime
@@ -22,7 +22,7 @@ SCENES = HERE.parent / "scenes"
 SEARCHES = [("mem-gold.toml", "electrostatic"), ("mem-gold-pzt.toml", "electrostatic"), ("mem-gold-pzt.toml", "pzt"),
             ("mem-gold-pzt.toml", "both"), ("nem-tin.toml", "electrostatic"), ("two-electrodes.toml", "electrostatic"),
             ("gap-closing-actuator.toml", "electrostatic")]
-# The figure of each target, its key and a unit to print it in.
+# For each target: its figure, the key of the figure, and the unit in which it is printed.
 FIGURES = {"bounce": "major_bounce_height_m", "settling": "permanent_contact_time_s", "rebound": "major_bounce_height_m",
            "count": "bounce_count", "impact": "impact_velocity_m_s", "energy": "impact_energy_J", "force": "peak_contact_force_N",
            "drive": "drive_energy_J", "steady": "steady_force_time_s"}
@@ -35,7 +35,7 @@ SIGNIFICANT = {"nem-tin.toml": 1e-11}  # [m]; the other scenes have the default,
 
 
 def search(program, scene, actuator, target, seed, optimizer):
-    """What the table needs of one search."""
+    """Returns the data of one search for the table."""
     with tempfile.TemporaryDirectory() as out:
         command = [program, "optimize", SCENES / scene, "--robust", "none", "--target", target, "--actuator", actuator, "--seed", str(seed), "--optimizer",
                    optimizer, "--quiet", "--json", "-", "--out", out]
@@ -50,7 +50,7 @@ def search(program, scene, actuator, target, seed, optimizer):
 
 
 def rank(target, metrics, significant):
-    """Rebounds first, then the target's own figure; rebounds below the significant height are none."""
+    """Returns the order of results: first by rebounds, of which insignificant ones count as none, then by the target's own figure."""
     figure = metrics and metrics[FIGURES[target]]
     if figure is None or not metrics["settled"]:
         return (2, 0.0)
@@ -78,7 +78,7 @@ def main():
     given = parser.parse_args()
     targets = given.targets.split(",")
     searches = [tuple(one.split(":")) for one in given.searches.split(",")]
-    # The command that gives this table, so that a part of it says which part it is.
+    # The command of this table, which names the part for a part of the table.
     options = [f"--seeds {given.seeds}"] * (given.seeds != 3) + [f"--targets {given.targets}"] * (targets != list(FIGURES))
     options += [f"--searches {given.searches}"] * (searches != SEARCHES)
     print(f"""# Every target against every other

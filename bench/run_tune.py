@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""What tuning by the contact reaches on devices that no belief has seen.
+"""Measures the tuning by the contact on devices that no belief has seen.
 
     bench/run_tune.py BUILD/bench/bench_tune results FOLDER
 
-Writes tune.md into results, and what every case printed into FOLDER; a case whose output stands there is not run again. Takes two to
+Writes tune.md into results, and the output of every case into FOLDER. A case with an output there is not run again. Takes two to
 three hours.
 """
 import datetime
@@ -102,7 +102,7 @@ gaps = { keys = ["gap.electrode", "gap.contact"], distribution = "normal", cov =
 
 
 def write_scenes(folder):
-    """Scenes that are not shipped: a bridge, and the plate of two-electrodes.toml without its upper electrode."""
+    """Writes scenes that are not shipped: a bridge, and the plate of two-electrodes.toml without its upper electrode."""
     (folder / "nickel-bridge.toml").write_text(NICKEL_BRIDGE, encoding="utf-8")
     shipped = pathlib.Path(__file__).parent.parent / "scenes" / "two-electrodes.toml"
     sections = re.split(r"(?m)^(?=\[)", shipped.read_text(encoding="utf-8"))
@@ -123,7 +123,7 @@ def output(program, folder, case):
 
 
 def table(text):
-    """The closings, and the rows by their names."""
+    """Returns the numbers of closings, and the rows by their names."""
     rows = [[cell.strip() for cell in line.strip("| ").split("|")] for line in text.splitlines() if line.startswith("|")]
     return [int(n) for n in rows[0][1:]], {row[0]: row[1:] for row in rows[1:]}
 

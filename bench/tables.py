@@ -1,4 +1,4 @@
-"""What the scripts that write tables for results/ share."""
+"""Functions that the scripts for tables of results/ share."""
 import csv
 import io
 import os
@@ -23,12 +23,12 @@ def machine():
 
 
 def revision():
-    """Of the sources that a table is made from, with a mark where they were changed since."""
+    """Returns the revision of the sources from which a table is made, with a mark if they were changed since."""
     return subprocess.run(["git", "-C", pathlib.Path(__file__).parent, "describe", "--always", "--dirty"], capture_output=True, text=True,
                           check=True).stdout.strip()
 
 
 def rows_of(program, store):
-    """Of a store of an exploration: a dictionary for each point, with numbers where there are any."""
+    """Returns the rows of a store of an exploration: a dictionary for each point, with numbers where possible."""
     text = subprocess.run([program, "table", store, "--csv"], capture_output=True, text=True, check=True).stdout
     return [{k: float(v) if k not in ("status", "reason") and v else v for k, v in row.items()} for row in csv.DictReader(io.StringIO(text))]
