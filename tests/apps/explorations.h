@@ -1,4 +1,4 @@
-// Explorations that are quick, and what their stores hold.
+// Fixture for quick explorations and the contents of their stores.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace softland::test {
 
 using nlohmann::json;
 
-/// Quick closings: few modes, a loose accuracy, a short window, volts that need no pull-in voltage.
+/// Options for quick closings: few modes, a loose accuracy, a short window, and voltages that need no pull-in voltage.
 inline const std::vector<std::string> quick{"--set",  "structure.modes=2",       "--set", "simulate.accuracy=1e-3",
                                             "--set",  "simulate.duration=80 us", "--set", "driver.main.max_voltage=40 V",
                                             "--quiet"};
@@ -61,7 +61,7 @@ class Explore : public testing::Test {
     return json::parse(o.out, nullptr, false);
   }
   [[nodiscard]] fs::path at(const std::string& name) const { return here.path() / name; }
-  /// The figures that `simulate` gives for the scene of a point, and the row of that point.
+  /// Expects the row of a point to have the figures that `simulate` gives for the scene of the point.
   void expect_simulated(const std::string& store, std::int64_t point) const {
     const Outcome scene = here.run({"explore", store, "--point", std::to_string(point), "--out", "point.toml", "--quiet"});
     ASSERT_EQ(scene.status, 0) << scene.err;

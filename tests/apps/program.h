@@ -1,4 +1,4 @@
-// The program as a user meets it: a child process in a folder of its own.
+// Runs the program as a user does: in a child process, in a folder of its own.
 #pragma once
 
 #include <fcntl.h>
@@ -34,7 +34,7 @@ inline std::string read(const fs::path& path) {
 inline void write(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
 inline std::string shipped(const std::string& name) { return read(fs::path(SOFTLAND_SOURCE_DIR) / "scenes" / name); }
 
-/// `text` with the first `from` replaced by `to`.
+/// Returns `text` with the first `from` replaced by `to`.
 inline std::string edited(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   if (at == std::string::npos) throw std::logic_error("no '" + from + "' in the test's text");
@@ -42,18 +42,18 @@ inline std::string edited(std::string text, const std::string& from, const std::
 }
 
 struct Outcome {
-  int status = -1;  ///< exit status, or minus the signal that ended the program
+  int status = -1;  ///< exit status, or minus the number of the signal that ended the program
   std::string out, err;
 };
 
-/// State of a process, from /proc/PID/stat (proc(5)).
+/// The state of a process, from /proc/PID/stat (proc(5)).
 struct ProcessState {
-  char state = 'X';     ///< R: runs or could, S: sleeps, Z: has ended, X: no process
-  long cpu_ticks = -1;  ///< used so far, by all of its threads
+  char state = 'X';     ///< R: runs or is ready to run, S: sleeps, Z: has ended, X: no such process
+  long cpu_ticks = -1;  ///< processor time used so far by all threads; -1 if unknown
 };
 inline ProcessState process_state(pid_t child) {
   const std::string stat = read("/proc/" + std::to_string(child) + "/stat");
-  const std::size_t name_end = stat.rfind(')');  // the name before may hold anything
+  const std::size_t name_end = stat.rfind(')');  // the name of the program before it may contain any character
   if (name_end == std::string::npos) return {};
   std::istringstream fields(stat.substr(name_end + 1));
   ProcessState process;
@@ -66,7 +66,7 @@ inline ProcessState process_state(pid_t child) {
   return process;
 }
 
-/// Waits until the process has computed for a while, however busy the machine is; at most a minute.
+/// Waits until the process has used some processor time, even on a busy machine; at most a minute.
 inline void wait_until_it_computes(pid_t child) {
   const long enough = sysconf(_SC_CLK_TCK) / 2;
   for (int i = 0; i < 1200; ++i) {
@@ -76,7 +76,7 @@ inline void wait_until_it_computes(pid_t child) {
   }
 }
 
-/// Waits until the process waits for something itself; at most a minute.
+/// Waits until the process sleeps; at most a minute.
 inline void wait_until_it_waits(pid_t child) {
   long ticks = -1;
   for (int i = 0, quiet = 0; i < 1200 && quiet < 10; ++i) {
@@ -88,7 +88,7 @@ inline void wait_until_it_waits(pid_t child) {
   }
 }
 
-/// A temporary folder that the program works in.
+/// A temporary folder in which the program runs.
 class Workplace {
  public:
   Workplace() {
@@ -109,8 +109,8 @@ class Workplace {
 
   static constexpr int to_file = -1, closed = -2;
 
-  /// `out` is what the program gets as standard output: a descriptor, `to_file`, or `closed`; `err` likewise. It reads stdin.txt,
-  /// where there is such a file.
+  /// Starts the program. `out` is its standard output: a descriptor, `to_file` or `closed`; `err` is its standard error. If
+  /// there is a file stdin.txt, it is the standard input.
   [[nodiscard]] pid_t start(const std::vector<std::string>& words, const std::string& program = SOFTLAND_PROGRAM,
                             int out = to_file, int err = to_file) const {
     std::vector<char*> arguments{const_cast<char*>(program.c_str())};
@@ -131,7 +131,7 @@ class Workplace {
     };
     connect(1, out, "stdout.txt");
     connect(2, err, "stderr.txt");
-    // Signals act as from a terminal, whatever the tests were started to ignore.
+    // Restore the default signal handling, even if the tests were started with signals ignored.
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
     sigset_t all;
@@ -159,7 +159,7 @@ class Workplace {
   fs::path path_;
 };
 
-/// Keys of a JSON object.
+/// Returns the keys of a JSON object.
 inline std::set<std::string> keys(const nlohmann::json& object) {
   std::set<std::string> all;
   for (const auto& [key, value] : object.items()) all.insert(key);

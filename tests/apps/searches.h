@@ -1,4 +1,4 @@
-// Searches that are quick, and what they leave.
+// Fixture for quick searches and the files that they leave.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,16 +14,16 @@ namespace softland::test {
 
 using nlohmann::json;
 
-/// Quick closings: few modes, a loose accuracy, volts that need no pull-in voltage, a window that holds every landing a search
-/// may choose.
+/// Options for quick closings: few modes, a loose accuracy, voltages that need no pull-in voltage, and a window that contains
+/// every landing that a search may choose.
 inline const std::vector<std::string> quick_closings{"--set", "structure.modes=2",           "--set", "simulate.accuracy=1e-3",
                                                      "--set", "simulate.duration=150 us",    "--set", "waveform.main.level=18 V",
                                                      "--set", "driver.main.max_voltage=40 V"};
 
-/// Replaces some of them where there is to be time to kill a search.
+/// Options that replace some of `quick_closings` for a search that is slow enough to be killed.
 inline const std::vector<std::string> slower{"--set", "structure.modes=8"};
 
-/// Searches for the nominal device, unless `more` asks for others.
+/// Returns the words of a search for the nominal device, unless `more` requests others.
 inline std::vector<std::string> optimize(std::vector<std::string> more) {
   std::vector<std::string> words{"optimize", "gold.toml", "--quiet"};
   words.insert(words.end(), quick_closings.begin(), quick_closings.end());
@@ -32,7 +32,7 @@ inline std::vector<std::string> optimize(std::vector<std::string> more) {
   return words;
 }
 
-/// Removes what may differ between two runs of one search: how long they took and how they were called.
+/// Removes everything that may differ between two runs of one search: times and command lines.
 inline void forget_circumstances(json& j) {
   if (j.is_object()) {
     for (const char* key : {"wall_s", "command", "reproduce"}) j.erase(key);
@@ -48,7 +48,7 @@ inline json result_in(const fs::path& folder) {
   return result;
 }
 
-/// Two folders with the same search in them, to the last bit.
+/// Expects two folders to have bit for bit the same search.
 inline void expect_same_search(const fs::path& a, const fs::path& b) {
   EXPECT_FALSE(read(a / "best.toml").empty());
   for (const char* name : {"best.toml", "best.csv", "evaluations.csv", "trajectory.csv"})

@@ -1,4 +1,4 @@
-// Messages about a scene, for tests.
+// The message about a bad scene.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace softland {
 
-/// The message about this text and these options; empty when nothing is wrong.
+/// Returns the message about a scene with this text and these options; empty if it is accepted.
 inline std::string message(const std::string& text, const std::vector<std::string>& options = {}) {
   try {
     SceneFile file = SceneFile::parse(text, "x.toml");

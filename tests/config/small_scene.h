@@ -1,4 +1,4 @@
-// A complete scene of one screen for tests: every line number below is cited by some expected message.
+// A complete scene on one screen. Expected messages cite its line numbers.
 #pragma once
 
 #include <string>
@@ -47,7 +47,7 @@ max_voltage = "1 V"
 accuracy = 1e-5
 )";
 
-/// `text` with the first `from` replaced by `to`; the line breaks in it stay.
+/// Returns `text` with the first `from` replaced by `to`. Line breaks in `text` stay where they are.
 inline std::string edited(std::string_view text, std::string_view from, std::string_view to) {
   std::string result(text);
   result.replace(result.find(from), from.size(), to);

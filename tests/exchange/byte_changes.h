@@ -1,4 +1,4 @@
-// Files of which one byte is another, more or less.
+// Files in which one byte is changed, added or removed.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace softland::test {
 
-/// `at`: where.
+/// A change of one byte at position `at`.
 struct ByteChange {
   std::string content;
   std::size_t at = 0;

@@ -1,4 +1,4 @@
-// Small files of modes, made here: a structure of 100 um by 10 um by 2 um, clamped at x = 0, in the formats of several programs.
+// Small files of modes in the formats of several programs. The structure is 100 um by 10 um by 2 um and clamped at x = 0.
 #pragma once
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ struct ModeSample {
   std::string content;
   std::string format;
   ModeKeys keys = {};
-  double digits = 1e-12;  ///< relative error that the format's digits leave
+  double digits = 1e-12;  ///< relative error of numbers in the format
   bool is_mesh = true;
 };
 
@@ -28,14 +28,14 @@ inline const std::vector<double>& sample_positions() {
   return all;
 }
 
-/// A curve that leaves x = 0 with its square and is positive at the end, in units of 1/sqrt(kg): about that of a beam of
-/// sample_mass.
+/// Returns the value of a mode shape in 1/sqrt(kg). It begins quadratically at x = 0, is positive at the end, and has about the
+/// size of the mode of a beam with the mass sample_mass.
 inline double sample_shape(std::size_t mode, double x) {
   const double u = x / sample_length, tip = 2 / std::sqrt(sample_mass);
   return mode == 0 ? tip * u * u * (6 - 4 * u + u * u) / 3 : tip * u * u * (4.8 * u - 3.8);
 }
 
-/// "x,y,z" of the nodes: six at each place, about the middle.
+/// A node and its text "x,y,z". There are six nodes at each x, around the axis.
 struct SampleNode {
   std::size_t section;
   double y, z;
@@ -49,8 +49,8 @@ inline std::vector<SampleNode> sample_nodes() {
   return all;
 }
 
-/// A CalculiX .frd in units of length `unit` [m] and of mass `mass_unit` [kg]: two modes along z, between them one along y, and
-/// last one of torsion.
+/// Returns a CalculiX .frd in units of length `unit` [m] and of mass `mass_unit` [kg]. It has two modes along z, one along y
+/// between them, and a torsional mode at the end.
 inline std::string sample_frd(double unit = 1, double mass_unit = 1, bool is_short = false) {
   const std::vector<SampleNode> nodes = sample_nodes();
   const auto line = [&](std::size_t node, double x, double y, double z) {
@@ -85,7 +85,8 @@ inline std::string sample_frd(double unit = 1, double mass_unit = 1, bool is_sho
   return text + " 9999\n";
 }
 
-/// An export of COMSOL along a line, whose modes are in metres and of any size, complex where `turn` is not 1.
+/// Returns an export of COMSOL along a line. Its modes are in metres with arbitrary factors, and complex if `imaginary` is not
+/// 0.
 inline std::string sample_comsol(bool is_csv, double imaginary = 0) {
   const auto number = [&](double value) {
     return imaginary == 0 ? fmt::format("{:.15g}", value) : fmt::format("{:.15g}{:+.15g}i", value, imaginary * value);
@@ -99,7 +100,7 @@ inline std::string sample_comsol(bool is_csv, double imaginary = 0) {
                  : "% x                       y                        z                        w (m) @ freq=25000       w (m) @ "
                    "freq=156000\n";
   for (const double x : sample_positions()) {
-    // Sizes are not those of a mass.
+    // The factors do not follow from the modal mass.
     const std::string first = number(-3e-12 * sample_shape(0, x)), second = number(7e-13 * sample_shape(1, x));
     text += is_csv ? fmt::format("{:.15g},0,0,{},{}\n", x * 1e6, first, second)
                    : fmt::format("{:<25.15g}{:<25}{:<25}{:<25} {}\n", x * 1e6, 0, 0, first, second);
@@ -107,7 +108,7 @@ inline std::string sample_comsol(bool is_csv, double imaginary = 0) {
   return text;
 }
 
-/// Data sets 164, 2411 and 55 with a modal mass of 2.
+/// Returns data sets 164, 2411 and 55 with a modal mass of 2 by default.
 inline std::string sample_uff(double modal_mass = 2, bool has_nodes = true) {
   std::string text = "    -1\n   164\n         1  SI\n  1.0D+00  1.0D+00  1.0D+00\n  0.0D+00\n    -1\n";
   const std::vector<double>& x = sample_positions();
@@ -129,7 +130,7 @@ inline std::string sample_uff(double modal_mass = 2, bool has_nodes = true) {
   return text;
 }
 
-/// A reduced-order model of ANSYS in um, of whose three modes two are used, at five nodes; the clamp is none of them.
+/// Returns a reduced-order model of ANSYS in um at five nodes, none of them at the clamp. Two of its three modes are used.
 inline std::string sample_rom() {
   const std::vector<double>& x = sample_positions();
   std::string text =

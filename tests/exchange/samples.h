@@ -1,4 +1,4 @@
-// Small files in the formats of instruments and simulators, made here: headers as those write them, numbers by a rule.
+// Small files in the formats of instruments and simulators. Headers are copied from such files, and numbers follow a rule.
 #pragma once
 
 #include <fmt/format.h>
@@ -18,16 +18,16 @@ struct Sample {
   std::string name;
   std::string content;
   std::string format;
-  std::vector<std::string> channels;  ///< their names
+  std::vector<std::string> channels;  ///< names of the channels
   std::vector<std::string> units;
   std::vector<double> times;                ///< [s]
   std::vector<std::vector<double>> values;  ///< values of each channel, in its unit
   ReadKeys keys = {};
-  bool times_stand_in_it = true;  ///< false if they follow from an interval
-  bool times_add_up = false;      ///< a time is relative to that before
+  bool times_stand_in_it = true;  ///< false if the times follow from an interval
+  bool times_add_up = false;      ///< true if each time is relative to the one before
 };
 
-/// A voltage that a format with `digits` decimals holds exactly.
+/// Returns a multiple of 0.25 V, which every format represents exactly.
 inline double level(std::size_t row, std::size_t channel) {
   return static_cast<double>((row * 7 + channel * 13) % 40) * 0.25 - 2.5;
 }
@@ -46,7 +46,7 @@ inline std::vector<std::vector<double>> levels_of(std::size_t count, std::size_t
   return all;
 }
 
-/// A line per row: row(number).
+/// Returns a text with row(number) for each row, one per line.
 inline std::string rows(std::size_t count, const std::function<std::string(std::size_t)>& row, const std::string& end = "\n") {
   std::string text;
   for (std::size_t i = 0; i < count; ++i) text += row(i) + end;
@@ -76,7 +76,7 @@ void append_bytes(std::string& out, Number number, bool big_endian) {
   for (std::size_t i = 0; i < sizeof number; ++i) out += raw[big_endian ? sizeof number - 1 - i : i];
 }
 
-/// The lines of a data set 58 above its numbers.
+/// Returns the lines of a data set 58 above its numbers.
 inline std::string uff_header(const std::string& first, int type, std::size_t count, bool even, const std::string& end = "\n") {
   std::string text = "    -1" + end + first + end;
   for (const char* id : {"made for a test", "NONE", "01-Jan-26 10:00:00", "NONE", "NONE"}) text += id + end;
@@ -242,7 +242,7 @@ inline std::vector<Sample> all_samples() {
                            });
   all.push_back(
       {"picoscope", pico, "PicoScope CSV", {"Channel A", "Channel B"}, {"V", "mV"}, times_of(n, -4, 1, 1e6), levels_of(n, 2)});
-  // The same file from a computer with another language.
+  // The same file in the German locale, with commas in numbers and semicolons between them.
   std::string german = replaced(replaced(pico, ",", ";"), ".", ",");
   all.push_back({"picoscope_decimal_comma",
                  german,

@@ -1,11 +1,12 @@
-// Checks that hold of every scene that was read, whatever it was read from.
+// Checks that every scene must pass, wherever its text comes from.
 #pragma once
 
 #include "config/scene.h"
 
 namespace softland::fuzz {
 
-/// The scene written and read again is the same, is taken or refused alike, and its resolved form resolves to itself.
+/// Checks that writing and reading the scene gives the same scene, that both are accepted or refused alike, and that resolving
+/// the resolved scene changes nothing.
 void check_scene(const SceneFile& file);
 
 }  // namespace softland::fuzz

@@ -1,7 +1,7 @@
-// The readers of text from outside, as functions of that text. libFuzzer calls them with texts of its own making (libfuzzer.cc,
-// run_fuzzers). The test suite calls them with the kept ones (replay_test.cc).
+// The readers of text from outside, as functions of the text (targets). libFuzzer calls them with generated texts
+// (libfuzzer.cc, run_fuzzers), and the test suite with the kept texts (replay_test.cc).
 //
-// A target refuses its input with InvalidInput, which it catches itself. Every other exception that leaves it is a find.
+// A target catches the InvalidInput by which it refuses its input. Any other exception that leaves it is a fault.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 
 namespace softland::fuzz {
 
-/// A scene file, --set assignments to a scene (separated by NUL), a quantity, a table of voltages, a file of an instrument, a
-/// file of modes, a result.json, a line between a tuning and a device.
+/// A target each for a scene file, --set assignments to a scene (separated by NUL), a quantity, a table of voltages, a file of
+/// an instrument, a file of modes, a result.json, and a line between a tuning and a device.
 void scene(std::string_view input);
 void set(std::string_view input);
 void units(std::string_view input);
@@ -31,7 +31,7 @@ struct Target {
 inline constexpr std::array targets{Target{"scene", scene},         Target{"set", set},
                                     Target{"units", units},         Target{"table", table},
                                     Target{"recording", recording}, Target{"modes", modes}};
-/// Targets for files that softland writes for itself.
+/// Targets for files that softland itself writes.
 inline constexpr std::array written_targets{Target{"result", result}, Target{"lines", lines}};
 
 /// Throws logic_error unless `holds`.
@@ -39,7 +39,8 @@ inline void check(bool holds, const std::string& what) {
   if (!holds) throw std::logic_error(what);
 }
 
-/// Returns true if `read` took its input. Refusing it, with a message, is the only other way out.
+/// Returns true if `read` accepted its input, and false if it refused it with a message. Throws logic_error for any other
+/// outcome.
 template <class Read>
 bool accepted(const Read& read) {
   try {

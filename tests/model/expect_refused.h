@@ -1,4 +1,4 @@
-// Checks messages about bad input, word for word.
+// Compares messages about bad input word for word.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 
 namespace softland::test {
 
-/// Expects `action` to throw InvalidInput with exactly `message`.
+/// Expects `action` to throw InvalidInput with this message.
 template <typename Action>
 void expect_refused(Action action, const std::string& message) {
   try {

@@ -1,5 +1,5 @@
 #pragma once
-// Included before all else where mutants.py rewrote the sources: which mutant runs, asked at every place that has one.
+// Included first in sources that mutants.py rewrote: decides at every mutated place whether its mutant is active.
 
 #include <cstdio>
 #include <cstdlib>
@@ -22,9 +22,9 @@ inline bool reached[highest + 1] = {};
   }
 }
 
-// Reads SOFTLAND_MUTANT, the one that runs: at the first call, whichever static object makes it. With SOFTLAND_MUTANTS_REACHED, a
-// file, none does, and at exit those that were asked for are appended to it. Each source has its own, compiled for its own
-// processor.
+// Reads the active mutant from SOFTLAND_MUTANT at the first call, which may come from any static object. If
+// SOFTLAND_MUTANTS_REACHED names a file, no mutant is active, and the numbers of all reached mutants are appended to that file
+// at exit. Each source has its own copy, compiled for its own processor.
 [[maybe_unused, gnu::noinline, gnu::cold]] static bool ask(int mutant) {
   if (chosen == not_read) {
     const char* const text = std::getenv("SOFTLAND_MUTANT");
@@ -38,7 +38,7 @@ inline bool reached[highest + 1] = {};
   return chosen == mutant;
 }
 
-// True if the mutant of this number, from 1, runs. None does where the compiler works out constants.
+// True if the mutant with this number, counted from 1, is active. None is active in constant evaluation.
 [[gnu::always_inline]] constexpr bool is(int mutant) {
   if (__builtin_is_constant_evaluated()) {
     return false;

@@ -1,5 +1,5 @@
-// Functions of the kinds that soft landing presents to an optimizer: narrow curved valleys, many minima, kinks, small jumps. All
-// are of order 1 over most of the box and 0 (or nearly so) at their minimum.
+// Functions with the difficulties that soft landing presents to an optimizer: narrow curved valleys, many minima, kinks, small
+// jumps. All are of order 1 over most of the box and (nearly) 0 at their minimum.
 #pragma once
 
 #include <fmt/format.h>
@@ -31,14 +31,14 @@ inline Problem box(std::size_t dimension, double lower, double upper, std::funct
   return problem;
 }
 
-/// Round, minimum 0 at (0.3, ..., 0.3).
+/// A quadratic bowl with minimum 0 at (0.3, ..., 0.3).
 inline double bowl(std::span<const double> x) {
   double sum = 0;
   for (const double coordinate : x) sum += (coordinate - 0.3) * (coordinate - 0.3);
   return sum;
 }
 
-/// A curved valley, minimum 0 at (1, ..., 1); divided by 100.
+/// Rosenbrock's curved valley, divided by 100, with minimum 0 at (1, ..., 1).
 inline double rosenbrock(std::span<const double> x) {
   double sum = 0;
   for (std::size_t i = 0; i + 1 < x.size(); ++i) {
@@ -48,8 +48,8 @@ inline double rosenbrock(std::span<const double> x) {
   return sum / 100;
 }
 
-/// Minima on a grid in a wide bowl, the lowest, 0, at (0.3, ..., 0.3); divided by 10. The spacing, 1.13, is no fraction of the
-/// box that a first step may be.
+/// Rastrigin's function, divided by 10: minima on a grid in a wide bowl, the lowest of them 0 at (0.3, ..., 0.3). The spacing
+/// of 1.13 is not a fraction of the box that a first step could match.
 inline double rastrigin(std::span<const double> x) {
   double sum = 0;
   for (const double coordinate : x) {
@@ -59,7 +59,7 @@ inline double rastrigin(std::span<const double> x) {
   return sum / 10;
 }
 
-/// A needle in a nearly flat, rippled plain, minimum 0 at (0.7, ..., 0.7), a kink; divided by 20.
+/// Ackley's function, divided by 20: a narrow minimum 0 with a kink at (0.7, ..., 0.7) in a nearly flat, rippled plain.
 inline double ackley(std::span<const double> x) {
   double squares = 0;
   double waves = 0;
@@ -71,14 +71,14 @@ inline double ackley(std::span<const double> x) {
   return (20 + std::numbers::e - 20 * std::exp(-0.2 * std::sqrt(squares / n)) - std::exp(waves / n)) / 20;
 }
 
-/// The largest of smooth functions, a chain of curved creases: minimum 0 at (0.5, 0.25, 0.0625, ...).
+/// The maximum of smooth functions, which has a chain of curved creases and the minimum 0 at (0.5, 0.25, 0.0625, ...).
 inline double creases(std::span<const double> x) {
   double largest = std::abs(x[0] - 0.5);
   for (std::size_t i = 0; i + 1 < x.size(); ++i) largest = std::max(largest, 2 * std::abs(x[i + 1] - x[i] * x[i]));
   return largest;
 }
 
-/// Parallel curved valleys a distance of about 0.5 apart; the floor of each slopes, and only one reaches 0, at (0.3, 0.3, ...).
+/// Parallel curved valleys about 0.5 apart. The floor of each is inclined, and only one reaches 0, at (0.3, 0.3, ...).
 inline double valleys(std::span<const double> x) {
   double across = x[0] - 0.3;
   double along = 0;
@@ -90,14 +90,14 @@ inline double valleys(std::span<const double> x) {
   return 1 - std::cos(4 * std::numbers::pi * across) + along / 4;
 }
 
-/// A parallel-plate switch: an undamped oscillator pulled by V^2 / (1 - x)^2 towards a contact at x = 0.6; time in units of the
-/// inverse angular frequency, V^2 such that static pull-in is at 4/27. The drive is a sequence of levels of V, each held for its
-/// duration, then `hold` for ever. Half of the speed survives an impact.
+/// A parallel-plate switch: an undamped oscillator pulled by V^2 / (1 - x)^2 towards a contact at x = 0.6. Time is in units of
+/// the inverse angular frequency, and V^2 is scaled so that static pull-in is at 4/27. The drive is a sequence of levels of V
+/// with durations, then `hold`. An impact halves the speed.
 struct Landing {
   double impact_speed = 0;
   double impact_time = 0;
-  double rebound = 0;    ///< greatest separation after the first touch
-  double missed_by = 0;  ///< least distance to the contact when it is never touched
+  double rebound = 0;    ///< largest separation after the first touch
+  double missed_by = 0;  ///< least distance to the contact if it is not touched
 };
 
 inline Landing land(std::span<const double> levels, std::span<const double> durations, double hold) {
@@ -171,7 +171,8 @@ inline Landing land(std::span<const double> levels, std::span<const double> dura
   return landing;
 }
 
-/// Impact energy and rebound relative to those of a step, with a charge on slowness; 2 or more when the contact is never touched.
+/// Returns impact energy and rebound relative to those of a step, plus a cost of slowness; 2 or more if the contact is not
+/// touched.
 inline double landing_cost(const Landing& landing) {
   constexpr double kStepSpeed = 0.43;  // impact speed of a step to 0.5
   constexpr double kPatience = 4.5;
@@ -181,12 +182,12 @@ inline double landing_cost(const Landing& landing) {
   return speed * speed + landing.rebound / 0.1 + late;
 }
 
-/// Bang, coast, hold: two levels, two durations.
+/// Landing by two levels with durations (accelerate, coast), then a fixed hold voltage.
 inline double landing_4(std::span<const double> x) {
   return landing_cost(land(std::array{x[0], x[1]}, std::array{x[2], x[3]}, 0.5));
 }
 
-/// Three levels, three durations, and the hold voltage.
+/// Landing by three levels with durations, then a hold voltage that varies as well.
 inline double landing_7(std::span<const double> x) {
   return landing_cost(land(std::array{x[0], x[1], x[2]}, std::array{x[3], x[4], x[5]}, x[6]));
 }

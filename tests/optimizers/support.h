@@ -30,7 +30,7 @@ inline void expect_same(const Evaluation& a, const Evaluation& b) {
   EXPECT_EQ(a.x, b.x);
 }
 
-/// Every field, to the last bit.
+/// Expects all members to be equal bit for bit.
 inline void expect_same(const OptimizerResult& a, const OptimizerResult& b) {
   EXPECT_EQ(a.termination, b.termination);
   EXPECT_EQ(a.message, b.message);

@@ -1,4 +1,4 @@
-// A page in a real browser, where there is one.
+// Shows a page in a real browser, if one is installed.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 
 namespace softland::test {
 
-/// Standard output of a command.
+/// Returns the standard output of a command.
 inline std::string output(const std::string& command) {
   std::FILE* pipe = ::popen(command.c_str(), "r");
   if (pipe == nullptr) return {};
@@ -33,7 +33,7 @@ inline std::string browser() {
 
 struct Visit {
   std::string dom;
-  std::string console;  ///< text that the page wrote to the console, and errors it did not catch
+  std::string console;  ///< text that the page wrote to the console, and uncaught errors
 };
 
 inline Visit visit(const std::string& program, const std::string& page) {
@@ -60,7 +60,7 @@ class PageInBrowser : public ::testing::Test {
   std::string program;
 };
 
-/// The page in a frame of this width [px], and what `script` says of it; `page` is its document there.
+/// Shows the page in a frame of this width [px] and returns the result of `script`, in which `page` is the page's document.
 inline std::string in_frame(const std::string& program, const std::string& page, int width, const std::string& script) {
   return visit(program, "<!DOCTYPE html><body><iframe style=\"width:" + std::to_string(width) +
                             "px;height:900px;border:0\"></iframe><p id=\"said\"></p><script>const frame = "

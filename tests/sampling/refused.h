@@ -11,7 +11,7 @@
 
 namespace softland::test {
 
-/// Expects `action` to throw InvalidParameter of this parameter, with a message that holds every one of `parts`.
+/// Expects `action` to throw InvalidParameter about this parameter, with a message that contains all of `parts`.
 template <typename Action>
 void expect_parameter_refused(Action action, const std::string& parameter, const std::vector<std::string>& parts) {
   try {

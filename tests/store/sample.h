@@ -1,4 +1,4 @@
-// Stores of made-up studies.
+// Stores of synthetic studies.
 #pragma once
 
 #include <fmt/format.h>
@@ -31,7 +31,7 @@ inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   return {.program = "softland 0.1.0", .processor = "some, AVX2", .command = "softland explore a.toml"};
 }
 
-/// The row of a point at the place `at` of a grid: every figure is a function of that.
+/// Returns the row of a point at position `at` of a grid. Every figure is a function of `at`.
 [[nodiscard]] inline StoredRow row_of(std::int64_t point, double at) {
   const double gap = 1e-6 * (1 + at);
   const bool closes = std::fmod(at * 1000, 7) < 6;
@@ -51,7 +51,7 @@ inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   return rows;
 }
 
-/// Every bit of the rows, as text that can be compared.
+/// Returns every bit of the rows as text for comparison.
 [[nodiscard]] inline std::string dump(const std::vector<StoredRow>& rows) {
   std::string text;
   for (const StoredRow& row : rows) {
@@ -63,7 +63,7 @@ inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 }
 [[nodiscard]] inline std::string dump(const std::filesystem::path& path) { return dump(rows_in(path)); }
 
-/// A store that was written and closed, with these points.
+/// Writes and closes a store with these points.
 inline void make_store(const std::filesystem::path& path, std::int64_t points, Shard shard = {}) {
   StudyStore store(path, plan_of(points, shard), origin(), StudyStore::Opening::fresh);
   for (std::int64_t point = 0; point < points; ++point) {
@@ -72,7 +72,7 @@ inline void make_store(const std::filesystem::path& path, std::int64_t points, S
   store.close();
 }
 
-/// Tests with a store in a folder of its own.
+/// A test with a store in its own folder.
 struct WithStore : ::testing::Test, TemporaryFolder {
   std::filesystem::path file = path("study.sqlite");
 };

@@ -1,4 +1,4 @@
-// Small switches that one drive holds bent while another closes them.
+// Small switches that one drive holds deflected while another drive closes them.
 #pragma once
 
 #include <initializer_list>
@@ -8,7 +8,7 @@
 
 namespace softland {
 
-/// A silicon beam with a piezo layer that closes in a few microseconds.
+/// Returns a silicon beam with a piezo layer, which closes in a few microseconds.
 inline SceneFile small_beam(std::initializer_list<std::string_view> changes = {}) {
   SceneFile file = SceneFile::parse(R"(
 [structure]
@@ -46,7 +46,7 @@ accuracy = 1e-6
   return file;
 }
 
-/// A plate on a spring between two electrodes on the near side: closed forms hold.
+/// Returns a plate on a spring between two electrodes on the near side, for which closed forms exist.
 inline SceneFile two_area_plate(std::initializer_list<std::string_view> changes = {}) {
   SceneFile file = SceneFile::parse(R"(
 [structure]

@@ -19,7 +19,7 @@ inline SceneFile scene(const char* name, std::initializer_list<std::string_view>
   return file;
 }
 
-/// "mem-gold.toml" and all others.
+/// Returns the file names of all shipped scenes.
 inline std::vector<std::string> shipped_scenes() {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(std::string(SOFTLAND_SOURCE_DIR) + "/scenes"))
@@ -32,7 +32,7 @@ inline SceneFile gold_pzt(std::initializer_list<std::string_view> changes = {}) 
 
 inline SceneFile gold_with_two_modes() { return gold({"structure.modes=2"}); }
 
-/// A beam or a plate that moves in one mode without losses.
+/// Returns a beam or a plate that moves in one mode without losses.
 inline SceneFile undamped_with_one_mode(const std::string& name) {
   SceneFile file = scene(name.c_str());
   for (const char* lossy : {"gas", "structure.damping_ratio"}) file.erase(lossy);
@@ -40,7 +40,7 @@ inline SceneFile undamped_with_one_mode(const std::string& name) {
   return file;
 }
 
-/// The plain step of the thesis in a window of 100 us.
+/// Returns the gold cantilever under the plain step of the thesis in a window of 100 us.
 inline SceneFile gold_at_17_volts(std::initializer_list<std::string_view> changes = {}) {
   SceneFile file = gold(
       {"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V", "simulate.duration=100 us", "simulate.accuracy=1e-4"});
@@ -48,20 +48,20 @@ inline SceneFile gold_at_17_volts(std::initializer_list<std::string_view> change
   return file;
 }
 
-/// Every figure that a search may lower.
+/// All targets of searches.
 inline const std::vector<Target> every_target = [] {
   std::vector<Target> all;
   for (const TargetRow& row : targets) all.push_back(row.value);
   return all;
 }();
 
-/// A scene with the keys that a search for this target needs.
+/// Returns a scene with the keys that a search for this target needs.
 inline SceneFile with_keys_for(Target target, SceneFile file) {
   if (target == Target::electrical) file.set("metrics.closed_force=0.1 uN");
   return file;
 }
 
-/// A rigid plate on a spring without gas: one degree of freedom.
+/// Returns a rigid plate on a spring without gas: one degree of freedom.
 inline SceneFile spring_plate(std::initializer_list<std::string_view> changes = {}) {
   SceneFile file = SceneFile::parse(R"(
 [structure]
@@ -92,7 +92,7 @@ accuracy = 1e-6
   return file;
 }
 
-/// The scene without one of its sections.
+/// Returns the scene without one of its sections.
 inline SceneFile without(const SceneFile& file, std::string_view section) {
   std::string text = file.text();
   const std::size_t begin = text.find("[" + std::string(section) + "]");
@@ -102,7 +102,7 @@ inline SceneFile without(const SceneFile& file, std::string_view section) {
   return SceneFile::parse(text, "changed.toml");
 }
 
-/// The message with which `action` refuses its input; empty when it does not.
+/// Returns the message with which `action` refuses its input; empty if it accepts it.
 template <class Action>
 std::string refusal(Action&& action) {
   try {

@@ -1,8 +1,8 @@
-// Tests of access rights that hold for root too.
+// Runs tests of access rights as root, too.
 //
-// Root may read and write everything. The body of such a test therefore runs in a child process that has given up the two
-// capabilities which ignore access rights (capabilities(7)); the programs that it starts cannot get them back. It stays the same
-// user, because another one could not reach a program that was built under /root.
+// Root may read and write everything. Such a test therefore runs in a child process that has given up the two capabilities that
+// override access rights (capabilities(7)). The programs that it starts cannot get them back. The user stays the same, because
+// another one could not read a program that was built under /root.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,13 +18,13 @@
 
 namespace softland::test {
 
-/// Returns true if the calling thread, and every program that it starts, obeys access rights from now on.
+/// Makes the calling thread, and every program that it starts, obey access rights from now on. Returns false if that fails.
 inline bool give_up_ignoring_access_rights() {
   __user_cap_header_struct header{.version = _LINUX_CAPABILITY_VERSION_3, .pid = 0};
   std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> sets{};
   if (::syscall(SYS_capget, &header, sets.data()) != 0) return false;
   for (const int capability : {CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH}) {
-    // The bounding set is what a program started by root would get.
+    // A program that root starts would get the capabilities of the bounding set.
     if (::prctl(PR_CAPBSET_READ, capability) == 1 && ::prctl(PR_CAPBSET_DROP, capability) != 0) return false;
     auto& set = sets.at(static_cast<std::size_t>(CAP_TO_INDEX(capability)));
     const auto others = ~static_cast<unsigned>(CAP_TO_MASK(capability));
@@ -35,8 +35,8 @@ inline bool give_up_ignoring_access_rights() {
   return ::syscall(SYS_capset, &header, sets.data()) == 0;
 }
 
-/// Runs `body` where access rights bind, and takes over its failures. The body does not stop the test: it ends in a process of
-/// its own, and what it changes in memory is lost.
+/// Runs `body` under access rights, and reports its failures. It runs in a process of its own, so that it cannot end the test,
+/// and its changes of memory are lost.
 inline void expect_where_access_rights_bind(const std::function<void()>& body) {
   if (::geteuid() != 0) {
     body();
@@ -46,7 +46,7 @@ inline void expect_where_access_rights_bind(const std::function<void()>& body) {
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
-    // noexcept: an exception must not carry this process on to the tests that follow.
+    // noexcept: an exception must not continue this process with the following tests.
     [&]() noexcept {
       EXPECT_TRUE(give_up_ignoring_access_rights()) << "root cannot give up its capabilities here";
       body();

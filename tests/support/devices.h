@@ -1,4 +1,4 @@
-// The devices that tests share, as data sheets.
+// Devices that several tests use, as data sheets.
 #pragma once
 
 #include <fmt/format.h>
@@ -34,18 +34,18 @@ namespace softland::test {
   };
 }
 
-/// A contact of that device's pad under this law.
+/// Returns the contact of the gold cantilever's pad under this law.
 [[nodiscard]] inline Contact gold_contact(const ContactModel& model) {
   return {.model = model, .pad_length = gold_cantilever().contacts.front().pad_length};
 }
-/// The summits of a contact of the law asperity-uniform.
+/// Returns the summits of a contact with the law asperity-uniform.
 [[nodiscard]] inline UniformAsperities& rough(Device& device) {
   return std::get<UniformAsperities>(device.contacts.front().model);
 }
 
-/// The gas of that device, under the law strip.
+/// Returns the gas of the gold cantilever, which has the law strip.
 [[nodiscard]] inline FilmState& film(Device& device) { return std::get<StripGas>(*device.gas).film; }
-/// The same gas under every law.
+/// Returns the gas of the gold cantilever under every law.
 [[nodiscard]] inline std::vector<Gas> gases() {
   std::vector<Gas> all;
   for_each_law<Gas>(
@@ -53,7 +53,7 @@ namespace softland::test {
   return all;
 }
 
-/// The law's example, and that with damping and with every word, where it takes them.
+/// Returns the example of a law, and if the law has damping or choices, examples with them.
 template <class Law>
 [[nodiscard]] std::vector<Law> examples(double damping) {
   std::vector<Law> all{Law::example()};
@@ -73,25 +73,26 @@ template <class Law>
 }
 
 [[nodiscard]] inline double damping(const Contact& contact) { return number_of(contact.model, "damping", 0); }
-/// For messages.
+/// Describes a contact for messages.
 [[nodiscard]] inline std::string described(const Contact& contact) {
   return fmt::format("{}, damping {}{}", name_of(contact.model), damping(contact),
                      contact.distribution == ContactDistribution::pad ? ", along the pad" : "");
 }
 
-/// The contact of that device under every contact law, in their order, with damping where the law takes it, and for both laws of
-/// yield.
+/// Returns the contact of the gold cantilever under every contact law, in their order: with damping if the law has it, and with
+/// both laws of yield.
 [[nodiscard]] inline std::vector<Contact> contacts() {
   std::vector<Contact> all;
   for_each_law<ContactModel>([&]<class Law>(std::type_identity<Law>) {
-    if constexpr (!std::is_same_v<Law, RigidStop>) {  // a plate's only
+    if constexpr (!std::is_same_v<Law, RigidStop>) {  // for plates only
       for (const Law& law : examples<Law>(0.5)) all.push_back(gold_contact(law));
     }
   });
   return all;
 }
 
-/// Those of them that can act along the pad, doing so, between surfaces so rough that a tilted pad does not crush them.
+/// Returns the contacts of those laws that can act along the pad. Their surfaces are so rough that a tilted pad does not crush
+/// them.
 [[nodiscard]] inline std::vector<Contact> pad_contacts() {
   using namespace literals;
   std::vector<Contact> all;
@@ -103,7 +104,7 @@ template <class Law>
   return all;
 }
 
-/// The same with a PZT-5A layer: the device of scenes/mem-gold-pzt.toml.
+/// Gold cantilever with a PZT-5A layer: the device of scenes/mem-gold-pzt.toml.
 [[nodiscard]] inline Device gold_pzt_cantilever() {
   using namespace literals;
   Device device = gold_cantilever();
@@ -124,7 +125,7 @@ template <class Law>
           .electrodes = {{.name = "main", .begin = 0, .end = 610_um, .fringing = Fringing::none}}};
 }
 
-/// A gold bridge in tension with everything a beam between two clamps can have: stretching, two electrodes, film, contact.
+/// A gold bridge in tension with all features of a beam between two clamps: stretching, two electrodes, film, contact.
 [[nodiscard]] inline Device gold_bridge() {
   Device device = gold_cantilever();
   device.structure.kind = Bridge{part_of<Beam>(device.structure)};
@@ -143,7 +144,7 @@ template <class Law>
       .electrodes = {{.name = "main", .begin = 0, .end = 510_um, .fringing = Fringing::none}}};
 }
 
-/// A plate on springs with everything a plate can have: two electrodes, film, linear contact.
+/// A plate on springs with all features of a plate: two electrodes, film, linear contact.
 [[nodiscard]] inline Device full_plate() {
   using namespace literals;
   return {.structure = {.length = 100_um, .width = 100_um, .thickness = 3_um, .kind = Plate{.mass = 2.4e-9, .stiffness = 42}},
@@ -193,7 +194,7 @@ template <class Law>
   };
 }
 
-/// The full plate with the second electrode above the plate and a film there as well; see scenes/two-electrodes.toml.
+/// The full plate with its second electrode above the plate, and a film there as well (scenes/two-electrodes.toml).
 [[nodiscard]] inline Device plate_between_electrodes() {
   using namespace literals;
   Device d = full_plate();
@@ -203,7 +204,7 @@ template <class Law>
   return d;
 }
 
-/// The gold cantilever with an electrode above it, under a film, and one whose faces stand on both sides.
+/// The gold cantilever with an electrode and a film above it, and an electrode with faces on both sides.
 [[nodiscard]] inline Device cantilever_between_electrodes() {
   using namespace literals;
   Device d = gold_cantilever();

@@ -11,10 +11,10 @@
 
 namespace softland::test {
 
-/// Values of the published etch and the textbook: how much the etch takes off every edge [m], and Young's modulus [Pa].
+/// Published depth of the etch at every edge [m], and Young's modulus of the textbook [Pa].
 inline constexpr double published_undercut = 0.4e-6, textbook_modulus = 169e9;
 
-/// Fingers overlap by `overlap` in the nominal design [m], springs are `spring_width` wide in it [m].
+/// Returns an actuator whose nominal design has this overlap of the fingers [m] and this width of the springs [m].
 [[nodiscard]] inline Device gap_closing_actuator(double overlap, double spring_width = 3e-6, double undercut = published_undercut,
                                                  double youngs_modulus = textbook_modulus) {
   using namespace literals;
@@ -45,7 +45,7 @@ inline constexpr double published_undercut = 0.4e-6, textbook_modulus = 169e9;
           .contacts = {Contact{.model = LinearSpring{.stiffness = 1e5_N_m}}}};
 }
 
-/// Voltages at which three chips pulled in and one let go [V]; instrument error 1 V.
+/// Voltages at which three chips pulled in and one released [V]; the error of the instrument is 1 V.
 struct MeasuredPullIn {
   double overlap;  ///< [m]
   std::array<double, 3> pull_in;
@@ -61,7 +61,7 @@ inline constexpr std::array<MeasuredPullIn, 9> measured_pull_in{{{15.3e-6, {35.3
                                                                  {68.85e-6, {17.9, 17.6, 17.4}, 8.4},
                                                                  {76.5e-6, {16.6, 16.6, 16.5}, 8.0}}};
 
-/// The springs' width varied at an overlap of 76.5 um.
+/// Pull-in voltages for other widths of the springs, at an overlap of 76.5 um.
 struct MeasuredSprings {
   double width;  ///< nominal width [m]
   double pull_in, pull_out;
@@ -75,7 +75,7 @@ inline constexpr std::array<MeasuredSprings, 8> measured_springs{{{2e-6, 6.3, 2.
                                                                   {5e-6, 44.0, 21.1},
                                                                   {5.5e-6, 51.5, 24.6}}};
 
-/// Time from the step to the stop, mean of three or four closings.
+/// Time from the step to the stop, as the mean of three or four closings.
 struct MeasuredTime {
   double volts;
   double time;  ///< [s]

@@ -1,4 +1,4 @@
-// A bridge of nickel that touches at its centre.
+// A nickel bridge with its contact at the centre.
 #pragma once
 
 #include <string_view>

@@ -1,4 +1,4 @@
-// The numbers that are no quantity.
+// Numbers that no quantity may have.
 #pragma once
 
 #include <limits>

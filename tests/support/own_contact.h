@@ -1,4 +1,4 @@
-// A contact law of softland's, written once more as a program would write its own.
+// A contact law of softland, implemented again as a user's own law.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace softland::test {
 
-/// The law asperity-uniform, damped as Hunt and Crossley have it.
+/// The law asperity-uniform, with the damping of Hunt and Crossley.
 class OwnAsperities : public OwnContactLaw {
  public:
   OwnAsperities(const UniformAsperities& law, const ContactPad& pad)
@@ -30,7 +30,7 @@ class OwnAsperities : public OwnContactLaw {
   double strength_, height_, damping_;
 };
 
-/// The contact of the gold cantilever: 20 um wide, with a pad of 5 um.
+/// Returns the contact of the gold cantilever: 20 um wide, with a pad of 5 um.
 [[nodiscard]] inline Contact own_contact(const UniformAsperities& law = UniformAsperities::example()) {
   constexpr ContactPad pad{.width = 20e-6, .length = 5e-6};
   return {.model = OwnContact{std::make_shared<const OwnAsperities>(law, pad)}, .pad_length = pad.length};

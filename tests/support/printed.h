@@ -1,4 +1,4 @@
-// Finds numbers that people cannot read.
+// Finds numbers in texts for users that are badly written.
 #pragma once
 
 #include <array>
@@ -9,8 +9,8 @@
 
 namespace softland {
 
-/// The first number in `text` that says more than anybody knows or is not written as people write it, with what is wrong with it;
-/// empty when all are fine. Paths and quoted text are the caller's to leave out.
+/// Returns the first badly written number in `text`, with its fault: too many digits, or a format that users do not expect.
+/// Empty if there is none. The caller removes paths and quoted text.
 inline std::string absurd_number(const std::string& text) {
   static const std::array<std::pair<std::regex, const char*>, 6> rules{{
       {std::regex("[0-9](\u00a0| )[fazy]m\\b"), "a length below 1 pm"},

@@ -1,4 +1,4 @@
-// A folder that lives as long as a test; its name has a space, as users' folders have.
+// A folder that is removed at the end of a test. Its name has a space, as folders of users may have.
 #pragma once
 
 #include <cstdlib>
@@ -19,7 +19,7 @@ class TemporaryFolder {
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
   ~TemporaryFolder() {
-    std::error_code ignored;  // a browser may still be leaving
+    std::error_code ignored;  // a browser may still be writing
     std::filesystem::remove_all(path_, ignored);
   }
 

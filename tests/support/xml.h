@@ -1,4 +1,4 @@
-// Just enough of an XML reader to tell well-formed markup.
+// A small checker of well-formed XML.
 #pragma once
 
 #include <string>
@@ -7,7 +7,8 @@
 
 namespace softland::test {
 
-/// Empty when `text` is one well-formed element (names nest, attributes quoted once each, entities known); else what is wrong.
+/// Returns the first fault of a text that must be one well-formed element: tags match, attributes are quoted and occur once,
+/// entities are known. Empty if there is none.
 inline std::string xml_fault(std::string_view text) {
   std::vector<std::string> open;
   bool root_closed = false;

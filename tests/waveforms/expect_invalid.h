@@ -1,4 +1,4 @@
-// Checks that a message about bad input holds the parameter, its value and the rule.
+// Checks that a message about bad input contains the parameter, its value and the rule.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -11,7 +11,7 @@
 
 namespace softland::test {
 
-/// Expects `action` to throw InvalidInput with a message that holds every one of `parts`.
+/// Expects `action` to throw InvalidInput with a message that contains all of `parts`.
 template <typename Action>
 void expect_invalid(Action action, const std::vector<std::string>& parts) {
   try {
