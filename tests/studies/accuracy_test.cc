@@ -14,7 +14,7 @@
 namespace softland {
 namespace {
 
-// The reference closing up to its highest rebound.
+// The reference closing until its highest rebound.
 PreparedScene first_bounces() {
   return prepare(gold({"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V", "simulate.duration=60 us"}));
 }
@@ -69,8 +69,8 @@ TEST(Accuracy, TriesEverySettingOnce) {
   EXPECT_EQ(modes, (std::vector{3, 5, 6}));
 }
 
-// A hundred times less tolerance: the errors of a method of order p follow it to the power p / (p + 1) or better, in the mean
-// over the orders 5 and lower; a tenth is what the worst of them leaves.
+// The tolerance falls by a factor of 100. Errors of a method of order p fall with the power p / (p + 1) of the tolerance or
+// faster. A tenth allows for all orders up to 5.
 TEST(Accuracy, ErrorsFallWithTheTolerance) {
   constexpr double left_at_most = 0.1;
   const AccuracyStudy& study = study_of_first_bounces();
@@ -82,7 +82,7 @@ TEST(Accuracy, ErrorsFallWithTheTolerance) {
   }
 }
 
-// Integrators that step over make and break of contact converge to the same figures, and do other work for them.
+// Integrators that are not restarted at make and break of contact converge to the same figures with a different amount of work.
 TEST(Accuracy, ShowsWhatRestartingAtTheContactIsWorth) {
   constexpr double close = 1e-4;
   const AccuracyStudy& study = study_of_first_bounces();
@@ -147,7 +147,7 @@ TEST(Accuracy, RecommendsTheQuickestThatItsOwnTableBearsOut) {
 
 TEST(Accuracy, CutsWhatIsSlowAndListsIt) {
   AccuracyOptions options = few_settings();
-  options.most_seconds = 0;  // a look at the clock cuts
+  options.most_seconds = 0;  // the first reading of the clock stops the run
   const AccuracyStudy slow = study_accuracy(first_bounces(), options);
   EXPECT_EQ(slow.status, Status::done) << "the reference has a bound of its own";
   for (const AccuracyRow& row : slow.rows) {
@@ -197,10 +197,10 @@ TEST(Accuracy, OfAPlateKnowsNoOtherModesAndWithoutContactNoRebounds) {
   EXPECT_TRUE(std::isnan(study.rows.front().errors[3]));
 }
 
-// The pressures of its film are states: a reference at 1e-13 takes many seconds.
+// The pressures of its film are states, so that a reference at a tolerance of 1e-13 takes many seconds.
 TEST(Accuracy, OfASlowSceneHasTheReferenceThatItsTimeAllows) {
   const PreparedScene p = prepare(scene("hung-senturia.toml", {"structure.modes=1", "simulate.accuracy=1e-2"}));
-  // A clock that counts how often it is looked at, which is once in 64 steps: what is in time does not depend on the machine.
+  // This clock counts its readings, one in 64 steps, so that the time limit does not depend on the machine.
   double looks = 0;
   const AccuracyStudy study = study_accuracy(p, {.tolerances = {1e-3, 1e-6, 1e-9},
                                                  .points = {24},
@@ -229,7 +229,7 @@ TEST(Accuracy, WithoutATouchHasNothingToStudy) {
   EXPECT_TRUE(study.rows.empty());
 }
 
-// A hair above the smallest step that closes, the time it takes hangs on the last digits of the voltage.
+// Just above the lowest step that closes, the closing time depends on the last digits of the voltage.
 TEST(Accuracy, CallsIllConditionedWhatImperceptibleChangesMove) {
   const auto at = [](double volts) {
     return prepare(gold({fmt::format("waveform.main.level={:.17g} V", volts), "simulate.duration=250 us"}));
@@ -256,7 +256,7 @@ TEST(Accuracy, ShowsTheEndOfAChaoticClosingAsACloud) {
   AccuracyOptions options = few_settings();
   options.tolerances = {1e-5};
   const AccuracyStudy study = study_accuracy(p, options);
-  constexpr double visible = 1e-3;  // relative; the cloud spans a tenth
+  constexpr double visible = 1e-3;  // relative; the cloud has a range of a tenth
   EXPECT_EQ(study.permanent_contact_time.runs, 8);
   EXPECT_GT(study.permanent_contact_time.high, (1 + visible) * study.permanent_contact_time.low);
   EXPECT_TRUE(study.conditioned[2]) << "the highest rebound is the first large one";

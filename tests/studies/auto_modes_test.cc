@@ -1,4 +1,4 @@
-// modes = "auto".
+// The choice of the number of modes by modes = "auto".
 #include "studies/closing/auto_modes.h"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@ double rebound(const char* modes) {
 }
 
 TEST(AutoModes, AreNotTakenInByModesThatAgreeByChance) {
-  // Three to five modes agree, and are wrong by a tenth.
+  // Three to five modes agree with each other, and are wrong by a tenth.
   const double converged = rebound("14");
   EXPECT_NEAR(rebound("3"), rebound("4"), auto_modes_tolerance * rebound("4"));
   EXPECT_NEAR(rebound("4"), rebound("5"), auto_modes_tolerance * rebound("5"));

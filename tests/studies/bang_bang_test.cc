@@ -1,4 +1,4 @@
-// Landings of an undamped switch of one degree of freedom.
+// Landings of an undamped switch with one degree of freedom, without a rebound.
 #include "studies/search/bang_bang.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,8 @@ namespace softland {
 namespace {
 
 TEST(BangBang, OfAConstantForceOnASpringFollowsTheCosine) {
-  // It moves from rest under F, x = F / k (1 - cos w t) to x_s = k c^2 / (2 F), then to rest at c, x = c cos(w (t - t_c)).
+  // The plate moves from rest under the force F, x = F / k (1 - cos w t), to x_s = k c^2 / (2 F), then freely to rest at c, x =
+  // c cos(w (t - t_c)).
   constexpr double k = 3, m = 0.7, c = 1.2;
   const double w = std::sqrt(k / m);
   for (const double force : {2.0, 3.0, 10.0}) {
@@ -31,7 +32,7 @@ TEST(BangBang, OfAConstantForceOnASpringFollowsTheCosine) {
 }
 
 TEST(BangBang, OfAPlateSwitchesWhereTheWorkBendsTheSpringToTheContact) {
-  // eps A V^2 / 2 (1 / (d - x_s) - 1 / d) = k c^2 / 2 in closed form.
+  // Closed form: eps A V^2 / 2 (1 / (d - x_s) - 1 / d) = k c^2 / 2.
   constexpr double k = 20, area = 1e-8, d = 3e-6, c = 2e-6, volts = 60;
   const double strength = vacuum_permittivity * area * volts * volts;
   const auto found = switching_position([&](double x) { return k * x * x / 2 - strength / 2 / (d - x); },
@@ -58,7 +59,7 @@ TEST(BangBang, LandsASimulatedSwitchOfOneModeWithoutSpeed) {
     signals[0] = signal(Pulse{.levels = {full[0], 0}, .times = {plan->driven_time}});
     const double arrival = plan->driven_time + plan->coasting_time;
     const Trajectory t = simulate_closing(p.model, signals, {.duration = 1.2 * arrival, .tolerance = 1e-10});
-    // Its turning point lies beside the highest knot, where the acceleration is nearly that of the turn.
+    // The turning point lies beside the highest knot, where the acceleration is nearly that of the turn.
     const TrajectoryPoint& knot =
         *std::max_element(t.points.begin(), t.points.end(), [](const auto& a, const auto& b) { return a.position < b.position; });
     const double back = std::abs(knot.acceleration), contact = p.scene.device.gap.contact;

@@ -1,4 +1,4 @@
-// Tests the voltages of drives before a run, which starts at rest under them.
+// Tests the voltages of drives before a run, under which the run starts at rest.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ TEST(Before, WithoutAStableEquilibriumCollapsesAtRest) {
 }
 
 TEST(Before, OfAStretchingBeamIsFoundAsTheLoadGrows) {
-  // Softer than its stretching by far: Newton's method from the straight beam overshoots the gap.
+  // The bending stiffness is far below that of stretching, so that Newton's method from the straight beam overshoots the gap.
   const SceneFile file =
       scene("hung-senturia.toml", {"structure.stretching=true", "structure.residual_stress=0 MPa", "structure.thickness=0.3 um"});
   const PreparedScene p = prepare(file);

@@ -1,4 +1,4 @@
-// Tests what records tell of a device.
+// Tests the belief that follows from records of a device.
 #include "studies/inverse/belief.h"
 
 #include <gmock/gmock.h>
@@ -40,7 +40,7 @@ class Beliefs : public testing::Test {
   double hold_ = scene_.nominal().signals()[0].hold_level();
 };
 
-// The terms of belief.h, written down again from one closing's numbers.
+// The terms of the formula in belief.h, computed again from the numbers of one closing.
 TEST_F(Beliefs, LikelihoodIsThatOfItsFormula) {
   const TuningScales& s = scene_.scales();
   const double t0 = s.closing_time;
@@ -55,7 +55,8 @@ TEST_F(Beliefs, LikelihoodIsThatOfItsFormula) {
   const std::vector<LearnedShot> shots{{.waveforms = step(1), .record = record}};
   const double deviation = std::sqrt(50e-9 * 50e-9 + std::pow(2e-6 / 2000 / 0.1, 2) + std::pow(t0 / 3400, 2));
   double expected = -late * late / (2 * deviation * deviation);
-  // Open from 1.05 to 1.09, 1.10, 1.10 T_0 in the three spans; recorded 0.02 T_0 in each; the second opening is too short to see.
+  // The contact is open for 0.04, 0.05 and 0.05 T_0 in the three spans, and for 0.02 T_0 in each of the record. The second
+  // opening is too short to be recorded.
   for (const double open : {0.04, 0.05, 0.05}) {
     const double q = (open - 0.02) / (0.0045 + 0.2 * open);
     expected -= 1.2 * std::log(1 + q * q / 3);
@@ -93,7 +94,7 @@ TEST_F(Beliefs, ADeviceIsFoundBackFromItsRecords_optimized) {
   const Belief prior = Belief::prior(scene_.size(), draws);
   const Belief belief = learned(scene_, shots, prior, draws);
   EXPECT_NEAR(std::accumulate(belief.weights.begin(), belief.weights.end(), 0.0), 1, 1e-12);
-  // The belief knows what a landing depends on: here the touch time of a waveform that was not shot.
+  // The belief predicts the quantities on which a landing depends: here the touch time of a waveform that was not shot.
   const std::vector<Waveform> other = step(0.95);
   const auto touches = [&](const std::vector<VectorXd>& points) {
     const std::vector<ImaginedDevice> devices = scene_.devices(points);
@@ -110,12 +111,12 @@ TEST_F(Beliefs, ADeviceIsFoundBackFromItsRecords_optimized) {
   constexpr double three_edges = 150e-9;
   EXPECT_GT(std::abs(truth - nominal), 4 * three_edges);
   EXPECT_FALSE(!(std::abs(mean - truth) <= three_edges)) << mean << " " << truth;
-  // The whole of z lies within what is believed.
+  // The true z lies within the belief in all directions.
   const VectorXd off = z - belief.mean;
   for (Eigen::Index k = 0; k < z.size(); ++k) EXPECT_LT(std::abs(off[k]), 4 * std::sqrt(belief.covariance(k, k)) + 0.05) << k;
 }
 
-// Records that begin 1 us late are those of such a trigger, and of no other device.
+// Records with a delay of 1 us are explained by the delay of the trigger, and not by another device.
 TEST_F(Beliefs, ALateTriggerIsLearnedAsOne_optimized) {
   constexpr double late = 1e-6;
   VectorXd z = VectorXd::Zero(scene_.size());
@@ -138,10 +139,10 @@ TEST_F(Beliefs, ALateTriggerIsLearnedAsOne_optimized) {
   EXPECT_LT(std::abs(none), late / 4) << "the user says that there is none";
 }
 
-// Right devices, those three deviations away included, and records of none.
+// Devices of the spread, also at three deviations, and records that no device of the spread has.
 class Misfits : public Beliefs {
  protected:
-  // Closings of a device under steps, with the errors of a laboratory.
+  // Returns the closings of a device under steps, with the errors of a laboratory.
   [[nodiscard]] std::vector<LearnedShot> recorded(const VectorXd& z, Draws& draws) const {
     std::vector<LearnedShot> shots = records_of(z);
     const std::vector<VectorXd> points{z};
@@ -159,7 +160,7 @@ class Misfits : public Beliefs {
   [[nodiscard]] TouchMisfit misfit(const std::vector<LearnedShot>& shots, Draws& draws) const {
     return touch_misfit(scene_, shots, Belief::prior(scene_.size(), draws), draws);
   }
-  // Counts how many of so many right devices are called wrong, every tenth of which is three deviations away or further.
+  // Counts the devices of the spread that are rejected. Every tenth device is three deviations away or more.
   [[nodiscard]] int wrongly_called(int devices) const {
     Draws draws(11, 0);
     int wrong = 0;
@@ -182,7 +183,7 @@ TEST_F(Misfits, AtMostOneInAHundredOfAThousandRightDevicesIsBeyondTheBound_slow)
 }
 
 TEST_F(Misfits, AKnownDeviceInTheTailIsWithinTheBound_optimized) {
-  // Along every quantity three and a half deviations to either side: a device in 2000.
+  // Devices at 3.5 standard deviations of one quantity, to either side: one in 2000.
   for (Eigen::Index k = 0; k < scene_.size(); ++k) {
     for (const double side : {-3.5, 3.5}) {
       Draws draws(5, 0);
@@ -196,7 +197,7 @@ TEST_F(Misfits, AKnownDeviceInTheTailIsWithinTheBound_optimized) {
 TEST_F(Misfits, RecordsThatNoDeviceHasAreBeyondTheBound_optimized) {
   Draws draws(5, 0);
   std::vector<LearnedShot> same = records_of(VectorXd::Zero(scene_.size()));
-  for (LearnedShot& shot : same) shot.record = {.closing_time = 36.1e-6};  // whatever the volts are
+  for (LearnedShot& shot : same) shot.record = {.closing_time = 36.1e-6};  // the same touch time under all voltages
   EXPECT_TRUE(misfit(same, draws).is_beyond());
   std::vector<LearnedShot> late = records_of(VectorXd::Zero(scene_.size()));
   for (LearnedShot& shot : late) shot.record = {.closing_time = 150e-6};
@@ -210,7 +211,8 @@ TEST_F(Misfits, RecordsThatNoDeviceHasAreBeyondTheBound_optimized) {
   EXPECT_TRUE(misfit(open, draws).is_beyond());
 }
 
-// Chi-square of one degree of freedom where the ratio is the scene's, and the square of its deviations where it is not.
+// The misfit of a fixed ratio is chi-square distributed with one degree of freedom on devices with the ratio of the scene, and
+// the square of the deviation on others.
 TEST_F(Misfits, ARatioOfTheGapsIsOffByWhatItsRecordsTell_optimized) {
   const auto& all = scene_.nominal().scene.spread.variables;
   const Eigen::Index ratio = std::ranges::find(all, "gap.contact", &SpreadVariable::name) - all.begin();

@@ -58,7 +58,7 @@ TEST(Bias, OfNothingGivesTheBitsOfNoBias) {
 }
 
 TEST(Bias, OfAnElectrodeAddsItsForceToAPlates) {
-  // Both electrodes pull a plate alike: A_1 V_1^2 + A_2 V_2^2 is what its pull-in decides.
+  // Both electrodes pull on the plate in the same way: A_1 V_1^2 + A_2 V_2^2 decides pull-in.
   const double alone = static_of(two_area_plate());
   const double closed_form = std::sqrt(8 * 40.0 * std::pow(3e-6, 3) / (27 * 8.8541878128e-12 * 0.6e-8));
   EXPECT_NEAR(alone, closed_form, 1e-8 * closed_form);
@@ -87,7 +87,7 @@ TEST(Bias, OfAPiezoMovesTheVoltagesOneWay) {
   }
 }
 
-// Vdp by bisection of whole runs, the piezo standing at its bias at all times.
+// Dynamic pull-in voltage by bisection of whole runs, with the piezo at its bias at all times.
 TEST(Bias, OfAPiezoGivesTheDynamicPullInOfSimulatedSteps_long) {
   for (const char* volts : {"-1.5 V", "1.5 V"}) {
     const SceneFile biased = small_beam({fmt::format(R"(waveform.piezo={{family="step", level="{}"}})", volts)});
@@ -125,7 +125,7 @@ TEST(Bias, CountsForDevicesMeasuredByIt) {
   const PreparedScene p = prepare(file);
   const DeviceMeter meter(p, {.pull_in = true});
   EXPECT_NEAR(meter.pull_in(), p.pull_in.at("main").dynamically.voltage, 1e-6 * meter.pull_in());
-  // A layer that does more pulls in at less, and only because it is driven.
+  // A stronger piezo layer lowers the pull-in voltage only if it is biased.
   Device stronger = p.scene.device;
   stronger.piezo->d31 *= 1.2;
   EXPECT_LT(meter.exact(Switch(stronger, p.quadrature)).volts, 0.999);

@@ -1,4 +1,4 @@
-// Ranges over a box, and polynomial chaos, beside a sample of devices.
+// Tests ranges over a box, and polynomial chaos, against samples of devices.
 #include "studies/devices/box_and_chaos.h"
 
 #include <gtest/gtest.h>
@@ -54,7 +54,7 @@ TEST(Box, HoldsNineteenOfTwentyDevices) {
   EXPECT_NEAR(static_cast<double>(gold_ways().sampled_inside), box_share * 400, 4) << "Sobol' points fill it evenly";
 }
 
-// First contact is later the thicker and the stiffer a beam is: its range ends in two corners.
+// First contact is later for a thicker and for a stiffer beam, so that its range ends in two corners of the box.
 TEST(Box, HasTheLatestAndTheEarliestFirstContactInItsCorners) {
   const double b = box_half_width(2);
   const FigureRange& first_contact = gold_ways().ranges[0];
@@ -77,7 +77,7 @@ TEST(Box, FindsNothingBetterThanNoSampledDeviceInside) {
     EXPECT_LE(range.least.figure, range.of_sample.low) << range.key;
     EXPECT_GE(range.most.figure, range.of_sample.high) << range.key;
     EXPECT_LT(range.of_sample.low, range.of_sample.high);
-    // The worst of 95 % of the devices is not below what 95 % of them stay below.
+    // The largest figure in a box with 95 % of the devices is not below the 95th percentile.
     const auto& figures = gold().drive().figures;
     EXPECT_GE(range.most.figure, figures[figure_of(range.key)].quantiles[2].value) << range.key;
   }
@@ -94,12 +94,13 @@ TEST(Box, GivesTheSceneOfItsDevices) {
     }
   };
   check(gold(), gold_ways());
-  // These devices are calibrated in their own units, with the measurements exact.
+  // These devices are driven in their own units, which are measured without error.
   const Judged measured = judged(gold_at_17_volts({two_normal, "waveform.main.rise_time=20 us"}), 8,
                                  {.pull_in_error = 0.02, .frequency_error = 0.02});
   const BoxAndChaos ways = measured.ways({.closings_per_search = 30});
   check(measured, ways);
-  // Every device touches after as many of its own periods: t_i times thickness times root of modulus.
+  // Every device touches after the same number of its own periods, which are inversely proportional to thickness times the root
+  // of the modulus.
   const auto in_periods = [](const BoxDevice& device) { return device.figure * device.values[0] * std::sqrt(device.values[1]); };
   const FigureRange& first_contact = ways.ranges[0];
   constexpr double damped_by_gas = 0.01;
@@ -108,7 +109,7 @@ TEST(Box, GivesTheSceneOfItsDevices) {
 }
 
 TEST(Box, HasADeviceThatDoesNotCloseAsItsWorst) {
-  // 1.25 Vdp is the pull-in voltage of a beam that is thicker by 1.25^(2/3) - 1 = 16 %; the box ends at 1.96 * 12 %.
+  // 1.25 Vdp is the pull-in voltage of a beam whose thickness is larger by 1.25^(2/3) - 1 = 16 %. The box ends at 1.96 * 12 %.
   const Judged wide = judged(gold_at_17_volts({R"(spread={"structure.thickness"={distribution="normal", cov="12 %"}})"}), 64);
   const BoxAndChaos ways = wide.ways({.closings_per_search = 40});
   for (const FigureRange& range : ways.ranges) {
@@ -118,7 +119,7 @@ TEST(Box, HasADeviceThatDoesNotCloseAsItsWorst) {
     EXPECT_LT(range.least.figure, range.of_sample.high);
   }
   EXPECT_LE(ways.closings, 3 * 40 + 3 * 3) << "nothing is worse, so that these searches end";
-  // Chaos is made of what closes.
+  // Polynomial chaos is fitted to the devices that close.
   std::size_t closed = 0;
   for (const DeviceOutcome& o : wide.drive().outcomes) closed += o.closed();
   EXPECT_LT(closed, 64U);
@@ -160,7 +161,7 @@ TEST(Chaos, AgreesWithTheSampleWhereTheFigureIsSmooth) {
   EXPECT_LT(chaos.quantile_95, sampled.quantiles[2].interval.high);
 }
 
-// The same polynomials and their error on other devices, by way of the root mean square of the residuals.
+// The same polynomials and their error on other devices, from the root mean square of the residuals.
 TEST(Chaos, SaysHowMuchItMissesOfOtherDevices) {
   const Ensemble ensemble(gold().nominal, 400);
   for (const FigureChaos& chaos : gold_ways().chaos) {

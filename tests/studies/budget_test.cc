@@ -1,4 +1,4 @@
-// Tests larger budgets of evaluations, on switches that are searched in seconds.
+// Tests that a larger budget of evaluations does not worsen a search, on switches that are searched in seconds.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace softland {
 namespace {
 
-// The end of a winner: 0 without a rebound, 1 settled, 2 open or not settled, 3 none.
+// Returns how the closing of a winner ends: 0 without a rebound, 1 settled, 2 open or not settled, 3 without a winner.
 int kind_of(const OptimizeResult& found) {
   if (!found.best) return 3;
   const Metrics& m = found.best->metrics;
@@ -29,7 +29,7 @@ OptimizeOptions halved(const std::string& families, long budget, std::uint64_t s
 TEST(Budget, ThatIsTwiceAsLargeBeginsWithTheSmallerOne_slow) {
   const SceneFile file = scene("two-electrodes.toml", {"simulate.accuracy=1e-4"});
   for (const std::string& families : {std::string("pulse"), std::string(default_families(Shaped::electrode))}) {
-    std::vector<std::vector<double>> values;  // costs of each budget
+    std::vector<std::vector<double>> values;  // costs for each budget
     double least = std::numeric_limits<double>::infinity();
     for (const long budget : {100L, 200L, 400L}) {
       std::vector<double>& own = values.emplace_back();
@@ -65,7 +65,8 @@ TEST(Budget, ThatIsTwiceAsLargeNeverCostsMore_slow) {
   }
 }
 
-// The cost may rise a little with the budget of searches that do not begin with its half: families share it in another way.
+// A larger budget may raise the cost a little if the search does not begin with half of it: the families then share it
+// differently.
 TEST(Budget, ThatIsLargerNeverEndsInAWorseKindOfClosing_slow) {
   for (const std::string name : {"two-electrodes.toml", "gap-closing-actuator.toml"}) {
     for (const std::uint64_t seed : {1U, 2U}) {

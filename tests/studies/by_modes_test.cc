@@ -1,5 +1,5 @@
-// Tests what more modes say of voltages and of closed states, against finite differences of the whole beam, and against scenes
-// with as many modes.
+// Tests how voltages and closed states change with more modes, against finite differences of the whole beam, and against scenes
+// with that number of modes.
 #include "studies/closing/by_modes.h"
 
 #include <gmock/gmock.h>
@@ -27,7 +27,7 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
 
-// 500 um x 20 um x 1 um of silicon over an electrode as long; `gap` in thicknesses.
+// A bridge of silicon, 500 um x 20 um x 1 um, over an electrode of its length; `gap` in thicknesses.
 SceneFile bridge(int gap, const std::string& modes) {
   SceneFile file = SceneFile::parse(R"(
 [structure]
@@ -53,7 +53,8 @@ duration = "10 us"
   return file;
 }
 
-// EI y'''' - N y'' = eps0 a V^2 / (2 (g - y)^2), N = EA / (2 L) int y'^2 dx, by central differences, the middle held.
+// Solves EI y'''' - N y'' = eps0 a V^2 / (2 (g - y)^2), N = EA / (2 L) int y'^2 dx, by central differences for a given
+// deflection of the middle.
 class Differences {
  public:
   Differences(const Device& device, int intervals) : gap_(device.gap.electrode), unknowns_(intervals - 1) {
@@ -75,7 +76,8 @@ class Differences {
     for (Eigen::Index i = 0; i < unknowns_; ++i) y_[i] -= std::cos(2 * pi * static_cast<double>(i + 1) / intervals);
   }
 
-  // The fold: the largest V^2 over the deflection of the middle, by a parabola through the three highest.
+  // Returns the pull-in voltage: the largest V over the deflection of the middle, by a parabola through the three highest
+  // values of V^2.
   [[nodiscard]] double pull_in() {
     constexpr int steps = 50;
     double before = 0, last = 0;
@@ -102,7 +104,7 @@ class Differences {
       matrix.setZero();
       matrix.topLeftCorner(n, n) = bending_ - tension * second_ + 2 * stretch_ * h_ * curvature * curvature.transpose();
       matrix.topLeftCorner(n, n).diagonal() -= (2 * square_ * load.array() / (gap_ - y_.array())).matrix();
-      // Rows in units of the bending stiffness, the unknown in those of the load.
+      // Scale the rows by the bending stiffness, and the unknown by the load.
       const double stiff = bending_(0, 0), loaded = load.maxCoeff();
       right.head(n) = -(bending_ * y_ - tension * curvature - square_ * load) / stiff;
       right[n] = deflection - y_[middle];
@@ -122,13 +124,13 @@ class Differences {
   Eigen::VectorXd y_;
 };
 
-// Differences of second order, extrapolated.
+// Extrapolates differences of second order.
 double true_pull_in(const Device& device) {
   return (4 * Differences(device, 200).pull_in() - Differences(device, 100).pull_in()) / 3;
 }
 
 TEST(ByModes, OfABridgeBentByManyThicknessesLeadToFiniteDifferences) {
-  constexpr double resolved = 4e-3;  // relative: forty modes at a gap of 33 thicknesses
+  constexpr double resolved = 4e-3;  // relative error of forty modes at a gap of 33 thicknesses
   for (const int gap : {3, 10, 33}) {
     const PreparedScene p = prepare(bridge(gap, "4"));
     const ByModes found = static_pull_in_by_modes(ModeLadder(p), p.scene, 0);
@@ -166,7 +168,8 @@ TEST(ByModes, AreWithinTheToleranceOfAutomaticModes) {
   EXPECT_LE(static_pull_in(p.model, 0).voltage, (1 + auto_modes_tolerance + 2e-3) * true_pull_in(p.scene.device));
 }
 
-// A bridge whose contact in the middle of a long electrode collapses onto it on one side, at a voltage falling with the modes.
+// A bridge with its contact in the middle of a long electrode. It collapses onto the electrode on one side, at a voltage that
+// decreases with the number of modes.
 SceneFile held_in_the_middle(double volts, int modes) {
   SceneFile file = SceneFile::parse(R"(
 [structure]
@@ -199,8 +202,8 @@ max_voltage = "200 V"
   return file;
 }
 
-// The verdicts of a scene with its modes, and with two and four times as many written into it, as far as a scene may have them:
-// told as they are, and no success where they differ. Returns whether they do.
+// Compares the verdicts of a scene with those of scenes with twice and four times as many modes, as far as possible. The scene
+// must report all of them, and must not succeed if they differ. Returns true if they differ.
 bool expect_told(const SceneFile& file) {
   constexpr double same = 1e-4;  // error of an eigenvalue by other quadrature points
   const PreparedScene p = prepare(file);
@@ -252,7 +255,8 @@ TEST(ByModes, OfEveryVerdictAgreeOrAreTold_optimized) {
   EXPECT_FALSE(expect_told(held_in_the_middle(1.01 * with_four, 4)));
 }
 
-// So damped that no step overshoots: at 264 V it stays open with 4 modes, whose pull-in voltage is 271.3 V; it is 256.5 V.
+// The damping is so large that no step overshoots. At 264 V the switch stays open with 4 modes, whose pull-in voltage is 271.3
+// V. The converged one is 256.5 V.
 TEST(ByModes, OfASwitchThatOnlyFewKeepOpenAreTold) {
   SceneFile file = bridge(10, "4");
   file.set("gas={ model = \"linear\", quality_factor = 0.2 }");
@@ -267,8 +271,8 @@ TEST(ByModes, OfASwitchThatOnlyFewKeepOpenAreTold) {
   EXPECT_THAT(closing.warnings, Contains(HasSubstr("whether the switch stays open depends on the number of modes")));
 }
 
-// An aluminium bridge over nitride on which it lands. The kept capacitances are those of 336 finite elements, which 40 modes
-// reach to 0.8 %.
+// An aluminium bridge that lands on nitride. The expected capacitances are those of 336 finite elements; 40 modes agree with
+// them within 0.8 %.
 TEST(ByModes, OfTheCapacitanceOfALandingAreTold) {
   SceneFile file =
       scene("new/capacitive-bridge.toml",

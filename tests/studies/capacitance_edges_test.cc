@@ -1,4 +1,4 @@
-// Records of a capacitance, against records of a contact where the capacitance has the threshold.
+// Compares records of a capacitance with records of a contact that lies where the capacitance has the threshold.
 #include "studies/inverse/capacitance_edges.h"
 
 #include <fmt/format.h>
@@ -63,7 +63,7 @@ TEST(CapacitanceEdges, FallWhileThePlateBouncesBeyondTheThreshold) {
   const ClosingPlate closing(plate());
   const Trajectory contact_alone = closing.contact();
   ASSERT_GT(contact_alone.touches.size(), 2U);
-  constexpr double nearly = 1e-4;  // share of the gap that the contact leaves
+  constexpr double nearly = 1e-4;  // distance to the contact over the gap
   const std::vector<CapacitanceRise> rises = closing.rises(capacitance_at((rest - contact) * (1 + nearly)));
   ASSERT_GT(rises.size(), 2U);
   for (std::size_t k = 0; k < 2; ++k) {
@@ -76,7 +76,7 @@ TEST(CapacitanceEdges, FallWhileThePlateBouncesBeyondTheThreshold) {
   EXPECT_TRUE(closing.rises(2 * capacitance_at(rest - contact)).empty());
 }
 
-// Names both capacitances, of which the open one is eps0 A / h.
+// The message has both capacitances. The one of the open switch is eps0 A / h.
 TEST(CapacitanceEdges, AThresholdThatTellsNothingIsRefused) {
   const PreparedScene nominal = prepare(plate());
   const double rise = capacitance_rise(nominal, capacitance_at(2e-6));
@@ -91,7 +91,7 @@ TEST(CapacitanceEdges, AThresholdThatTellsNothingIsRefused) {
   }
 }
 
-// A practice device shows of its values what the belief imagines of them.
+// The belief simulates the same values of a device that a practice device reports.
 TEST(CapacitanceEdges, ABeliefImaginesWhatThePracticeDeviceShows) {
   LaboratoryErrors laboratory{.edge_error = 0, .unseen = 0, .gain_error = 0, .shot_error = 0, .trigger_delay = 0};
   laboratory.capacitance = capacitance_at(1.3e-6);

@@ -1,4 +1,4 @@
-// Figures of merit with errors to rely on, and clouds in the place of those that have none.
+// Figures of merit with reliable errors, and clouds for ill-conditioned figures.
 #include "studies/closing/certify.h"
 
 #include <fmt/format.h>
@@ -33,7 +33,7 @@ std::vector<std::string_view> ill_conditioned(const Closing& c) {
   return keys;
 }
 
-// Covered and not covered, of the figures that are not ill-conditioned.
+// Returns the numbers of well-conditioned figures whose true error is covered, and not covered.
 std::pair<int, int> coverage(const PreparedScene& p, const Closing& c) {
   const Switch fine(p.scene.device, {.points_per_length = std::max(96.0, 4 * c.quadrature.points_per_length)});
   const ClosingOptions options{.duration = p.duration, .tolerance = std::max(1e-13, 1e-4 * c.tolerance)};
@@ -41,7 +41,7 @@ std::pair<int, int> coverage(const PreparedScene& p, const Closing& c) {
   if (best_run.status != Status::done) return {};
   Metrics truth = metrics(best_run, p.scene.metrics);
   set_open_figures(truth, best_run, fine, p.signals());
-  constexpr double rounding = 1e-11;  // relative: closer no two runs can be told apart
+  constexpr double rounding = 1e-11;  // relative difference below which two runs cannot be distinguished
   std::pair<int, int> counts;
   const std::vector<std::string_view> ill = ill_conditioned(c);
   for (const Figure& f : all_figures) {
@@ -55,7 +55,7 @@ std::pair<int, int> coverage(const PreparedScene& p, const Closing& c) {
   return counts;
 }
 
-// Also where simulate() has to tighten its run to reach the accuracy.
+// Includes scenes in which simulate() has to tighten its run to reach the accuracy.
 TEST(Certify, LeavesTheFiguresThemselvesAsTheyAre) {
   int tightened = 0;
   const auto expect_same = [&](const PreparedScene& p) {
@@ -92,14 +92,14 @@ TEST(Certify, CoversTheTrueErrorsOfAWellConditionedClosing) {
   }
 }
 
-// bench/certify_coverage.cc asks the same of hundreds.
+// bench/certify_coverage.cc checks the same on hundreds of scenes.
 TEST(Certify, CoversTheTrueErrorsOfRandomScenes) {
   int covered = 0, missed = 0;
   for (std::uint64_t i = 0; i < 24; ++i) {
     SceneFile file = test::random_scene(3, i);
     file.set("simulate.accuracy=1e-4");
     const PreparedScene p = prepare(file);
-    constexpr long most_steps = 1000;  // long ones are left to the bench
+    constexpr long most_steps = 1000;  // longer closings are left to the bench
     const ClosingOptions options{.duration = p.duration, .tolerance = p.tolerance, .max_steps = most_steps};
     if (p.model.film_states() > 0 || simulate_closing(p.model, p.signals(), options).work.steps >= most_steps) continue;
     const Closing c = certify(p);
@@ -109,7 +109,7 @@ TEST(Certify, CoversTheTrueErrorsOfRandomScenes) {
     missed += no;
   }
   EXPECT_GE(covered, 20);
-  EXPECT_LE(missed, 2);  // the bound is for 95 %: of 25 three or more would have a chance of 13 %
+  EXPECT_LE(missed, 2);  // covered in 95 % of the cases: three or more misses of 25 have a probability of 13 %
 }
 
 TEST(Certify, NoErrorOfADriveEnergyIsBelowTheResidualOfTheEnergies) {
@@ -151,7 +151,7 @@ TEST(Certify, GivesChaoticFiguresAsACloudAndSaysWhereItParts) {
   EXPECT_LT(c.certificate->grazing->impact_velocity, c.metrics.impact_velocity);
 }
 
-// Vdp by bisection of its own, a hundred thousand times closer than dynamic_pull_in().
+// Returns the dynamic pull-in voltage by bisection, a hundred thousand times as precise as dynamic_pull_in().
 double tight_pull_in(const PreparedScene& p) {
   const Switch fine(p.scene.device, {.points_per_length = 48});
   const double known = p.pull_in.at("main").dynamically.voltage;
@@ -166,7 +166,7 @@ double tight_pull_in(const PreparedScene& p) {
   return high;
 }
 
-// The scene at the voltage that its level stands for: what it differs by is in the errors.
+// Runs the scene at the true voltage of its level: the errors must cover the difference.
 TEST(Certify, CoversTheErrorOfTheVoltagesThatDrivesAreWrittenIn_optimized) {
   const auto driven = [](const char* accuracy, const std::string& level) {
     return prepare(gold({fmt::format("waveform.main.level={}", level), "simulate.duration=60 us",
@@ -189,7 +189,7 @@ TEST(Certify, CoversTheErrorOfTheVoltagesThatDrivesAreWrittenIn_optimized) {
   SceneFile file = gold({"simulate.duration=60 us", "simulate.accuracy=1e-4"});
   const double all = certify(prepare(file)).errors[&Metrics::impact_velocity];
   file.set("structure.damping_ratio=1e-9");
-  file.set("simulate.effects=auto");  // the voltages are those of the whole scene, and so are their errors
+  file.set("simulate.effects=auto");  // the voltages, and their errors, are those of the scene with all effects
   EXPECT_NEAR(certify(prepare_and_choose(file)).errors[&Metrics::impact_velocity], all, 0.5 * all);
 }
 
@@ -214,7 +214,7 @@ TEST(Simulate, TakesNoQuietEndForRestWhereTheHoldLevelsDoNotKeepTheSwitchClosed)
     return hold.is_held;
   };
   EXPECT_TRUE(is_held(gold()));
-  // A step that closes it by its swing, below the release voltage of so small a gap.
+  // A step that closes the switch dynamically, below the release voltage of so small a gap.
   EXPECT_FALSE(is_held(gold({"gap.contact=0.3 um", "waveform.main.level=1.02 Vdp"})));
 }
 
@@ -224,7 +224,7 @@ PreparedScene far_electrode(std::string_view setting) {
   return prepare(file);
 }
 
-// A figure that a later, chaotic touch may exceed has no error, or one that a tighter run does not contradict.
+// The error of a maximum that a later, chaotic touch may exceed is not stated, or agrees with a tighter run.
 TEST(Simulate, StatesNoErrorOfAMaximumThatChanceMayExceed_optimized) {
   constexpr double rounding = 1e-9;
   for (const char* modulus : {"1549.009475642491 GPa", "400 GPa", "78 GPa"}) {
@@ -243,7 +243,7 @@ TEST(Simulate, StatesNoErrorOfAMaximumThatChanceMayExceed_optimized) {
   }
 }
 
-// However tight: a run that leaves no room for a tighter one is judged by a looser one.
+// A run that leaves no room for a tighter one is judged by a looser one, at any tolerance.
 TEST(Simulate, IsNeverItsOwnJudge_optimized) {
   for (const char* setting : {"simulate.accuracy=1e-8", "simulate.accuracy=1e-12", "simulate.tolerance=1e-13"}) {
     const Closing c = simulate(far_electrode(setting), true);
@@ -251,14 +251,14 @@ TEST(Simulate, IsNeverItsOwnJudge_optimized) {
     EXPECT_NE(c.judge->tolerance, c.tolerance) << setting;
     EXPECT_NE(c.judge->quadrature.points_per_length, c.quadrature.points_per_length) << setting;
     for (const Figure& f : all_figures) {
-      if (f.conditioning == Conditioning::high_rebound) continue;  // told where the later ones are low, whatever the tolerance
+      if (f.conditioning == Conditioning::high_rebound) continue;  // stated if the later rebounds are low, at any tolerance
       const bool known = f.conditioning == Conditioning::first_touch;
       EXPECT_EQ(c.errors[f] > 0, known) << f.key << ' ' << setting << ": of what comes after the runs part there is none";
     }
   }
   const Closing asked = simulate(far_electrode("simulate.accuracy=1e-12"), true);
   EXPECT_THAT(asked.warnings, Contains(testing::HasSubstr("accuracy 1e-12 is not reached")));
-  // The known accuracy is shown as another number than the one asked for, in as many digits as that takes.
+  // The known accuracy is printed with enough digits to differ from the requested one.
   for (const char* setting : {"simulate.accuracy=1e-12", "simulate.accuracy=1e-11", "simulate.accuracy=1e-10"}) {
     const std::string asked_for = std::string(setting).substr(18);
     for (const std::string& warning : simulate(far_electrode(setting), true).warnings)
@@ -295,7 +295,7 @@ TEST(Simulate, AskedToStopWhileItEstimatesErrorsKeepsTheFiguresWithoutThem) {
   for (const std::string& warning : c.warnings) EXPECT_EQ(warning.find("is not reached"), std::string::npos) << warning;
 }
 
-// Touches of 1 us between ballistic rebounds of these heights [m].
+// A trajectory with ballistic rebounds of these heights [m], and touches of 1 us between them.
 Trajectory hops(const std::vector<double>& heights) {
   constexpr double gap = 1e-6, pull = 1e3, dwell = 1e-6;
   Trajectory t;

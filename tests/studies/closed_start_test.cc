@@ -1,5 +1,5 @@
-// Runs that begin closed. Oracles: a plate's balance of forces and its linear oscillator, and the same run started by hand from
-// the closed equilibrium (ClosingOptions::begins_closed).
+// Runs that begin closed. Oracles: the balance of forces on a plate, its linear oscillator, and a run that is started from the
+// closed equilibrium by ClosingOptions::begins_closed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ using testing::HasSubstr;
 
 constexpr double eps0 = 8.8541878128e-12;
 
-/// A plate that is closed at 90 V, beyond its pull-in voltage, and switched off.
+/// A plate that is closed at 90 V, above its pull-in voltage, and switched off.
 SceneFile relay(std::initializer_list<std::string_view> changes = {}) {
   SceneFile file = SceneFile::parse(R"(
 structure = { kind = "plate", mass = "1 ug", stiffness = "100 N/m", area = "0.04 mm^2" }
@@ -50,7 +50,7 @@ SceneFile closed_relay(std::initializer_list<std::string_view> changes = {}) {
   return file;
 }
 
-/// Position of a plate that is pressed on a linear contact: k y + k_c (y - dt) = eps0 A V^2 / (2 (d - y)^2), by Newton's method.
+/// Returns the position of a plate on a linear contact: k y + k_c (y - dt) = eps0 A V^2 / (2 (d - y)^2), by Newton's method.
 double pressed_to(double volts) {
   constexpr double k = 100, kc = 1e5, area = 4e-8, d = 4e-6, dt = 3e-6;
   double y = dt;
@@ -92,7 +92,7 @@ TEST(ClosedStart, BeginsInTheClosedEquilibriumAndIsDoneWhereItEndsOpenAndAtRest)
   EXPECT_TRUE(c.metrics.settled);
   // Released from the contact plane at rest the plate is a damped oscillator with Q = 0.7: it overshoots by exp(-pi zeta / root).
   const double zeta = 1 / (2 * 0.7), root = std::sqrt(1 - zeta * zeta);
-  constexpr double pressed = 1e-3;  // share of the travel that the contact, 11.7 nm deep, adds
+  constexpr double pressed = 1e-3;  // depth of the contact, 11.7 nm, over the travel
   EXPECT_NEAR(c.metrics.overshoot, 3e-6 * std::exp(-3.14159265358979 * zeta / root), pressed * 3e-6);
 }
 
@@ -186,7 +186,7 @@ TEST(ClosedStart, MakesTheSceneOfAnOpeningRunAsTheOpeningDid) {
   const Trajectory t =
       simulate_closing(p.model, p.signals(), {.duration = found.window, .tolerance = p.tolerance, .start = p.start()});
   ASSERT_FALSE(t.touches.empty());
-  constexpr double of_tolerance = 1e-3;  // relative: both runs are as exact as the scene asks
+  constexpr double of_tolerance = 1e-3;  // relative tolerance of both runs
   EXPECT_NEAR(t.touches.back().end, found.best->figures.release_time, of_tolerance * found.best->figures.release_time);
 }
 

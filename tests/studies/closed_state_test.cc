@@ -1,5 +1,4 @@
-// Tests if a closed switch stays closed: by the tangent of its closed equilibrium, against closings that are followed long
-// enough.
+// Tests if a closed switch stays closed: by the tangent of its closed equilibrium, and by closings that are simulated for long.
 #include "studies/closing/closed_state.h"
 
 #include <fmt/format.h>
@@ -25,7 +24,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// A bridge with its contact in the middle of a long electrode: held there it gives way on one side.
+// A bridge with its contact in the middle of a long electrode. Held there, it collapses on one side.
 SceneFile bridge(std::initializer_list<std::string_view> changes = {}) {
   SceneFile file = SceneFile::parse(R"(
 [structure]
@@ -71,8 +70,8 @@ double pulled_through() {
 
 std::string level(double volts) { return fmt::format("waveform.main.level={:.9g} V", volts); }
 
-// A plate is held up to its fold, in closed form: k d + K (d - c) = eps A V^2 / (2 (g - d)^2) has its fold where the left
-// side times (g - d)^2 is most.
+// A plate is held up to its fold, in closed form: k d + K (d - c) = eps A V^2 / (2 (g - d)^2) has its fold at the maximum of
+// the left side times (g - d)^2.
 TEST(ClosedState, OfAPlateEndsAtItsFold) {
   const double k = 42, contact = 312.4, gap = 3.8e-6, plane = 2.6e-6, area = 1e-8;
   double most = 0;
@@ -100,7 +99,7 @@ TEST(ClosedState, SmallestEigenvalueIsThatOfDifferences) {
     const Eigen::Index n = p.model.modes();
     const Eigen::VectorXd still = Eigen::VectorXd::Zero(n);
     Switch::Workspace work = p.model.workspace();
-    // Differences of the accelerations in both senses, along the modes, give the tangent.
+    // Central differences of the accelerations along the modes give the tangent.
     Eigen::MatrixXd tangent(n, n);
     for (Eigen::Index k = 0; k < n; ++k) {
       const double step = 1e-6 * p.scene.device.gap.contact / p.model.basis().contact_shape().cwiseAbs().maxCoeff();
@@ -111,7 +110,7 @@ TEST(ClosedState, SmallestEigenvalueIsThatOfDifferences) {
       p.model.accelerations(q.data(), still.data(), volts, true, work, behind.data());
       tangent.col(k) = (behind - ahead) / (2 * step);
     }
-    // The smallest eigenvalue is the least of the quotient x' A x / x' x: found by inverse iteration with a shift far below it.
+    // The smallest eigenvalue, by inverse iteration with a shift far below it.
     const Eigen::MatrixXd a = (tangent + tangent.transpose()) / 2;
     const double largest = a.cwiseAbs().rowwise().sum().maxCoeff();
     Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(n, 1, 2);
@@ -122,7 +121,7 @@ TEST(ClosedState, SmallestEigenvalueIsThatOfDifferences) {
 
 TEST(ClosedState, BelowThePullThroughVoltageAPushedBeamComesBack) {
   ASSERT_TRUE(std::isfinite(pulled_through()));
-  // An electrode that is moved by a hundredth of its length pushes the beam to one side.
+  // An electrode that is shifted by a hundredth of its length pushes the beam to one side.
   for (const double share : {0.93, 1.03}) {
     const PreparedScene p = prepare(bridge({level(share * pulled_through()), "electrode.main.span=[\"42 um\", \"260 um\"]",
                                             "simulate.duration=3 ms", "simulate.tolerance=1e-7"}));
@@ -132,7 +131,7 @@ TEST(ClosedState, BelowThePullThroughVoltageAPushedBeamComesBack) {
   }
 }
 
-// A cantilever over nitride, whose dimple holds it up where the face would be touched first.
+// A cantilever over nitride. A dimple keeps it from touching the face where it otherwise would first.
 PreparedScene over_nitride(std::string_view volts) {
   SceneFile file = SceneFile::parse(R"(
 [structure]
@@ -166,7 +165,7 @@ duration = "60 us"
   return prepare(file);
 }
 
-// The pressure of the face is summed over the points of the beam.
+// Sums the pressure of the face over the points of the beam.
 TEST(ClosedState, TellsWhatTheFaceOfADielectricCarriesBesideItsContact) {
   const PreparedScene p = over_nitride("140 V");
   const Closing down = simulate(p, false);
@@ -191,7 +190,7 @@ TEST(ClosedState, TellsWhatTheFaceOfADielectricCarriesBesideItsContact) {
 }
 
 TEST(ClosedState, ThatIsUnstableHasNotSettledAndHoldsNothing) {
-  const PreparedScene stable = prepare(bridge({level(0.93 * pulled_through())}));  // stable with more modes, too
+  const PreparedScene stable = prepare(bridge({level(0.93 * pulled_through())}));  // stable also with more modes
   const Closing stays = simulate(stable, true);
   EXPECT_TRUE(stays.metrics.settled);
   EXPECT_GT(stays.metrics.hold_force, 0);
@@ -218,7 +217,7 @@ TEST(ClosedState, OfOneModeBetweenTwoClampsIsJudgedByMore) {
 }
 
 TEST(ClosedState, DevicesThatAreNotHeldHaveNotSettled) {
-  // Softer devices collapse onto the electrode at a lower voltage.
+  // Softer devices collapse onto the electrode at lower voltages.
   SceneFile file = bridge({level(0.99 * pulled_through())});
   file.set("spread.\"structure.residual_stress\"={ distribution = \"normal\", standard_deviation = \"5 MPa\" }");
   const PreparedScene p = prepare(file);
@@ -241,12 +240,12 @@ TEST(ClosedState, DevicesThatAreNotHeldHaveNotSettled) {
   EXPECT_GT(left, 0U);
 }
 
-// Starts the devices of a scene from the closed equilibrium of the nominal one: the result is that of the walk from the contact
-// plane.
+// Starts the devices of a scene from the closed equilibrium of the nominal one. The result must be that of the search from the
+// contact plane.
 void expect_the_same_near(const PreparedScene& p, const std::vector<double>& volts, std::uint64_t devices) {
   const auto nominal = closed_equilibrium(p.model, volts);
   if (!nominal) return;
-  constexpr double same = 1e-9;  // difference as a share of the contact force: both are solved to rounding
+  constexpr double same = 1e-9;  // difference over the contact force: both are solved up to rounding
   const Ensemble ensemble(p, devices, 5);
   DeviceBuilder builder(ensemble);
   for (std::uint64_t k = 0; k < devices; ++k) {
@@ -333,7 +332,7 @@ duration = "1 ms"
     const Closing c = simulate(p, false);
     EXPECT_EQ(c.metrics.status, volts > 17.1 ? Status::no_contact : Status::open);
     const auto warned = testing::Contains(HasSubstr("unstable equilibrium"));
-    // The plates pull by eps A V^2 x 2 / g^3 per displacement x, the spring by k: unstable from 17.1 V on, by hand.
+    // For a displacement x the two electrodes pull with eps A V^2 x 2 / g^3, and the spring with k x: unstable from 17.1 V on.
     if (volts > 17.1) {
       EXPECT_THAT(c.warnings, warned);
     } else {
@@ -342,7 +341,7 @@ duration = "1 ms"
   }
 }
 
-// An independent scan of what holds a switch: voltages ever further above its release voltage, 2 % of that distance apart.
+// An independent scan for the highest voltage that holds a switch, in steps of 2 % of the distance to its release voltage.
 double last_held(const Switch& model, double release) {
   double last = std::nan("");
   for (double above = 1e-6; above < 1; above *= 1.02) {
@@ -357,8 +356,8 @@ double last_held(const Switch& model, double release) {
 }
 
 TEST(PullThrough, IsFoundHoweverNarrowTheWindowAboveTheReleaseVoltage) {
-  // A plate on a contact of stiffness kc: V^2 = 2 (d - y)^2 (k y + kc (y - dt)) / (eps0 A), largest at y = d/3 + 2 kc dt/(3 (k +
-  // kc)).
+  // Closed form for a plate on a contact of stiffness kc: V^2 = 2 (d - y)^2 (k y + kc (y - dt)) / (eps0 A) is largest at y =
+  // d/3 + 2 kc dt/(3 (k + kc)).
   constexpr double k = 42, area = 1e-8, d = 3.8e-6, dt = 2.6e-6;
   for (const double kc : {200.0, 240.0, 270.0, 280.0, 300.0, 500.0, 2000.0}) {
     const double y = d / 3 + 2 * kc * dt / (3 * (k + kc));
@@ -366,13 +365,13 @@ TEST(PullThrough, IsFoundHoweverNarrowTheWindowAboveTheReleaseVoltage) {
     const SceneFile file = spring_plate({fmt::format("contact.stiffness={} N/m", kc)});
     const Switch model(read_scene(file).device);
     const ClosedRange range = closed_range(model, 0, {0});
-    constexpr double precision = 2e-6;  // precision of pull_through_voltage(), and as much again
+    constexpr double precision = 2e-6;  // twice the precision of pull_through_voltage()
     EXPECT_NEAR(range.pulled_through, end, precision * end) << kc;
-    constexpr double step = 0.02;  // share of the distance to the release voltage, in the scan
+    constexpr double step = 0.02;  // step of the scan over the distance to the release voltage
     const double scanned = last_held(model, range.release);
     EXPECT_GE(range.pulled_through, scanned * (1 - precision)) << kc;
     EXPECT_LE(range.pulled_through, (range.release + (scanned - range.release) * (1 + step)) * (1 + precision)) << kc;
-    // A hold voltage beyond the window leads there, too.
+    // A start above the collapse voltage gives the same result.
     const std::vector<double> beyond{1.2 * end};
     EXPECT_NEAR(pull_through_voltage(model, 0, beyond), end, precision * end) << kc;
   }

@@ -1,4 +1,4 @@
-// Records of a contact, and what is no record.
+// Records of a contact, and the faults of invalid ones.
 #include "studies/inverse/contact_record.h"
 
 #include <gmock/gmock.h>

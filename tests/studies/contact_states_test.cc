@@ -1,4 +1,4 @@
-// The states of contacts along runs, against touches, rebounds and the electrical figures.
+// Compares the states of contacts in runs with touches, rebounds and electrical figures.
 #include "studies/devices/contact_states.h"
 
 #include <gmock/gmock.h>
@@ -19,13 +19,13 @@
 namespace softland {
 namespace {
 
-std::vector<std::string> said;  // the lines of the last run
+std::vector<std::string> said;  // messages of the last run
 StateRecord states_of_scene(const SceneFile& file) {
   said.clear();
   return contact_states(prepare(file), {}, [](const std::string& line) { said.push_back(line); });
 }
 
-// A rigid plate on a linear contact closes where it touches: its states are its touches.
+// A rigid plate on a linear contact is closed exactly in its touches.
 TEST(ContactStates, OfAPlateAreItsTouches) {
   const PreparedScene p = prepare(spring_plate());
   const Closing closing = simulate(p, true);
@@ -37,7 +37,7 @@ TEST(ContactStates, OfAPlateAreItsTouches) {
   const std::vector<Touch>& touches = closing.trajectory.touches;
   ASSERT_EQ(connection.spans.size(), touches.size());
   ASSERT_GT(touches.size(), 3u);
-  constexpr double located = 1e-12;  // [s], of two ways to the same zero
+  constexpr double located = 1e-12;  // difference of two root finders [s]
   for (std::size_t k = 0; k < touches.size(); ++k) {
     EXPECT_NEAR(connection.spans[k].begin, touches[k].begin, located);
     if (std::isfinite(touches[k].end))
@@ -47,7 +47,7 @@ TEST(ContactStates, OfAPlateAreItsTouches) {
   }
 }
 
-// The electrical figures are made in the same run, without a list of edges.
+// Compares with the electrical figures, which the same run finds without a list of edges.
 void expect_figures(const StateChannel& channel, const Metrics& m) {
   ASSERT_FALSE(channel.spans.empty());
   EXPECT_EQ(channel.spans.front().begin, m.electrical_contact);
@@ -100,12 +100,12 @@ TEST(ContactStates, HaveTheResistanceOfTheCourse) {
       const auto [a, from] = span.resistance[k];
       const auto [b, to] = span.resistance[k + 1];
       ASSERT_LT(a, b);
-      constexpr double shortest = 5e-12;  // [s], of a line that was halved
+      constexpr double shortest = 5e-12;  // shortest interval that is bisected [s]
       if (b - a < shortest) continue;
       for (const double share : {0.25, 0.5}) {
         const std::vector<double> time{std::lerp(a, b, share)};
         const double right = resistance_course(p.scene.device, run, time).front();
-        constexpr double near = 0.02;  // the middle is within 1 %
+        constexpr double near = 0.02;  // allowed error at the middle; interpolation is within 1 %
         EXPECT_NEAR(std::lerp(from, to, share), right, near * right) << time.front();
         ++compared;
       }

@@ -1,5 +1,4 @@
-// Tests the cost that a search minimises, on trajectories made by hand. No weight is repeated here: only rules that
-// hold whatever they are.
+// Tests the cost function of searches on synthetic trajectories. No weight is repeated here: the tests hold for any weights.
 #include "objectives/cost.h"
 
 #include <fmt/format.h>
@@ -19,7 +18,8 @@ namespace {
 constexpr double gap = 2e-6, score_window = 100e-6;
 const MetricsOptions options;
 
-// Approaches at `speed`, touches at `at`, rebounds `height` high for `flight`, and stays.
+// Returns a landing that approaches at `speed`, touches at `at`, has a rebound of `height` and duration `flight`, and stays
+// closed.
 Trajectory landing(double at, double speed, double height, double flight, double excess) {
   Trajectory t;
   t.status = Status::done;
@@ -89,7 +89,8 @@ TEST(Cost, BelowOneIsThatOfALandingWithoutSignificantReboundByItsOwnFigureAlone)
     EXPECT_LT(cost(target, landing(45e-6, 0.6, insignificant, 1e-6, 5e-12), scale(), options), 1) << to_string(target);
     EXPECT_GT(cost(target, landing(20e-6, 0.01, significant, 1e-6, 0), scale(), options), 1) << to_string(target);
   }
-  // Early and hard against late and soft: settling chooses the first, impact and energy the second, by the smallest difference.
+  // An early, hard landing against a late, soft one: the target settling prefers the first, impact and energy the second, even
+  // by the smallest difference.
   const Trajectory early = landing(30.0e-6, 0.1005, 0, 0, 1e-13), soft = landing(30.1e-6, 0.1, 0, 0, 5e-13);
   const auto prefers_early = [&](Target target) {
     return cost(target, early, scale(), options) < cost(target, soft, scale(), options);
@@ -194,10 +195,10 @@ TEST(Cost, OfTheSameLandingLaterIsNotLower) {
     EXPECT_GT(cost(target, late, scale(), options), cost(target, early, scale(), options)) << to_string(target);
 }
 
-// A search keeps no trajectory: it gathers the figures while each closing runs.
+// A search keeps no trajectory: it computes the figures while the closing runs.
 TEST(MetricsObserver, GathersWhatCostsAreMadeOfAsATrajectoryHasIt) {
   for (const char* level : {"17.771 V", "21 V", "13 V", "5 V"}) {
-    for (const char* window : {"600 us", "60 us"}) {  // the short one ends in a rebound
+    for (const char* window : {"600 us", "60 us"}) {  // the short one ends during a rebound
       const PreparedScene p =
           prepare(gold({fmt::format("waveform.main.level={}", level), fmt::format("simulate.duration={}", window)}));
       const ClosingOptions run{.duration = p.duration, .tolerance = 1e-4, .closed_potential = -1e-12};
@@ -250,7 +251,7 @@ TEST(Cost, IsFiniteWhereTheEnergyWasNotMeasured) {
 }
 
 TEST(Cost, OfASwitchThatReopensIsMoreThanOfAnyThatStays) {
-  // It touches softly, leaves, and is on its way when the run ends.
+  // The switch touches softly, opens again, and is in flight when the run ends.
   Trajectory reopening = landing(20e-6, 0.01, 0, 0, 0);
   reopening.landing_excess = std::numeric_limits<double>::quiet_NaN();
   reopening.touches[0].end = 22e-6;

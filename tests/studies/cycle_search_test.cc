@@ -1,4 +1,4 @@
-// The search for a pair of waveforms at a rate. Oracles: the plain pair at that rate, and the scene that is left, run again.
+// The search for a pair of waveforms at a rate. Oracles: the plain pair at that rate, and a new run of the written scene.
 #include "studies/search/cycle_search.h"
 
 #include <gmock/gmock.h>
@@ -17,7 +17,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// A plate that rings for many cycles at 12 kHz.
+// A plate that vibrates for many cycles at 12 kHz.
 SceneFile plate(const std::string& rest = "") {
   return SceneFile::parse(R"(
 structure = { kind = "plate", mass = "1e-10 kg", stiffness = "10 N/m", area = "1e-8 m^2", damping_ratio = 0.05 }
@@ -49,7 +49,7 @@ TEST(CycleSearch, LandsEveryCycleSofterThanThePlainPair) {
   EXPECT_FALSE(found.interrupted);
 }
 
-// best.toml says the pair that was told, to the bit.
+// best.toml has bit for bit the reported pair of waveforms.
 TEST(CycleSearch, LeavesASceneOfOneCycle) {
   const CycleSearchResult found = search_cycle(plate(), at(8e3));
   const PreparedScene p = prepare(found.scene.again("best.toml"));

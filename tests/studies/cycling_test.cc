@@ -1,5 +1,5 @@
-// Cycles of closing and opening. Oracles: integrations of a plate's three cycles by another program, an undamped closing from a
-// swing in closed form, and the same closing alone.
+// Cycles of closing and opening. Oracles: three cycles of a plate by another program, the closed form of an undamped closing
+// from a vibration, and the same closing without cycles.
 #include "studies/devices/cycling.h"
 
 #include <gmock/gmock.h>
@@ -55,7 +55,7 @@ TEST(Cycling, GivesThePlateItsThreeCycles) {
   EXPECT_FALSE(found.gap.empty());
 }
 
-// The first cycle is the closing alone, and what the sources give adds up to what they give in the whole run.
+// The first cycle equals the closing alone, and the energies of all cycles add up to that of the whole run.
 TEST(Cycling, BeginsLikeTheClosingAloneAndSharesTheEnergyOfTheRun) {
   const PreparedScene p = prepare(plate("simulate.duration = \"40 us\"\n"));
   const Metrics alone = simulate(p, false).metrics;
@@ -67,7 +67,7 @@ TEST(Cycling, BeginsLikeTheClosingAloneAndSharesTheEnergyOfTheRun) {
   EXPECT_EQ(found.cycles[0].metrics.impact_velocity, alone.impact_velocity);
   double sum = 0;
   for (const CycleFigures& one : found.cycles) sum += one.metrics.drive_energy;
-  // The stored energy at the end is that of the plate, which still swings: the rest was lost on the way.
+  // At the end the plate still vibrates: the stored energy is in the plate, the rest was dissipated.
   const Cycles first = cycled.run({.period = 80e-6, .on_time = 40e-6, .cycles = 1}, false);
   EXPECT_NEAR(found.cycles[0].metrics.drive_energy, first.cycles[0].metrics.drive_energy,
               1e-6 * first.cycles[0].metrics.drive_energy);
@@ -79,7 +79,7 @@ TEST(Cycling, BeginsLikeTheClosingAloneAndSharesTheEnergyOfTheRun) {
   }
 }
 
-// The switch is electrically closed while it is in touch if there is no electrical rule.
+// Without an electrical rule the switch is electrically closed while in touch.
 TEST(Cycling, IsElectricallyClosedWhileItIsInTouch) {
   const PreparedScene p = prepare(plate("simulate = { duration = \"40 us\", tolerance = 1e-9 }\n"));
   const CycleWaveforms waveforms = ramps();
@@ -119,7 +119,7 @@ TEST(Cycling, KeepsTheWaveformOfEveryCycle) {
   EXPECT_EQ(all.hold_level(), 0);
 }
 
-// A plate that needs long to come to rest is steady up to the rate at which it no longer does; here with a duty of a half.
+// A plate with slow decay is steady up to the rate at which it no longer comes to rest; the duty is 0.5.
 TEST(Cycling, FindsTheLargestRateThatIsSteady) {
   const PreparedScene p = prepare(plate("simulate.duration = \"60 us\"\n"));
   const CycleWaveforms waveforms = ramps();
@@ -131,7 +131,7 @@ TEST(Cycling, FindsTheLargestRateThatIsSteady) {
   EXPECT_TRUE(scan.rates.front().is_steady) << "it comes to rest there";
   bool below = true;
   for (const RateScan::Rate& one : scan.rates) {
-    // The verdict follows from the figures of all cycles, whatever the scan has looked at.
+    // The verdict follows from the figures of all cycles, independent of the scan.
     const Cycles all = cycled.run({.period = 1 / one.rate, .on_time = 0.5 / one.rate, .cycles = 4}, false);
     bool steady = all.cycles.size() == 4;
     for (const CycleFigures& c : all.cycles) {

@@ -1,4 +1,5 @@
-// Exact derivatives of the figures by parameters of the device, against differences of tight closings of devices built anew.
+// Compares exact derivatives of the figures by parameters of the device with differences of tight closings of separately built
+// devices.
 #include "studies/devices/derivatives.h"
 
 #include <fmt/format.h>
@@ -19,9 +20,10 @@
 namespace softland::derivatives_test {
 namespace {
 
-constexpr double bound = 1e-5;       // error over the largest derivative of the figure by any factor
-constexpr double tight = 1e-11;      // tolerance of the closings
-constexpr double agreement = 1e-6;   // tolerance of extrapolations from two widths, which say nothing if they differ by more
+constexpr double bound = 1e-5;   // error over the largest derivative of the figure by any factor
+constexpr double tight = 1e-11;  // tolerance of the closings
+constexpr double agreement =
+    1e-6;  // largest difference of extrapolations from two widths; if they differ by more, the case is undecided
 constexpr double half_width = 1e-5;  // half width of the narrowest difference
 
 struct Scenes {
@@ -31,7 +33,7 @@ struct Scenes {
   std::vector<std::string> changes;
   std::vector<std::string> keys;  // varied keys, each by a factor
   std::string calibration = {};
-  int arcs = 16;  // arcs of a step
+  int arcs = 16;  // parts of an integrator step
 };
 
 std::string spread_of(const std::vector<std::string>& keys) {
@@ -41,7 +43,7 @@ std::string spread_of(const std::vector<std::string>& keys) {
   return "spread={" + entries + "}";
 }
 
-// A switch with every key within a tenth of the scene's; it is not shorter, since electrodes must end on it.
+// Returns a switch with every key within a tenth of the scene's value. It is not shorter, since electrodes must end on it.
 SceneFile random_switch(const Scenes& of, std::mt19937_64& random) {
   SceneFile file = scene(of.scene);
   for (const std::string& change : of.changes) file.set(change);
@@ -62,7 +64,7 @@ SceneFile random_switch(const Scenes& of, std::mt19937_64& random) {
   return file;
 }
 
-// The figures of derivatives() under the waveforms of a drive, for the device with these values, built from nothing.
+// Computes the figures of derivatives() under the waveforms of a drive, for separately built devices.
 class Devices {
  public:
   Devices(const PreparedScene& nominal, const EnsembleDrive& drive)
@@ -82,7 +84,7 @@ class Devices {
     for (const Figure& figure : device_figures) all.push_back(outcome.of(figure));
     return all;
   }
-  // Differences of the figures by value k.
+  // Returns the differences of the figures by value k.
   std::vector<double> difference(std::vector<double> values, std::size_t k, double width) {
     const double middle = values[k];
     values[k] = middle + width;
@@ -104,15 +106,15 @@ class Devices {
 
 struct Compared {
   int cases = 0, grazing = 0, derivatives = 0, undecided = 0;
-  double worst = 0;  // over the bound
+  double worst = 0;  // largest error over the bound
 };
 
-// Index among device_figures.
+// Returns the index among device_figures.
 std::size_t place_of(std::string_view key) {
   return static_cast<std::size_t>(std::ranges::find(device_figures, key, &Figure::key) - device_figures.begin());
 }
 
-// A case is a switch, a waveform and a parameter.
+// Compares one case: a switch, a waveform and a parameter.
 void compare(const PreparedScene& nominal, const EnsembleDrive& drive, int arcs, Compared& all) {
   const Derivatives found = derivatives(nominal, drive, {.tolerance = tight, .refinement = arcs});
   ASSERT_EQ(found.why_none, "");
@@ -132,7 +134,7 @@ void compare(const PreparedScene& nominal, const EnsembleDrive& drive, int arcs,
       if (!figure.is_known()) continue;
       double largest = 0;
       for (const double by : figure.by_variable) largest = std::max(largest, std::abs(by));
-      // Richardson's extrapolation to no width.
+      // Richardson's extrapolation to zero width.
       const std::size_t f = place_of(figure.key);
       const double expected = (4 * differences[0][f] - differences[1][f]) / 3;
       if (!(std::abs(expected - (4 * differences[1][f] - differences[2][f]) / 3) <= agreement * largest)) {
@@ -164,7 +166,7 @@ Compared compare_random(const Scenes& of, int switches, std::uint64_t seed) {
     if (!of.calibration.empty()) calibration = {.pull_in_error = 0, .frequency_error = 0};
     const EnsembleDrive drive{.waveforms = setting.drives(waveforms), .known = KnownUnits(calibration)};
     const Derivatives closes = derivatives(setting.given, drive);
-    if (!closes.why_none.empty()) continue;  // it never touches
+    if (!closes.why_none.empty()) continue;  // the device does not touch
     const int before = all.grazing;
     compare(setting.given, drive, of.arcs, all);
     if (all.grazing == before) ++done;
@@ -178,7 +180,7 @@ void expect_agreement(const Scenes& of, int switches) {
   const Compared all = compare_random(of, switches, 1);
   EXPECT_EQ(all.cases, switches * static_cast<int>(of.keys.size()));
   EXPECT_GE(all.derivatives, 4 * all.cases);
-  EXPECT_LE(2 * all.undecided, all.derivatives);  // measured: 12 of 42 of one kind, 9 with fused multiplications
+  EXPECT_LE(2 * all.undecided, all.derivatives);  // observed: 12 of 42 for one kind, 9 with fused multiplications
 }
 
 const std::vector<std::string> beam{"structure.length",  "structure.width", "structure.thickness", "structure.youngs_modulus",
@@ -325,7 +327,7 @@ TEST(Derivatives, OfAContactAlongThePad_optimized) {
                    1);
 }
 
-// The start of a run moves with the device.
+// The start of a run depends on the device.
 TEST(Derivatives, FromRestUnderWhatDrivesStandAt_optimized) {
   expect_agreement({"mem-gold-pzt.toml",
                     Actuator::electrostatic,
@@ -335,7 +337,7 @@ TEST(Derivatives, FromRestUnderWhatDrivesStandAt_optimized) {
                    1);
 }
 
-// The electrode and the clock follow the pull-in voltage and the frequency of each device.
+// Voltages and times follow the pull-in voltage and the frequency of each device.
 TEST(Derivatives, OfDevicesInTheirOwnUnits_optimized) {
   expect_agreement({"mem-gold.toml", Actuator::electrostatic, "pulse", {in_100_us}, beam, "Vdp,frequency"}, 1);
 }
@@ -346,7 +348,7 @@ const FigureDerivatives& figure(const Derivatives& of, std::string_view key) {
   return *std::find_if(of.figures.begin(), of.figures.end(), [&](const FigureDerivatives& f) { return f.key == key; });
 }
 
-// Only inertia knows of time without gas: a step closes a switch of c times the density in the root of c times the time.
+// Without gas, time enters by inertia only: with c times the density all times are multiplied by the root of c.
 TEST(Derivatives, TimesGrowWithTheRootOfTheDensity_optimized) {
   SceneFile file = gold_at_17_volts({spread_of({"structure.density"})});
   file.erase("gas");
@@ -361,7 +363,7 @@ TEST(Derivatives, TimesGrowWithTheRootOfTheDensity_optimized) {
               exact * figure(found, "initial_contact_time_s").value);
 }
 
-// Correlated quantities that are one quantity spread a figure as one.
+// Two fully correlated quantities spread a figure as a single quantity does.
 TEST(Derivatives, AddUpAsCorrelated_optimized) {
   const auto found_with = [](const std::string& correlation) {
     const PreparedScene p = prepare(gold_at_17_volts(
@@ -372,7 +374,7 @@ TEST(Derivatives, AddUpAsCorrelated_optimized) {
   };
   const Derivatives alone = found_with("0.0"), together = found_with("0.5");
   const FigureDerivatives& time = figure(alone, "initial_contact_time_s");
-  const double a = time.by_variable[0] * 0.02, b = time.by_variable[1] * 0.01;  // gap.contact comes first
+  const double a = time.by_variable[0] * 0.02, b = time.by_variable[1] * 0.01;  // gap.contact is the first variable
   EXPECT_NEAR(time.deviation, std::hypot(a, b), 1e-12 * time.deviation);
   EXPECT_NEAR(figure(together, "initial_contact_time_s").deviation, std::sqrt(a * a + b * b + a * b), 1e-12 * time.deviation);
 }
@@ -421,7 +423,7 @@ TEST(Derivatives, ForwardAreThoseBackward_optimized) {
   }
 }
 
-// The reference closing is chaotic in the whole window: its permanent contact is decided by changes that no one sees.
+// The reference closing is chaotic in the whole window: imperceptible changes decide its permanent contact time.
 TEST(Derivatives, TellWhatIsIllConditioned_optimized) {
   const PreparedScene p = prepare(gold());
   const Derivatives found = derivatives(p, own_drive(p));
@@ -452,10 +454,10 @@ TEST(Derivatives, SayWhyThereAreNone_optimized) {
   EXPECT_NE(both.variables[0].why_none, "");
   EXPECT_TRUE(std::isnan(both.figures[0].by_variable[0]));
   EXPECT_TRUE(std::isfinite(both.figures[0].by_variable[1]));
-  // A step that comes earlier begins the clock: nothing changes; one that comes later touches later.
+  // The clock starts with an early step, so that nothing changes; a late step touches later.
   const Derivatives late = found({R"(spread."driver.main.delay"={distribution="normal",standard_deviation="10 ns"})"});
   EXPECT_NE(late.variables[0].why_none, "");
-  // The electrode ends with the beam.
+  // The electrode ends at the end of the beam, so that the beam cannot be shorter.
   const Derivatives shorter = found({spread_of({"structure.length"}), R"(electrode.main.span=["60 um","250 um"])"});
   EXPECT_NE(shorter.variables[0].why_none, "");
 }

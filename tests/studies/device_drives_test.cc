@@ -1,4 +1,4 @@
-// Errors of the drives, device by device.
+// Errors of the drives of single devices.
 #include "studies/devices/device_drives.h"
 
 #include <fmt/format.h>
@@ -31,7 +31,7 @@ bool same(const DeviceOutcome& a, const Metrics& b) {
          a.metrics.major_bounce_height == b.major_bounce_height && a.metrics.impact_velocity == b.impact_velocity;
 }
 
-// The closing of a scene as `simulate` reads it, in the window and with the tolerance of an ensemble.
+// Returns the figures of a scene as `simulate` finds them, in the window and with the tolerance of an ensemble.
 Metrics alone(const SceneFile& file) {
   const PreparedScene own = prepare(SceneFile::parse(file.text(), "alone.toml"));
   return metrics(simulate_closing(own.model, own.signals(), {.duration = own.duration, .tolerance = EnsembleRun{}.tolerance}),
@@ -39,12 +39,12 @@ Metrics alone(const SceneFile& file) {
 }
 
 std::vector<DeviceOutcome> closings(const PreparedScene& nominal, const Ensemble& ensemble, int jobs = 1) {
-  // One at a time, as simulate_closing() does it: to the bit.
+  // One closing at a time gives bit for bit the result of simulate_closing().
   return close_all(ensemble, {{.waveforms = nominal.waveforms()}},
                    {.duration = nominal.duration, .jobs = jobs, .vectors = Vectors::none})[0];
 }
 
-constexpr double figures_of_bits = 1e-9;  // relative: what another clock does to the figures of one closing
+constexpr double figures_of_bits = 1e-9;  // relative change of the figures of a closing by another begin of the clock
 
 TEST(DeviceDrives, AGainMultipliesTheLevels) {
   const PreparedScene nominal = prepare(gold_at_17_volts({throw_and_catch, normal("gain", "2 %")}));
@@ -59,9 +59,9 @@ TEST(DeviceDrives, AGainMultipliesTheLevels) {
   EXPECT_NE(found[0].metrics.initial_contact_time, found[1].metrics.initial_contact_time);
 }
 
-// Sources that differ by a gain alone share what their samples and filters make of a waveform.
+// Devices whose sources differ only by a gain share the sampled and filtered signal.
 TEST(DeviceDrives, ThatDifferByAGainAreFactorsOfOneSignal) {
-  constexpr double rounding = 1e-12;  // error as a share of the largest voltage
+  constexpr double rounding = 1e-12;  // error over the largest voltage
   for (const char* source : {"driver.main={max_voltage=\"25 V\", sample_rate=\"5 MHz\", bits=12, bandwidth=\"1 MHz\"}",
                              "driver.main={max_voltage=\"25 V\", bandwidth=\"300 kHz\", delay=\"1 us\"}"}) {
     SCOPED_TRACE(source);
@@ -93,7 +93,7 @@ TEST(DeviceDrives, ADelayMovesTheClosingAndNothingElse) {
   const Metrics in_time = alone(gold_at_17_volts({throw_and_catch}));
   int early = 0;
   for (std::size_t k = 0; k < found.size(); ++k) {
-    // The clock of a device whose only drive is early begins with it.
+    // The clock of a device with a single early drive begins with that drive.
     const double delay = ensemble.values(k)[0], late = std::max(0.0, delay);
     early += delay < 0;
     ASSERT_TRUE(found[k].closed());
@@ -146,7 +146,7 @@ TEST(DeviceDrives, JitterOfEdgesIsAsWideAsItIsSaid) {
   std::vector<double> throwing, catching;
   for (std::size_t k = 0; k < ensemble.size(); ++k) {
     const Signal own = drives.signals(waveforms, {}, ensemble.values(k)).front();
-    // Begins of the edges to 20, 5 and 17 V; the ramps move as a whole.
+    // Begins of the edges to 20, 5 and 17 V; each ramp moves as a whole.
     std::vector<double> begins;
     for (const SignalPiece& piece : own.pieces()) {
       if (piece.slope != 0) begins.push_back(piece.begin);
@@ -155,7 +155,8 @@ TEST(DeviceDrives, JitterOfEdgesIsAsWideAsItIsSaid) {
     throwing.push_back(begins[1] - begins[0] - 22e-6);
     catching.push_back(begins[2] - begins[1] - 8e-6);
   }
-  // The difference of two independent times; two differences that share one of them have a correlation of -1/2.
+  // Differences of two independent times have sqrt(2) times their deviation; two differences with a common time have a
+  // correlation of -1/2.
   const double expected = std::sqrt(2.0) * 50e-9, count = static_cast<double>(throwing.size());
   EXPECT_NEAR(sample_standard_deviation(throwing), expected, 4 * expected / std::sqrt(2 * count));
   EXPECT_NEAR(sample_standard_deviation(catching), expected, 4 * expected / std::sqrt(2 * count));
@@ -191,7 +192,7 @@ TEST(DeviceDrives, DoNotDependOnThreads) {
   for (std::size_t k = 0; k < one.size(); ++k) EXPECT_TRUE(same(one[k], three[k].metrics)) << k;
 }
 
-// Every error at once on drives of every kind: scenes of devices run to what the ensemble found.
+// All errors at once on drives of every kind: the scenes of devices give the results of the ensemble.
 TEST(DeviceDrives, AreWrittenIntoTheScenesOfDevices) {
   const std::string all =
       "spread={\"driver.main.gain\"={distribution=\"normal\", cov=\"1 %\"}, \"driver.main.offset\"={distribution=\"normal\", "
@@ -227,7 +228,7 @@ TEST(DeviceDrives, StayInTheirFamilyWhereItCanExpressThem) {
   for (std::size_t k = 0; k < ensemble.size(); ++k) {
     const std::vector<double> values = ensemble.values(k);
     const Waveform own = drives.written({Step{.level = 17}}, {}, values).front().waveform;
-    const bool is_early = drives.shown(values)[0] < 0;  // its clock begins with it: nothing is left of its one edge's error
+    const bool is_early = drives.shown(values)[0] < 0;  // the clock begins with its single early edge, whose error has no effect
     EXPECT_EQ(family(own), is_early ? "step" : "table") << k;
     early += is_early;
   }
@@ -288,7 +289,7 @@ TEST(DeviceDrives, OfASearchAreThoseOfTheVerdict) {
 const std::string gain_key = "driver.main.gain=1.03", offset_key = "driver.main.offset=\"-0.2 V\"",
                   delay_key = "driver.main.delay=\"0.4 us\"";
 
-// The keys are what the source makes of a waveform: the same closing, amplified, shifted and late.
+// The keys of a source amplify, shift and delay a waveform: the closing is the same as with that waveform written out.
 TEST(SourceKeys, AreThoseOfTheWaveformThatTheyMake) {
   SceneFile by_hand = gold_at_17_volts({throw_and_catch});
   by_hand.set_waveform("main", Pulse{.levels = {1.03 * 20, 1.03 * 5, 1.03 * 17}, .times = {22e-6, 30e-6}, .edge = 1e-6});
@@ -301,7 +302,7 @@ TEST(SourceKeys, AreThoseOfTheWaveformThatTheyMake) {
   EXPECT_NE(alone(gold_at_17_volts({throw_and_catch, offset_key})).initial_contact_time, in_time.initial_contact_time);
 }
 
-// A distribution is about the key: its factor multiplies what the scene says, its value stands for that.
+// A distribution varies the key: a factor multiplies the scene's value, a value replaces it.
 TEST(SourceKeys, AreWhatVaries) {
   for (const std::string& samples : {std::string(), std::string("driver.main.sample_rate=\"20 MHz\"")}) {
     SCOPED_TRACE(samples);
@@ -348,7 +349,7 @@ TEST(SourceKeys, StandInTheScenesOfDevices) {
   }
 }
 
-// First contact under a step is that of its volts, and how late it is on top.
+// First contact under a step depends on the error of the voltage, and is late by the delay.
 TEST(DeviceDrives, HaveSharesOfTheVariance) {
   const PreparedScene nominal =
       prepare(gold_at_17_volts({"spread={\"driver.main.gain\"={distribution=\"normal\", cov=\"0.03 %\"}, \"driver.main.delay\"="
