@@ -80,7 +80,7 @@ TEST(OmissibleEffect, ContactAlongThePadGoesBackToItsCentreWhenTold) {
   ASSERT_EQ(along.effect, "contact.distribution");
   EXPECT_EQ(along.choice, "pad");
   EXPECT_FALSE(along.automatic);
-  // The free end leads the inner one by the tilt of 1.5 dt / L over 5 um.
+  // The free end is deeper than the inner end by the tilt 1.5 dt / L over 5 um.
   EXPECT_NEAR(along.magnitude.value, 60e-9, 1e-12);
   EXPECT_EQ(own(without(p, {along})).initial_contact_time, own(prepare(gold_at_17_volts())).initial_contact_time);
 }
@@ -95,7 +95,7 @@ TEST(Without, IsTheSceneWithoutTheSectionUnderTheSameVolts) {
   EXPECT_EQ(bare.scene.device.electrodes[0].fringing, Fringing::none);
   EXPECT_EQ(bare.model.modes(), 1);
   EXPECT_EQ(bare.signals()[0].hold_level(), 17.771);
-  // A level in Vdp keeps the volts of the whole scene.
+  // A level in Vdp keeps the voltage of the scene with all effects.
   const PreparedScene relative = prepare(gold());
   EXPECT_EQ(without(relative, {omissible_effects(relative)[1]}).signals()[0].hold_level(), relative.signals()[0].hold_level());
 }
@@ -145,7 +145,7 @@ TEST(Without, APartIsTheSceneThatDoesNotHaveIt) {
   EXPECT_EQ(t_i(leave_out(bowed, "structure.rest_shape")), t_i(plain));
   const PreparedScene turns = prepare(gold_at_17_volts({turning}));
   EXPECT_GT(t_i(plain), 1.001 * t_i(turns));
-  // A clamp that is said goes another way through the modes than one that is not.
+  // An explicit clamp is handled by other code than an absent anchor.
   EXPECT_NEAR(t_i(leave_out(turns, "structure.anchor")) / t_i(plain), 1, 1e-6);
   const PreparedScene whole = prepare(gold_at_17_volts({parts, two_layers}));
   const PreparedScene relaxed = leave_out(whole, "structure.layers[2].stress"),
@@ -171,7 +171,7 @@ TEST(OmissibleEffect, MayBeABackStopAndTheDampingOfEveryContact) {
   ASSERT_EQ(open.scene.device.contacts.size(), 2u);
   EXPECT_EQ(open.scene.device.contacts[0].side, Side::near);
   EXPECT_EQ(open.scene.device.contacts[1].side, Side::near);
-  // One dimple is left of a dimple and a stop: it is the connection, whatever [metrics] closed says.
+  // Of a dimple and a stop the dimple is left. It is then the connection, whatever [metrics] closed says.
   const PreparedScene one =
       prepare(without(without(scene("new/two-contacts.toml", {"metrics.closed=any"}), "spread"), "contact.right"));
   const std::vector<OmissibleEffect> of_one = omissible_effects(one);
@@ -192,7 +192,7 @@ TEST(OmissibleEffect, MayBeTheRoughnessOfADielectric) {
   ASSERT_TRUE(smooth.scene.device.electrodes[0].dielectric);
   EXPECT_EQ(smooth.scene.device.electrodes[0].dielectric->roughness, 0);
   EXPECT_LT(own(smooth).initial_contact_time, own(p).initial_contact_time) << "the field is stronger";
-  // A face on which the beam lands stays.
+  // The face on which the beam lands is not left out.
   const PreparedScene lands = prepare(scene("new/capacitive-bridge.toml", {"electrode.main.dielectric.roughness=10 nm"}));
   EXPECT_THAT(names(omissible_effects(lands)), testing::Contains("electrode.main.dielectric.roughness"));
   EXPECT_THAT(names(omissible_effects(lands)), testing::Not(testing::Contains("electrode.main.dielectric")));
@@ -221,7 +221,7 @@ TEST(OmissibleEffect, MayBeTheStretchingOfATableOfModes) {
   EXPECT_FALSE(without(p, {stretching}).model.stretching());
 }
 
-// Nothing is left to vary of a stress of 0.
+// The spread of a stress cannot stay when the stress is set to 0.
 TEST(Without, ANumberThatVariesTakesItsSpreadAlong) {
   SceneFile file = without(scene("new/clamped-clamped.toml"), "spread");
   file.set(R"(spread."structure.residual_stress"={distribution="normal",cov="5 %"})");
@@ -286,7 +286,7 @@ TEST(AutomaticEffects, LeaveOutWhatChangesNothing) {
   EXPECT_THAT(p.scene.warnings.back(), HasSubstr("effects = \"auto\" leaves out "));
   EXPECT_THAT(p.scene.warnings.back(), HasSubstr("dispersion ("));
   EXPECT_EQ(own(p).initial_contact_time, own(prepare(gold_at_17_volts())).initial_contact_time);
-  // The written scene runs to the same figures without choosing again.
+  // The written scene gives the same figures without another choice.
   const PreparedScene again = prepare(p.resolved());
   EXPECT_FALSE(again.effects);
   EXPECT_EQ(own(again).major_bounce_height, own(p).major_bounce_height);

@@ -1,4 +1,4 @@
-// The closing of a scene repeated with every law.
+// Repeats the closing of a scene under every law.
 #include "studies/closing/effects.h"
 
 #include <gmock/gmock.h>
@@ -24,7 +24,7 @@ std::vector<std::string> choices(const Effects& effects) {
   return names;
 }
 
-/// No gas, and every law that is made of what describes a film and nothing else.
+/// Returns "none" and every law that needs only the description of a film.
 std::vector<std::string> compared_laws() {
   std::vector<std::string> names{"none"};
   for (const std::string_view law : names_of_laws<Gas>()) {
@@ -51,7 +51,7 @@ TEST(Effects, CompareEveryGasLawWithTheScenesOwn) {
     EXPECT_GT(e.rhs_seconds, 0) << e.choice;
     EXPECT_GT(e.metrics.initial_contact_time, 0) << e.choice;
   }
-  // These are values at the closed gap of 1.5 um: mu (a/h)^3 and the mean free path of this viscosity.
+  // Values at the closed gap of 1.5 um: mu (a/h)^3, and the Knudsen number from the mean free path for this viscosity.
   EXPECT_NEAR(own.magnitude.value, 1.86e-5 * std::pow(20 / 1.5, 3), 1e-12);
   EXPECT_NEAR(own.group.value, mean_free_path({.viscosity = 1.86e-5}) / 1.5e-6, 1e-12);
   EXPECT_EQ(find(effects, "none").magnitude.value, 0);
@@ -85,7 +85,7 @@ TEST(Effects, OfASceneWithoutGasAreThoseOfAirAndOfALinearDamperItsOwn) {
   EXPECT_TRUE(std::isnan(damped.own("gas").group.value));
 }
 
-// A law that takes what this scene does not give is named, and the others are compared.
+// A law that needs keys which this scene lacks is named, and the other laws are compared.
 TEST(Effects, OfEverySceneNameTheLawsThatItCannotHave) {
   const auto not_compared = [](const Effects& effects) {
     std::vector<std::string> names;
@@ -107,12 +107,12 @@ TEST(Effects, OfEverySceneNameTheLawsThatItCannotHave) {
   EXPECT_THAT(not_compared(rigid), ElementsAre("guo-alexeenko", "reynolds"));
 }
 
-// A law is compared with a scene of its own, which the scene's reader accepts and says the same of.
+// Each law is compared in a scene of its own, which the reader of scenes accepts with the same warnings.
 TEST(Effects, GiveEveryLawWhatASceneMayGiveIt) {
   for (const std::string& name : shipped_scenes()) {
     const Device own = read_scene(scene(name.c_str())).device;
     const auto has_holes = [](const LocalSection& section) { return section.holes.exist(); };
-    // The film under holes has one law.
+    // Only one law describes a film under holes.
     if (own.structure.is_built() && std::ranges::any_of(local_sections(own.structure), has_holes)) continue;
     for (const std::string_view law : names_of_laws<Gas>()) {
       if (!own.gas || law == "strip-slit" || law == "linear") continue;
@@ -134,7 +134,7 @@ TEST(Effects, GiveEveryLawWhatASceneMayGiveIt) {
   }
 }
 
-// The open ends of the film belong to the laws that can have them, and so does a second film on the far side.
+// Open ends of the film, and a second film on the far side, are removed for the laws that do not have them.
 TEST(Effects, OfFilmsWithOpenEndsDoNotWeakenLawsWithoutThem) {
   const PreparedScene p = prepare(scene("gap-closing-actuator.toml", {"simulate.accuracy=1e-3"}));
   const Effects effects = compare_effects(p);

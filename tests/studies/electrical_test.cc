@@ -30,7 +30,7 @@ SceneFile conducting_gold(std::initializer_list<std::string_view> changes = {}) 
   return file;
 }
 
-// Two dimples, both of which 20 V hold.
+// Two dimples, which 20 V keep closed.
 SceneFile two_dimples(const std::string& closed) {
   SceneFile file = gold_at_17_volts({"waveform.main.level=20 V", "simulate.duration=150 us"});
   file.erase("contact");
@@ -61,7 +61,7 @@ TEST(ElectricalStudies, TheHoldResistanceIsThatOfTheClosedEquilibrium) {
   EXPECT_TRUE(std::isnan(simulate(prepare(gold_with_two_modes()), false).metrics.resistance)) << "nobody asks";
 }
 
-// The pad of a contact is as wide as the section that it stands on, and as many asperities touch.
+// The pad of a contact is as wide as the section above it, and so has the same number of asperities.
 TEST(ElectricalStudies, AContactUnderASectionHasItsWidth) {
   const auto closed = [](bool of_sections) {
     SceneFile file = conducting_gold({"contact.asperity_density=1e14 1/m^2", "metrics.closed_resistance=1 ohm"});

@@ -1,4 +1,4 @@
-// Devices of a spread, and how drives do on them.
+// Devices of a spread, and the results of drives on them.
 #include "studies/devices/ensemble.h"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@
 namespace softland::ensemble_test {
 namespace {
 
-// The first touch of a device, by whatever way it was built.
+// Returns the closing of a device until its first touch.
 Metrics closing(const Switch& model, const std::vector<Signal>& drives) {
   return metrics(simulate_closing(model, drives, {.duration = 120e-6, .tolerance = 1e-7}));
 }
@@ -41,7 +41,8 @@ TEST(Ensemble, HasTheDevicesThatItsScenesDescribe) {
       const PreparedScene alone = prepare(SceneFile::parse(ensemble.scene(device.values).text(), "alone.toml"));
       EXPECT_TRUE(alone.scene.spread.empty());
       const Switch own(alone.scene.device, nominal.quadrature);
-      // The modes of a beam of two sections are found from those of the nominal one, and closings agree to their tolerance.
+      // For a beam of two sections the modes of a device are found from the nominal ones, and closings agree within their
+      // tolerance.
       const bool has_sections = nominal.model.has_piezo();
       const double same = has_sections ? 1e-7 : 0;
       EXPECT_TRUE(
@@ -78,12 +79,12 @@ TEST(Ensemble, DoesNotDependOnThreadsOrderOrSize) {
   DeviceBuilder builder(ensemble), other(ensemble);
   for (const std::uint64_t k : {5U, 2U, 599U}) static_cast<void>(other.device(k));
   EXPECT_EQ(builder.device(7).model->basis().angular_frequencies(), other.device(7).model->basis().angular_frequencies());
-  // Another seed, other devices.
+  // Another seed gives other devices.
   EXPECT_NE(Ensemble(nominal, 600, 2).values(0), ensemble.values(0));
 }
 
 TEST(Ensemble, CountsImpossibleDevicesAsTheWorst) {
-  // Electrodes at 0.5 um to 6.5 um, a contact at 2 um: a quarter cannot be built, and the farthest do not pull enough.
+  // Electrodes are at 0.5 um to 6.5 um and the contact at 2 um: a quarter cannot be built, and the farthest pull too weakly.
   const PreparedScene nominal =
       prepare(gold_at_17_volts({"spread={\"gap.electrode\"={distribution=\"uniform\", half_width=\"3 um\"}}"}));
   const Robustness found = robustness(nominal, {}, {.samples = 256});
@@ -114,7 +115,7 @@ TEST(Ensemble, NeedsASpread) {
   EXPECT_NE(refusal([&] { static_cast<void>(Ensemble(nominal, 10)); }).find("a [spread] section must say"), std::string::npos);
 }
 
-// The pull-in voltage of a device, by another way than the meter's: bisection for a step that touches.
+// Returns the pull-in voltage of a device independently of DeviceMeter: by bisection for a step that touches.
 double pull_in_by_bisection(const Switch& model, double low, double high) {
   while (high - low > 1e-5 * high) {
     const double middle = (low + high) / 2;
@@ -164,12 +165,12 @@ TEST(Calibration, ErrsAsMuchAsItsMeasurements) {
   EXPECT_NEAR(sum / devices, 0, 4 * 0.01 / std::sqrt(devices));
   EXPECT_NEAR(std::sqrt(squares / devices), 0.01, 4 * 0.01 / std::sqrt(2.0 * devices));
   EXPECT_NEAR(product / devices, 0, 4 * 0.01 * 0.005 / std::sqrt(devices)) << "the two measurements err apart";
-  // A quantity that is not measured counts as that of the nominal device.
+  // A quantity that is not measured has the value of the nominal device.
   EXPECT_EQ(DeviceMeter::measured(exact, {.pull_in_error = 0, .frequency_error = {}}, 1, 5).time, 1);
   EXPECT_EQ(DeviceMeter::measured(exact, {.pull_in_error = 0, .frequency_error = {}}, 1, 5).volts, exact.volts);
 }
 
-// The first touch under a step of the only electrode.
+// Returns the first touch under a step of the only electrode.
 double touch_under(const Switch& model, double volts) {
   const Trajectory end =
       simulate_closing(model, std::vector<Signal>{Signal::constant(volts)}, {.duration = 1e-3, .tolerance = 1e-9});
@@ -187,7 +188,7 @@ TEST(Calibration, TellsTheVoltsByAClosingTime) {
   for (std::uint64_t k = 0; k < ensemble.size(); ++k) {
     const SampledDevice device = builder.device(k);
     const DeviceUnits units = meter.exact(*device.model);
-    // The nominal device under as much less closes as late.
+    // The nominal device touches at the same time under a step that is lower by the factor of the device's voltages.
     const double time = touch_under(*device.model, step);
     EXPECT_NEAR(touch_under(nominal.model, step / units.volts), time, 1e-3 * time) << k;
     const double more = touch_under(nominal.model, step / (1.001 * units.volts));
@@ -205,7 +206,7 @@ TEST(Calibration, ByATimeErrsAsMuchAsTheClock) {
   EXPECT_NEAR(std::sqrt(squares / devices), 1e-3, 4 * 1e-3 / std::sqrt(2.0 * devices));
 }
 
-// The unit of a piezo is the static deflection per volt, here by 1 mV and -1 mV from rest.
+// The unit of a piezo is the static deflection per volt: here from 1 mV and -1 mV at rest.
 TEST(Calibration, OfAPiezoIsByWhatAVoltDeflects) {
   const PreparedScene nominal = prepare(gold_pzt());
   const DeviceMeter meter(nominal, {.piezo = true});
@@ -232,7 +233,7 @@ TEST(Calibration, OfAPiezoIsByWhatAVoltDeflects) {
   EXPECT_NE(refusal([&] { DeviceMeter(still, {.piezo = true}); }).find("it does not move the contact point"), std::string::npos);
 }
 
-// Devices that differ in their layer alone close alike once they are driven in its unit.
+// Devices that differ only in their piezo layer have nearly the same closing if they are driven in its unit.
 TEST(Calibration, OfAPiezoUndoesWhatItsLayerDoes) {
   const PreparedScene nominal = prepare(gold_pzt(
       {"waveform.piezo={family=\"pulse\", levels=[\"1 V\", \"-1 V\", \"0 V\"], times=[\"9 us\", \"40 us\"], edge=\"1 us\"}",
@@ -272,7 +273,7 @@ TEST(Calibration, OfAPiezoErrsApartFromWhatElseIsMeasured) {
   EXPECT_NEAR(by_time / devices, 0, 4 * 0.01 * 0.005 / std::sqrt(devices));
 }
 
-// Devices on a grid of volts and times, far apart.
+// Devices on a grid of voltage and time units, with large distances.
 std::vector<DeviceUnits> grid() {
   std::vector<DeviceUnits> units;
   for (const double volts : {0.9, 1.1}) {
@@ -297,7 +298,7 @@ TEST(KnownUnits, AreThoseOfTheCentreOfTheClass) {
   EXPECT_NEAR(centre.time, 0.8, of_the_mean);
   EXPECT_TRUE(std::isnan(sorted.of({.volts = Metrics::unset, .time = 1}).volts)) << "not measured, in no class";
 
-  std::vector<DeviceUnits> weak, strong;  // piezos
+  std::vector<DeviceUnits> weak, strong;  // devices with a weak and with a strong piezo
   for (DeviceUnits units : grid()) {
     for (const double piezo : {0.7, 1.3}) units.piezo = piezo, (piezo < 1 ? weak : strong).push_back(units);
   }
@@ -326,7 +327,7 @@ TEST(KnownUnits, SortWhatIsMeasuredWithItsErrors) {
 
 TEST(Calibration, DrivesADeviceWithTheWaveformOfItsClass) {
   const PreparedScene nominal = prepare(gold_at_17_volts({"simulate.accuracy=1e-3"}));
-  const DeviceMeter meter(nominal, {});  // a frequency costs no closings
+  const DeviceMeter meter(nominal, {});  // measuring a frequency needs no closings
   const Calibration sorted{.frequency_error = 0, .classes = 3};
   const KnownUnits known = known_units(nominal, std::array{sorted}, 1).front();
   EXPECT_EQ(known_units(nominal, std::array{sorted}, 3).front().classes()[1].centre.time, known.classes()[1].centre.time);
@@ -383,7 +384,7 @@ TEST(Robustness, SaysWhatEachMeasurementIsWorth_optimized) {
   for (std::size_t i = 1; i < names.size(); ++i)
     EXPECT_FALSE(std::equal(fixed.begin(), fixed.end(), found.by_knowledge[i].outcomes.begin(), same))
         << found.by_knowledge[i].name;
-  // Every device closes nearly alike in its own units: at the same time in its own periods.
+  // In its own units every device has nearly the same closing, in its own periods.
   const Ensemble ensemble(nominal, options.samples);
   DeviceBuilder builder(ensemble);
   const auto spread_of_first_contact = [&](const DriveRobustness& d) {
@@ -397,7 +398,7 @@ TEST(Robustness, SaysWhatEachMeasurementIsWorth_optimized) {
   EXPECT_TRUE(found.by_knowledge.back().known.classes().empty());
   for (std::size_t i = 3; i < 6; ++i)
     EXPECT_LT(spread_of_first_contact(found.by_knowledge[i + 1]), spread_of_first_contact(found.by_knowledge[i])) << names[i];
-  // A device of it is a scene of its own, with its own volts.
+  // The scene of a device has the device's own voltages.
   const std::size_t k = 5;
   const PreparedScene alone =
       prepare(SceneFile::parse(scene_of_device(nominal, found.drives[1], k, options).text(), "worst.toml"));
@@ -436,14 +437,14 @@ TEST(Robustness, JudgesEveryDriveOnTheSameDevicesBesideThePlainStep) {
   EXPECT_GE(s.quantiles[1].value, heights[63]);
   EXPECT_LE(s.quantiles[1].value, heights[64]);
   EXPECT_EQ(found.drives[0].outcomes[found.drives[0].worst[0]].metrics.major_bounce_height, heights.back());
-  // A drive that is the plain step is not judged twice.
+  // A drive that equals the plain step is not simulated twice.
   const PreparedScene step = prepare(gold_at_17_volts());
   EXPECT_EQ(robustness(step, {{.name = "step", .waveforms = step.drives.waveforms()}}, {.samples = 2}).drives.size(), 1U);
 }
 
 TEST(Robustness, GivesTheSceneOfEveryDevice) {
   const PreparedScene nominal = prepare(gold_at_17_volts());
-  const RobustnessOptions options{.samples = 16, .vectors = Vectors::none};  // one at a time, as `simulate` closes it
+  const RobustnessOptions options{.samples = 16, .vectors = Vectors::none};  // one closing at a time, as in `simulate`
   const Robustness found = robustness(nominal, {}, options);
   for (const std::size_t k : {found.drives[0].worst[0], std::size_t{3}}) {
     const PreparedScene alone =
@@ -471,7 +472,7 @@ TEST(Robustness, FollowsTheGapsOfTheFirstDevices) {
     const auto touch = static_cast<double>(std::ranges::find_if(gap, [](double g) { return g <= 0; }) - gap.begin());
     const Metrics& m = step.outcomes[k].metrics;
     EXPECT_NEAR(touch * interval, m.initial_contact_time, 1.01 * interval);
-    // A quadratic through three points is as near between two instants as the largest acceleration allows.
+    // The error of a quadratic through three points is bounded by the largest acceleration.
     const auto at = static_cast<std::size_t>(touch) - 3;
     EXPECT_NEAR(gap[at], (gap[at - 1] + gap[at + 1]) / 2, 1e-3 * gap[at]);
     const double speed = (gap[at] - gap[at + 1]) / interval;
@@ -490,7 +491,7 @@ TEST(Robustness, RefusesDrivesThatTheSceneDoesNotAllow) {
   EXPECT_EQ(refused("main", Step{.level = 26}).find("x.toml: drive 'main': "), 0U);
 }
 
-// A key that has two units varies in its own.
+// A key with two possible units varies in its own.
 TEST(Ensemble, KeepsTheUnitOfWhatVaries) {
   const SceneFile file = spring_plate({"structure.width=100 um", "gas.model=linear", "gas.damping=2e-5 N s/m",
                                        R"(spread."gas.damping"={ distribution = "normal", cov = "5 %" })"});

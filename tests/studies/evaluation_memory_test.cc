@@ -1,4 +1,4 @@
-// A search that remembers, whatever searches: it ends with the same bits and simulates nothing twice.
+// A search with a memory ends with the same bits as without, and simulates no candidate twice.
 #include "studies/search/evaluation_memory.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ class Memory : public EvaluationMemory {
     ++noted_;
   }
   [[nodiscard]] long noted() const { return noted_; }
-  /// Forgets every other evaluation, as one that was killed.
+  /// Forgets every other evaluation, as if the search had been killed.
   void forget_half() {
     bool keep = false;
     std::erase_if(known_, [&](const auto&) { return keep = !keep; });
@@ -125,7 +125,7 @@ TEST(EvaluationMemory, LeavesARobustSearchTheSameBits_optimized) {
   EXPECT_EQ(memory.noted(), 0);
   memory.forget_half();
   expect_same(without, searched_over_devices(&memory, 1, 2), "half known");
-  // Other devices are no known ones.
+  // Evaluations on other devices are not in the memory.
   memory.count_anew();
   expect_same(searched_over_devices(nullptr, 2, 2), searched_over_devices(&memory, 2, 2), "another seed");
   EXPECT_GT(memory.noted(), 0);
@@ -138,7 +138,7 @@ TEST(StartingWaveforms, AreCandidatesThatStayTheBestUntilABetterOneIsFound) {
   options.starts = {{.name = "earlier", .waveforms = long_search.result->best_scene->drives.waveforms()}};
   const Found refined = searched(options, nullptr);
   EXPECT_LT(long_search.result->best_cost, short_search.result->best_cost);
-  constexpr double rounding = 1e-6;  // rounding of the parameters, which a scene writes
+  constexpr double rounding = 1e-6;  // rounding of the parameters in a written scene
   EXPECT_LE(refined.result->best_cost, long_search.result->best_cost * (1 + rounding));
   EXPECT_LE(refined.evaluations.begin()->second.value, long_search.result->best_cost * (1 + rounding))
       << "the search begins with them";

@@ -17,7 +17,7 @@ SceneFile gold() { return SceneFile::load(SOFTLAND_SOURCE_DIR "/scenes/mem-gold.
 
 const Figure& first_contact = figure_of("initial_contact_time_s");
 
-// The same devices by the ensemble of a spread, whose values the rows are.
+// The rows are the values of devices of a spread: both must give the same figures.
 TEST(Evaluator, RowsHaveTheBitsOfTheDevicesOfASpread) {
   SceneFile file = gold();
   file.erase("spread");
@@ -38,7 +38,7 @@ TEST(Evaluator, RowsHaveTheBitsOfTheDevicesOfASpread) {
 
 TEST(Evaluator, ARowThatCannotBeIsNaNAndSaysWhy) {
   const Evaluator evaluator(gold(), {"gap.contact"}, {first_contact});
-  const std::vector<double> rows{2e-6, 5e-6};  // the second one beyond the electrode
+  const std::vector<double> rows{2e-6, 5e-6};  // in the second row the contact lies beyond the electrode
   std::vector<double> figures(2);
   std::vector<RowEnd> ends(2);
   evaluator.evaluate(rows, figures, ends, 1);

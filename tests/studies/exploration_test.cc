@@ -1,4 +1,4 @@
-// Explorations: every row is what the verb of its study gives for the scene of its point, to the bit.
+// Explorations: every row is bit for bit the result of the verb of its study for the scene of the point.
 #include "studies/exploration/exploration.h"
 
 #include <fmt/format.h>
@@ -44,7 +44,7 @@ Exploration exploration(PlanRequest asked) {
 
 PointRow row_of(Exploration& e, std::uint64_t k, int jobs = 1) { return e.row(e.plan().scene(e.plan().values(k)), jobs); }
 
-/// Equal to the bit, NaN included.
+/// Expects equal bits, NaN included.
 void expect_same(const std::vector<double>& a, const std::vector<double>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -64,7 +64,7 @@ TEST(Exploration, OfClosingsGivesTheFiguresOfSimulate_optimized) {
   Exploration e = exploration(request("simulate", {"structure.length=248 um:260 um:2", "waveform.main.level=1.2 Vdp:1.3 Vdp:2"}));
   ASSERT_EQ(e.figures().size(), asked_among(all_figures, {}).size());
   for (std::uint64_t k = 0; k < e.plan().points(); ++k) {
-    // The text of the scene is what a user runs.
+    // A user can run the text of the scene.
     const SceneFile scene = SceneFile::parse(e.plan().scene(e.plan().values(k)).text(), "point.toml");
     const Closing closing = simulate(prepare_and_choose(scene), true);
     std::vector<double> expected;
@@ -94,7 +94,7 @@ TEST(Exploration, StartsFromACanonicalSceneThatClosesAsTheGivenOne) {
 }
 
 TEST(Exploration, FindsThePullInOfASwitchOnceAndOfEveryOtherOne_optimized) {
-  // The same points in an order in which the switch changes every time, and with a memory that knows only the other drives.
+  // Points of a plan must equal those of plans with a single point, which have no pull-in voltage to reuse.
   Exploration by_switch = exploration(request("simulate", {"gap.contact=1.9 um,2 um", "waveform.main.level=1.2 Vdp,1.3 Vdp"}));
   for (std::uint64_t k = 0; k < 4; ++k) {
     Exploration alone = exploration(request("simulate", {fmt::format("gap.contact={} um", k < 2 ? 1.9 : 2.0),
@@ -104,7 +104,7 @@ TEST(Exploration, FindsThePullInOfASwitchOnceAndOfEveryOtherOne_optimized) {
 }
 
 TEST(PullInMemory, TellsScenesOfOneSwitchFromThoseOfAnother) {
-  // The switch that is handed over with a scene is another one: what comes back tells whether it was looked at.
+  // Asks the finder with another switch than that of the scene: the result shows whether it was computed or remembered.
   const PreparedScene ours = prepare(short_gold());
   SceneFile deep = short_gold();
   deep.assign("gap.contact", 2.1e-6);
@@ -156,7 +156,7 @@ TEST(Exploration, OfADispersionForceGivesItsFactors) {
   Exploration e = exploration(asked);
   const PointRow row = row_of(e, 0);
   ASSERT_EQ(row.figures.size(), 2U);
-  EXPECT_GT(row.figures[0], row.figures[1]);  // a step needs less
+  EXPECT_GT(row.figures[0], row.figures[1]);  // the dynamic pull-in voltage is lower
   EXPECT_GT(row.figures[1], 1);
   EXPECT_LT(row.figures[0], 1.5);
 }
@@ -186,7 +186,7 @@ TEST(Exploration, OfSearchesKeepsWinnersThatSimulateRunsToTheirFigures_optimized
   ASSERT_FALSE(row.scene.empty());
   EXPECT_LE(row.figures[index_of(e, "evaluations")], 120) << "gradients count too";
   EXPECT_GE(row.figures[index_of(e, "evaluations")], 60);
-  int families = 0;  // number of families that the winner belongs to
+  int families = 0;  // number of families to which the winner belongs
   for (const char* family : {"knots", "dual-pulse", "staircase:5"})
     families += std::isfinite(row.figures[index_of(e, fmt::format("{}.main.level_1", family))]) ? 1 : 0;
   EXPECT_EQ(families, 1);
@@ -215,7 +215,7 @@ TEST(Exploration, RecordsWhatCannotBeAsAStatus) {
   Exploration e = exploration(request("simulate", {"structure.length=230 um,250 um", "gap.contact=2 um,4 um"}));
   const PointRow short_beam = row_of(e, 0), deep_gap = row_of(e, 3), good = row_of(e, 2);
   EXPECT_EQ(short_beam.status, infeasible);
-  EXPECT_EQ(short_beam.reason.find("electrode.main.span"), 0U) << short_beam.reason;  // it ends beyond the beam
+  EXPECT_EQ(short_beam.reason.find("electrode.main.span"), 0U) << short_beam.reason;  // the electrode ends beyond the beam
   EXPECT_NE(short_beam.reason.find("must end on the beam"), std::string::npos) << short_beam.reason;
   EXPECT_EQ(deep_gap.status, infeasible) << deep_gap.reason;
   EXPECT_EQ(good.status, "done");
@@ -237,7 +237,7 @@ TEST(Exploration, KnowsEqualContentByItsText) {
   const auto content = [](Exploration& e, std::uint64_t k) { return e.content(e.plan().scene(e.plan().values(k))); };
   EXPECT_EQ(content(coarse, 1), content(fine, 2));
   EXPECT_NE(content(coarse, 1), content(fine, 1));
-  // Some options matter to searches or devices alone.
+  // Some options only matter to searches or to studies on devices.
   PlanRequest asked = request("simulate", {"gap.contact=1.8 um:2.2 um:3"});
   asked.seed = 2;
   Exploration seeded = exploration(asked);
@@ -277,7 +277,7 @@ TEST(Exploration, ChecksTheOptionsOfItsStudy) {
                InvalidInput);
 }
 
-// The columns of a study that is known from outside are those of the record of the plan's scene, which is made once for a store.
+// The columns of a study from outside are those of the record of the plan's scene. That record is made once for a store.
 TEST(Exploration, TakesItsColumnsFromAStoreOfItsPlan) {
   int records = 0;
   const OtherStudies others{
@@ -300,7 +300,7 @@ TEST(Exploration, TakesItsColumnsFromAStoreOfItsPlan) {
   EXPECT_EQ(stored_plan(resumed, {}).columns, stored_plan(fresh, {}).columns);
   expect_same(row_of(resumed, 1).figures, {2e-5, 0.5});
   (void)exploration_for(Plan(request("other", {"gap.contact=1.9 um"})), store, {}, others);
-  EXPECT_EQ(records, 3);  // one of the row, and one of the other plan
+  EXPECT_EQ(records, 3);  // one for the row, and one for the other plan
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A scene fitted to what was measured on devices of it.
+// Fits a scene to measurements on devices of the scene.
 #include "studies/inverse/fit.h"
 
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ SceneFile plate(std::initializer_list<std::string_view> changes = {}) {
   return file;
 }
 
-// Numbers of another plate.
+// Parameters of another plate.
 struct Truth {
   double stiffness = 1.03, mass = 0.98, gaps = 1.015;
 };
@@ -45,7 +45,7 @@ double exact(const Instrument& instrument, const Truth& truth) {
 struct Measured {
   const char* quantity;
   Instrument instrument;
-  double error;  // over the value
+  double error;  // error over the value
 };
 const std::vector<Measured> all_kinds{{"pull_in", {.what = Measurable::pull_in}, 1e-3},
                                       {"release", {.what = Measurable::release}, 1e-3},
@@ -78,7 +78,7 @@ const FittedUnknown& unknown(const Fit& fit, const std::string& name) {
 TEST(Fit, FindsTheDeviceThatWasMeasured) {
   SKIP_WITHOUT_CERES();
   const Truth truth;
-  // The data has no noise, and it is so precise that the prior does not pull.
+  // The data have no noise, and are so precise that the prior has no effect.
   std::vector<Measured> sharp = all_kinds;
   for (Measured& m : sharp) m.error *= 1e-4;
   const Fit found = fit(plate(), bench_of(sharp, truth), {.starts = 4});
@@ -121,10 +121,10 @@ TEST(Fit, FindsOneAmountThatIsAddedToSeveralKeys) {
   }
   EXPECT_TRUE(is_there);
 }
-// The velocity of a bouncing switch that differs from its scene, in steps of a quarter of a microsecond.
+// The velocity of a bouncing switch that differs from its scene, at intervals of a quarter of a microsecond.
 struct BouncingDevice {
   SceneFile scene = gold({"structure.modes=2", "waveform.main.level=20 V", "driver.main.max_voltage=40 V"});
-  std::vector<double> truth{1.025, 1.0, 0.98};  // thickness, modulus, gaps
+  std::vector<double> truth{1.025, 1.0, 0.98};  // factors of thickness, modulus and gaps
   static constexpr double noise = 0.5e-3;       // [m/s]
   double touch = 0;
 
@@ -232,12 +232,12 @@ TEST(Fit, IsTheSameForAnyNumberOfThreads) {
 }
 TEST(Fit, SaysWhatTheDataCannotTellApart) {
   SKIP_WITHOUT_CERES();
-  // Closing times alone show one combination.
+  // Closing times alone determine one combination of the unknowns.
   std::vector<Measured> times{all_kinds[4], all_kinds[5]};
   const Fit found = fit(plate(), bench_of(times, {}), {.starts = 1});
   ASSERT_FALSE(found.estimate.weak.empty());
   EXPECT_GT(found.estimate.weak.front().unknowns.size(), 1U);
-  // The fit ranks the measurements that would tell more, and they do.
+  // The fit ranks further measurements by their value, and the best ones do reduce the errors.
   ASSERT_FALSE(found.next.empty());
   EXPECT_GT(found.next.front().reduction, 0.05);
   for (std::size_t i = 1; i < found.next.size(); ++i) EXPECT_LE(found.next[i].reduction, found.next[i - 1].reduction);
@@ -246,7 +246,7 @@ TEST(Fit, SaysWhatTheDataCannotTellApart) {
 }
 TEST(Fit, SaysThatVoltagesAndTimesOfAPlateShowNoGap) {
   SKIP_WITHOUT_CERES();
-  // Voltages are those of stiffness * gap^3, times those of mass / stiffness besides: what leaves both alone is not seen.
+  // Voltages depend on stiffness * gap^3 and on mass / stiffness only. A direction that changes neither is weak.
   std::vector<Measured> without_capacitance = all_kinds;
   without_capacitance.erase(without_capacitance.begin() + 3);
   const Fit found = fit(plate(), bench_of(without_capacitance, {}), {.starts = 1});
@@ -258,7 +258,8 @@ TEST(Fit, SaysThatVoltagesAndTimesOfAPlateShowNoGap) {
     change[i] *= u.scale / u.nominal;
   }
   const double gaps = change[0], mass = change[1], stiffness = change[2];
-  constexpr double by_the_contact = 0.1;  // the contact's stiffness is finite: the release voltage sees a little of the gap
+  constexpr double by_the_contact =
+      0.1;  // the contact has a finite stiffness, so that the release voltage depends a little on the gap
   EXPECT_NEAR(stiffness / gaps, -3, by_the_contact);
   EXPECT_NEAR(mass / stiffness, 1, by_the_contact);
   EXPECT_LT(weak.seen, 0.1);
@@ -266,7 +267,7 @@ TEST(Fit, SaysThatVoltagesAndTimesOfAPlateShowNoGap) {
 }
 TEST(Fit, OfAKeyWithoutASpreadHasNoPrior) {
   SKIP_WITHOUT_CERES();
-  // Ten per cent off, which the prior of the spread would pull back by a measurement as rough as this.
+  // The device differs by 10 %. With so rough a measurement the prior of the spread would pull the result back.
   const Bench bench = bench_of({{"pull_in", {.what = Measurable::pull_in}, 0.03}}, {.stiffness = 1.1, .mass = 1, .gaps = 1});
   SceneFile without_prior = plate();
   without_prior.erase("spread");
@@ -276,7 +277,7 @@ TEST(Fit, OfAKeyWithoutASpreadHasNoPrior) {
   const Fit held = fit(plate(), bench, {.unknowns = {"structure.stiffness"}, .starts = 1});
   EXPECT_LT(unknown(held, "structure.stiffness").value / 42, 1.06);
 }
-// A beam of parts, curled by all that can curl one but a table, and the same beam with a table of heights.
+// A beam of sections that is curled by every key except a table of heights, and the same beam with a table of heights.
 SceneFile built_gold(bool by_table) {
   SceneFile file = gold({"structure.modes=2",
                          "structure.sections=[{length=\"60 um\", width=\"15 um\", thickness=\"1.8 um\"}, {length=\"190 um\", "
@@ -299,7 +300,7 @@ TEST(Fit, FindsAnyKeyOfABeamOfParts) {
   const std::vector<Measured> readings{{"pull_in", {.what = Measurable::pull_in}, 0},
                                        {"frequency", {.what = Measurable::frequency}, 0},
                                        {"capacitance", {.what = Measurable::capacitance}, 0}};
-  constexpr double truth = 1.06, sharp = 1e-7, tolerance = 1e-4;  // over the scene's value
+  constexpr double truth = 1.06, sharp = 1e-7, tolerance = 1e-4;  // truth and errors over the scene's value
   for (const char* const key :
        {"structure.sections[1].thickness", "structure.sections[1].length", "structure.sections[2].width[2]",
         "structure.sections[2].holes.size", "structure.anchor.rotation", "structure.layers[1].stress",
@@ -321,7 +322,7 @@ TEST(Fit, FindsAnyKeyOfABeamOfParts) {
     const double nominal = p.scene.spread.variables.front().keys.front().nominal;
     EXPECT_NEAR(unknown(found, key).value / nominal, truth, tolerance) << key;
     EXPECT_GT(std::abs(found.residuals.front().normalized_before()), 100) << key << " does not move what is measured";
-    // The fitted scene says so.
+    // The fitted scene reproduces the measurement.
     SceneFile fitted = file;
     for (const Fit::FittedKey& one : found.keys("")) fitted.assign(one.path, one.value, one.element);
     EXPECT_NEAR(static_pull_in(prepare(fitted).model, 0).voltage / bench.measurements.front().values.front(), 1, tolerance)
@@ -335,7 +336,7 @@ TEST(Fit, FindsACurlAboutAStraightBeamByItsSpread) {
   straight.erase("spread");
   SceneFile file = straight;
   file.set(R"(spread={"structure.stress_gradient"={distribution="normal",standard_deviation="0.1 MPa/um"}})");
-  constexpr double truth = 0.03e12, sharp = 1e-7;  // [Pa/m]; over the value
+  constexpr double truth = 0.03e12, sharp = 1e-7;  // [Pa/m]; error over the value
   const PreparedScene p = prepare(file);
   DeviceReader reader(p);
   ASSERT_TRUE(reader.move_to({truth}));
@@ -357,7 +358,7 @@ TEST(Fit, FindsACurlAboutAStraightBeamByItsSpread) {
 TEST(Fit, WeighsDownADatumThatDoesNotAgree) {
   SKIP_WITHOUT_CERES();
   Bench bench = bench_of(all_kinds, {});
-  bench.measurements[0].values[0] *= 1.05;  // fifty errors
+  bench.measurements[0].values[0] *= 1.05;  // the value is wrong by fifty errors
   const Fit huber = fit(plate(), bench, {.loss = Loss::huber, .starts = 1});
   const Fit none = fit(plate(), bench, {.loss = Loss::none, .starts = 1});
   const auto off = [](const Fit& found) {
@@ -400,13 +401,13 @@ TEST(Fit, OfManyDevicesFindsTheSpreadThatTheyCameFrom) {
   ASSERT_TRUE(found.population.has_value());
   const FittedPopulation& all = *found.population;
   ASSERT_EQ(all.names, (std::vector<std::string>{"gaps", "structure.stiffness"}));
-  // A sample of so many devices leaves this open, three standard errors.
+  // Three standard errors of the deviation of a sample with this many devices.
   const double open = 3 / std::sqrt(2.0 * devices);
   EXPECT_NEAR(all.deviation[0] / gaps, 1, open);
   EXPECT_NEAR(all.deviation[1] / stiffness, 1, open);
   EXPECT_NEAR(all.mean[1], 1.02, 3 * stiffness / std::sqrt(1.0 * devices));
   EXPECT_NEAR(all.correlation(0, 1), correlation, 3 * (1 - correlation * correlation) / std::sqrt(1.0 * devices));
-  // Write the population as a scene that robustness and tune read.
+  // The population is written as a scene for robustness and tune.
   SceneFile file = plate();
   set_spread(file, found);
   const DeviceSpread written = read_scene(file).spread;
@@ -435,7 +436,7 @@ TEST(Estimate, OfOneDatumKnowsOneDirection) {
   EXPECT_NEAR(found.weak[0].direction[0], found.weak[0].direction[1], 1e-12);
   EXPECT_NEAR(found.correlation(0, 1), 1, 2e-3);
   EXPECT_NEAR(found.deviation(0), std::sqrt(0.5), 1e-3);
-  // The sum as well, as exactly.
+  // The reduction by two measurements is exact as well.
   EXPECT_NEAR(found.reduction({Eigen::Vector2d(30, 30)}), 1 - 1 / (30 * std::sqrt(1.0)), 0.01);
 }
 TEST(Estimate, OfAPopulationFindsItsMomentsFromExactDevices) {
@@ -453,7 +454,7 @@ TEST(Estimate, OfAPopulationFindsItsMomentsFromExactDevices) {
   const Population found = population_of(all, {.mean = Eigen::Vector2d::Zero(), .covariance = Eigen::Matrix2d::Identity()});
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
   for (const Eigen::Vector2d& one : drawn) covariance += (one - sum / devices) * (one - sum / devices).transpose() / devices;
-  constexpr double of_errors = 1e-3;  // error from the knowledge of each device, which is not quite exact
+  constexpr double of_errors = 1e-3;  // error since each device is not known exactly
   EXPECT_LE((found.mean - sum / devices).norm(), of_errors);
   EXPECT_LE((found.covariance - covariance).norm(), of_errors);
 }

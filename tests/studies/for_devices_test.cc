@@ -1,4 +1,4 @@
-// The search for devices, with short stages.
+// The search for varied devices, with short stages.
 #include "studies/search/for_devices.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ SceneFile quick_gold(std::initializer_list<std::string_view> changes = {}) {
   return file;
 }
 
-// Remembers nothing, and sees of which families it is asked.
+// A memory without content that records the families of the points it is asked for.
 class Asked final : public EvaluationMemory {
  public:
   std::optional<EvaluationValues> recall(const EvaluationKey& key) noexcept override {
@@ -38,9 +38,9 @@ class Asked final : public EvaluationMemory {
   }
   void note(const EvaluationKey&, const EvaluationValues&) noexcept override {}
 
-  FamilyColumns columns;  // columns that the search told
+  FamilyColumns columns;  // columns of the search
   std::set<std::size_t> on_drawing, on_devices;
-  bool alike = true;  // all points have as many parameters as the columns of their family
+  bool alike = true;  // true if all points have as many parameters as their family has columns
 
  private:
   std::mutex mutex_;
@@ -74,22 +74,22 @@ TEST(ForDevices, IsSofterThanThePlainStepAndTheDrawing_optimized) {
   EXPECT_EQ(again.metrics.initial_contact_time, found.best.best->metrics.initial_contact_time);
   EXPECT_FALSE(found.findings.spread_assumed);
   EXPECT_TRUE(found.best.best_scene->scene.file.written("spread"));
-  // The front is one.
+  // The front contains no dominated point.
   for (std::size_t i = 1; i < found.findings.front.size(); ++i)
     EXPECT_GE(found.findings.front[i].first_touch, found.findings.front[i - 1].first_touch);
   ASSERT_TRUE(found.calibrated);
   const bool by_time = found.findings.measured == "closing time to 50 ns";
   EXPECT_EQ(found.calibrated->written(by_time ? "calibration.time.error" : "calibration.Vdp.error"), by_time ? "50 ns" : "1 %");
   EXPECT_LT(cost_of(found, "closing time to 50 ns"), cost_of(found, "for the devices"));
-  // Knowing more of the devices drives them no worse.
+  // More measurements on the devices do not increase the impact velocity.
   const auto speed = [&](std::string_view row) { return cost_of(found, row); };
   for (const char* measured : {"Vdp to 1 %", "Vdp and period to 1 %", "Vdp and period to 0.2 %", "closing time to 50 ns"})
     EXPECT_LE(speed(measured), speed("for the devices")) << measured;
   EXPECT_LE(speed("Vdp and period to 1 %"), speed("Vdp to 1 %"));
   EXPECT_LE(speed("Vdp and period to 0.2 %"), speed("Vdp and period to 1 %"));
   for (const KnownVdp& known : found.findings.by_error) EXPECT_LE(known.impact_speed, 1.15 * speed("for the devices"));
-  // Stores hold the families of the race behind that of the nominal design.
-  // Those of the race within the usual limit stand last: only that short race runs here.
+  // Stores have the families of the race after that of the nominal design. The families of the race within the usual limit are
+  // last: only that short race runs here.
   ASSERT_EQ(memory.columns.families.size(), 5U);
   EXPECT_EQ(memory.columns.families[1].front().substr(0, 14), "devices.catch.");
   EXPECT_TRUE(memory.alike);
@@ -98,7 +98,7 @@ TEST(ForDevices, IsSofterThanThePlainStepAndTheDrawing_optimized) {
   EXPECT_EQ(memory.on_devices, (std::set<std::size_t>{3, 4}));
 }
 
-// A piezo that carries the switch slowly lands all devices, and a pull-in voltage says nothing of it.
+// A piezo that moves the switch slowly lands all devices, and the pull-in voltage has no influence on it.
 TEST(ForDevices, AreNotToBeMeasuredWhereThatWinsNothing_optimized) {
   const SceneFile file = gold_pzt({"structure.modes=2", "simulate.accuracy=1e-3"});
   const ForDevicesResult found =
@@ -129,7 +129,7 @@ TEST(ForDevices, RanksTheDrawingsCandidatesAgainWhereThereIsNoRace_optimized) {
   EXPECT_LE(cost_of(found, "for the devices"), 1.02 * cost_of(found, "plain step"));
 }
 
-// The cost of the winner on the devices of the choice.
+// Returns the cost of the winner on the devices from which it is chosen.
 double least_cost(const SceneFile& file, std::uint64_t seed) {
   const ForDevicesResult found = searched(file, race_closings / 2, seed);
   EXPECT_FALSE(found.candidates.empty());
@@ -170,7 +170,7 @@ TEST(ForDevices, AssumesASpreadWhereTheSceneHasNone_optimized) {
 }
 
 TEST(ForDevices, AreNeverGivenWhatIsWorseThanThePlainStep_optimized) {
-  // A family that can only rise more slowly.
+  // In this family the step can only rise more slowly.
   const ForDevicesResult found = optimize_for_devices(quick_gold(), {.family = "step", .max_evaluations = 100, .jobs = 2},
                                                       {.verdict = 200, .families = "step", .closings = 100});
   ASSERT_TRUE(found.best.best_scene);

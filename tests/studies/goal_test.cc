@@ -1,4 +1,4 @@
-// When a search may say that it has reached its goal.
+// Tests when a search may report that it has reached its goal.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ Metrics closing(bool settled, int bounces, double settling_time, double velocity
   m.major_bounce_height = bounces > 0 ? 50e-9 : 0;
   m.impact_velocity = velocity;
   m.impact_energy = energy;
-  for (const TargetRow& row : targets) {  // the others as the velocity
+  for (const TargetRow& row : targets) {  // all other figures have the value of the velocity
     if (const auto* const figure = std::get_if<double Metrics::*>(&row.figure); figure != nullptr && std::isnan(m.*(*figure)))
       m.*(*figure) = velocity;
   }

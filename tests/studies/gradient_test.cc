@@ -1,4 +1,4 @@
-// Gradients of a search's costs, and of the figures behind them, against differences of tight closings.
+// Gradients of a search's costs, and of the figures in them, against differences of tight closings.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -39,9 +39,9 @@ struct Compared {
   double worst = 0;
 };
 
-// The energy of a landing is measured at the end of an integrator's step, whose length no derivative knows: gas takes a
-// thousandth of it in a step. Compares slopes of all figures at random points of a search's box to central differences. A case
-// does not count if a touch grazes in it, or comes or goes between the two points of a difference.
+// Compares slopes of all figures at random points of a search's box with central differences. A case is skipped if a touch
+// grazes in it, or appears or disappears between the two points of a difference. The energy of a landing is measured at the end
+// of an integrator step, whose length has no derivative: gas takes a thousandth of the energy in a step.
 void compare(const SearchSetting& s, int wanted, std::uint64_t seed, Compared& all) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform(0.05, 0.95);
@@ -86,13 +86,14 @@ void compare(const SearchSetting& s, int wanted, std::uint64_t seed, Compared& a
       for (std::size_t f = 0; f < compared.size(); ++f) {
         if (!slopes.why_none[compared[f]].empty()) continue;
         if (compared[f] == &Metrics::last_rebound_end && slopes.ends_above) continue;
-        double scale = 0;  // scale of the gradient, by this parameter's range
+        double scale = 0;  // change of the figure over this parameter's range
         for (std::size_t i = 0; i < x.size(); ++i) {
           const double whole =
               std::abs(backward(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(i))) * (upper[i] - lower[i]);
           scale = std::max(scale, whole / (upper[k] - lower[k]));
         }
-        // Differences of two widths that differ say nothing: another touch is the fastest, another rebound the highest.
+        // If differences of two widths disagree, the case is undecided: another touch is the fastest, or another rebound the
+        // highest.
         if (!(std::abs(coarse[f] - fine[f]) <= 1e-6 * scale)) continue;
         ++all.slopes;
         const double slope = backward(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k));
@@ -169,7 +170,7 @@ TEST(Gradient, ByTheTimesOfJumps) {
   }
 }
 
-// The motion after the last moment that a figure depends on is not linearised, and changes nothing.
+// The motion after the last time on which a figure depends is not linearised, which changes no derivative.
 TEST(Gradient, OfOneFigureIsThatOfAll) {
   const SearchSetting s = setting_of("mem-gold.toml", Actuator::electrostatic, "pulse");
   std::vector<double> x;
@@ -236,7 +237,7 @@ TEST(Gradient, OfConditionsIsThatOfTheirFigures) {
       std::vector<double> up = x, down = x;
       up[k] += h, down[k] -= h;
       const SearchCosts above = s.price_at(up), below = s.price_at(down);
-      for (std::size_t c = 0; c < 3; ++c) {  // rebounds of such waveforms, and what all touches add up to, are chaotic
+      for (std::size_t c = 0; c < 3; ++c) {  // rebounds of such waveforms, and sums over all touches, are chaotic
         const double difference = (above.apart->excess[c] - below.apart->excess[c]) / (2 * h);
         double largest = 0;
         for (std::size_t i = 0; i < x.size(); ++i)

@@ -1,4 +1,4 @@
-// A search led by one cost and finished by another, on functions.
+// A search that one cost leads and another one finishes, on analytic functions.
 #include "studies/search/guided_search.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace softland {
 namespace {
 
-// Two valleys by the own cost, at -0.6 and 0.6; the leading cost knows the right one alone, which is shallower by own digits.
+// The own cost has two valleys, at -0.6 and 0.6. The leading cost has only the right one, which is less deep in the own cost.
 SearchCosts prices(std::span<const double> x) {
   const double u = x[0] - 0.6, v = x[1] - 0.2;
   const double leading = u * u + v * v;

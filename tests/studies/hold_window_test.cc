@@ -1,4 +1,4 @@
-// The hold levels that keep devices closed: of ranges that are given, and of devices one by one.
+// Hold levels that keep devices closed: for given ranges, and for simulated devices.
 #include "studies/devices/hold_window.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ TEST(HoldWindow, LeavesOutAsManyAsItMay) {
   const HoldWindow all = hold_window(devices);
   EXPECT_DOUBLE_EQ(all.lower, 10 + 0.01 * 197) << "two of 200 may be lost";
   EXPECT_DOUBLE_EQ(all.upper, 30 + 0.02 * 2);
-  devices[0].release = nowhere;  // one that nothing holds is lost at every level
+  devices[0].release = nowhere;  // no level holds this device
   const HoldWindow fewer = hold_window(devices);
   EXPECT_DOUBLE_EQ(fewer.lower, 10 + 0.01 * 198);
   EXPECT_DOUBLE_EQ(fewer.upper, 30 + 0.02 * 2) << "of which one is the first, another the one after it";
@@ -41,9 +41,9 @@ TEST(HoldWindow, IsOpenWhereNoneIsPulledThroughAndNoneWhereTooManyCannotBeHeld) 
   EXPECT_TRUE(std::isnan(hold_window({}).lower));
 }
 
-// The oracle is the pull-in study of each of the devices, read from their scenes.
+// The oracle is the pull-in study of each device, from its own scene.
 TEST(HoldWindow, OfDevicesIsThatOfEachByItself) {
-  constexpr double precision = 1e-4;  // precision of the window's search, as a share of a pull-through
+  constexpr double precision = 1e-4;  // precision of the search for the window, over a collapse voltage
   const PreparedScene nominal = prepare(gold({"structure.modes=2", "simulate.duration=100 us"}));
   const RobustnessOptions options{.samples = 12, .seed = 5, .jobs = 2};
   const HoldWindows found = hold_windows(nominal, options);

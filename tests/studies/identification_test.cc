@@ -1,4 +1,4 @@
-// Tests what measurements tell of a device.
+// Tests the value of measurements on a device.
 #include "studies/inverse/identification.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace softland::measurements_test {
 namespace {
 
-// A throw that lets the beam fly the last third and catches it.
+// A waveform that lets the beam coast over the last third of the gap and brakes it.
 SceneFile recipe() {
   return gold_at_17_volts(
       {"waveform.main={family=\"pulse\", levels=[\"21 V\", \"0 V\", \"17.771 V\"], times=[\"20 us\", \"32 us\"], "
@@ -53,7 +53,7 @@ TEST(Measurements, OfVoltageAndFrequencyLandWhatNothingKnownDoesNot) {
   EXPECT_GT(of(study().predictions, "frequency").score, of(study().predictions, "Vdp and frequency").score);
 }
 
-// The best factors of volts told from one figure, by the normal equations of a straight line on the other half.
+// The best factors of voltages follow from one figure by a straight line, which is fitted to the other half of the devices.
 TEST(Measurements, TellByAFitToTheOtherHalf_optimized) {
   for (std::size_t f = 0; f < study().figures.size(); ++f) {
     const MeasurableFigure& figure = study().figures[f];
@@ -115,7 +115,7 @@ TEST(Measurements, KeepWhatIsJudgedWhenStopped_optimized) {
   EXPECT_THROW(static_cast<void>(identify(recipe(), quick(1), watch)), Interrupted);
 }
 
-// A landing by the piezo, searched with softland optimize --waveform catch, on devices whose layers differ.
+// The landing by the piezo is from softland optimize --waveform catch. The devices differ in their layers.
 TEST(Measurements, RankAPiezosUnitFirstWhereLittleElseVaries_slow) {
   const SceneFile file = gold_pzt(
       {"waveform.main.level=28.086315 V", "driver.main.max_voltage=34 V",

@@ -1,5 +1,5 @@
-// Tests the readings of devices by instruments, against the functions of the model, and their slopes against differences of
-// devices built anew.
+// Tests readings of instruments on devices, against the functions of the model, and their derivatives, against differences of
+// separately built devices.
 #include "studies/devices/instruments.h"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@
 namespace softland::instruments_test {
 namespace {
 
-// Agreement of a slope, over the largest by any quantity that varies by a factor: what differences of this width leave open.
+// Half width of the differences, and their error over the largest derivative by any quantity that varies by a factor.
 constexpr double half_width = 1e-4, agreement = 2e-5;
 
 PreparedScene prepared(SceneFile file, const std::vector<std::string>& keys) {
@@ -40,11 +40,11 @@ Eigen::VectorXd read_at(DeviceReader& reader, const std::vector<double>& values,
   return reader.read(instrument, false).values;
 }
 
-// Checks slopes by Richardson's extrapolation from differences of two widths.
+// Compares derivatives with Richardson's extrapolation from differences of two widths.
 void expect_slopes(const PreparedScene& p, const Instrument& instrument, double within = agreement) {
   DeviceReader reader(p);
   std::vector<double> values = nominal_values(p);
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] *= i % 2 == 0 ? 1.01 : 0.985;  // not the nominal device
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] *= i % 2 == 0 ? 1.01 : 0.985;  // a device that is not the nominal one
   ASSERT_TRUE(reader.move_to(values));
   const DeviceReader::Reading reading = reader.read(instrument, true);
   ASSERT_TRUE(reading.values.allFinite()) << row_of(instrument.what).name;
@@ -80,7 +80,7 @@ TEST(Instruments, ReadWhatTheModelSays) {
   DeviceReader reader(p);
   ASSERT_TRUE(reader.move_to({1}));
   const auto value = [&](const Instrument& instrument) { return reader.read(instrument, false).values[0]; };
-  constexpr double rounding = 1e-9;  // a device built for its values is not bit for bit the scene's
+  constexpr double rounding = 1e-9;  // a device that is built for these values may differ from the scene by rounding
   EXPECT_NEAR(value({.what = Measurable::pull_in}) / static_pull_in(p.model, 0).voltage, 1, rounding);
   EXPECT_NEAR(value({.what = Measurable::release}) / release_voltage(p.model, 0), 1, rounding);
   EXPECT_NEAR(value({.what = Measurable::frequency, .mode = 1}) / (p.model.basis().angular_frequencies()[1] / (2 * pi)), 1,
@@ -88,7 +88,7 @@ TEST(Instruments, ReadWhatTheModelSays) {
   const Eigen::VectorXd straight = Eigen::VectorXd::Zero(4);
   Switch::Workspace work = p.model.workspace();
   EXPECT_NEAR(value({.what = Measurable::capacitance}) / p.model.capacitance(0, straight.data(), work), 1, rounding);
-  constexpr double looser = 1e-4;  // closing_time() is made for ensembles
+  constexpr double looser = 1e-4;  // closing_time() has the looser tolerance of ensembles
   EXPECT_NEAR(value({.what = Measurable::closing_time, .level = 18}) / closing_time(p.model, 0, 18, std::vector<double>{0}, 1e-3),
               1, looser);
 }
@@ -132,7 +132,7 @@ TEST(Instruments, HaveExactSlopesOfClosingTimes) {
 }
 TEST(Instruments, HaveSlopesOfMotionsAndContactRecords) {
   const PreparedScene p = prepared(gold({"structure.modes=2"}), {"structure.thickness", "gap.electrode", "driver.main.gain"});
-  constexpr double of_differences = 1e-3;  // error of differences of closings a hundredth as wide
+  constexpr double of_differences = 1e-3;  // error of differences of closings, with a hundredth of the width
   expect_slopes(p, {.what = Measurable::position, .level = 20, .times = {5e-6, 12e-6, 20e-6}}, of_differences);
   expect_slopes(p, {.what = Measurable::velocity, .level = 20, .times = {5e-6, 12e-6, 20e-6}}, of_differences);
   expect_slopes(p, {.what = Measurable::contact, .level = 20, .edges = 3}, of_differences);
@@ -148,7 +148,7 @@ TEST(Instruments, HaveExactSlopesOnEveryKindOfSwitch) {
   }
 }
 
-// A charge on the dielectric acts at all voltages, 0 V among them.
+// A charge on the dielectric acts at all voltages, including 0 V.
 TEST(Instruments, HaveTheSlopesOfACharge) {
   const SceneFile bare = gold({"structure.modes=2", R"(electrode.main.dielectric={thickness="0.2 um",permittivity=7.6})"});
   const auto charged = [&](const char* charge, const char* contact_gap) {
@@ -160,7 +160,7 @@ TEST(Instruments, HaveTheSlopesOfACharge) {
   };
   const PreparedScene p = charged("-1 mC/m^2", "2 um"), stuck = charged("4 mC/m^2", "3.2 um");
   for (const Measurable what : at_rest) expect_slopes(p, {.what = what});
-  // The charge softens the beam at 0 V, as the shifted voltage would do without it.
+  // At 0 V the charge softens the beam as the shifted voltage would without a charge.
   const double at_0 = resonance(p.model, 0, std::vector<double>{0}), neutral = p.model.neutral_voltage(0);
   EXPECT_NEAR(at_0 / resonance(prepare(bare).model, 0, std::vector<double>{-neutral}), 1, 1e-9);
   EXPECT_LT(at_0, 0.999 * p.model.basis().angular_frequencies()[0]);

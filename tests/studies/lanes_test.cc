@@ -1,4 +1,4 @@
-// Closings in lanes of vector registers against the same closings one at a time.
+// Compares closings in lanes of vector registers with the same closings one at a time.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -53,7 +53,7 @@ struct Fleet {
     return close_devices(closings, nominal.scene.metrics, vectors);
   }
 
-  /// Counts the closings that lanes follow to their end.
+  /// Returns the number of closings that the lanes simulate to their end.
   [[nodiscard]] std::size_t followed(const std::vector<Signal>& signals, Vectors vectors, double tolerance) const {
     struct : LandingObserver {
       void touch(const Touch&) override {}
@@ -66,7 +66,7 @@ struct Fleet {
   }
 };
 
-// Every digit of what is made of an outcome.
+// Returns all digits of an outcome.
 std::string digits(const DeviceOutcome& o) {
   const Metrics& m = o.metrics;
   return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", to_string(m.status), m.initial_contact_time, m.permanent_contact_time,
@@ -81,9 +81,9 @@ std::vector<std::string> digits(const std::vector<DeviceOutcome>& all) {
 
 double off(double value, double expected) { return std::abs(value - expected) / std::abs(expected); }
 
-// Both paths may differ by the tolerance, and behind the first touches by what bouncing makes of it.
-// Lanes step over the samples of a filtered signal, whose ripple then counts as an error of some hundredths of it. It leaves
-// `looser` times what steps that end on each sample leave.
+// Compares outcomes of both ways. They may differ by the tolerance, and after the first touches by the magnified tolerance.
+// Lanes step over the samples of a filtered signal, whose ripple then counts as an error of some hundredths of it: the error is
+// `looser` times that of steps that end on each sample.
 void expect_alike(const std::vector<DeviceOutcome>& lanes, const std::vector<DeviceOutcome>& one_by_one, double looser = 1) {
   ASSERT_EQ(lanes.size(), one_by_one.size());
   std::vector<double> heights, forces, energies;
@@ -120,11 +120,11 @@ void expect_alike(const std::vector<DeviceOutcome>& lanes, const std::vector<Dev
 struct Case {
   std::string name;
   SceneFile file;
-  double looser = 1;  // factor for expect_alike()
+  double looser = 1;  // factor of the tolerance in expect_alike()
 };
 constexpr double over_samples = 5;
 
-/// A bridge of nickel, clamped at both ends.
+/// A nickel bridge, clamped at both ends.
 SceneFile bridge() {
   return SceneFile::parse(std::string(test::nickel_bridge) + R"([spread]
 "structure.thickness" = { distribution = "normal", cov = "3 %" }
@@ -134,14 +134,14 @@ gaps = { keys = ["gap.electrode", "gap.contact"], distribution = "normal", cov =
                           "bridge.toml");
 }
 
-/// Drawn by an electrode and by the Casimir force of ideal conductors, which grows.
+/// A switch that is pulled by an electrode and by the increasing Casimir force of ideal conductors.
 SceneFile nano_with_casimir() {
   return scene("nem-tin.toml",
                {"dispersion={model=\"casimir\"}", "waveform.dispersion={family=\"step\", level=1.05, rise_time=\"0.4 ns\"}"});
 }
 
-/// The gold cantilever with these sections [contact.NAME] instead of [contact], one of which is `left`: its gap, and that of
-/// `right`, vary with the electrode's.
+/// The gold cantilever with these sections [contact.NAME] instead of [contact], among them `left` and `right`. Their gaps vary
+/// together with the electrode's gap.
 SceneFile gold_with_contacts(const std::vector<std::string>& contacts, std::initializer_list<std::string_view> changes = {}) {
   SceneFile file = gold_at_17_volts(changes);
   for (const char* one : {"contact", "gap.contact", "spread.gaps"}) file.erase(one);
@@ -152,7 +152,8 @@ SceneFile gold_with_contacts(const std::vector<std::string>& contacts, std::init
   return file;
 }
 
-// The contacts are at the tip; 15 um from it and a little nearer to its plane; beside the electrode's middle; on the far side.
+// The contacts are at the tip, 15 um from it and a little closer to its plane, beside the middle of the electrode, and on the
+// far side.
 const std::string left =
     "contact.left={model=\"asperity-uniform\", gap=\"2 um\", pad_length=\"5 um\", asperity_radius=\"100 nm\", "
     "asperity_density=\"1e11 1/m^2\", "
@@ -170,12 +171,12 @@ const std::string stop =
     "damping=\"0.5 s/m\"}";
 const char* const two_sections =
     "structure.sections=[{length=\"60 um\", width=\"15 um\"}, {length=\"190 um\", thickness=\"2.2 um\"}]";
-// Swings the beam back onto its stop before it closes.
+// A waveform that moves the beam back onto its stop before it closes the switch.
 const char* const swing =
     "waveform.main={family=\"pulse\", levels=[\"15.5 V\", \"0 V\", \"18 V\"], times=[\"30 us\", \"85 us\"], edge=\"0.5 us\"}";
 
 std::vector<Case> cases_of_several_contacts() {
-  constexpr const char *any = "metrics.closed=any", *short_window = "simulate.duration=60 us";  // later it is chaotic
+  constexpr const char *any = "metrics.closed=any", *short_window = "simulate.duration=60 us";  // the closing is chaotic later
   const SceneFile stopped = without(
       gold_with_contacts({left, right, stop}, {swing, "simulate.duration=150 us", "driver.main.max_voltage=25 V"}), "gas");
   SceneFile two_of_four = gold_with_contacts({left, right, inner, stop}, {short_window});
@@ -236,7 +237,7 @@ std::vector<Case> cases() {
                                                  "[\"105 um\", \"120 um\"], [\"125 um\", \"140 um\"], [\"145 um\", \"160 um\"], "
                                                  "[\"165 um\", \"180 um\"], [\"185 um\", \"240 um\"]]"})});
   all.push_back({"piezo", gold_pzt({"waveform.piezo={family=\"step\", level=\"-0.2 V\", rise_time=\"30 us\"}",
-                                    "simulate.duration=60 us"})});  // later it is chaotic
+                                    "simulate.duration=60 us"})});  // the closing is chaotic later
   all.push_back({"curled up", gold_at_17_volts({"structure.stress_gradient=0.2 MPa/um"})});
   all.push_back({"curled down over a film on either side",
                  gold_at_17_volts({"structure.stress_gradient=-0.2 MPa/um", "gas.far_gap=2 um"})});
@@ -302,8 +303,8 @@ TEST(Lanes, CloseAsOneAtATimeDoes) {
   }
 }
 
-// A closing one by one adds up V dQ, one in lanes what the fields gain and what they do to the modes: a tight one by one is
-// right.
+// A single closing integrates V dQ. One in lanes sums the energy of the fields and the work on the modes. A single closing with
+// a tight tolerance is the oracle.
 TEST(Lanes, MeasureTheDriveEnergyAsOneAtATimeDoes) {
   for (const auto& [name, file, looser] : cases()) {
     SCOPED_TRACE(name);
@@ -324,13 +325,13 @@ TEST(Lanes, MeasureTheDriveEnergyAsOneAtATimeDoes) {
   }
 }
 
-// The window ends before chaos sets in.
+// The window ends before the closing becomes chaotic.
 TEST(Lanes, MeasureTheForceAsOneAtATimeDoes) {
   const std::string soft =
       "waveform.main={family=\"pulse\", levels=[\"21 V\", \"0 V\", \"14.5 V\"], times=[\"20 us\", \"33 us\"], edge=\"0.5 us\"}";
   int steady = 0, lost = 0, opened = 0, kept = 0, steady_both = 0, steady_any = 0;
   const char* const level = "waveform.main.level=\"17 V\"";
-  // Two contacts at the tip, half a nanometre apart, that land softly in a thick gas.
+  // Two contacts at the tip, whose planes differ by half a nanometre, with a soft landing in a thick gas.
   const std::string tip = "contact.left={gap=\"2 um\", model=\"linear\", pad_length=\"5 um\", stiffness=\"2 kN/m\"}";
   const std::string second = "contact.right={gap=\"2.0005 um\", model=\"linear\", pad_length=\"5 um\", stiffness=\"2 kN/m\"}";
   const std::string second_remembers =
@@ -390,7 +391,7 @@ TEST(Lanes, GiveTheSameBitsWhateverTheirNumberAndCompany) {
       EXPECT_EQ(back, together);
       all.push_back(together);
     }
-#ifndef __clang__  // the launcher does not use clang, whose two programs differ in the eleventh digit
+#ifndef __clang__  // with clang the results of the two programs differ in the eleventh digit
     if (all.size() == 2) {
       EXPECT_EQ(all[0], all[1]) << "AVX2 and AVX-512";
     }
@@ -398,7 +399,7 @@ TEST(Lanes, GiveTheSameBitsWhateverTheirNumberAndCompany) {
   }
 }
 
-// A signal of 25 samples in a microsecond behind a filter of a time constant of four of them.
+// A signal with 25 samples in a microsecond after a filter with a time constant of four samples.
 TEST(LaneDrives, SmoothRunsOfSamplesAndKeepTheirIntegral) {
   std::vector<std::pair<double, double>> points;
   for (int i = 0; i <= 60; ++i) points.emplace_back(1e-6 * i, 20 * std::sin(0.06 * i));
@@ -423,12 +424,12 @@ TEST(LaneDrives, SmoothRunsOfSamplesAndKeepTheirIntegral) {
     largest = std::max(largest, std::abs(off));
   }
   constexpr double ripple =
-      0.01;  // [V]: a sample changes by 50 mV, which the filter makes a sixteenth of, and at the corner more
+      0.01;  // [V]: a sample changes by 50 mV, of which the filter lets pass a sixteenth, and more at the corner
   EXPECT_LT(largest, ripple);
   EXPECT_LT(std::abs(difference), 1e-5 * ripple * end) << "but for the sum over points";
 }
 
-// Factors of two round nothing: drives with half the commanded voltage and a gain of two are those with the full one.
+// Factors of two do not round: half the commanded voltage with a gain of two gives the same bits as the full voltage.
 TEST(Lanes, GiveDrivesWithAGainTheBitsOfTheirOwnSignals) {
   for (const auto& [name, file, looser] : cases()) {
     SCOPED_TRACE(name);
@@ -453,7 +454,7 @@ TEST(Lanes, GiveDrivesWithAGainTheBitsOfTheirOwnSignals) {
   }
 }
 
-// Sines and cubics are worked out in all lanes once one has them.
+// All lanes evaluate sines and cubics if one of them has them.
 TEST(Lanes, GiveTheSameBitsBesideOtherDrives) {
   const std::vector<Case> all = cases();
   const Fleet fleet(gold_at_17_volts(), 9);
@@ -478,7 +479,7 @@ TEST(Lanes, GiveTheSameBitsBesideOtherDrives) {
   }
 }
 
-// So that the case of that name is about one; and a window that begins with the first touch does not begin at the stop.
+// The beam touches its back stop. A window that begins with the first touch must not begin at the stop.
 TEST(Lanes, FollowABackStopThatIsTouched) {
   struct Stop final : ClosingObserver {
     void touch(const Touch&) override { ++touches; }
@@ -510,7 +511,7 @@ TEST(Lanes, FollowABackStopThatIsTouched) {
   }
 }
 
-// The path of one at a time does what lanes cannot: other laws, other points, devices that no switch is, and those in trouble.
+// Closings one at a time handle what lanes cannot: other laws, other quadrature points, impossible devices, numerical failures.
 TEST(Lanes, LeaveTheRestToOneAtATime) {
   constexpr const char* other_contact = "a contact other than linear, hysteretic or asperity-uniform at the contact point";
   const std::vector<std::pair<SceneFile, const char*>> others{
@@ -540,7 +541,7 @@ TEST(Lanes, LeaveTheRestToOneAtATime) {
     for (const Vectors vectors : vectors_here())
       EXPECT_EQ(digits(fleet.close(signals, vectors, 1e-5)), digits(fleet.close(signals, Vectors::none, 1e-5)));
   }
-  // Volts that press the beam onto the electrode, and a device that is none.
+  // Voltages that press the beam onto the electrode, and an impossible device.
   Fleet pressed(gold_at_17_volts(), 6);
   pressed.devices[2] = {.values = {}, .model = {}, .refusal = "none"};
   const std::vector<Signal> signals{Signal::constant(400)};

@@ -1,4 +1,4 @@
-// The limit of what any waveform can do: against closed forms, kept values of an independent calculation, and simulations.
+// Tests the limit for any waveform, against closed forms, values of an independent calculation, and simulations.
 #include "studies/search/limit.h"
 
 #include <gtest/gtest.h>
@@ -21,14 +21,15 @@
 namespace softland {
 namespace {
 
-// Full voltage to x_s, 0 V from there: the plate arrives at the contact with speed v. The field's work is the energy there.
+// Returns the time of full voltage up to x_s, then 0 V, so that the plate arrives at the contact with speed v. The work of the
+// field is the energy at the contact.
 double bang_bang(const Structure& s, const Gap& gap, double volts, double v) {
   const double area = s.width * s.length, force = vacuum_permittivity * area * volts * volts / 2;
   const double mass = part_of<Plate>(s).mass, k = part_of<Plate>(s).stiffness;
   const auto work = [&](double x) { return force * (1 / (gap.electrode - x) - 1 / gap.electrode); };
   const double energy = (k * gap.contact * gap.contact + mass * v * v) / 2;
   const double x_s = gap.electrode - 1 / (energy / force + 1 / gap.electrode);
-  // x = y^2, so that the root at rest is smooth.
+  // The substitution x = y^2 makes the root at rest smooth.
   const GaussRule rule = gauss_rule(60);
   double pulled = 0;
   for (std::size_t i = 0; i < rule.points.size(); ++i) {
@@ -51,7 +52,7 @@ TEST(LeastTime, OfAnUndampedPlateIsThatOfBangAndBang) {
 
 TEST(LeastTime, OfTheGoldCantileverIsThatOfAnIndependentCalculation_slow) {
   const PreparedScene p = prepare_and_choose(gold(), true);
-  // A free-form calculation by another program: 31.85, 31.66 and 31.06 us.
+  // Another program with a free-form waveform gave 31.85, 31.66 and 31.06 us.
   for (const auto& [velocity, known] : {std::pair{1e-3, 31.85e-6}, {3e-3, 31.66e-6}, {10e-3, 31.06e-6}}) {
     const LeastTime found = least_time(p, {.impact_velocity = velocity});
     ASSERT_EQ(found.status, Status::done) << found.message;
@@ -61,7 +62,7 @@ TEST(LeastTime, OfTheGoldCantileverIsThatOfAnIndependentCalculation_slow) {
   }
 }
 
-// A waveform that touches as softly as the tighter bound permits does so under the looser one.
+// A waveform with a landing within the tighter bound also meets the looser bound, so that its least time is no longer.
 void expect_no_longer_where_more_speed_is_permitted(const PreparedScene& p, bool at_rest, std::initializer_list<double> speeds) {
   constexpr double same = 1e-3;
   double before = std::numeric_limits<double>::infinity();
@@ -85,7 +86,7 @@ TEST(LeastTime, OfTheGoldCantileverDoesNotGrowWithThePermittedSpeed_slow) {
     expect_no_longer_where_more_speed_is_permitted(p, at_rest, {0.5e-3, 1e-3, 2e-3, 5e-3, 10e-3, 30e-3});
 }
 
-// Modes that differ by decades: of four the least time is 11.85 us.
+// The frequencies of the modes differ by decades: with four modes the least time is 11.85 us.
 TEST(LeastTime, OfAPiezoIsFoundAndShorterWithSixModes_slow) {
   const PreparedScene p = prepare_and_choose(gold_pzt({"structure.modes=6"}), true);
   const LeastTime found = least_time(p, {.actuator = Actuator::pzt, .impact_velocity = 1.33e-3});
@@ -94,8 +95,9 @@ TEST(LeastTime, OfAPiezoIsFoundAndShorterWithSixModes_slow) {
   EXPECT_NEAR(found.simulated_time / found.time, 1, 1e-4);
 }
 
-// Pulled from rest to its first turn, let go to the other side, pulled from there to x_s and let go again: it arrives with speed
-// v. A plate that one pull does not close; the quickest way may turn a little earlier or later than this one.
+// Returns the time of two swings for a plate that one pull does not close. The plate is pulled from rest to its first turning
+// point, released to the other side, pulled to x_s and released again, and arrives with speed v. The true optimum may turn
+// slightly earlier or later.
 double two_swings(const Structure& s, const Gap& gap, double volts, double v) {
   const double force = vacuum_permittivity * s.width * s.length * volts * volts / 2, m = part_of<Plate>(s).mass,
                k = part_of<Plate>(s).stiffness;
@@ -107,7 +109,7 @@ double two_swings(const Structure& s, const Gap& gap, double volts, double v) {
   const GaussRule rule = gauss_rule(60);
   double pulled = 0, pulled_again = 0;
   for (std::size_t i = 0; i < rule.points.size(); ++i) {
-    // x = x1 sin^2(a) and x = y^2 - x1, so that the roots at rest are smooth.
+    // x = x1 sin^2(a) and x = y^2 - x1 make the roots at rest smooth.
     const double a = std::numbers::pi / 4 * (1 + rule.points[i]), x = x1 * std::sin(a) * std::sin(a);
     pulled +=
         rule.weights[i] * std::numbers::pi / 4 * 2 * x1 * std::sin(a) * std::cos(a) / std::sqrt((2 * work(x) - k * x * x) / m);
@@ -132,13 +134,13 @@ TEST(LeastTime, OfASwitchThatOnePullDoesNotCloseIsFoundFromASwingThatDoes) {
   EXPECT_LE(found.time, known * (1 + 1e-4));
   EXPECT_GT(found.time, 0.97 * known);
   EXPECT_NEAR(found.simulated_time / found.time, 1, 1e-4);
-  // A single swing that is quicker stays the answer.
+  // If a single swing is faster, it remains the result.
   const PreparedScene strong = prepare_and_choose(spring_plate(), true);
   const LeastTime quick = least_time(strong, {.impact_velocity = 0.01}),
                   both = least_time(strong, {.impact_velocity = 0.01, .start = {{"main", swing}}});
   EXPECT_LE(both.time, quick.time);
   EXPECT_GT(both.time, (1 - 1e-4) * quick.time);
-  // Nothing is found from a waveform that does not touch.
+  // A start waveform that does not touch gives no result.
   EXPECT_EQ(least_time(p, {.impact_velocity = 0.01, .start = {{"main", Step{.level = 1}}}}).status, Status::no_contact);
 }
 
@@ -183,7 +185,7 @@ TEST(LeastTime, KeepsTheSlewOfTheDriver) {
       << violation(signal(slow.waveforms.at("main")), ramps.drives.at("main").limits.value());
 }
 
-// The nearer to rest all modes are when the contact point touches, the less it rebounds.
+// The closer all modes are to rest at touch, the lower is the rebound.
 TEST(LandingsAtRest, BringAPiezoToRestWithoutJumps_slow) {
   const SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold-pzt.toml");
   const PreparedScene p = prepare_and_choose(file, true);
@@ -227,7 +229,7 @@ PreparedScene ramped_plate(const std::string& level) {
   return prepare_and_choose(file, true);
 }
 
-// Pull and spring are equal at the contact: no more than that may act on a plate that comes to rest there without a push.
+// At the contact the pull equals the spring force: a larger pull would press on a plate that comes to rest there.
 TEST(FreeFlight, LandsUnderTheVoltageThatHoldsWithoutPressing) {
   const PreparedScene p = ramped_plate("100 V");
   const auto landing = FreeFlight(p, Actuator::electrostatic).landing();
@@ -241,7 +243,7 @@ TEST(FreeFlight, LandsUnderTheVoltageThatHoldsWithoutPressing) {
   EXPECT_NEAR(landing->state[0], 1, 1e-9);
 }
 
-// 0.2 um of nitride with so much charge that no field is left at 10 V.
+// 0.2 um of nitride with a charge for which no field is left at 10 V.
 constexpr auto charged_nitride = R"(electrode.main.dielectric={thickness="0.2 um",permittivity=7.6,charge="-3.3646 mC/m^2"})";
 
 TEST(LeastTime, CoastsWhereAChargeLeavesNoField) {
@@ -319,7 +321,7 @@ TEST(Limit, LandsTheGoldCantileverWithoutAReboundInTheLeastTime_slow) {
   EXPECT_GT(found.rest.time, found.touch.time);
 }
 
-// An independent calculation gave 0 V until just after the touch, full pull until 75 us.
+// An independent calculation gave 0 V until just after the touch, then full voltage until 75 us.
 TEST(Limit, LandsTheGoldCantileverByACatchThatBeginsLater_slow) {
   const Limit found = limit(gold(), {.impact_velocity = 10e-3, .curves = false});
   ASSERT_TRUE(found.landing.has_value());
@@ -330,7 +332,7 @@ TEST(Limit, LandsTheGoldCantileverByACatchThatBeginsLater_slow) {
 }
 
 TEST(Limit, DoesNotBelieveALandingThatARicherBeamUndoes_slow) {
-  // Jumps of the piezo ring modes beyond the four of the scene.
+  // Jumps of the piezo excite modes beyond the four of the scene.
   const Limit found = limit(gold_pzt(), {.actuator = Actuator::both, .curves = false});
   ASSERT_TRUE(found.landing.has_value());
   EXPECT_EQ(found.landing->closing.metrics.bounce_count, 0);
