@@ -1,5 +1,5 @@
-// Landings that do not belong to the modes of their scene: gentle edges, the worst of beams, and the other ways in which a winner
-// is simulated.
+// Landings that are bouncy with more modes than the scene has: gentle edges, the worst of several beams, and further
+// simulations of a winner.
 #include "studies/search/modes_of_search.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* families_with_slew = "step+pulse+catch+ramp+knots:6+coast+dual-pulse+staircase:4+s-curve+bspline:8+sines:4";
 
-// Found with jumps: it lands with four modes, and rebounds with eight.
+// A waveform with jumps: the beam lands with four modes, and rebounds with eight.
 SceneFile landed_with_four_modes() {
   SceneFile file = gold_pzt({"simulate.duration=300 us"});
   file.set_waveform("piezo",
@@ -42,8 +42,8 @@ std::vector<double> somewhere(const SearchSpace& space, std::uint64_t number) {
   return x;
 }
 
-// A waveform of any family that a search may try crosses its range in no less than a period of the highest mode, within the
-// driver's own limits.
+// In every family that a search may try, a waveform takes at least a period of the highest mode to cross its range, and stays
+// within the driver's own limits.
 TEST(GentleEdges, AreThoseOfEveryWaveformOfEveryFamily) {
   const std::vector<SearchSetting> steep = search_settings(gold_pzt(), Target::bounce, Actuator::both, families_with_slew, {});
   const std::vector<SearchSetting> gentle = with_gentle_edges(steep, Actuator::both, families_with_slew);
@@ -66,7 +66,7 @@ TEST(GentleEdges, AreThoseOfEveryWaveformOfEveryFamily) {
   EXPECT_TRUE(steeper) << "there is something to be gentle about";
 }
 
-// Also of drives that stand at a voltage before: what a search may try begins there.
+// The waveforms of a search begin at the voltage that the drive has before.
 TEST(GentleEdges, BeginWhereADriveStandsBefore) {
   const SceneFile file =
       gold_pzt({"waveform.main.before=3 V", "waveform.piezo={family=\"step\", level=\"0 V\", before=\"0.4 V\"}"});
@@ -90,7 +90,7 @@ TEST(GentleEdges, AreNotForPlatesNorForDriversThatHaveTheirOwn) {
   EXPECT_FALSE(gentle_of(limited, Actuator::both).empty()) << "the electrode has none";
 }
 
-// A scene or an option with steeper edges asks for them.
+// A scene or an option may request steeper edges.
 TEST(GentleEdges, AreWhereSearchesOfAPiezoBeginUnlessTheyBeginSteeper) {
   const auto begin = [](const SceneFile& file, Actuator actuator, const std::vector<StartingWaveforms>& starts) {
     return begins_gently(with_gentle_edges(search_settings(file, Target::bounce, actuator, "pulse", {}), actuator, "pulse"),
@@ -109,7 +109,7 @@ TEST(GentleEdges, AreWhereSearchesOfAPiezoBeginUnlessTheyBeginSteeper) {
   EXPECT_FALSE(begin(gold_pzt(), Actuator::pzt, {{.name = "steep", .waveforms = {{"piezo", pulse(0.1e-6)}}}}));
 }
 
-// The oracle is the same search of a scene with more modes, with the touch speeds of its closings.
+// The oracle is the same search of scenes with more modes, and the impact velocities of its closings.
 TEST(WorstOfModes, IsTheHighestOfTheCostsOfEveryBeam) {
   const SceneFile file = landed_with_four_modes();
   const SearchSetting plain = search_setting(file, Target::bounce, Actuator::pzt, "bspline:16", {});
@@ -162,9 +162,9 @@ TEST(Confirmation, IsByTheIntegratorByRicherBeamsAndByGasLawsWhoseLimitsHold_slo
   EXPECT_EQ(names(scene("two-electrodes.toml")).front(), "tolerance 1e-9");
 }
 
-// Within a fifth of the least time in which drives with edges as gentle bring every mode to rest, 23.8 us: a landing has to suit
-// four beams, by some twenty parameters. Eleven searches ended in 25.5 to 26.8 us. Seeds hardly part them, rounding does: so
-// lengths differ here, too, by a few parts in a billion.
+// The landing is within 1.2 times the least time in which drives with edges as gentle bring every mode to rest, 23.8 us: it has
+// to suit four beams, with some twenty parameters. Eleven searches ended in 25.5 to 26.8 us. The results depend hardly on the
+// seed, but on rounding: so lengths differ here by a few parts in a billion as well.
 constexpr double late = 1.2;
 
 double least_time_at_rest(const SceneFile& file) {
@@ -176,8 +176,8 @@ double least_time_at_rest(const SceneFile& file) {
   return rest.time;
 }
 
-// A search for the nominal design by the first command promises, for three seeds and lengths, a landing as soft with six, eight
-// and ten modes as with four.
+// By the first command of README.md a search for the nominal design lands as softly with six, eight and ten modes as with four.
+// Tested for three seeds and lengths.
 TEST(WorstOfModes, LandsThePiezoSwitchWithAnyNumberOfModes_slow) {
   const double latest = late * least_time_at_rest(gold_pzt());
   for (const auto& [seed, length] : {std::pair(1U, "250 um"), {2U, "250.000001 um"}, {3U, "250.000003 um"}}) {
@@ -200,7 +200,8 @@ TEST(WorstOfModes, LandsThePiezoSwitchWithAnyNumberOfModes_slow) {
   }
 }
 
-// A piezo that is asked for steep edges lands with the scene's modes and not with more of them: it goes on with gentle ones.
+// A search with steep edges of the piezo lands with the scene's modes, but not with more of them: it continues with gentle
+// edges.
 TEST(WorstOfModes, GoesOnWhereALandingBelongsToTheModesOfItsScene) {
   const OptimizeResult free =
       optimize(landed_with_four_modes(), {.actuator = Actuator::pzt, .family = "bspline:16", .max_evaluations = 100, .jobs = 2});

@@ -1,5 +1,5 @@
-// Commands to open. Oracles: a plate's balance of forces and its linear oscillator in contact and in flight, the same opening
-// from the closed equilibrium, and integrations by other programs.
+// Commands to open. Oracles: the balance of forces on a plate, its linear oscillators in contact and in flight, the same
+// opening from the closed equilibrium, and integrations by other programs.
 #include "studies/closing/open_command.h"
 
 #include <fmt/format.h>
@@ -42,7 +42,7 @@ contact = { model = "linear", stiffness = "5 kN/m" }
   return file;
 }
 
-/// Position of a plate at rest on its contact under a voltage, by Newton's method [m].
+/// Returns the position of a plate at rest on its contact under a voltage, by Newton's method [m].
 double pressed_to(double volts) {
   double y = dt;
   for (int i = 0; i < 50; ++i) {
@@ -52,9 +52,9 @@ double pressed_to(double volts) {
   return y;
 }
 
-/// The plate let go at once from there: it swings about kc dt / (k + kc) until it leaves the contact.
+/// The plate released from its rest on the contact: it oscillates about kc dt / (k + kc) until it leaves the contact.
 struct LetGo {
-  double time, speed;  // the break has these [s], [m/s]
+  double time, speed;  // time [s] and speed [m/s] at the break of contact
 };
 LetGo let_go(double volts) {
   const double middle = kc * dt / (k + kc), w = std::sqrt((k + kc) / mass), from = pressed_to(volts) - middle;
@@ -62,7 +62,7 @@ LetGo let_go(double volts) {
   return {.time = phase / w, .speed = from * w * std::sin(phase)};
 }
 
-// circuitjs1, pull request 289, as an independent integrator has it.
+// Values of circuitjs1, pull request 289, by an independent integrator.
 TEST(OpenCommand, EndsTheClosingAndBeginsAnOpeningWithFiguresOfItsOwn) {
   const SceneFile file = SceneFile::parse(R"(
 structure = { kind = "plate", mass = "1 ug", stiffness = "100 N/m", area = "0.04 mm^2" }
@@ -87,7 +87,7 @@ simulate.duration = "400 us"
   EXPECT_EQ(m.release_bounce_height, 0);
   EXPECT_GT(m.steady_force_time, m.initial_contact_time);
   EXPECT_GT(m.hold_force, 0);
-  EXPECT_GT(m.release_settling_time, 4.21446e-6);  // half of the travel is done by then
+  EXPECT_GT(m.release_settling_time, 4.21446e-6);  // half of the travel is done at this time
   for (const Rebound& rebound : c.rebounds) EXPECT_LT(rebound.end, 300e-6);
   EXPECT_LT(c.errors[&Metrics::opening_time], 1e-5 * m.opening_time);
   EXPECT_GT(c.errors[&Metrics::opening_time], 0);
@@ -101,10 +101,10 @@ simulate.duration = "40 us"
   const Metrics m = simulate(p, true).metrics;
   const LetGo expected = let_go(40);
   EXPECT_EQ(m.open_command, 0);
-  // It comes back without loss, strikes the contact again and again, and has a break after each.
+  // Without loss the plate returns, strikes the contact repeatedly, and has a break after each touch.
   EXPECT_GT(m.release_bounces, 0);
   EXPECT_GT(m.release_bounce_height, dt);
-  // The only break before it has come back once is that of the closed form.
+  // In a window that ends before the plate has returned, the only break is that of the closed form.
   const PreparedScene once = prepare(plate(R"(
 waveform.main = { family = "step", before = "40 V", before_state = "closed", level = "0 V" }
 simulate.duration = "10 us"
@@ -170,19 +170,19 @@ TEST(OpenCommand, IsTheBeginOfTheLastFallAndNoDip) {
   EXPECT_EQ(commanded("waveform.main = { family = \"pulse\", levels = [\"40 V\", \"600 V\"], times = [\"50 us\"] }"),
             std::nullopt)
       << "that pulls it through";
-  // A fall of two slopes begins where the first does, after a rise.
+  // After a rise, a fall with two slopes begins with its first slope.
   const auto table = [](const char* points) { return fmt::format("waveform.main = {{ family = \"table\", {} }}", points); };
   EXPECT_EQ(commanded(table(R"(times = ["0 s", "40 us", "60 us", "61 us"], voltages = ["35 V", "40 V", "30 V", "0 V"])")), 40e-6);
   EXPECT_EQ(commanded(table(R"(times = ["0 s", "40 us", "50 us", "61 us"], voltages = ["40 V", "30 V", "30 V", "0 V"])")), 50e-6);
 }
 
 TEST(OpenCommand, KnowsWhatAFilterOrASineMakesOfAFall) {
-  // A filter begins to fall where its source is switched.
+  // The output of a filter begins to fall when its source is switched.
   EXPECT_NEAR(commanded(R"(waveform.main = { family = "pulse", levels = ["40 V", "0 V"], times = ["50 us"] }
 driver.main = { max_voltage = "60 V", bandwidth = "100 kHz" })")
                   .value(),
               50e-6, 1e-15);
-  // Half a cosine.
+  // A half cosine.
   EXPECT_NEAR(
       commanded(R"(waveform.main = { family = "s-curve", levels = ["40 V", "0 V"], times = ["50 us"], edge = "4 us" })").value(),
       50e-6, 0.2e-6);
@@ -231,7 +231,7 @@ TEST(OpenCommand, LeavesARunUnsettledThatHadNotSettledOrDoesNotComeToRest) {
   EXPECT_EQ(brief.metrics.status, Status::not_settled);
   EXPECT_TRUE(brief.metrics.settled);
   EXPECT_THAT(brief.warnings, testing::Contains(HasSubstr("not at rest in its open state")));
-  // A window of its own shows the rest.
+  // An explicit window, long enough, shows the plate at rest.
   EXPECT_EQ(simulate(prepare(plate(closing + "times = [\"300 us\"] }\n", 0.1)), true).metrics.status, Status::done);
 }
 
@@ -250,7 +250,7 @@ simulate.duration = "400 us"
   EXPECT_NEAR(m.closed_time, m.open_command + m.opening_time - m.initial_contact_time - m.separated, 1e-15);
 }
 
-// The drives hold the switch within such a window.
+// In a window that ends before the command, the drives hold the switch.
 TEST(OpenCommand, AfterTheWindowLeavesAClosingThatIsDone) {
   const std::string_view rest = R"(
 waveform.main = { family = "pulse", levels = ["60 V", "0 V"], times = ["500 us"] }
@@ -268,7 +268,7 @@ simulate.duration = "300 us"
 }
 
 TEST(OpenCommand, BeforeTheFirstTouchIsNone) {
-  // Thrown at the contact, and let go before it arrives.
+  // The plate is accelerated towards the contact, and released before it arrives.
   const Closing c = simulate(prepare(plate(R"(
 waveform.main = { family = "pulse", levels = ["90 V", "0 V"], times = ["4 us"] }
 simulate.duration = "60 us"
@@ -296,7 +296,7 @@ simulate.duration = "10 us"
   EXPECT_NEAR(c.metrics.back_stop_velocity, 0.9399795882381463, 1e-8);
 }
 
-// The studies of a closing end where the switch is commanded to open.
+// Studies of a closing end at the command to open.
 TEST(OpenCommand, EndsTheClosingOfOtherStudies) {
   const std::string rest = "spread.\"gap.electrode\" = { distribution = \"normal\", cov = \"1 %\" }\n";
   const PreparedScene held =

@@ -1,4 +1,4 @@
-// A switch that stays open: where it rests, how it gets there, and whether it was meant to close.
+// A switch that stays open: its rest position, the motion to it, and whether its drives are meant to close it.
 #include "studies/closing/open_state.h"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ namespace {
 
 Closing closing_of(const SceneFile& file) { return simulate(prepare(file), true); }
 
-/// A plate of one degree of freedom that a small step moves: a damped oscillator but for the field.
+/// A plate with one degree of freedom under a small step: a damped oscillator, apart from the field.
 SceneFile small_step(std::initializer_list<std::string_view> changes = {}) {
   SceneFile file = spring_plate({"waveform.main.level=2 V", "structure.damping_ratio=0.2", "simulate.duration=400 us"});
   for (const std::string_view change : changes) file.set(change);
@@ -29,14 +29,14 @@ TEST(OpenState, IsThatOfADampedOscillator) {
   const Closing c = closing_of(small_step());
   ASSERT_EQ(c.metrics.status, Status::open);
   constexpr double stiffness = 42, area = 1e-8, gap = 3.8e-6, zeta = 0.2, eps0 = 8.8541878128e-12, volts = 2;
-  // A small deflection has to first order: k y = eps0 A V^2 / (2 (d - y)^2).
+  // First order of a small deflection: k y = eps0 A V^2 / (2 (d - y)^2).
   const double first = eps0 * area * volts * volts / (2 * gap * gap * stiffness), y = first / (1 - 2 * first / gap);
   constexpr double small = 1e-3;  // deflection over gap
   EXPECT_NEAR(c.metrics.static_deflection, y, small * y);
   EXPECT_NEAR(c.metrics.capacitance, eps0 * area / (gap - y), 1e-6 * eps0 * area / gap);
   const double root = std::sqrt(1 - zeta * zeta);
   EXPECT_NEAR(c.metrics.overshoot, y * std::exp(-std::numbers::pi * zeta / root), 2 * small * y);
-  // The last crossing of 2 % of the step, by its own course.
+  // The last crossing of the 2 % band in the closed form of the oscillator.
   const double omega = std::sqrt(42 / 2.4e-9);
   const auto left = [&](double t) {
     return std::exp(-zeta * omega * t) * (std::cos(root * omega * t) + zeta / root * std::sin(root * omega * t));
@@ -51,7 +51,7 @@ TEST(OpenState, IsThatOfADampedOscillator) {
 }
 
 TEST(OpenState, HasNotSettledWhereItSwings) {
-  // The window ends where the plate swings through its static deflection.
+  // The window ends while the plate moves through its static deflection.
   const Closing c = closing_of(small_step({"structure.damping_ratio=0", "simulate.duration=391.9 us"}));
   ASSERT_EQ(c.metrics.status, Status::open);
   EXPECT_NEAR(c.metrics.overshoot, c.metrics.static_deflection, 1e-3 * c.metrics.static_deflection);
@@ -61,13 +61,13 @@ TEST(OpenState, HasNotSettledWhereItSwings) {
 TEST(OpenState, OfASwitchThatOpensIsSeenFromWhereItStarted) {
   const Closing c = closing_of(small_step({"waveform.main.level=1 V", "waveform.main.before=3 V"}));
   ASSERT_EQ(c.metrics.status, Status::open);
-  // It starts eight times its static deflection away, and swings beyond it by half of that.
+  // The plate starts at eight times its static deflection, and overshoots by half of that.
   EXPECT_NEAR(c.metrics.overshoot, 8 * 0.527 * c.metrics.static_deflection, 0.1 * c.metrics.static_deflection);
   const double expected = closing_of(small_step()).metrics.open_settling_time;
   EXPECT_NEAR(c.metrics.open_settling_time, expected, 0.01 * expected);
 }
 
-// Just below and just above the dynamic pull-in voltage, in windows in which nothing touches.
+// Tests just below and just above the dynamic pull-in voltage, in windows in which the switch does not touch.
 TEST(OpenState, IsThatOfEveryShippedScenePulledByLess_slow) {
   for (const std::string& name : shipped_scenes()) {
     const Scene read = read_scene(scene(name.c_str()));
@@ -90,7 +90,7 @@ TEST(OpenState, IsNotThatOfADriveThatIsDueToClose) {
   const auto status = [](const char* waveform) {
     return closing_of(spring_plate({waveform, "driver.main.max_voltage=200 V", "simulate.duration=100 us"})).metrics.status;
   };
-  // The plate's Vdp is 80.7 V: a pulse that is too short to close it was due to.
+  // Vdp of the plate is 80.7 V: the pulse is too short to close it, but was meant to.
   EXPECT_EQ(status("waveform.main={family=\"pulse\",levels=[\"150 V\",\"0 V\"],times=[\"1 us\"]}"), Status::no_contact);
   EXPECT_EQ(status("waveform.main={family=\"pulse\",levels=[\"70 V\",\"0 V\"],times=[\"10 us\"]}"), Status::open);
   EXPECT_EQ(status("waveform.main={family=\"step\",level=\"190 V\",rise_time=\"90 ms\"}"), Status::no_contact);

@@ -1,4 +1,4 @@
-// Openings: against the closed form of an undamped plate, and searches on the shipped scenes.
+// Openings: against the closed form of an undamped plate, and by searches on the shipped scenes.
 #include "studies/search/opening.h"
 
 #include <gtest/gtest.h>
@@ -17,10 +17,11 @@
 namespace softland {
 namespace {
 
-// The plate on its spring, let go at t = 0: it leaves its contact, swings on its spring, and is pulled from x_1 to rest at 0.
+// The plate on its spring, released at t = 0: it leaves its contact, oscillates on its spring, and is pulled from x_1 on to
+// rest at 0.
 struct ExactOpening {
   double leaves = 0, brakes = 0, rests = 0;  // [s]
-  double swing = 0;                          // place to which it would swing, unbraked [m]
+  double swing = 0;                          // turning point without the pull [m]
 };
 
 ExactOpening exact_opening(const Structure& s, const Gap& gap, double contact_stiffness, double volts) {
@@ -29,13 +30,13 @@ ExactOpening exact_opening(const Structure& s, const Gap& gap, double contact_st
   const double g = gap.contact, d = gap.electrode, both = k + contact_stiffness;
   double x0 = g;  // k x + k_c (x - g) = F / (d - x)^2
   for (int i = 0; i < 100; ++i) x0 = (force / ((d - x0) * (d - x0)) + contact_stiffness * g) / both;
-  // The motion is about x_c in contact, then about 0.
+  // The motion is about x_c in contact, and about 0 in flight.
   const double x_c = contact_stiffness * g / both, fast = std::sqrt(both / m), omega = std::sqrt(k / m);
   ExactOpening o{.leaves = std::acos((g - x_c) / (x0 - x_c)) / fast};
   const double speed = (x0 - x_c) * fast * std::sin(fast * o.leaves);
   o.swing = std::hypot(g, speed / omega);
   const double energy = k * o.swing * o.swing / 2;
-  const double x1 = d - 1 / (energy / force + 1 / d);  // the pull takes all of the energy from here on
+  const double x1 = d - 1 / (energy / force + 1 / d);  // from here on the pull takes up all of the energy
   o.brakes = o.leaves + (std::acos(x1 / o.swing) - std::acos(g / o.swing)) / omega;
   const GaussRule rule = gauss_rule(60);
   o.rests = o.brakes;
@@ -59,7 +60,7 @@ TEST(OpeningResult, OfAnUndampedPlateIsThatOfItsClosedForm) {
     EXPECT_LT(t.energy_error, 1e-8 * p.model.bending_energy());
     return release_figures(t, {.open_position = 0, .width = 0.05 * 2.6e-6, .drives_end = drives_end});
   };
-  const OpeningFigures let_go = open(Signal(), 0, 40e-6);  // short of its next touch
+  const OpeningFigures let_go = open(Signal(), 0, 40e-6);  // ends before its next touch
   EXPECT_EQ(let_go.status, Status::not_settled);
   EXPECT_NEAR(let_go.release_time, exact.leaves, 1e-6 * exact.leaves);
   EXPECT_NEAR(let_go.overshoot, exact.swing, 1e-6 * exact.swing);
@@ -71,7 +72,7 @@ TEST(OpeningResult, OfAnUndampedPlateIsThatOfItsClosedForm) {
   EXPECT_LT(braked.residual_vibration, 1e-6 * 2.6e-6);
   EXPECT_LT(braked.settling_time, exact.rests);
 
-  // The quickest way to rest jumps between the bounds once: a search for the band comes as near as its edges permit.
+  // The fastest waveform to rest jumps once between the bounds. The search comes as close to it as the edges allow.
   const OpeningResult found = search_opening(spring_plate({"driver.main.max_voltage=100 V"}), {});
   ASSERT_TRUE(found.best);
   EXPECT_TRUE(found.confirmed);

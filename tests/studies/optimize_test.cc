@@ -1,4 +1,4 @@
-// The search as a whole, on small budgets: what it promises whoever wins.
+// The search as a whole, with small budgets: what holds for any winner.
 #include "studies/search/optimize.h"
 
 #include <gmock/gmock.h>
@@ -29,7 +29,7 @@ Log search(const SceneFile& file, OptimizeOptions options, long budget = 60) {
   return {std::move(seen), std::move(result)};
 }
 
-// The window holds every landing a search may choose, and is a quarter of the scene's own.
+// The window contains every landing that a search may choose, and is a quarter of the scene's own.
 SceneFile quick() { return gold({"simulate.duration=150 us"}); }
 
 const Log& reference() {
@@ -69,7 +69,7 @@ TEST(Optimize, StaysInsideItsBoundsAndItsBudget) {
   for (const auto& [index, e] : reference().evaluations) {
     ASSERT_EQ(e.x.size(), variables.size());
     for (std::size_t k = 0; k < e.x.size(); ++k) {
-      // The first touch is known to the search's own tolerance only.
+      // The first touch is known within the tolerance of the search only.
       const double slack = 1e-4 * (variables[k].upper - variables[k].lower);
       EXPECT_GE(e.x[k], variables[k].lower - slack) << variables[k].name;
       EXPECT_LE(e.x[k], variables[k].upper + slack) << variables[k].name;
@@ -112,13 +112,13 @@ TEST(Optimize, FulfilsItsConditionsOrSaysWhichItBreaks_optimized) {
   const OptimizeResult impossible = with("t_i < 1 us", 30);
   EXPECT_THAT(impossible.broken_conditions, testing::ElementsAre("t_i < 1 us"));
   EXPECT_FALSE(impossible.goal_met);
-  // The plain step touches at 24 us, the unconstrained winner later than this.
+  // The plain step touches at 24 us, and the winner without a condition after 32 us.
   const OptimizeResult early = with("t_i < 32 us", 300);
   ASSERT_TRUE(early.best);
   EXPECT_TRUE(early.broken_conditions.empty());
   EXPECT_LT(early.best->metrics.initial_contact_time, 32e-6);
   EXPECT_GT(search(quick(), {}, 300).result.best->metrics.initial_contact_time, 32e-6);
-  // It holds at 17.8 V, and may give 21.3 V.
+  // The hold voltage is 17.8 V, and the limit of the driver 21.3 V.
   const OptimizeResult gentle = with("peak_voltage < 18 V", 100);
   ASSERT_TRUE(gentle.best);
   EXPECT_LT(gentle.best->metrics.peak_voltage, 18);
@@ -128,8 +128,8 @@ TEST(Optimize, MinimisesASumByTheMeanOfItsFigures) {
   const Aim sum({{Target::settling, 1}, {Target::energy, 2}});
   const Log log = search(quick(), {.target = sum}, 90);
   EXPECT_EQ(log.result.search.termination, Termination::evaluation_budget);
-  EXPECT_GT(log.evaluations.size(), 60U);  // evaluations of the second stage, by the sum, as well
-  EXPECT_LE(log.evaluations.size(), 90U);  // evaluations with what its gradients count for
+  EXPECT_GT(log.evaluations.size(), 60U);  // includes the evaluations of the second stage, which uses the sum
+  EXPECT_LE(log.evaluations.size(), 90U);  // gradients count as the evaluations that they cost
   Metrics step;
   step.settled = true;
   step.bounce_count = 5;
@@ -178,7 +178,7 @@ TEST(Optimize, VerifiesItsWinnerAsSimulateWill) {
   EXPECT_EQ(r.checks.size(), 6U);
 }
 
-// Sets a pulse that lands without a rebound, found by a search.
+// Sets a pulse with a bounce-free landing, which a search found.
 SceneFile landed() {
   SceneFile file = quick();
   file.set_waveform("main", Pulse{.levels = {20.8719639809752, 1.6808343557489793, 17.767260288595256},
@@ -301,7 +301,7 @@ TEST(Optimize, OfSeveralFamiliesSearchesTheFirstWhereTheBudgetIsTiny) {
   for (const auto& [index, e] : log.evaluations) EXPECT_EQ(e.problem, 0U) << index;
 }
 
-// One line for each scene shipped: what optimize says of it, empty where it searches.
+// For each shipped scene the message by which optimize refuses it; empty if it searches.
 TEST(Optimize, SearchesEveryShippedSceneOrSaysWhyNot_optimized) {
   const std::map<std::string, std::string> refused{
       {"hung-senturia.toml", "optimize needs a [contact] section: without contact there is nothing to land on"},
@@ -322,8 +322,8 @@ TEST(Optimize, SearchesEveryShippedSceneOrSaysWhyNot_optimized) {
   EXPECT_GE(scenes, 8);
 }
 
-// Scenes whose plain step lands without a rebound: an overdamped plate, and a bridge in nitrogen.
-// The search follows the rule that its winner is verified by: it does not spend itself on closings that are refused.
+// Scenes whose plain step is bounce-free: an overdamped plate, and a bridge in nitrogen. The search follows the rule by which
+// its winner is verified, so that it spends no closings on candidates that are refused.
 TEST(Optimize, IsNotLedToWhatIsHarderThanThePlainStep_optimized) {
   SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/nem-tin.toml");
   double least = 0;
@@ -334,7 +334,7 @@ TEST(Optimize, IsNotLedToWhatIsHarderThanThePlainStep_optimized) {
     EXPECT_TRUE(found.goal_met) << limit;
     EXPECT_EQ(found.harder_than_step, 0) << limit;
     if (least == 0) least = found.best_cost;
-    // 2.6 times as much where the rule was known to the verification alone.
+    // The ratio is 2.6 if only the verification knows the rule.
     EXPECT_LT(found.best_cost, 1.5 * least) << limit;
   }
 }
@@ -350,7 +350,7 @@ TEST(Optimize, IsNoHarderThanAPlainStepThatLands_optimized) {
   for (const SceneFile& file : scenes_whose_step_lands()) {
     for (const TargetRow& target : targets) {
       const bool is_plate = file.text().find("plate") != std::string::npos;
-      if (!is_plate && target.value != Target::bounce) continue;  // the bridge takes a second
+      if (!is_plate && target.value != Target::bounce) continue;  // a closing of the bridge takes a second
       const OptimizeResult r =
           optimize(with_keys_for(target.value, file), {.target = target.value, .family = "dual-pulse", .max_evaluations = 40});
       ASSERT_TRUE(r.best) << target.name;
@@ -373,7 +373,7 @@ TEST(Optimize, IsNoHarderThanAPlainStepThatLands_optimized) {
   EXPECT_GT(kept, 0);
 }
 
-// A condition that the step breaks asks for another closing, and an own objective says by itself what is worth its price.
+// A condition that the step breaks requires another closing, and an own objective decides by itself what a closing may cost.
 TEST(Optimize, MayBeHarderThanAPlainStepThatIsNoAnswer_optimized) {
   const SceneFile file = scenes_whose_step_lands().front();
   const OptimizeResult r = optimize(
@@ -402,7 +402,7 @@ TEST(Optimize, RunsTheBestSoFarToItsEndWhenToldToStop) {
   std::atomic<bool> stop{false};
   OptimizeOptions options{.max_evaluations = 100000, .stop = &stop};
   options.on_evaluation = [&](const Evaluation& e, const OptimizeProgress&) { stop = stop || e.index >= 30; };
-  const OptimizeResult r = optimize(gold({"simulate.duration=400 us"}), options);  // settled by then
+  const OptimizeResult r = optimize(gold({"simulate.duration=400 us"}), options);  // the switch has settled by then
   EXPECT_EQ(r.search.termination, Termination::interrupted);
   ASSERT_TRUE(r.best);
   EXPECT_EQ(r.best->metrics.status, Status::done);

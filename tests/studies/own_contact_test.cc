@@ -1,4 +1,4 @@
-// A contact law of a program's own, through what the library does with scenes.
+// A contact law of a user's program in the functions of the library on scenes.
 #include "tests/support/own_contact.h"
 
 #include <gmock/gmock.h>
@@ -14,7 +14,7 @@
 namespace softland {
 namespace {
 
-constexpr double same_formula = 1e-9;  // error after a spread, a search and hundreds of steps of an integrator
+constexpr double same_formula = 1e-9;  // relative error after a spread, a search and hundreds of integrator steps
 
 SceneFile own_gold() {
   SceneFile file = gold_at_17_volts();

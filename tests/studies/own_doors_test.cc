@@ -1,4 +1,4 @@
-// A user's own objective and waveform in the studies: where they say what a built-in one says, they are it.
+// A user's own objective and waveform in the studies: those that equal a built-in one give the same results.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ Aim by(By::Value value, bool lands_first = true) { return Aim(std::make_shared<B
 
 double share_of_drive(const Metrics& m, const Metrics& step) { return m.drive_energy / step.drive_energy; }
 
-// A ramp to a level that is held, by its rise time.
+// A ramp to a level that is held; its variable is the rise time.
 class Ramp final : public OwnWaveform {
  public:
   Ramp(double hold, OwnParameter rise) : hold_(hold), rise_(std::move(rise)) {}
@@ -64,7 +64,7 @@ class Ramp final : public OwnWaveform {
 
 SceneFile quick_gold() { return gold_at_17_volts({"structure.modes=2"}); }
 
-// The search of a built-in step, and an own one of the same bounds.
+// A search of the built-in step, and one of an own waveform with the same bounds.
 struct SameRamp {
   SceneFile scene = quick_gold();
   SearchSetting built_in = search_setting(scene, Target::bounce, Actuator::electrostatic, "step", {});
@@ -77,7 +77,7 @@ struct SameRamp {
 
 TEST(OwnObjective, OfAFigureIsTheTargetOfThatFigure) {
   SearchSetting built_in = search_setting(quick_gold(), Target::drive, Actuator::electrostatic, "pulse", {});
-  built_in.scale.judges_hardness = false;  // an own objective lifts that rule
+  built_in.scale.judges_hardness = false;  // an own objective disables that rule
   SearchSetting own = built_in;
   own.target = by(share_of_drive);
   for (const std::vector<double>& x : built_in.space.starts()) {
@@ -203,7 +203,7 @@ TEST(OwnObjective, OfDevicesIsTheTargetOfItsFigureInLanesAndOneByOne) {
   EXPECT_EQ(value(own, vectors_in_use()), value(built_in, vectors_in_use()));
 }
 
-// Asked for many closings, and never for one.
+// An objective that evaluates many closings together, and none alone.
 class ByMany final : public OwnObjective {
  public:
   explicit ByMany(double excess) : excess_(excess) {}
@@ -336,7 +336,7 @@ TEST(OwnWaveform, IsRefusedWhereItDoesNotEndOnTheHoldLevelOrCannotBeWritten) {
   EXPECT_EQ(setting.gradient_refusal(Target::bounce), "the own waveform 'own-ramp' has no gradient");
 }
 
-// Half a cosine to a level that is held.
+// A half cosine to a level that is held.
 class Swell final : public OwnWaveform {
  public:
   [[nodiscard]] std::string_view name() const override { return "swell"; }

@@ -32,7 +32,7 @@ TEST(PracticeDevice, MovesAsTheSwitchOfItsOwnScene) {
   const Closing own = simulate(prepare(ensemble.scene(device.device().values)), false);
   EXPECT_EQ(closing.motion.initial_contact_time, own.metrics.initial_contact_time);
   EXPECT_EQ(closing.motion.major_bounce_height, own.metrics.major_bounce_height);
-  // The record is the touches, one by one.
+  // The record must have the touches of the run, one by one.
   const std::vector<Touch>& touches = own.trajectory.touches;
   ASSERT_GT(touches.size(), 3U);
   ASSERT_GE(closing.record.edges.size(), 2 * touches.size() - 1);
@@ -54,7 +54,7 @@ TEST(PracticeDevice, DependsOnItsSeedAndTheNumberOfTheShotAlone) {
   EXPECT_NE(other.device().values, one.device().values);
 }
 
-// A device to practise on is unknown to every search and belief: it shares not even one number with the devices of an ensemble.
+// A practice device is unknown to searches and beliefs: it has no number in common with devices of an ensemble.
 TEST(PracticeDevice, IsNoneOfAnyEnsemble) {
   constexpr std::size_t many = 2000;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
@@ -83,7 +83,8 @@ TEST(PracticeDevice, HasErrorsOfTheSizesThatWereAskedFor) {
     const double error = device.close(static_cast<std::uint64_t>(n), plain_step(), 40e-6).record.edges.front().time - exact;
     sum += error, squares += error * error;
   }
-  // The deviation of 100 draws is known to 7 %, the mean to a tenth of it: four times these.
+  // The standard deviation of 100 samples has an error of 7 %, their mean one of a tenth of the deviation: allow four times
+  // these.
   EXPECT_NEAR(std::sqrt(squares / shots), 50e-9, 0.28 * 50e-9);
   EXPECT_NEAR(sum / shots, 0, 0.4 * 50e-9);
 }
@@ -132,7 +133,7 @@ TEST(PracticeDevice, ShowsNoOpeningShorterThanItsInstrumentResolves) {
   EXPECT_LT(begins.size(), lengths.size());
 }
 
-// Errors as large as the openings themselves leave a record that can be one.
+// With errors as large as the openings the record is still valid.
 TEST(PracticeDevice, KeepsItsEdgesInOrderHoweverLargeTheirErrors) {
   PracticeOptions options;
   options.laboratory.edge_error = 2e-6, options.laboratory.unseen = 0;

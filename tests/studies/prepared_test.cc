@@ -1,4 +1,4 @@
-// A scene made ready to run.
+// Scenes that are prepared to run.
 #include "studies/closing/prepared.h"
 
 #include <fmt/format.h>
@@ -53,7 +53,7 @@ TEST(Prepare, ComputesPullInForDefaultLimitsWhenAsked) {
   EXPECT_DOUBLE_EQ(limited.drives.at("main").limits.value().max_voltage, 1.5 * limited.pull_in.at("main").statically.voltage);
 }
 
-// The contact is reached before the fold, and Vsp is 1.34 Vdp.
+// The contact plane comes before the fold, and Vsp is 1.34 Vdp.
 TEST(Prepare, TakesAStepAboveTheStaticPullInVoltageByDefault) {
   const SceneFile file = SceneFile::parse(R"(
 structure = { kind = "cantilever", length = "75 um", width = "30 um", thickness = "5 um", youngs_modulus = "78 GPa", density = "19200 kg/m^3" }
@@ -69,7 +69,7 @@ waveform.main = { family = "step", level = "1.2 Vsp" }
   EXPECT_DOUBLE_EQ(p.drives.at("main").limits.value().max_voltage, 1.5 * own.statically.voltage);
 }
 
-// The switch has no open state under the piezo, and the limits of the electrode are those of its source all the same.
+// The switch has no open state under the piezo's bias, but the limits of the electrode belong to its source.
 TEST(Prepare, LimitsInPullInVoltagesDoNotDependOnOtherDrives) {
   constexpr std::string_view closed =
       "waveform.piezo={family = \"table\", times = [\"0 s\", \"1 us\"], voltages = [\"0 V\", \"-1 V\"]}";
@@ -80,7 +80,7 @@ TEST(Prepare, LimitsInPullInVoltagesDoNotDependOnOtherDrives) {
   EXPECT_THAT(p.scene.warnings,
               testing::Contains(testing::HasSubstr("with the other drives at 0 V: there are none, under piezo at -1 V")));
   EXPECT_NO_THROW(static_cast<void>(resolved(p.scene, p.voltage_units())));
-  // A level in these units has none to refer to.
+  // A level in these units has no voltage.
   EXPECT_THAT(refusal([&] { (void)prepare(gold_pzt({closed})); }), testing::EndsWith("could be found, under piezo at -1 V"));
 }
 
@@ -113,7 +113,7 @@ TEST(Prepare, DrivesTheSwitchWithWhatItsSourceGives) {
             Signal::constant(30).pieces());
 }
 
-// Near pull-in a switch in a thick gas creeps for many periods: the window waits for it, and simulate sees it close.
+// Just above pull-in a switch in a thick gas creeps for many periods: the default window contains its closing.
 TEST(Prepare, WaitsForASlowClosingWhereNoOtherEndIsPossible) {
   SceneFile plate = without(spring_plate(), "contact");
   plate.set("gas={model=\"linear\", quality_factor=0.05}");
@@ -156,7 +156,7 @@ TEST(Prepare, RefusesMoreSamplesThanARunCanFollow) {
     EXPECT_THAT(words, testing::HasSubstr(way));
 }
 
-// A bridge at its hold voltage of 30 V, and at 40 V, the limit of its driver.
+// A bridge with a hold voltage of 30 V, and with 40 V, the limit of its driver.
 TEST(Prepare, RefusesAFaceThroughWhichTheFieldPullsTheBeam) {
   const auto with = [](std::string_view landing, std::string_view limit) {
     SceneFile file = scene("new/capacitive-bridge.toml", {"waveform.main.level=30 V"});
@@ -170,7 +170,7 @@ TEST(Prepare, RefusesAFaceThroughWhichTheFieldPullsTheBeam) {
         "asperity_height = \"40 nm\", effective_modulus = \"48 GPa\" }}",
         density);
   };
-  // The beam collapses from 5/9 of the gap of the field on, if H is below 4/5 of the height of the summits.
+  // The beam collapses at 5/9 of the gap of the field if H is below 4/5 of the height of the summits.
   const double way = 0.2e-6 / 7 + 40e-9, sunk = way * 5 / 9;
   const double most = vacuum_permittivity * 30 * 30 / 2 / std::pow(way - sunk, 2);
   const double least = most / (8.0 / 15 * 48e9 * std::sqrt(100e-9) / 40e-9 * std::pow(sunk, 2.5));
@@ -236,7 +236,7 @@ TEST(Prepare, NamesTheElectrodeWhosePullInCannotBeFound) {
   EXPECT_EQ(refusal([] { (void)prepare(gold({"electrode.main.span=[\"249.99999999 um\", \"250 um\"]"})); }),
             "--set electrode.main.span=[\"249.99999999 um\", \"250 um\"]: its pull-in voltage is needed for the unit Vsp or Vdp, "
             "but none could be found");
-  // A piezo at its bias that pulls the beam down to its contact leaves no open state.
+  // The bias of the piezo pulls the beam down to its contact, so that there is no open state.
   EXPECT_THAT(refusal([] {
                 (void)prepare(gold_pzt({"waveform.piezo={family=\"step\",level=\"-5 V\"}", "driver.piezo.min_voltage=-9 V",
                                         "simulate.accuracy=1e-4"}));

@@ -1,4 +1,4 @@
-// Quadrature points follow the accuracy asked for and the smallest gap that a switch reaches.
+// The quadrature follows the requested accuracy and the smallest gap of a switch.
 #include "studies/closing/quadrature.h"
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@
 namespace softland {
 namespace {
 
-/// Its contact lies at this share of the distance to the electrode.
+/// A beam whose contact is at this share of the distance to the electrode.
 SceneFile near_electrode(double share = 0, double accuracy = 1e-6) {
   SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/tests/studies/near_electrode.toml");
   if (share > 0) file.set(fmt::format("gap.contact={} um", share * 3.0285714285714));
@@ -29,7 +29,7 @@ SceneFile near_electrode(double share = 0, double accuracy = 1e-6) {
   return file;
 }
 
-/// So many points that more change nothing: the dips are 12 um and more wide, the panels 100 um long and less.
+/// Converged quadrature: the regions of large load are at least 12 um wide, the panels at most 100 um long.
 constexpr SwitchOptions converged{.points_per_length = 300, .points_per_panel = 24};
 
 struct FirstTouch {
@@ -48,7 +48,7 @@ double largest_error(const Metrics& m, const FirstTouch& right) {
   return std::max(std::abs(m.initial_contact_time / right.time - 1), std::abs(m.impact_velocity / right.velocity - 1));
 }
 
-constexpr double bridge_release = 6.59556, bridge_impact = 13.04662;  // results of another program, to its last digit [V], [m/s]
+constexpr double bridge_release = 6.59556, bridge_impact = 13.04662;  // values of another program, to its last digit [V], [m/s]
 
 TEST(Quadrature, ReleaseNextToTheElectrodeIsThatOfAnotherProgram) {
   constexpr double digit = 3e-6;
@@ -57,8 +57,8 @@ TEST(Quadrature, ReleaseNextToTheElectrodeIsThatOfAnotherProgram) {
 }
 
 TEST(Quadrature, StaticsNextToTheElectrodeHaveTheAccuracyAskedFor) {
-  // Just above release the contact carries a small part of the load, and the tangent, steeper than the load, has an eigenvalue
-  // near zero.
+  // Just above the release voltage the contact carries a small part of the load, and the tangent, which is steeper than the
+  // load, has an eigenvalue near zero.
   constexpr double into_hold = 1.03, of_force = 100, of_eigenvalue = 1000;
   for (const double share : {0.89, 0.957, 0.98}) {
     const Switch fine(prepare(near_electrode(share)).scene.device, converged);
@@ -96,7 +96,7 @@ TEST(Quadrature, RunsThatEndOnTheElectrodeHaveErrorsThatCover) {
   }
 }
 
-// No quadrature was chosen for touch there: the judge finds it too coarse, and finer ones take its place.
+// The quadrature is chosen for touch. At the electrode the judge finds it too coarse, and finer ones replace it.
 TEST(Quadrature, IsRefinedInRunsThatEndOnTheElectrode) {
   PreparedScene p = prepare(near_electrode());
   p.quadrature = quadrature_for(1e-6, 8);
@@ -132,7 +132,7 @@ TEST(Quadrature, OfADeviceThatTouchesNearerToTheElectrodeIsFiner) {
   }
 }
 
-// The panel beyond the electrode is a twenty-fifth of the beam long, and the film thins there.
+// The panel beyond the electrode is a twenty-fifth of the beam, and the film becomes thin there.
 TEST(Quadrature, IsRefinedWhereRoundingForbidsATighterIntegrator) {
   PreparedScene p = prepare(gold({"gap.contact=3.3 um", "waveform.main.level=17.771 V", "driver.main.max_voltage=25 V",
                                   "simulate.duration=53 us", "simulate.accuracy=1e-10"}));
@@ -145,8 +145,8 @@ TEST(Quadrature, IsRefinedWhereRoundingForbidsATighterIntegrator) {
   EXPECT_TRUE(largest_error(c.metrics, true_touch(p)) <= expected * coarse) << largest_error(c.metrics, true_touch(p)) << coarse;
 }
 
-// True errors of t_i and v_i of a scene by accuracy from 1e-3 to 1e-11, each no more than three times that of a looser one, down
-// to what the accuracy asks for and to 1e-10.
+// Compares the true errors of t_i and v_i of a scene for accuracies from 1e-3 to 1e-11. Each must be at most three times that
+// of a looser accuracy, until the requested accuracy or 1e-10 is reached.
 void expect_tighter_is_no_worse(SceneFile file) {
   constexpr double grows = 3, lowest = 1e-10, beyond = 1.02;
   FirstTouch right;

@@ -1,4 +1,4 @@
-// The quasi-static approach: the path that it follows, the waveforms that it makes, and what they do.
+// The quasi-static approach: its path, its waveforms, and their closings.
 #include "studies/search/quasi_static.h"
 
 #include <gmock/gmock.h>
@@ -39,7 +39,7 @@ TEST(StableApproach, IsThatOfThePiezoWhoseElectrodeHoldsTheClosedSwitch) {
 }
 
 TEST(StableApproach, SpreadsToFirstOrderAsItsDevicesDo) {
-  // The share of devices within the limit is that of a normal distribution of this deviation.
+  // The share of devices within the limit follows the normal distribution with this deviation.
   const PreparedScene p = with_piezo();
   const StableApproach found = *stable_approach(p, Actuator::pzt);
   const double share = share_with_path(p, found, 1024, 3, 2);
@@ -52,7 +52,7 @@ TEST(StableApproach, SpreadsToFirstOrderAsItsDevicesDo) {
 TEST(StableApproach, TellsHowFarThePlacesAreApartWhereDevicesTouch) {
   const PreparedScene p = with_piezo();
   const StableApproach found = *stable_approach(p, Actuator::pzt);
-  // The voltage within which this share of the devices touches, by bisection on the limit.
+  // Returns the voltage below which this share of the devices touches, by bisection on the limit.
   const auto voltage_of = [&](double share) {
     double low = 0.7, high = 1.2;
     for (int i = 0; i < 12; ++i) {
@@ -87,7 +87,8 @@ TEST(StableApproach, IsThatOfAnElectrodeBeforeItsFold) {
   EXPECT_FALSE(stable_approach(prepare(gold(), true), Actuator::electrostatic));
 }
 
-// Amplitude of a mode after a rise by these lines, if its frequency is `ratio` times the one that the rise was made for.
+// Returns the amplitude of a mode after a rise of straight lines, if its frequency is `ratio` times the one for which the rise
+// is shaped.
 double ringing(const Table& rise, double period, double ratio) {
   std::complex<double> sum = 0;
   constexpr int parts = 4000;
@@ -103,14 +104,14 @@ double ringing(const Table& rise, double period, double ratio) {
 }
 
 TEST(QuasiStatic, RisesWithoutVibrationOfDevicesWhoseFrequencyDiffers) {
-  // |sinc(pi r) cos^(N-1)(pi r / 2)|: a line of one period, and a shaper of N impulses half a period apart.
+  // |sinc(pi r) cos^(N-1)(pi r / 2)|: a ramp of one period, shaped by N impulses half a period apart.
   const PreparedScene p = with_piezo();
   const double period = 2 * pi / p.model.basis().angular_frequencies()[0];
   for (const auto& [family, impulses] :
        {std::pair("quasi-static:2", 2), std::pair("quasi-static", 3), std::pair("quasi-static:4", 4)}) {
     const SearchSpace space(p, Actuator::pzt, family, t0);
     std::vector<double> x = space.starts().front();
-    x[2] = x[0];  // no line after the rise: its end is where the rise ends
+    x[2] = x[0];  // no further line: the approach ends with the rise
     const Table all = std::get<Table>(space.waveforms(x).at("piezo"));
     Table rise;
     for (std::size_t k = 0; k < all.time.size() && all.time[k] <= (impulses + 1) / 2.0 * period * (1 + 1e-9); ++k)

@@ -1,4 +1,4 @@
-// The race over devices, on a beam of two modes and few devices.
+// The comparison of families over devices, on a beam with two modes and with few devices.
 #include "studies/search/race.h"
 
 #include <gmock/gmock.h>
@@ -41,7 +41,7 @@ class Race : public testing::Test {
   RobustCost cost_;
 };
 
-// The evaluations that a memory was given, by the text of their key.
+// Remembers the evaluations that it is given, by the text of their key.
 class Remembered final : public EvaluationMemory {
  public:
   std::optional<EvaluationValues> recall(const EvaluationKey& key) noexcept override {
@@ -58,7 +58,7 @@ class Remembered final : public EvaluationMemory {
     known_.emplace(text(key), values);
   }
   std::size_t recalled = 0, noted = 0;
-  std::map<std::size_t, std::size_t> sizes;  // number of parameters of points, by family
+  std::map<std::size_t, std::size_t> sizes;  // number of parameters of the points of each family
 
  private:
   static std::string text(const EvaluationKey& key) {
@@ -118,7 +118,7 @@ TEST_F(Race, OfTooFewClosingsIsNone) {
   EXPECT_EQ(none.closings, 0);
 }
 
-// A nanometre switch, whose devices land by the half, and more where they differ less.
+// A switch with gaps of nanometres. Half of its devices land bounce-free, and more of them if they vary less.
 class RaceOfNearlyEqualDevices : public Race {
  protected:
   RaceOfNearlyEqualDevices()

@@ -1,4 +1,4 @@
-// The table of docs/physics.md: which damping of a contact returns which share of the speed.
+// Checks the table of docs/physics.md of damping and restitution.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace softland::restitution_test {
 namespace {
 
-/// The numbers of the row that begins so.
+/// Returns the numbers of the table row with this beginning.
 std::vector<double> row_of_docs(const std::string& begin) {
   std::ifstream docs(std::string(SOFTLAND_SOURCE_DIR) + "/docs/physics.md");
   for (std::string line; std::getline(docs, line);) {
@@ -29,7 +29,7 @@ std::vector<double> row_of_docs(const std::string& begin) {
   return {};
 }
 
-/// The speeds of the first and of the second touch of a plate that nothing but its contact takes energy from.
+/// The speeds of the first and the second touch of a plate that loses energy only in its contact.
 struct Speeds {
   double first, second;
 };
@@ -51,7 +51,7 @@ TEST(Restitution, IsThatOfTheTableOfDampings_slow) {
   EXPECT_NEAR(speeds(0).second, speed, 1e-6 * speed) << "without damping nothing is lost";
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     const Speeds found = speeds(products[i] / speed);
-    // The drive and the spring do little on the way through so stiff a contact.
+    // Drive and spring do little work during a touch on so stiff a contact.
     EXPECT_NEAR(found.second / found.first, wanted[i], 2e-3) << "kappa v = " << products[i];
     if (wanted[i] < 0.8) continue;
     EXPECT_NEAR((1 / wanted[i] - 1) / products[i], 1, 5e-3) << "the rule beside the table";

@@ -1,4 +1,4 @@
-// Tests the cost of a device in a robust search: every figure over that of the plain step on the nominal device.
+// Tests the cost of a device in a robust search: every figure relative to the plain step on the nominal device.
 #include "studies/search/robust_cost.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace softland {
 namespace {
 
-// The score of a device whose figures are given, for one target.
+// The cost of a device with given figures, for one target.
 class Score {
  public:
   explicit Score(Target target)
@@ -101,7 +101,7 @@ TEST(RobustCost, TakesAFigureThatIsNotKnownForTheWorst) {
   }
 }
 
-// Devices that fail rank behind, whatever the others do, and what sees nothing but them says so.
+// Each further failing device increases the cost. If all devices fail, is_told() is false.
 TEST(RobustCost, OfFewerDevicesThatFailIsLess) {
   const SearchSetting setting = search_setting(gold({"simulate.duration=150 us", "structure.modes=2"}), Target::bounce,
                                                Actuator::electrostatic, "pulse", {});
@@ -126,13 +126,13 @@ TEST(RobustCost, OfFewerDevicesThatFailIsLess) {
   EXPECT_FALSE(RobustCost(setting, yield, {}).is_told(with(0))) << "all of these rebound";
 }
 
-// A search has figures to go by under every measure, whatever closes several devices at once leaves out.
+// Every measure has the figures that it needs, whatever closings in lanes leave out.
 TEST(RobustCost, OfEveryTargetIsKnownOnEveryScene_optimized) {
   int scenes = 0;
   for (const std::string& name : shipped_scenes()) {
     SceneFile file = scene(name.c_str(), {"simulate.accuracy=1e-3"});
     if (!read_scene(file).device.structure.is_rigid()) file.set("structure.modes=2");
-    if (!file.written("contact") || file.keys("electrode").empty()) continue;  // nothing to land on, or to shape
+    if (!file.written("contact") || file.keys("electrode").empty()) continue;  // no contact, or no electrode to shape
     ++scenes;
     for (const Target target : every_target) {
       const SearchSetting setting = search_setting(with_keys_for(target, file), target, Actuator::electrostatic, "pulse", {});
@@ -146,7 +146,7 @@ TEST(RobustCost, OfEveryTargetIsKnownOnEveryScene_optimized) {
           if (target == Target::drive && o.closed()) {
             EXPECT_TRUE(std::isfinite(o.metrics.drive_energy)) << name;
           }
-          // A device that lands without a rebound, and stays, has its force at some time.
+          // A device that lands bounce-free and stays closed reaches its steady force.
           if (target == Target::steady && is_bounce_free(o) && o.metrics.least_force_after_touch > 0) {
             EXPECT_TRUE(std::isfinite(o.metrics.steady_force_time)) << name;
           }
@@ -157,7 +157,7 @@ TEST(RobustCost, OfEveryTargetIsKnownOnEveryScene_optimized) {
   EXPECT_GE(scenes, 5);
 }
 
-// The waiting of devices is priced beyond what is free, and never by more than the median of first touch is.
+// The time until the contact is steady costs beyond a free time, but at most as much as the median first touch would.
 TEST(RobustCost, PricesTheTimeFromWhichTheContactIsSteady) {
   const SearchSetting setting = search_setting(gold({"simulate.duration=150 us", "structure.modes=2"}), Target::bounce,
                                                Actuator::electrostatic, "pulse", {});

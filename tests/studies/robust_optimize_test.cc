@@ -1,4 +1,4 @@
-// A search over varied devices, on small budgets: what it promises whoever wins.
+// A search over varied devices, with small budgets: what holds for any winner.
 #include "studies/search/robust_optimize.h"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ TEST(RobustOptimize, DoesBetterOnFreshDevicesThanTheStep_optimized) {
   ASSERT_EQ(drives.size(), 2U);
   EXPECT_EQ(drives[0].name, "plain step");
   EXPECT_EQ(drives[1].outcomes.size(), 60U);
-  // The winner is what best.toml says.
+  // best.toml has the winner's drives.
   EXPECT_EQ(drives[1].waveforms.size(), found.best_scene->drives.waveforms().size());
   EXPECT_EQ(signal(drives[1].waveforms.at("main")).pieces(), found.best_scene->signals()[0].pieces());
 }
@@ -86,7 +86,7 @@ TEST(RobustOptimize, SaysWhichConditionsHold_optimized) {
 }
 
 TEST(RobustOptimize, KeepsAConditionThatItCanKeep_optimized) {
-  // The winner without it touches later.
+  // The winner without the condition touches later.
   std::vector<double> times;
   for (const DeviceOutcome& o : reference().result.verdict->drives[1].outcomes) times.push_back(o.metrics.initial_contact_time);
   ASSERT_GT(sample_quantile(times, 0.95), 39e-6);
@@ -117,8 +117,7 @@ TEST(RobustOptimize, OfACalibratedSwitchLandsWhatFixedVoltsCannot_slow) {
 }
 
 TEST(RobustOptimize, SpendsABudgetOfTimeOnAllOfItsHeats_slow) {
-  // A clock that counts how often it is looked at, which is once in an evaluation: what is in time does not depend on the
-  // machine.
+  // This clock counts its readings, one per evaluation, so that the time limit does not depend on the machine.
   double looks = 0;
   long on_all_devices = 0;
   OptimizeOptions options{.max_evaluations = 1'000'000'000, .max_seconds = 120, .jobs = 1};
@@ -127,7 +126,8 @@ TEST(RobustOptimize, SpendsABudgetOfTimeOnAllOfItsHeats_slow) {
       quick(), options, {.aim = aim("cvar:0.9"), .samples = 40, .verdict = 60, .clock = [&looks] { return looks++; }});
   EXPECT_EQ(result.found.search.termination, Termination::time_budget);
   ASSERT_TRUE(result.verdict);
-  // Starts and ends of the first heat are at most 18; the others try every candidate on all devices, in three fifths of the time.
+  // The starts and the ends of the first round are at most 18. The others evaluate every candidate on all devices, in three
+  // fifths of the time.
   EXPECT_GT(on_all_devices, 50);
 }
 

@@ -1,4 +1,4 @@
-// A search from words: which are filled in, what they come to, and how those that break a rule are refused.
+// Requests of searches as texts: their defaults, their meaning, and the refusal of invalid ones.
 #include "studies/search/search_request.h"
 
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ TEST(SearchRequest, LetsTheStepComeLaterOverDevicesUnlessItIsFixed) {
   EXPECT_TRUE(planned_of({.actuator = "pzt"}, file).for_devices->hold_step_is_chosen);
   EXPECT_FALSE(planned_of({.actuator = "pzt", .hold_step = "fixed"}, file).for_devices->hold_step_is_chosen);
   EXPECT_FALSE(planned_of({.actuator = "pzt"}, file).for_devices->is_of_before);
-  // A plan of a version that knew of neither says nothing.
+  // A plan of an earlier version has neither of these texts.
   SearchRequest old = completed({.actuator = "pzt"}, file);
   old.hold_step.clear();
   EXPECT_TRUE(planned(old, file).for_devices->is_of_before);
@@ -123,7 +123,7 @@ TEST(SearchRequest, SharesItsConditionsBetweenDrawingAndDevices) {
 
 struct Refused {
   SearchRequest request;
-  std::string words;  // wording of a command line
+  std::string words;  // words of a command line
 };
 
 class RefusedSearch : public testing::TestWithParam<Refused> {};

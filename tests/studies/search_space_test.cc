@@ -1,4 +1,4 @@
-// Tests what a search may vary, and that nothing it can reach leaves the driver's limits.
+// Tests the variables of a search, and that no waveform of a search exceeds the driver's limits.
 #include "studies/search/search_space.h"
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ namespace {
 using testing::ElementsAre;
 
 constexpr double first_touch = 25e-6;
-/// Families with a choice of number come with the fewest and the most, too.
+/// Returns all families; those with a number occur with the smallest and the largest as well.
 std::vector<std::string> all_families() {
   std::vector<std::string> all;
   for (const SearchedFamily& family : searched_families()) {
@@ -38,7 +38,7 @@ std::vector<std::string> all_families() {
   return all;
 }
 const std::vector<std::string> every_family = all_families();
-/// The hold voltage of an electrode can be so near its limit that a dither cannot be slewed.
+/// True for families with a dither: the hold voltage of an electrode can be so near the limit that a dither cannot be slewed.
 bool is_dither(const std::string& family) { return family == "harmonic" || family == "dither" || family == "chirp"; }
 
 std::vector<std::string> names(const SearchSpace& space) {
@@ -59,7 +59,7 @@ const PreparedScene& slow_drivers() {
   return p;
 }
 
-// Every corner-ish and inner point drawn here decodes to a signal inside the limits.
+// Checks that points at corners and inside of the box give signals within the limits.
 void expect_within_limits(const PreparedScene& prepared, Actuator actuator, const std::string& family) {
   const SearchSpace space(prepared, actuator, family, first_touch);
   const std::vector<Variable> variables = space.variables();
@@ -82,8 +82,8 @@ void expect_within_limits(const PreparedScene& prepared, Actuator actuator, cons
   }
 }
 
-// Parameters that share differences give what each gives by itself, at random points of every family, some of them on bounds.
-// Returns how often they shared.
+// Compares derivatives by parameters that share differences with single ones, at random points of every family, some of them on
+// bounds. Returns how often parameters shared a difference.
 int expect_shared_slopes(const PreparedScene& prepared, const std::string& family) {
   const SearchSpace space(prepared, Actuator::both, family, first_touch);
   const auto signals_at = [&](std::span<const double> x) {
@@ -278,7 +278,7 @@ TEST(SearchSpace, WaitsBeforeAPulseThatBrakes) {
 }
 
 TEST(SearchSpace, BeginsWithTheQuickestSwing) {
-  // Full voltage, none, hold: among the starts of every family that can say so, with the same times.
+  // Full voltage, 0 V, hold is among the starts of every family that can express it, with the same times.
   const double high = plain().drives.at("main").limits.value().max_voltage;
   const auto thrown = [&](const std::string& family, std::size_t level, std::size_t driven, std::size_t coasting) {
     const SearchSpace space(plain(), Actuator::electrostatic, family, first_touch);
@@ -293,7 +293,7 @@ TEST(SearchSpace, BeginsWithTheQuickestSwing) {
   const auto swing = quickest_swing(plain().model, {high, 0}, {0, 0}, 1e-3);
   ASSERT_TRUE(swing);
   EXPECT_EQ(times, std::pair(swing->driven_time, swing->releasing_time));
-  // Those that can pull again after the touch do, for several times.
+  // Families that can pull again after the touch have such starts, for several times.
   const SearchSpace space(plain(), Actuator::electrostatic, "dual-pulse", first_touch);
   std::set<double> pushes;
   for (const std::vector<double>& x : space.starts()) {
@@ -312,7 +312,7 @@ TEST(SearchSpace, OfACompressibleFilmBeginsWithTheLandingOfItsFirstModeWithoutDa
   EXPECT_EQ(x[4], landing->coasting_time);
 }
 
-// Root of the mean square of the difference of two waveforms [V], over this time [s].
+// Returns the root mean square difference of two waveforms [V] from 0 to `end` [s].
 double apart(const Waveform& a, const Waveform& b, double end) {
   const Signal one = signal(a), other = signal(b);
   double sum = 0;
@@ -334,7 +334,7 @@ TEST(SearchSpace, FindsTheNearestWaveformOfAFamily) {
   EXPECT_LT(miss("staircase:3", thrown), 0.5);
   EXPECT_LT(miss("dual-pulse", thrown), 1.5) << "it coasts on 2 V, which a train of pulses cannot";
   EXPECT_GT(miss("pulse", thrown), 3) << "the push after it is missing";
-  // The line of a table, by splines and by knots.
+  // Splines and knots approximate the line of a table.
   Table table{.time = {0}, .voltage = {0}};
   for (int k = 1; k <= 40; ++k) {
     table.time.push_back(k * 2 * first_touch / 40);

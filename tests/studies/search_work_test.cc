@@ -1,4 +1,4 @@
-// Budgets that count work.
+// Budgets of searches by computing work.
 #include "studies/search/search_work.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace softland {
 namespace {
 
-// A source that takes so many samples a second, each of which is a breakpoint.
+// A source with this sample rate, each sample of which is a breakpoint.
 SceneFile sampled_gold(const std::string& rate) {
   return gold({"structure.modes=2", "simulate.accuracy=1e-3", "simulate.duration=200 us", "waveform.main.level=18 V",
                "driver.main={max_voltage=\"25 V\", sample_rate=\"" + rate + "\", bits=14, bandwidth=\"1 MHz\"}",
@@ -35,7 +35,7 @@ TEST(SearchWork, LeavesABudgetOfUsualClosingsAsItIs) {
   EXPECT_EQ(within_work(5000, std::nan(""), 3000), 5000);
 }
 
-// The budget of a shipped scene is the same, however it is counted, unless its closings are slow.
+// Shipped scenes have the usual budget, unless their closings are slow.
 TEST(SearchWork, OfShippedScenesIsUsualWhereTheirClosingsAreQuick) {
   for (const char* name : {"mem-gold.toml", "mem-gold-pzt.toml", "mem-gold-modes.toml", "two-electrodes.toml", "nem-tin.toml",
                            "purdue-nickel.toml", "gap-closing-actuator.toml"}) {
@@ -45,7 +45,7 @@ TEST(SearchWork, OfShippedScenesIsUsualWhereTheirClosingsAreQuick) {
       try {
         setting.emplace(setting_of(file, actuator));
       } catch (const InvalidInput&) {
-        continue;  // it has no such drive
+        continue;  // the scene has no such drive
       }
       const double work = closing_work(*setting).counted;
       EXPECT_LT(work, usual_work(shaped_drives(file, actuator))) << name << " " << name_of(actuators, actuator);
@@ -61,7 +61,7 @@ TEST(SearchWork, GrowsWithTheSamplesOfASource) {
   EXPECT_EQ(closing_work(setting_of(sampled_gold("25 MHz"))).counted, slow) << "counted, not measured";
 }
 
-// The class of scenes whose closings are slow: evaluations times work stay within what the budget of a usual scene takes.
+// For scenes with slow closings evaluations times work stay within the budget of a usual scene.
 TEST(SearchWork, OfASlowSceneStaysWithinThatOfAUsualOne_optimized) {
   for (const char* rate : {"2 MHz", "25 MHz"}) {
     SCOPED_TRACE(rate);
@@ -83,7 +83,7 @@ TEST(SearchWork, OfASlowSceneStaysWithinThatOfAUsualOne_optimized) {
   }
 }
 
-// Returns the estimate that a search over devices of a slow scene reports; the search ends there.
+// Returns the estimate that a search over devices of a slow scene reports. The search is stopped there.
 SearchEstimate estimate_over_devices(const SceneFile& file) {
   struct Enough {};
   SearchEstimate told;
@@ -124,7 +124,7 @@ TEST(SearchWork, OfASlowSceneHasItsTableOfDevices_slow) {
   EXPECT_EQ(found.verdict.devices, 200U) << "fresh ones, all of them";
 }
 
-// A number that a user gives is meant.
+// An explicit budget is used as it is.
 TEST(SearchWork, IsNotCountedWhereABudgetIsGiven) {
   const SceneFile file = gold();
   const auto of = [&](const std::string& robust, const std::optional<std::string>& budget) {

@@ -1,4 +1,4 @@
-// The motion that pages show is that of the closing whose figures they tell.
+// Tests that the motion which pages show is that of the closing with the reported figures.
 #include "studies/closing/shown_motion.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ PreparedScene shipped(const char* name, std::initializer_list<const char*> setti
   return prepare(file);
 }
 
-// The sum of the modes at a place, positive towards the near electrode [m].
+// Returns the sum of the modes at a position, positive towards the near electrode [m].
 double deflection(const ShownMotion& motion, std::size_t row, double at) {
   const auto place = std::ranges::find(motion.places, at) - motion.places.begin();
   double sum = 0;
@@ -26,11 +26,11 @@ double deflection(const ShownMotion& motion, std::size_t row, double at) {
   return sum;
 }
 
-// Compares the knots of a course with the sums of the modes. A step that meets a touch is taken again up to it, and the knots
-// before the touch are those of the longer step: its interpolant errs within the integrator's tolerance.
+// Compares the knots of a course with the sums of the modes. The integrator repeats a step with a touch up to the touch, and
+// the knots before the touch belong to the longer step, whose interpolant has errors of the tolerance.
 void expect_the_course(const ShownMotion& motion, const ShownMotion::Contact& contact,
                        const std::vector<TrajectoryPoint>& points) {
-  constexpr double rounding = 1e-11, of_longer_step = 1e-8;  // shares of the gap
+  constexpr double rounding = 1e-11, of_longer_step = 1e-8;  // over the gap
   ASSERT_TRUE(std::ranges::find(motion.places, contact.at) != motion.places.end());
   std::size_t compared = 0, exact = 0;
   for (std::size_t row = 0; row < motion.time.size(); ++row) {
@@ -82,7 +82,7 @@ TEST(ShownMotion, HoldsTheExtremesOfRebounds) {
   const auto motion = shown_motion(scene, closing);
   ASSERT_TRUE(motion);
   ASSERT_GT(closing.rebounds.size(), 3U);
-  constexpr double quintic = 1e-4;  // the polynomial of the course errs by this share of a rebound
+  constexpr double quintic = 1e-4;  // error of the course's polynomial over the height of a rebound
   for (const Rebound& rebound : closing.rebounds) {
     if (!(rebound.height > scene.scene.metrics.significant_rebound)) continue;
     for (const double time : {rebound.begin, rebound.time_of_height, rebound.end}) EXPECT_TRUE(holds(*motion, time)) << time;

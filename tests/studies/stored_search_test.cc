@@ -1,4 +1,4 @@
-// Searches that are kept from a library: gone on with, refused, and from several seeds.
+// Stored searches of a library user: continued, refused, and from several seeds.
 #include "studies/search/stored_search.h"
 
 #include <gmock/gmock.h>
@@ -41,7 +41,7 @@ class StoredSearches : public testing::Test {
   }
   [[nodiscard]] fs::path file() const { return folder_.path() / evaluations_file; }
 
-  // The scene that is found, with the evaluations in the store; how many of them were simulated.
+  // Returns the found scene, with the evaluations in the store; `computed` is the number of simulated ones.
   std::string found(const AskedSearch& asked, std::int64_t& computed) {
     std::optional<KnownSearch> known;
     StoredSearch search = stored_search(asked, fs::exists(file()) ? std::vector{file()} : std::vector<fs::path>(), known);
@@ -108,7 +108,7 @@ TEST_F(StoredSearches, SayWhatTheyDifferIn) {
   EXPECT_EQ(refusal(asked("50")), "taken");
 }
 
-// So that what former versions have left is not simulated again.
+// Evaluations that former versions stored are not simulated again.
 TEST_F(StoredSearches, KnowAPointOfAFamilyByTheValuesOfAllColumns) {
   const FamilyColumns columns{
       .families = {{"pulse.main.level_1_V", "pulse.main.time_1_s"}, {"step.main.level_V"}, {"a.x", "a.y"}}};

@@ -1,4 +1,4 @@
-// Oracles: the force of a uniform law by its share of summits, and the counts of the shipped scenes.
+// Oracles: the force of the uniform law from its share of touching summits, and the counts of the shipped scenes.
 #include "studies/closing/summits_at_hold.h"
 
 #include <gmock/gmock.h>
@@ -29,7 +29,8 @@ TEST(SummitsAtHold, AreThoseWhoseForceHoldsTheSwitch) {
   const auto summits = summits_at_hold(p.model, *closed);
   ASSERT_TRUE(summits.has_value());
   EXPECT_NEAR(summits->all, 10, 1e-12);  // 1e11 1/m^2 on 20 x 5 um
-  // N d / Hm of N summits with heights uniform on Hm touch, and carry 2/5 of the force of as many at the full depth d.
+  // Of N summits with heights uniform on Hm, N d / Hm touch. They carry 2/5 of the force of as many summits at the full depth
+  // d.
   const double d = p.model.contact_deflection(closed->q.data()) - p.scene.device.gap.contact;
   const double force = summits->touching * (4.0 / 3) * 48e9 * std::sqrt(100e-9) * std::pow(d, 1.5) * 2 / 5;
   EXPECT_NEAR(closed->contact_force, force, 1e-6 * force);

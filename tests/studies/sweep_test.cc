@@ -1,4 +1,4 @@
-// The static course of a voltage that is swept up and down again.
+// A voltage that is swept quasi-statically up and down again.
 #include "studies/closing/sweep.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ std::vector<SweepPoint> branch(const std::vector<SweepPoint>& points, bool is_up
   return own;
 }
 
-/// The first voltage of a branch, in its order, at which the switch is in that state; NaN where it never is.
+/// Returns the first voltage of a branch, in its order, with the switch in this state; NaN if there is none.
 double first(const std::vector<SweepPoint>& points, SweepState state) {
   const auto found = std::find_if(points.begin(), points.end(), [&](const SweepPoint& p) { return p.state == state; });
   return found == points.end() ? std::nan("") : found->voltage;
@@ -42,7 +42,7 @@ TEST(StaticSweep, ClosesAtThePullInVoltageAndOpensAtTheReleaseVoltage) {
     EXPECT_NEAR(first(down, SweepState::open), std::min(pull_in, release), 1.01 * step) << name;
     for (const SweepPoint& p : points) {
       const bool is_above = p.deflection < model.device().gap.contact;
-      // A beam may lie on the face of a dielectric beside its middle, which is above the face then.
+      // A beam may touch the face of a dielectric beside its middle, which is then above the face.
       if (p.state == SweepState::open || !model.device().lands_along_face()) {
         EXPECT_EQ(p.state == SweepState::open, is_above) << name << p.voltage;
       }

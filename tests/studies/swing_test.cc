@@ -1,4 +1,4 @@
-// The quickest single swing onto the contact.
+// The fastest single swing onto the contact.
 #include "studies/search/swing.h"
 
 #include <gtest/gtest.h>
@@ -47,13 +47,13 @@ TEST(Swing, BringsEveryModeOfTheGoldSwitchThroughItsFilmToASlowTouch) {
     const std::vector<Signal> signals{signal(Pulse{.levels = {pull[0], 0}, .times = {driven}})};
     return metrics(simulate_closing(p.model, signals, {.duration = 100e-6, .tolerance = 1e-10, .after_contact = 0}));
   };
-  // It arrives as it turns back: longer driven it touches, shorter it does not.
+  // The switch touches at its turning point: with a longer pull it touches, with a shorter one it does not.
   EXPECT_LT(touch(swing->driven_time * (1 + 1e-4)).impact_velocity, 5e-3);
   EXPECT_TRUE(std::isnan(touch(swing->driven_time * (1 - 1e-4)).impact_velocity));
   EXPECT_NEAR(touch(swing->driven_time * (1 + 1e-4)).initial_contact_time, swing->driven_time + swing->releasing_time, 1e-6);
 }
 
-// The waveform with jumps, and driven by a thousandth longer, so that it surely arrives.
+// Returns the waveform with jumps, and with a pull that is longer by a thousandth, so that the switch touches.
 DriveWaveforms without_edges(DriveWaveforms swing) {
   for (auto& [drive, waveform] : swing) {
     auto& pulse = std::get<Pulse>(waveform);
@@ -64,7 +64,7 @@ DriveWaveforms without_edges(DriveWaveforms swing) {
   return swing;
 }
 
-// Each touches far more slowly than the step that goes to the same hold levels.
+// Expects each waveform to touch far more slowly than the step to the same hold levels.
 void expect_soft_touches(const PreparedScene& p, const SearchSpace& space, std::size_t least) {
   const auto landing = [&](DriveWaveforms searched) {
     searched.merge(p.drives.waveforms());

@@ -1,4 +1,4 @@
-// The devices that a belief is made of, and their closings.
+// The devices of a belief, and their closings.
 #include "studies/inverse/tuned_scene.h"
 
 #include <gmock/gmock.h>
@@ -28,7 +28,7 @@ TEST(TunedScenes, TheOriginIsTheNominalDevice) {
   const Device& nominal = scene.nominal().scene.device;
   EXPECT_DOUBLE_EQ(own.structure.thickness, nominal.structure.thickness);
   EXPECT_DOUBLE_EQ(own.gap.contact, nominal.gap.contact);
-  constexpr double median_of_lognormal = 0.006;  // distance below its mean, of a deviation of 10 %
+  constexpr double median_of_lognormal = 0.006;  // distance of the median below the mean for a deviation of 10 %
   EXPECT_NEAR(number_of(own.contacts.front().model, "effective_modulus", 0) /
                   number_of(nominal.contacts.front().model, "effective_modulus", 0),
               1, median_of_lognormal);
@@ -146,7 +146,7 @@ TEST(TunedScenes, UnitsFollowThePullInVoltageAndThePeriod) {
   };
   constexpr double second_order = 2e-3;
   const auto [thicker, frequency] = of("structure.thickness");
-  EXPECT_NEAR(thicker.volts, std::pow(1.02, 1.5), second_order);  // Vdp as the root of the bending stiffness
+  EXPECT_NEAR(thicker.volts, std::pow(1.02, 1.5), second_order);  // Vdp is proportional to the root of the bending stiffness
   EXPECT_NEAR(thicker.time, scene.nominal().model.basis().angular_frequencies()[0] / frequency, second_order);
   EXPECT_NEAR(of("driver.main.gain").first.volts, 1 / 1.005, second_order);
 }
@@ -157,7 +157,7 @@ TEST(TunedScenes, ALevelThatIsSafePullsNoneOfAThousandThrough) {
   const double known = scene.safe_level(VectorXd::Zero(scene.size()), Eigen::MatrixXd::Zero(scene.size(), scene.size()));
   const double nominal = pull_through_voltage(scene.nominal().model, 0, std::vector{scene.nominal().signals()[0].hold_level()});
   ASSERT_TRUE(std::isfinite(nominal));
-  constexpr double precision = 5e-3;  // the median of a lognormal modulus is below the scene's
+  constexpr double precision = 5e-3;  // the median of a lognormal modulus is below the scene's value
   EXPECT_NEAR(known / nominal, 1, precision);
   EXPECT_LT(safe, known);
 }

@@ -1,4 +1,4 @@
-// Tuning from the first closing on, on simulated devices that the belief has not seen.
+// Tunes simulated devices that the belief has not seen, from the first closing on.
 #include "studies/inverse/tuner.h"
 
 #include <gmock/gmock.h>
@@ -93,9 +93,9 @@ TEST(Tuners, RecipesThatAreKnownAreNotSearchedAgain_optimized) {
   EXPECT_THROW(Tuner(gold_with_two_modes(), options), InvalidInput);
 }
 
-// Drifting sources make yesterday's volts wrong: what is kept is what landed last.
+// With drifting sources earlier voltages become wrong: the last shot that landed is kept.
 TEST(Tuners, OfShotsThatAreRepeatedTheLastIsKept_optimized) {
-  constexpr double drift = 1e-5;  // relative drift of the volts, from shot to shot
+  constexpr double drift = 1e-5;  // relative drift of the voltages from shot to shot
   const PracticeDevice device(gold_with_two_modes(), {.seed = 5, .drift = drift});
   Tuner tuner(gold_with_two_modes(), {.effort = 0.2});
   std::vector<Waveform> fired_last;
@@ -152,7 +152,7 @@ TEST(Tuners, OptionsOutOfRangeAreRefused) {
   EXPECT_THROW(Tuner(gold_with_two_modes(), {.actuator = Actuator::pzt}), InvalidInput);
 }
 
-// A rare device may explain one touch, too: two records are a proof.
+// A rare device may also explain one such touch: two records are needed.
 TEST(Tuners, ADeviceUnlikeTheSceneIsCalledSo_optimized) {
   constexpr int closings = 2;
   const Tuner fresh(gold_with_two_modes(), cheap());
@@ -170,7 +170,7 @@ TEST(Tuners, ADeviceUnlikeTheSceneIsCalledSo_optimized) {
   EXPECT_FALSE(tuned({}).broken_assumption());
 }
 
-// A device of the spread is one wherever it lies, and however many peaks the belief has that its records leave.
+// A device of the spread is not rejected, wherever it is in the spread, and however many peaks its records leave in the belief.
 TEST(Tuners, RightDevicesInTheTailOfTheSpreadAreNotCalledWrong_optimized) {
   const Tuner fresh(gold_with_two_modes(), cheap());
   SceneFile alike = gold_with_two_modes();
@@ -193,7 +193,7 @@ TEST(Tuners, RightDevicesInTheTailOfTheSpreadAreNotCalledWrong_optimized) {
   }
 }
 
-// A trigger that is late by 1 us: before it was an unknown, the device was learned as one of other gaps.
+// A trigger with a delay of 1 us. Without the delay as an unknown the device would be learned as one with other gaps.
 TEST(Tuners, ALateTriggerIsNoOtherDevice_slow) {
   constexpr int devices = 3, closings = 4;
   constexpr double late = 1e-6, soft = 10e-9, few_percent = 0.05;
@@ -208,7 +208,7 @@ TEST(Tuners, ALateTriggerIsNoOtherDevice_slow) {
   }
 }
 
-// A waveform that landed some closings ago need not land under drifting volts. It is fired again, and counts as it lands then.
+// A waveform that landed some closings ago may bounce after a drift. It is fired again, and the new record decides.
 TEST(Tuners, TheWaveformKeptIsFiredAgainAndCountsAsItLandsThen_optimized) {
   constexpr int most = 8;
   const PracticeDevice device(gold_with_two_modes(), {.seed = 5});
@@ -233,7 +233,8 @@ TEST(Tuners, TheWaveformKeptIsFiredAgainAndCountsAsItLandsThen_optimized) {
   EXPECT_FALSE(tuner.was_kept_last());
 }
 
-// The belief has the ratio of the gaps as a quantity, predicts such records, and lands the device: it knows all the same.
+// The ratio of the gaps is a quantity of the belief, so that the belief predicts such records and lands the device. It must
+// still report the ratio.
 TEST(Tuners, GapsOfAnotherRatioThanTheSceneAreFound_slow) {
   constexpr int closings = 4, devices = 4;
   const Tuner fresh(gold_with_two_modes(), {.jobs = 2, .effort = 0.3});
@@ -311,7 +312,7 @@ TEST(Tuners, RecipesKeepTheirApproach_optimized) {
   EXPECT_THROW(Tuner(gold_pzt_with_two_modes(), options), InvalidInput) << "its contact lies beyond the fold";
 }
 
-// One closing that stays open may be of a device that is rare; a second one is not.
+// A rare device may stay open once; twice is unexpected.
 TEST(Tuners, ContactsThatTwiceStayOpenAreUnexpected_optimized) {
   Tuner tuner(gold_with_two_modes(), cheap());
   ASSERT_GT(tuner.next().predicted.touches, 0.97);
@@ -323,7 +324,8 @@ TEST(Tuners, ContactsThatTwiceStayOpenAreUnexpected_optimized) {
   EXPECT_THAT(*tuner.broken_assumption(), testing::HasSubstr("no device of its spread touches as was recorded"));
 }
 
-// Devices of a wafer that is 4 % too thick, and differ by 0.1 %: closings up to the second of two in a row without a bounce.
+// Devices of a wafer that is 4 % too thick, with variations of 0.1 %. Counts closings up to the second of two bounce-free ones
+// in a row.
 TEST(Tuners, LaterDevicesOfAWaferNeedFewerClosings_slow) {
   SceneFile wafer = gold_with_two_modes();
   wafer.set("structure.thickness=2.08 um");
@@ -338,7 +340,8 @@ TEST(Tuners, LaterDevicesOfAWaferNeedFewerClosings_slow) {
   };
   const auto tuned = [&](const TunerOptions& options, std::uint64_t seed) {
     constexpr int most = 8;
-    const PracticeDevice device(wafer, {.seed = seed, .laboratory = {.gain_error = 0}});  // device of the same laboratory
+    const PracticeDevice device(wafer,
+                                {.seed = seed, .laboratory = {.gain_error = 0}});  // the laboratory is the same for all devices
     Tuner tuner(gold_with_two_modes(), options);
     Tuned one;
     while (tuner.closings() < most && tuner.bounce_free_in_a_row() < 2) {
@@ -364,7 +367,7 @@ TEST(Tuners, LaterDevicesOfAWaferNeedFewerClosings_slow) {
   EXPECT_LT(together, alone);
 }
 
-// The whole of it: gold cantilevers with one mode more than the belief has, below 10 nm within three closings.
+// The complete procedure: gold cantilevers with one mode more than the belief has rebound below 10 nm within three closings.
 TEST(Tuners, DevicesThatNoBeliefHasSeenLandWithinThreeClosings_slow) {
   const Tuner fresh(gold(), {.jobs = 2, .effort = 0.5});
   constexpr int devices = 4, closings = 3, shots = 10;
@@ -385,7 +388,7 @@ TEST(Tuners, DevicesThatNoBeliefHasSeenLandWithinThreeClosings_slow) {
 }
 
 TEST(Tuners, RepeatedShotsFollowADrift_slow) {
-  constexpr double drift = 1e-5;  // relative drift of all volts, from closing to closing
+  constexpr double drift = 1e-5;  // relative drift of all voltages from closing to closing
   constexpr int first = 20, last = 100;
   Tuner tuner(gold(), {.jobs = 2});
   const PracticeDevice device(gold(), {.seed = 4001, .drift = drift, .model = {.more_modes = 1}});
@@ -397,7 +400,7 @@ TEST(Tuners, RepeatedShotsFollowADrift_slow) {
   }
   EXPECT_TRUE(tuner.is_done());
   const double followed = signal(tuner.next().waveforms[0]).peak() / volts, due = (1 + drift * first) / (1 + drift * last);
-  constexpr double scatter = 4e-4;  // scatter of touch times, and lag of the steering
+  constexpr double scatter = 4e-4;  // scatter of touch times, and lag of the control
   EXPECT_FALSE(!(std::abs(followed - due) <= scatter)) << followed << " " << due;
 
   const std::size_t before = tuner.surprises().size();

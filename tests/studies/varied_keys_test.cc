@@ -1,5 +1,5 @@
-// Every number of a device that the schema knows, in a scene that has it: [spread], `explore --vary` and `fit` take it, and the
-// device is that of the scene with this value. A table has what is refused instead, and why. The list of keys is the schema.
+// Every number of a device in the schema, in a scene that has it: [spread], `explore --vary` and `fit` accept it, and give the
+// device of the scene with this value. Exceptions are in a table with their messages. The list of keys is the schema.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ std::string scene_of(std::string_view structure, std::string_view rest = usual_c
   return fmt::format("{}{}{}{}{}", structure, gap, electrode, rest, usual_waveform);
 }
 
-/// Scenes with the numbers of all sections but the laws of contacts and films.
+/// Returns scenes with the numbers of all sections except the laws of contacts and films.
 std::map<std::string, std::string> scenes_of_parts() {
   const std::string beam(usual_beam);
   std::map<std::string, std::string> all;
@@ -207,7 +207,7 @@ thickness = "2 um"
   return all;
 }
 
-/// The numbers of a law as its example has them.
+/// Returns the numbers of the example of a law.
 template <class Law>
 std::string numbers_of(const Law& law) {
   std::string text = fmt::format("model = \"{}\"\n", Law::name);
@@ -222,13 +222,13 @@ std::string numbers_of(const Law& law) {
   return text;
 }
 
-/// The scene of a plate with another contact.
+/// Returns the scene of a plate with another contact.
 std::string edited_contact(std::string scene, const std::string& numbers) {
   const std::string_view before = "model = \"linear\"\nstiffness = \"10 kN/m\"\n";
   return scene.replace(scene.find(before), before.size(), numbers);
 }
 
-/// A scene for each law of contacts and films.
+/// Returns a scene for each law of contacts and films.
 std::map<std::string, std::string> scenes_of_laws() {
   std::map<std::string, std::string> all;
   for_each_law<ContactModel>([&]<class Law>(std::type_identity<Law>) {
@@ -248,7 +248,7 @@ std::map<std::string, std::string> scenes_of_laws() {
 
 /// A number of a scene.
 struct Number {
-  std::string path, list;  ///< "structure.sections[1].width[2]"; without the element of a list
+  std::string path, list;  ///< "structure.sections[1].width[2]", and the same without the element of a list
   std::size_t element = 0;
   const Key* key = nullptr;
   Quantity value;
@@ -285,7 +285,8 @@ std::vector<Number> numbers_of_scene(const SceneFile& file) {
   return all;
 }
 
-/// The answers of a device: its position, the forces on it open and closed, and the conduction of its contacts.
+/// Returns numbers that depend on all properties of a device: its position, the forces on it open and closed, the conduction of
+/// its contacts.
 std::vector<double> fingerprint(const Switch& model) {
   const Eigen::VectorXd& omega = model.basis().angular_frequencies();
   std::vector<double> all(omega.begin(), omega.end());
@@ -299,7 +300,7 @@ std::vector<double> fingerprint(const Switch& model) {
     model.accelerations(q.data(), v.data(), volts, share > 1, work, a.data());
     all.insert(all.end(), a.begin(), a.end());
     if (share > 1) all.push_back(model.potential(q.data(), volts, true, work));
-    // The back stop lies on the other side.
+    // The back stop is on the other side.
     q[0] = -share * 1.2e-6 / model.basis().contact_shape()[0];
     model.accelerations(q.data(), v.data(), volts, false, work, a.data());
     all.insert(all.end(), a.begin(), a.end());
@@ -311,7 +312,7 @@ std::vector<double> fingerprint(const Switch& model) {
   }
   all.push_back(d.piezo ? d.piezo->relative_permittivity : 0);
   all.push_back(d.dispersion ? d.dispersion->equilibrium_distance : 0);
-  // The numbers of laws with a memory or a film of their own, which act by what was before, and of laws that act from afar.
+  // Add numbers for laws with a memory, with a film of their own, and with forces at a distance.
   const auto add_numbers = [&]<class Law>(Law law) {
     if constexpr (!std::is_same_v<Law, OwnContact>) {
       for (const Field<Law>& field : fields_of<Law>)
@@ -324,7 +325,7 @@ std::vector<double> fingerprint(const Switch& model) {
   return all;
 }
 
-/// The largest difference, of the values of `scale` and rounding of their sum.
+/// Returns the largest difference relative to `scale` and to the rounding of the sum.
 double distance(const std::vector<double>& a, const std::vector<double>& b, const std::vector<double>& scale) {
   if (a.size() != b.size()) return std::numeric_limits<double>::infinity();
   double most = 0;
@@ -334,7 +335,7 @@ double distance(const std::vector<double>& a, const std::vector<double>& b, cons
   return most;
 }
 
-/// Numbers that belong to a device and cannot vary, and what the message says; keys without their section's NAME.
+/// Numbers of a device that cannot vary, and the message; keys are without the NAME of their section.
 const std::map<std::string, std::string> refused{
     {"structure.positions", "is not a key of this scene that holds one number of the device"},
     {"structure.frequencies", "is not a key of this scene that holds one number of the device"},
@@ -344,7 +345,7 @@ const std::map<std::string, std::string> refused{
     {"structure.rest_shape.positions", "is not a key of this scene that holds one number of the device"},
 };
 
-/// Numbers that say how a file of modes is read.
+/// Numbers that describe how a file of modes is read.
 const std::set<std::string> of_files{"structure.mass", "structure.clamp"};
 
 void gather(const std::string& prefix, const std::vector<Key>& keys, std::map<const Key*, std::string>& all) {
@@ -363,7 +364,7 @@ std::map<const Key*, std::string> numbers_of_schema() {
   return all;
 }
 
-/// The path without the NAME of its section.
+/// Returns the path without the NAME of its section.
 std::string without_name(const SceneFile& file, const std::string& path) {
   std::vector<std::string> parts = internal::split_path(path);
   const internal::Section* const section = internal::find_section(parts[0], parts[1]);
@@ -382,9 +383,9 @@ std::string refusal(const auto& action) {
 
 constexpr double more = 1.01;  // factor of a number over that of the scene
 
-/// Says how a device gets the number by each of the ways.
+/// Expects every way of varying the number to give the same device.
 void expect_varied(const SceneFile& file, const Number& number, const std::vector<double>& nominal) {
-  // Tolerances of the number's effect, and of all: a device keeps the points of quadrature of the nominal one, good to so much.
+  // Tolerances relative to the effect of the number, and relative to all: a device keeps the nominal quadrature points.
   constexpr double same = 1e-3, quadrature = 1e-4;
   SceneFile written = file, spread = file;
   written.assign(number.list, Quantity{.value = more * number.value.value, .dimension = number.value.dimension}, number.element);
@@ -409,7 +410,7 @@ void expect_varied(const SceneFile& file, const Number& number, const std::vecto
       << "--vary";
 }
 
-// Every number of the schema that a device has stands in one of the scenes.
+// Each number of a device in the schema occurs in one of the scenes.
 TEST(VariedKeys, AreAllNumbersOfADevice) {
   std::set<const Key*> seen;
   const auto cases = [] {
@@ -458,7 +459,7 @@ TEST(VariedKeys, MayBeUnknownsOfAFit) {
     bench.measurements.push_back({.quantity = quantity, .values = {value}, .errors = {1e-4 * value}});
     return fit(file, bench, {.unknowns = {unknown}, .starts = 3, .suggest = false});
   };
-  // The frequency of the scene in which the number is a hundredth more.
+  // Fits the number to the frequency of the scene in which it is larger by a hundredth.
   for (const auto& [scene, keys] : std::map<std::string, std::vector<std::string>>{
            {"parts",
             {"structure.sections[1].width", "structure.sections[2].width[2]", "structure.sections[1].thickness",
@@ -481,7 +482,7 @@ TEST(VariedKeys, MayBeUnknownsOfAFit) {
       EXPECT_NEAR(found.unknowns.front().value / number->value.value, more, 1e-4);
     }
   }
-  // Resistances are measured by none of a bench file.
+  // No measurement of a bench file depends on resistances.
   EXPECT_THAT(refusal([&] { (void)fitted("parts", "frequency", 5e4, "contact.left.resistivity"); }),
               HasSubstr("contact.left.resistivity: no measurement of bench.toml depends on it"));
   EXPECT_THAT(refusal([&] { (void)fitted("parts", "frequency", 5e4, "metrics.closed_force"); }),

@@ -1,4 +1,4 @@
-// Tests what tuned devices tell of the next of their wafer, with simple beliefs.
+// Tests the prediction for the next device of a wafer from tuned ones, with simple beliefs.
 #include "studies/inverse/wafer.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 constexpr Eigen::Index size = 3;
 const NormalBelief standard{.mean = VectorXd::Zero(size), .covariance = MatrixXd::Identity(size, size)};
 
-// Known in its first coordinate.
+// A belief in which the first coordinate is known.
 TunedBelief known(double value, const NormalBelief& prior = standard) {
   constexpr double variance = 1e-4;
   TunedBelief tuned{.prior = prior, .posterior = prior};
@@ -53,17 +53,17 @@ TEST(Wafer, OfDevicesThatDifferAsTheSpreadForetellsLittle) {
   EXPECT_GT(wafer.next.covariance(0, 0), 0.7);
 }
 
-// A measurement alone: with rho given the next is at rho times what was measured.
+// With a given rho and one measurement the next device is at rho times the measured value.
 TEST(Wafer, OfOneDeviceIsBelievedAsFarAsWafersAreAlike) {
   const std::vector<TunedBelief> one{known(1)};
   const WaferBelief wafer = believed_of_wafer(one, size);
-  // The mean of 1 - 0.03^(2 s) over s from 0 to 1, by the trapezoidal rule of the grid but for its ends.
+  // The mean of 1 - 0.03^(2 s) over s from 0 to 1; the trapezoidal rule of the grid agrees with it except at the ends.
   const double mean = 1 - (1 - std::pow(0.03, 2)) / (-2 * std::log(0.03));
   EXPECT_NEAR(wafer.share, mean, 0.02) << "one device does not tell the share";
   EXPECT_NEAR(wafer.next.mean[0], wafer.share, 1e-3);
 }
 
-// A device's records do not tell what was known before its first closing.
+// The prior of a device is not part of its measurement.
 TEST(Wafer, DoesNotCountAPriorTwice) {
   const WaferBelief first = believed_of_wafer(std::vector(1, known(1.0)), size);
   const TunedBelief second = known(1.2, first.next);

@@ -1,5 +1,5 @@
-// Tests the wear of a contact as figures of a run. Oracles: quadrature of the kept course in small steps, and Hertz for one
-// summit.
+// Tests the wear of a contact as figures of a run. Oracles: quadrature of the recorded course in small steps, and Hertz's law
+// for one summit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace softland::wear_test {
 namespace {
 
-// A plate on asperities of gold, which opens again at 60 us.
+// A plate on gold asperities, which opens again at 60 us.
 SceneFile plate(const std::string& rest = "") {
   return SceneFile::parse(R"(
 structure = { kind = "plate", mass = "1e-10 kg", stiffness = "10 N/m", area = "1e-8 m^2", damping_ratio = 0.05 }
@@ -44,7 +44,8 @@ film_resistance = "5 ohm"
                           "plate.toml");
 }
 
-// Charge under a force below the steady one between two times, by the middle of many small steps over the kept course.
+// Returns the charge that flows under a force below the steady one between two times, by the midpoint rule on the recorded
+// course.
 double charge(const PreparedScene& p, const Closing& c, double from, double until) {
   const double light = p.scene.metrics.steady_force * c.metrics.hold_force;
   const Trajectory& run = c.trajectory;
@@ -80,14 +81,14 @@ TEST(Wear, TransfersTheChargeOfTheKeptCourse) {
   EXPECT_TRUE(c.metrics.asked.charge && c.metrics.asked.break_charge);
 }
 
-// The larger the force that counts as light, the longer the contact is under it.
+// With a larger threshold of the force the contact is longer below it.
 TEST(Wear, GrowsWithTheForceThatCountsAsLight) {
   const Closing few = simulate(prepare(plate("metrics.steady_force = \"5 %\"\n")), false);
   const Closing many = simulate(prepare(plate("metrics.steady_force = \"50 %\"\n")), false);
   EXPECT_GT(many.metrics.make_charge, 1.2 * few.metrics.make_charge);
 }
 
-// p = F / (pi a^2) of the highest summit: F = 4/3 E* sqrt(R) d^1.5 and a^2 = R d.
+// p = F / (pi a^2) at the highest summit, with F = 4/3 E* sqrt(R) d^1.5 and a^2 = R d.
 TEST(Wear, HasThePressureOfTheHighestSummitByHertz) {
   const Closing c = simulate(prepare(plate()), true);
   const double d = c.trajectory.deepest_penetration, modulus = 48e9, radius = 1e-6;
@@ -113,7 +114,7 @@ waveform.main = { family = "step", level = "45 V" }
   EXPECT_TRUE(std::isnan(without.metrics.pressure) && std::isnan(without.metrics.make_charge));
 }
 
-// Every cycle has its own charges and its own pressure; the first is that of the run of one cycle.
+// Every cycle has its own charges and pressure; the first cycle has those of a run of one cycle.
 TEST(Wear, IsToldOfEveryCycle) {
   const PreparedScene p = prepare(plate());
   const CycleWaveforms ramps{.name = "ramps",

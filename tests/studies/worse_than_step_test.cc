@@ -1,4 +1,4 @@
-// Tests if a drive is worse than the plain step, on outcomes that are made up.
+// Tests if a drive is worse than the plain step, on synthetic outcomes.
 #include "studies/search/worse_than_step.h"
 
 #include <gmock/gmock.h>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t devices = 400;
 
-// Device k of a sample whose impact speeds and rebounds lie evenly around these medians, within 10 %.
+// Returns a sample of devices whose impact velocities and rebounds are evenly distributed about these medians, within 10 %.
 std::vector<DeviceOutcome> outcomes(double speed, double height, double force) {
   std::vector<DeviceOutcome> all;
   for (std::size_t k = 0; k < devices; ++k) {
@@ -37,7 +37,7 @@ using testing::IsEmpty;
 
 TEST(WorseThanStep, ComparesTheDevicesThatBothHave) {
   std::vector<DeviceOutcome> few = outcomes(0.2, 100e-9, 0.5e-6);
-  few.resize(40);  // its verdict was interrupted
+  few.resize(40);  // the run was interrupted
   const std::vector<std::string_view> speed{key_of(&Metrics::largest_impact_velocity)};
   EXPECT_EQ(worse(few), speed);
   EXPECT_THAT(worse_in(step, few, 1e-9, 3),
@@ -54,7 +54,8 @@ TEST(WorseThanStep, NamesTheFiguresInWhichADriveIsWorse) {
 }
 
 TEST(WorseThanStep, DoesNotMindWhatMayBeChance) {
-  // One device in twenty is a little faster, the others are slower: the quantile lies above, its interval does not.
+  // One device in twenty is slightly faster, the others are slower: the quantile is above that of the step, but its interval is
+  // not.
   std::vector<DeviceOutcome> drive = step;
   for (std::size_t k = 0; k < devices; ++k) {
     double& speed = drive[k].metrics.largest_impact_velocity;
