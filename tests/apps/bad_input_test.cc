@@ -1,4 +1,4 @@
-// Everything a user can get wrong is refused with one whole sentence and exit status 2.
+// Every mistake of a user is refused with one complete sentence and exit status 2.
 #include <gtest/gtest.h>
 
 #include "program.h"
@@ -40,8 +40,7 @@ class BadInput : public ::testing::Test {
     delete here;
     here = nullptr;
   }
-  /// Compares the text before and behind "…" of a message alone: a list that the program makes of a table is not written down
-  /// here.
+  /// Compares only the text before and after "…" in a message: lists that the program makes from a table are not repeated here.
   static void expect_message(const std::string& said, const std::string& message, const std::string& line) {
     const std::string whole = "softland: " + message + "\n", ellipsis = "…";
     const std::size_t gap = whole.find(ellipsis);
@@ -267,7 +266,7 @@ TEST_F(BadInput, Searches_long) {
       {{"optimize", "unlimited.toml", "--quiet", "--out", "earlier", "--actuator", "pzt"},
        "optimize needs [driver.piezo] with min_voltage and max_voltage: it never searches an unlimited drive"},
   });
-  // All the names are in the tests of optimizers.
+  // The tests of optimizers check all names.
   const std::string unknown = here->run(search({"--optimizer", "magic"})).err;
   EXPECT_TRUE(unknown.starts_with("softland: optimizer \"magic\" is unknown; choose one of auto, ")) << unknown;
 }

@@ -1,4 +1,4 @@
-// Tests the answers of the verbs when all is well.
+// Tests the output of the verbs when they succeed.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
 
-/// The verbs that --help lists.
+/// Returns the verbs that --help lists.
 std::vector<std::string> every_verb(const Workplace& here) {
   const std::string help = here.run({"--help"}).out;
   const std::size_t begin = help.find("\nVerbs:\n");
@@ -64,7 +64,7 @@ TEST(Program, TellsItsVersion) {
   EXPECT_THAT(o.out, testing::MatchesRegex("softland [0-9]+\\.[0-9]+\\.[0-9]+[^\n]*\n"));
 }
 
-// An electrode on both sides whose back side is the nearer one.
+// An electrode with faces on both sides of the beam, of which the back one is nearer.
 TEST(PullInVoltage, OfAnElectrodeThatPullsAwayIsNone) {
   const Workplace here;
   const std::string scene = edited(shipped("gap-closing-actuator.toml"), "electrode = \"", "electrode = \"5");
@@ -281,7 +281,7 @@ TEST(PullIn, TellsSeveralElectrodesByName) {
   EXPECT_EQ(j["pull_in"]["main"], run("check")["pull_in"]);
 }
 
-// A charge shifts both polarities, and may keep a closed switch closed at 0 V.
+// A charge shifts the voltages of both polarities, and may keep a closed switch closed at 0 V.
 TEST(PullIn, SaysWhatAChargeOnTheDielectricDoes) {
   const Workplace here;
   const auto charged = [&](const char* verb, const char* charge) {
@@ -374,7 +374,7 @@ TEST(PullIn, SaysInEveryRowOfASweepHowTheSwitchStands) {
 
 TEST(PullIn, GivesWhatItHasWhereItIsInterrupted_optimized) {
   const Workplace here;
-  // The static voltage is known at once, the dynamic one after minutes.
+  // The static voltage is printed at once, the dynamic one takes minutes.
   const std::vector<std::string> slow{"pull-in", "gold.toml", "--set", "structure.modes=20", "--set", "gas.model=reynolds"};
   for (const bool as_json : {false, true}) {
     std::vector<std::string> words = slow;
@@ -410,7 +410,7 @@ TEST(PullIn, SaysWhenTheDynamicOneEqualsTheStaticOne_optimized) {
   }
 }
 
-// The JSON of every study is a matter of tests/verbs.
+// tests/verbs checks the JSON of every study.
 TEST(Report, FindsWhatAStudyLeftInItsFolder_optimized) {
   const Workplace here;
   ASSERT_NE(here.run({"release", "gold.toml", "--budget", "60", "--samples", "0", "--set", "structure.modes=1", "--out", "open"})
@@ -535,8 +535,8 @@ TEST(Check, PrintsTheKnudsenNumberOfTheScenesOwnGas) {
   const Workplace here;
   const auto check = [&](const char* setting) { return here.run({"check", "gold.toml", "--set", setting}).out; };
   EXPECT_THAT(check("gas.mean_free_path=\"70 nm\""),
-              HasSubstr("Knudsen number       0.02 at the rest gap, 0.0467 in the closed state (mean free path 70\u00a0nm)"));
-  // mu / p sqrt(pi R_g T / 2) with the scene's viscosity.
+              HasSubstr("Knudsen number       0.02 at the rest gap, 0.0467 closed (mean free path 70\u00a0nm)"));
+  // mu / p sqrt(pi R_g T / 2) with the viscosity of the scene.
   EXPECT_THAT(check("gas.pressure=\"1 kPa\""), HasSubstr("(mean free path 6.84\u00a0µm)"));
 }
 
@@ -583,7 +583,7 @@ TEST(Effects, AreChosenByTheSceneAndSaidInTheResult) {
   EXPECT_EQ(j["scene"]["simulate"]["effects"], "all") << "the scene written is the one that ran";
 }
 
-// The last digits depend on the very program, found by the hash that it holds of itself, and on the processor.
+// The last digits depend on the program, which is identified by its hash, and on the processor.
 TEST(Results, SayWhatTheyWereMadeWith_long) {
   const Workplace here;
   const Outcome o = here.run({"simulate", "gold.toml", "--set", "simulate.duration=20 us", "--json", "-", "--out", "made"});
@@ -759,7 +759,7 @@ TEST(Export, PrintsTheWaveformsOfAScene) {
   EXPECT_THAT(pwl.out, HasSubstr("PWL"));
 }
 
-// The rows of a file of waveforms with one drive.
+// Returns the rows of a waveform file with one drive.
 std::vector<std::array<double, 2>> waveform(const std::string& csv) {
   std::vector<std::array<double, 2>> rows;
   std::istringstream in(csv.substr(csv.find("\n", csv.find("time_s")) + 1));
@@ -785,11 +785,11 @@ TEST(Export, PrintsTheWaveformOfOneDeviceInItsOwnUnits_optimized) {
   const auto own = waveform(o.out);
   ASSERT_GT(nominal.size(), 5U);
   ASSERT_EQ(own.size(), nominal.size());
-  for (std::size_t i = 0; i + 1 < own.size(); ++i) {  // the last row stands at the end of the window
+  for (std::size_t i = 0; i + 1 < own.size(); ++i) {  // the last row is at the end of the window
     EXPECT_NEAR(own[i][0], 1.2 * nominal[i][0], 1e-5 * own[i][0]);
     EXPECT_NEAR(own[i][1], 1.1 * nominal[i][1], 1e-5 * own[i][1]);
   }
-  // A value that was not measured is that of the nominal device.
+  // A value that is not measured is that of the nominal device.
   EXPECT_EQ(waveform(here.run({"export", "pulse.toml", "--device-frequency", std::to_string(own_frequency) + " Hz"}).out).size(),
             nominal.size());
 }
@@ -800,7 +800,7 @@ std::string sampled_gold() {
                 "max_voltage = \"22 V\"\nsample_rate = \"25 MHz\"\nbits = 12\nbandwidth = \"1 MHz\"\nmax_slew = \"20 V/us\"");
 }
 
-// A generator gets samples on its own grid; read back under the same driver it is the same closing.
+// The samples are on the generator's own grid. Read back under the same driver they give the same closing.
 TEST(Export, HoldsTheSamplesThatASourceIsTold_optimized) {
   const Workplace here;
   write(here.path() / "sampled.toml", sampled_gold());
@@ -825,7 +825,7 @@ TEST(Export, HoldsTheSamplesThatASourceIsTold_optimized) {
   ASSERT_EQ(output.status, 0) << output.err;
   EXPECT_NE(output.out, told.out);
   EXPECT_GT(waveform(output.out).size(), 2 * rows.size()) << "the answer of the filter";
-  // The waveform of a filter alone is the commanded one.
+  // Without errors, filter and samples the output of a source is the commanded waveform.
   EXPECT_EQ(here.run({"export", "gold.toml"}).out, here.run({"export", "gold.toml", "--signal", "output"}).out);
   for (const auto& [words, said] : std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{"gold.toml", "--format", "codes"}, "no driver takes samples"},
@@ -839,7 +839,7 @@ TEST(Export, HoldsTheSamplesThatASourceIsTold_optimized) {
   }
 }
 
-// A landing, which few samples spoil.
+// A landing that a low sample rate spoils.
 std::string landing_gold() {
   return edited(
       edited(shipped("mem-gold.toml"), "family = \"step\"\nlevel = \"1.25 Vdp\"", "family = \"table\"\nfile = \"landing.csv\""),
@@ -866,7 +866,7 @@ TEST(Export, ForAGeneratorTellsHowTheSwitchClosesAsSampled_optimized) {
   EXPECT_THAT(coarse.err, HasSubstr("MS/s, 5 bit, on the nominal design: the switch first touches"));
   EXPECT_THAT(coarse.err, HasSubstr("warning: as drawn, the switch closes"));
 
-  // Read back by a scene, it is the same closing.
+  // The exported file, read back by a scene, gives the same closing.
   write(here.path() / "fine.csv", exported("100 MHz", "16", "tektronix-csv").out);
   write(here.path() / "back.toml", edited(landing_gold(), "file = \"landing.csv\"", "file = \"fine.csv\"\nscale = 20"));
   const std::vector<std::string> sampled{
@@ -898,7 +898,7 @@ TEST(Export, ForAGeneratorTellsHowTheSwitchClosesAsSampled_optimized) {
   }
 }
 
-// The closing, its limits and every statement about it are those at the switch; only the samples of the generator are smaller.
+// The closing, its limits and all messages have the voltages at the switch. Only the samples of the generator are smaller.
 TEST(Export, AnAmplifierOfTheDriverIsCountedOnce) {
   const Workplace here;
   const auto scene = [&](const std::string& name, const std::string& keys) {
@@ -969,7 +969,7 @@ TEST(Export, WritesTheSwitchForACircuit) {
                         "integral) and several contacts\n"));
 }
 
-// A verb that works on a scene works on the folder of a result as well, and on its result.json.
+// A verb that takes a scene also takes the folder of a result, and its result.json.
 TEST(Scenes, AreTakenFromResults_optimized) {
   const Workplace here;
   ASSERT_EQ(here.run({"simulate", "gold.toml", "--out", "run", "--quiet", "--set", "structure.modes=2", "--set",
@@ -998,7 +998,7 @@ TEST(Scenes, AreTakenFromResults_optimized) {
   EXPECT_THAT(empty.err, HasSubstr("empty: must hold one of result.json, best.toml, release.toml; name the folder of --out"));
 }
 
-// A pin gets another name where the model, SPICE or Verilog-A uses its name for something else, and a message tells it.
+// A pin is renamed if its name has another meaning in the model, in SPICE or in Verilog-A, and a message says so.
 TEST(Export, NamesPinsOfCircuitsThatAreNoOthers) {
   const Workplace here;
   const std::string gold = shipped("mem-gold.toml");
@@ -1040,7 +1040,7 @@ TEST(Export, NamesPinsOfCircuitsThatAreNoOthers) {
   EXPECT_THAT(alike.err, HasSubstr("drive a_b is the pin a_b_2"));
 }
 
-// The simulator is ngspice, if installed; its steps are by trapezoids.
+// The simulator is ngspice, if installed, with trapezoidal steps.
 TEST(Export, OfTheSwitchForACircuitClosesAsItDoes_slow) {
   if (std::system("command -v ngspice >/dev/null 2>&1") != 0) GTEST_SKIP() << "skipped: no circuit simulator; needs: ngspice";
   const Workplace here;
@@ -1126,7 +1126,7 @@ TEST(Export, TakesWhatWasMeasuredAndSaysWhatIsStrange_optimized) {
   }
 }
 
-// Half the deflection per volt needs twice the volts, of the piezo alone.
+// With half the deflection per volt the piezo needs twice the voltage; the electrode does not.
 TEST(Export, GivesAPiezoVoltsByWhatOneDeflects_optimized) {
   const Workplace here;
   write(here.path() / "pzt.toml",
@@ -1140,7 +1140,7 @@ TEST(Export, GivesAPiezoVoltsByWhatOneDeflects_optimized) {
   const Outcome own = here.run({"export", "pzt.toml", "--measured", half}), nominal = here.run({"export", "pzt.toml"});
   ASSERT_EQ(own.status, 0) << own.err;
   EXPECT_THAT(own.err, HasSubstr("warning: --measured piezo = "));
-  const auto voltages = [](const std::string& csv) {  // voltages of the electrode and of the piezo
+  const auto voltages = [](const std::string& csv) {  // returns the voltages of the electrode and of the piezo
     std::vector<std::array<double, 2>> rows;
     std::istringstream in(csv.substr(csv.find('\n') + 1));
     double time = 0;
@@ -1158,7 +1158,7 @@ TEST(Export, GivesAPiezoVoltsByWhatOneDeflects_optimized) {
   EXPECT_EQ(before[1][1], 0.3) << "after the step from 0 V";
 }
 
-// "Set the amplifier 2 % high."
+// The scene of an amplifier whose gain is set 2 % too high.
 TEST(Sources, HaveAGainThatCanBeSetAndVaried_optimized) {
   const Workplace here;
   const auto contact = [&](const std::vector<std::string>& more) {
@@ -1180,7 +1180,7 @@ TEST(Sources, HaveAGainThatCanBeSetAndVaried_optimized) {
   const Outcome table = here.run({"table", "gains.sqlite"});
   EXPECT_EQ(std::count(table.out.begin(), table.out.end(), '\n'), 4) << table.out;
   EXPECT_THAT(table.out, HasSubstr("steady_force_time_s"));
-  // The commanded waveform is sent, whatever comes of it.
+  // By default the commanded waveform is exported, whatever the source makes of it.
   const Outcome asked = here.run({"export", "gold.toml"});
   write(here.path() / "gain.toml", edited(shipped("mem-gold.toml"), "[driver.main]", "[driver.main]\ngain = 1.02"));
   EXPECT_EQ(here.run({"export", "gain.toml"}).out, asked.out);

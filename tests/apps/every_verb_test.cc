@@ -1,4 +1,4 @@
-// Every verb on every shipped scene: it ends with a documented status and says something that can be read.
+// Every verb on every shipped scene ends with a documented status and readable output.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -47,28 +47,28 @@ class EveryVerb : public testing::TestWithParam<Shipped> {
  protected:
   void SetUp() override {
     write(here.path() / scene().name, scene().text);
-    // Copy the files that scenes name beside them.
+    // Copy the files that scenes name.
     for (const auto& entry : fs::directory_iterator(fs::path(SOFTLAND_SOURCE_DIR) / "scenes")) {
       if (entry.path().extension() == ".csv") write(here.path() / entry.path().filename(), read(entry.path()));
     }
   }
   static const Shipped& scene() { return GetParam(); }
 
-  /// A run that has to end well, or without success.
+  /// Runs a command that must succeed, or end without success.
   Outcome done(const std::vector<std::string>& words) const {
     const Outcome o = finished(words);
     EXPECT_TRUE(o.status == 0 || o.status == 4) << place(words) << ": status " << o.status << ", " << o.err;
     EXPECT_FALSE(o.out.empty()) << place(words);
     return o;
   }
-  /// A run that has to be refused with this reason.
+  /// Runs a command that must be refused for this reason.
   void refused(const std::vector<std::string>& words, const std::string& reason) const {
     const Outcome o = finished(words);
     EXPECT_EQ(o.status, 2) << place(words);
     EXPECT_EQ(o.out, "") << place(words);
     EXPECT_NE(o.err.find(reason), std::string::npos) << place(words) << ": " << o.err;
   }
-  /// Voltages are exported; a factor of the dispersion force is none.
+  /// Expects voltages to be exported; the factor of a dispersion force is not a voltage.
   void exports(const std::vector<std::string>& words) const {
     if (scene().has("\\[electrode")) {
       (void)done(words);
@@ -195,7 +195,7 @@ TEST_P(EveryVerb, OpensAgain) {
   const json j = json::parse(read(here.path() / "out/release.json"), nullptr, false);
   EXPECT_LT(j["best"]["figures"]["residual_vibration_m"], j["plain"]["figures"]["residual_vibration_m"]);
   EXPECT_GT(fs::file_size(here.path() / "out/release.svg"), 1000U);
-  // The drives begin at their hold levels, and end at 0 V.
+  // The drives begin at their hold levels and end at 0 V.
   const std::string csv = read(here.path() / "out/release.csv");
   const json drive = j["best"]["waveforms"].begin().value();
   EXPECT_EQ(drive.front()[1], j["hold_levels"][j["best"]["waveforms"].begin().key()]);
@@ -209,7 +209,7 @@ TEST_P(EveryVerb, OpensAgain) {
 TEST_P(EveryVerb, CyclesAtARate_optimized) {
   const json closed = data(scene().quickly({"simulate", scene().name, "--quiet", "--json", "-"}))["metrics"];
   const json& touch = closed["initial_contact_time_s"];
-  constexpr double long_cycle = 40;  // times the first touch
+  constexpr double long_cycle = 40;  // period over the time of the first touch
   const double rate = touch.is_number() ? 1 / (long_cycle * touch.get<double>()) : 1e3;
   const std::vector<std::string> words = scene().quickly(
       {"cycle", scene().name, "--rate", std::to_string(rate) + " Hz", "--no-scan", "--cycles", "2", "--quiet", "--out", "out"});
@@ -228,13 +228,13 @@ TEST_P(EveryVerb, CyclesAtARate_optimized) {
     EXPECT_GT(cycle["closed_time_s"], 0);
     EXPECT_GT(cycle["largest_impact_velocity_m_s"], 0);
   }
-  // The first touch of a cycle with several contacts is that of all.
+  // With several contacts the first touch of a cycle is that of all contacts.
   if (!j["scene"]["contact"].contains("model")) return;
   EXPECT_NEAR(drive["cycles"][0]["initial_contact_time_s"].get<double>(), touch.get<double>(), 1e-5 * touch.get<double>());
 }
 
 TEST_P(EveryVerb, SearchesAPairForARate_slow) {
-  constexpr double periods = 12;  // a cycle lasts for so many of the first mode
+  constexpr double periods = 12;  // periods of the first mode in a cycle
   const json modes = data(scene().quickly({"modes", scene().name, "--json", "-"}))["natural_frequencies_rad_s"];
   const std::string rate = std::to_string(modes[0].get<double>() / (2 * M_PI * periods)) + " Hz";
   const std::vector<std::string> words =
@@ -245,7 +245,7 @@ TEST_P(EveryVerb, SearchesAPairForARate_slow) {
   const json j = json::parse(read(here.path() / "out/cycle.json"), nullptr, false);
   ASSERT_EQ(j["drives"].size(), 2U);
   ASSERT_EQ(j["drives"][1]["status"], "done") << j["drives"][1]["message"];
-  // The scene that is left has the same cycles.
+  // The written scene has the same cycles.
   const json again =
       data({"cycle", "out/best.toml", "--rate", rate, "--no-scan", "--cycles", "2", "--quiet", "--json", "-"})["drives"][1];
   for (const char* key : {"initial_contact_time_s", "largest_impact_velocity_m_s", "major_bounce_height_m"})
@@ -259,7 +259,7 @@ TEST_P(EveryVerb, Compares_optimized) {
 }
 
 TEST_P(EveryVerb, Measures_optimized) {
-  // A beam with a contact takes some seconds; tests/apps/command_line_test.cc has one.
+  // A beam with a contact takes some seconds, and is in tests/apps/command_line_test.cc.
   if (!scene().has("kind = \"plate\"") && scene().has_contact()) return;
   (void)done(scene().quickly({"accuracy", scene().name, "--quiet", "--json", "accuracy.json"}));
   const std::string written = read(here.path() / "accuracy.json");
@@ -290,7 +290,7 @@ TEST_P(EveryVerb, Judges_long) {
   (void)done({"simulate", "out/worst-1.toml", "--quiet"});
 }
 
-// A device answers a shot of the first drive, or says which drives there are.
+// A device answers a shot of the drive `main`, or names the drives that it has.
 TEST_P(EveryVerb, IsPractisedOn_optimized) {
   write(here.path() / "stdin.txt",
         "{\"shot\":1,\"hold_s\":1e-05,\"drives\":{\"main\":{\"time_s\":[0,1e-06],\"V\":[0,0.001]}}}\n");
@@ -349,7 +349,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, EveryVerb, testing::ValuesIn(shipped_scenes()),
 });
 
 std::vector<std::string> kinds_of_new(const Workplace& here) {
-  std::string refusal = here.run({"new", "?"}).err;  // it lists them
+  std::string refusal = here.run({"new", "?"}).err;  // the message lists the kinds
   refusal = refusal.substr(refusal.find("one of ") + 7);
   static const std::regex kind("[a-z-]+");
   std::vector<std::string> kinds;
@@ -372,7 +372,7 @@ TEST(EveryKind, OfNewSceneIsCheckedAndSaysHowDevicesDiffer_optimized) {
   }
 }
 
-// A new scene goes through all that docs/own-switch.md tells to do next.
+// A new scene is used in all the ways that docs/own-switch.md suggests next.
 TEST(EveryKind, OfNewSceneIsSimulatedSearchedAndJudged_slow) {
   const Workplace here;
   for (const std::string& kind : kinds_of_new(here)) {

@@ -1,4 +1,4 @@
-// `softland explore` as a user meets it: what is in the store after whatever happened to the run.
+// Tests `softland explore` as a user does: the content of the store after any end of the run.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -66,7 +66,7 @@ TEST_F(Explore, HasTheSameRowsWhateverTheNumberOfJobsAndTheParts_optimized) {
   expect_same_rows(whole, parts);
 }
 
-// Every number of a point is that of the verb's own record of its scene.
+// Every number of a point is that in the verb's own record of the same scene.
 TEST_F(Explore, OfOtherStudiesHasTheNumbersOfTheirRecords_optimized) {
   struct Asked {
     std::string study;
@@ -200,7 +200,7 @@ TEST_F(Explore, ThatIsKilledAgainAndAgainEndsWithTheSameBits_slow) {
   int hits = 0;
   for (int i = 0; i < kills; ++i) {
     const pid_t child = here.start(with({"--out", "killed.sqlite", "--resume"}));
-    // The first is killed while it makes the store, the others wherever they are by then.
+    // The first run is killed while it makes the store, the others later.
     for (int waited = 0; i == 0 && waited < 60'000 && !fs::exists(at("killed.sqlite")); ++waited)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     if (i > 0) std::this_thread::sleep_for(std::chrono::milliseconds(20 + random() % 1500));

@@ -1,5 +1,5 @@
-// Tests what can go wrong around the program, for every verb: lost output, signals, bad files. The verbs are those
-// that the program itself lists, so that a new one is tried as well.
+// Tests faults around the program, for every verb: lost output, signals, bad files. The verbs are those that the program lists,
+// so that a new one is included.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -29,8 +29,8 @@ constexpr int bad_input = 2, output_lost = 74, interrupted = 130;
 constexpr std::array stopping_signals{SIGINT, SIGTERM, SIGHUP, SIGXCPU};
 
 struct Call {
-  std::vector<std::string> quick;  ///< prints something within a moment
-  std::vector<std::string> slow;   ///< is at it for many seconds; empty for a verb that never is
+  std::vector<std::string> quick;  ///< prints something at once
+  std::vector<std::string> slow;   ///< runs for many seconds; empty for a verb that never does
 };
 
 const std::vector<std::string> in_volts{"--set", "waveform.main.level=17 V", "--set", "driver.main.max_voltage=60 V"};
@@ -40,7 +40,7 @@ std::vector<std::string> operator+(std::vector<std::string> a, const std::vector
   return a;
 }
 
-// The first word that is not an option is what the verb reads.
+// The first word that is not an option is the input of the verb.
 std::map<std::string, Call> calls() {
   const std::vector<std::string> short_window{"--set", "simulate.duration=60 us"},
       long_window{"--set", "simulate.duration=100 ms"};
@@ -139,7 +139,7 @@ class Faults : public testing::Test {
     here = nullptr;
   }
   static std::vector<std::string> words(const std::string& verb, const std::vector<std::string>& more) {
-    fs::remove(here->path() / "merged.sqlite");  // a merge replaces no store
+    fs::remove(here->path() / "merged.sqlite");  // a merge does not replace a store
     return std::vector<std::string>{verb} + more;
   }
   static bool reads_stores_only(const std::string& verb) { return verb == "table" || verb == "status" || verb == "merge"; }
@@ -153,7 +153,7 @@ class Faults : public testing::Test {
   static inline std::vector<std::string> verbs;
 };
 
-// A pipe that holds as much as it can.
+// A pipe whose buffer is full.
 class FullPipe {
  public:
   FullPipe() {
@@ -206,7 +206,7 @@ TEST_F(Faults, OutputThatIsLostIsAnErrorOfEveryVerb_optimized) {
   close(broken[1]);
 }
 
-// The signal that the kernel sends then would end the program without a word.
+// The kernel then sends a signal that by default would end the program without a message.
 TEST_F(Faults, AFileAboveItsLimitIsAnErrorOfEveryVerbThatWritesOne_optimized) {
   const auto limited = [&](const std::vector<std::string>& more) {
     return here->run(std::vector<std::string>{"-c", "ulimit -f 0; exec \"$0\" \"$@\"", SOFTLAND_PROGRAM} + more, "/bin/sh",
@@ -215,8 +215,8 @@ TEST_F(Faults, AFileAboveItsLimitIsAnErrorOfEveryVerbThatWritesOne_optimized) {
   for (const std::string& verb : verbs) {
     for (const char* option : {"--json", "--out"}) {
       if (!takes(verb, option)) continue;
-      if (verb == "accuracy" && option == std::string("--out")) continue;  // a scene that is quick for it leaves no report
-      if (verb == "slurm") continue;                                       // its --out is for the script
+      if (verb == "accuracy" && option == std::string("--out")) continue;  // accuracy writes no report for this quick scene
+      if (verb == "slurm") continue;                                       // its --out names the script
       std::vector<std::string> more = calls()[verb].quick;
       if (verb != "merge")
         more = more + std::vector<std::string>{option, option == std::string("--out") ? "lost-" + verb : "lost.json"};
@@ -234,14 +234,14 @@ TEST_F(Faults, AFileAboveItsLimitIsAnErrorOfEveryVerbThatWritesOne_optimized) {
   EXPECT_FALSE(fs::exists(here->path() / "lost-simulate/report.html"));
 }
 
-// Returns true if every key of an object, and all that is no object, has the same value in the other.
+// True if every member of `part`, at any depth, has the same value in `all`.
 bool holds(const json& all, const json& part) {
   if (!part.is_object() || !all.is_object()) return all == part;
   return std::ranges::all_of(part.items(),
                              [&](const auto& one) { return all.contains(one.key()) && holds(all[one.key()], one.value()); });
 }
 
-// The output of --json stands in the folder too, which may hold more: curves.
+// The folder has the output of --json as well, in some verbs with further members such as curves.
 TEST_F(Faults, TheJsonOfAFolderIsThatOfTheOption_optimized) {
   int compared = 0;
   for (const std::string& verb : verbs) {
@@ -256,7 +256,7 @@ TEST_F(Faults, TheJsonOfAFolderIsThatOfTheOption_optimized) {
     ASSERT_TRUE(fs::exists(here->path() / "told.json")) << verb << ": " << o.err;
     const json told = json::parse(read(here->path() / "told.json"));
     fs::remove(here->path() / "told.json");
-    if (!fs::is_directory(folder)) continue;  // a table
+    if (!fs::is_directory(folder)) continue;  // the verb writes a table
     for (const fs::directory_entry& one : fs::directory_iterator(folder)) {
       if (one.path().extension() != ".json") continue;
       ++compared;
@@ -268,7 +268,7 @@ TEST_F(Faults, TheJsonOfAFolderIsThatOfTheOption_optimized) {
   EXPECT_GE(compared, 7);
 }
 
-// Each verb gets its signal while it waits.
+// Sends each verb its signal while it waits.
 void Faults::expect_each_ends(const std::vector<std::pair<std::string, int>>& told) {
   std::vector<std::unique_ptr<Workplace>> places;
   std::vector<pid_t> children;
@@ -328,7 +328,7 @@ TEST_F(Faults, EverySignalEndsEveryVerbThatComputesAndItsJsonSaysSo_slow) {
   }
 }
 
-// A terminal that closes sends SIGHUP twice, `timeout` SIGTERM, the kernel SIGXCPU every second.
+// A closing terminal sends SIGHUP twice, `timeout` SIGTERM, and the kernel SIGXCPU every second.
 TEST_F(Faults, ASignalThatComesAgainLetsResultsBeSaved) {
   for (const int signal : {SIGTERM, SIGHUP, SIGXCPU}) {
     const auto place = workplace();
@@ -354,9 +354,9 @@ TEST_F(Faults, ASecondCtrlCEndsAtOnce) {
   EXPECT_EQ(here->finish(child).status, -SIGINT);
 }
 
-// A bar on a terminal, which goes away when the verb has ended; nothing with --quiet.
+// A terminal shows a progress bar, which is removed when the verb ends; with --quiet it shows none.
 TEST_F(Faults, EveryVerbThatTakesLongShowsHowFarItIs_slow) {
-  // A root that was changed to may lack /dev/pts.
+  // After chroot, /dev/pts may be missing.
   const int found = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
   if (found < 0 || grantpt(found) != 0) GTEST_SKIP() << "skipped: no pseudo-terminals";
   close(found);
@@ -410,7 +410,7 @@ TEST_F(Faults, WhatIsNoRegularFileOrTooLargeIsReadByNoVerb) {
   mkfifo((here->path() / "pipe.toml").c_str(), 0600);
   fs::create_directory(here->path() / "folder.toml");
   write(here->path() / "large.toml", "");
-  fs::resize_file(here->path() / "large.toml", 100'000'000);  // sparse
+  fs::resize_file(here->path() / "large.toml", 100'000'000);  // a sparse file
   const std::map<std::string, std::string> files{{"/dev/zero", "is a device, it must be a regular file"},
                                                  {"pipe.toml", "is a pipe, it must be a regular file"},
                                                  {"folder.toml", "is a folder, it must be a regular file"},
@@ -418,27 +418,28 @@ TEST_F(Faults, WhatIsNoRegularFileOrTooLargeIsReadByNoVerb) {
                                                  {"absent.toml", "cannot be read: No such file or directory"}};
   for (const auto& [name, message] : files) {
     for (const std::string& verb : verbs) {
-      if (verb == "new") continue;  // reads nothing of the user's
+      if (verb == "new") continue;  // it reads no file of the user
       std::vector<std::string> more = calls()[verb].quick;
       more.front() = name;
       const Outcome o = here->run(words(verb, more));
       EXPECT_EQ(o.status, bad_input) << verb << " " << name;
       const bool needs_a_file = verb == "fit" || verb == "optimize" || verb == "explore" || verb == "read";
-      if (name == "folder.toml" && !needs_a_file && !reads_stores_only(verb)) continue;  // a folder of results: without any
+      if (name == "folder.toml" && !needs_a_file && !reads_stores_only(verb))
+        continue;  // an empty folder, which the verb takes for a folder of results
       if (reads_stores_only(verb)) {
         EXPECT_THAT(o.err, testing::StartsWith("softland: " + name + ": ")) << verb;
       } else {
         EXPECT_EQ(o.err, "softland: " + name + ": " + message + "\n") << verb;
       }
     }
-    // A waveform of the scene.
+    // A table of a waveform, named by the scene.
     write(here->path() / "table.toml", edited(shipped("mem-gold.toml"), "family = \"step\"\nlevel = \"1.25 Vdp\"",
                                               "family = \"table\"\nfile = \"" + name + "\""));
     const Outcome o = here->run({"simulate", "table.toml"});
     EXPECT_EQ(o.status, bad_input) << name;
     EXPECT_THAT(o.err, HasSubstr(message)) << name;
   }
-  // The text of results is read like this too.
+  // The text of results is read in the same way.
   fs::create_directory(here->path() / "zero");
   fs::create_symlink("/dev/zero", here->path() / "zero/result.json");
   for (const char* verb : {"report", "export", "robustness", "calibrate"})
@@ -493,7 +494,7 @@ TEST_F(Faults, OnlyARegularFileIsReplaced) {
   EXPECT_TRUE(json::accept(read(here->path() / "real.json")));
 }
 
-// Bytes that a terminal acts on: C0 but line feed and tab, DEL, and C1 and characters of direction in UTF-8.
+// True for bytes that control a terminal: C0 except line feed and tab, DEL, and in UTF-8 C1 and characters of direction.
 bool acts_on_a_terminal(const std::string& text) {
   const bool control = std::any_of(text.begin(), text.end(), [](char c) {
     const auto byte = static_cast<unsigned char>(c);
@@ -555,7 +556,7 @@ TEST_F(Faults, TwoRunsDoNotWorkInOneFolder) {
   const pid_t child = place.start(words("optimize", calls()["optimize"].slow + std::vector<std::string>{"--out", "out"}));
   for (int i = 0; i < 600 && !fs::exists(place.path() / "out/unfinished/best.toml"); ++i) std::this_thread::sleep_for(50ms);
   fs::copy(here->path() / "run/result.json", place.path() / "out/result.json");
-  // The second run's streams go to a place of their own.
+  // The output of the second run goes elsewhere.
   for (const std::vector<std::string>& second : {std::vector<std::string>{"optimize", "gold.toml", "--quiet"},
                                                  {"simulate", "gold.toml"},
                                                  {"accuracy", "gold.toml"},
@@ -578,7 +579,7 @@ TEST_F(Faults, TwoRunsDoNotWorkInOneFolder) {
   EXPECT_TRUE(fs::exists(place.path() / "out/unfinished/best.toml")) << "what the killed search had found";
 }
 
-// ---- what happens to the folder of a run
+// ---- changes of the folder of a run
 
 TEST_F(Faults, WhatAKilledSearchLeftMayBeRefinedInPlace) {
   const Workplace place;
@@ -599,7 +600,7 @@ TEST_F(Faults, AFolderThatVanishesIsOutputThatIsLost_optimized) {
                                         std::vector<std::string>{"--robust", "none", "--budget", "2 s", "--out", "out"}));
   for (int i = 0; i < 600 && !fs::exists(place.path() / "out/unfinished/best.toml"); ++i) std::this_thread::sleep_for(20ms);
   fs::rename(place.path() / "out", place.path() / "gone");  // move it at once, whatever is being written in it
-  // Somebody else works there now.
+  // Another run works there now.
   fs::create_directories(place.path() / "out");
   write(place.path() / "out/softland.lock", "process 1 on elsewhere");
   const Outcome o = place.finish(child);
@@ -626,7 +627,7 @@ TEST_F(Faults, NothingInTheFolderIsTakenForWhatItIsNot) {
 }
 
 TEST_F(Faults, JsonKeepsOffStandardOutputAndUnfinishedResults) {
-  const Workplace place;  // standard output is stdout.txt there
+  const Workplace place;  // standard output is stdout.txt in that folder
   fs::create_directories(place.path() / "out");
   for (const std::string file :
        {"out/softland.lock", "out/unfinished", "out/unfinished/result.json", "out/unfinished-2", "stdout.txt"}) {

@@ -1,4 +1,4 @@
-// `softland fit` as a user meets it.
+// Tests `softland fit` as a user does.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ accuracy = 1e-4
 "structure.stiffness" = { distribution = "normal", cov = "6 %" }
 "structure.mass" = { distribution = "normal", cov = "3 %" }
 )";
-// The frequency of the nominal design is 21.054 kHz; 3 % above it is 6 % more stiffness.
+// The nominal frequency is 21.054 kHz; 3 % more frequency means 6 % more stiffness.
 constexpr const char* bench = R"([[measurement]]
 quantity = "frequency"
 value = "21.686 kHz"
@@ -77,7 +77,7 @@ TEST_F(FitVerb, LeavesTheSceneWithItsCommentsAndOtherNumbers) {
   EXPECT_THAT(fitted, HasSubstr("# of four springs, wafer 3  # fitted, was \"42 N/m\""));
   EXPECT_THAT(fitted, HasSubstr(" ug\"        # weighed"));
   EXPECT_EQ(here.run({"check", "out/fitted.toml", "--quiet"}).status, 0);
-  // The fitted scene has what was measured.
+  // The fitted scene reproduces the measurement.
   const json modes = json::parse(here.run({"modes", "out/fitted.toml", "--json", "-"}).out);
   EXPECT_NEAR(modes["natural_frequencies_rad_s"][0].get<double>() / (2 * 3.14159265358979 * 21686), 1, 3e-4);
 }
@@ -107,7 +107,7 @@ TEST_F(FitVerb, OfSeveralDevicesLeavesASpreadThatOtherVerbsRead) {
   const Outcome o = fit({});
   EXPECT_EQ(o.status, 0) << o.err;
   EXPECT_THAT(o.out, HasSubstr("structure.stiffness of B"));
-  // One sentence for what is alike on all of them, broken into lines.
+  // One sentence about all of them, broken into lines.
   EXPECT_THAT(std::regex_replace(o.out, std::regex("\n"), " "), HasSubstr("structure.mass and structure.stiffness apart"));
   const std::string fitted = read(here.path() / "out/fitted.toml");
   EXPECT_THAT(fitted, HasSubstr("correlation = [[\"structure.mass\", \"structure.stiffness\", "));
@@ -131,11 +131,11 @@ TEST_F(FitVerb, DoesNotBelieveWhatCannotBe) {
     }
     return told["doubts"].dump();
   };
-  // A volt that was a millivolt, 9 kHz instead of 21.
+  // A voltage in the wrong unit, and 9 kHz instead of 21 kHz.
   EXPECT_THAT(doubted(edited(bench, "90.3 V", "90.3 mV")), HasSubstr("standard deviations away from its prior"));
   EXPECT_THAT(doubted("[[measurement]]\nquantity = \"frequency\"\nvalue = \"9 kHz\"\nerror = \"0.01 %\"\n"),
               HasSubstr("structure.stiffness is "));
-  // Twice the same, measured to be two things.
+  // Two different values of the same quantity.
   EXPECT_THAT(
       doubted(bench + std::string("[[measurement]]\nquantity = \"frequency\"\nvalue = \"20.9 kHz\"\nerror = \"0.01 %\"\n")),
       HasSubstr("RMS residual"));

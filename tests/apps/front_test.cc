@@ -1,4 +1,4 @@
-// Fronts and pages of explorations as a user meets them.
+// Tests fronts and pages of explorations as a user does.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ const std::string aims = "initial_contact_time,impact_velocity,peak_voltage";
 std::vector<std::string> search(const std::string& store, int points, const std::vector<std::string>& more = {}) {
   std::vector<std::string> words = explore({"--vary", "waveform.main.level=18 V:30 V", "--vary", "gap.contact=1.6 um:2.2 um",
                                             "--pareto", aims, "--sample", fmt::format("nsga2:{}", points), "--out", store});
-  words.insert(words.end(), {"--set", "simulate.duration=600 us"});  // a window in which they settle
+  words.insert(words.end(), {"--set", "simulate.duration=600 us"});  // a window in which the closings settle
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }
@@ -56,7 +56,7 @@ TEST_F(Front, HasTheSameRowsForAnyJobsAndAfterAnInterruption_slow) {
   static_cast<void>(done(search("whole.sqlite", 180, {"--jobs", "1"})));
   static_cast<void>(done(search("threads.sqlite", 180, {"--jobs", "3"})));
   expect_same_rows(rows_of(at("whole.sqlite")), rows_of(at("threads.sqlite")));
-  // A shorter search is the beginning of a longer one.
+  // A shorter search finds the first points of a longer one.
   static_cast<void>(done(search("parts.sqlite", 70)));
   const json j = done(search("parts.sqlite", 180, {"--resume"}));
   EXPECT_EQ(j["rows"]["known"], 70);

@@ -1,4 +1,4 @@
-// Modes of another program, from its file to a closing.
+// Modes from a file of another program, up to a closing.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ TEST(ModesOfAFile, BecomeATableAPictureAndAList) {
   const std::string picture = read(here.path() / "modes.svg");
   EXPECT_THAT(picture, HasSubstr("left out: in-plane"));
   EXPECT_THAT(picture, HasSubstr("mode_1"));
-  // The table reads back to the same bits.
+  // The table is read back bit for bit.
   const std::string table = read(here.path() / "modes.csv");
   EXPECT_THAT(table, testing::StartsWith("x_m,width_m,rest_offset_m,mode_1,mode_2\nfrequency_Hz,,,25000,156000\n0,"));
   EXPECT_EQ(here.run({"modes", "--from", "modes.csv", "--out", "again.csv"}).status, 0);
@@ -80,7 +80,7 @@ double relative(const json& a, const json& b, const char* figure) {
   return std::abs(a["metrics"][figure].get<double>() / b["metrics"][figure].get<double>() - 1);
 }
 
-// The modes of a beam in closed form, through a table of 101 places: a millionth of the shapes is lost.
+// The modes of a beam in closed form, written as a table of 101 places: the shapes have errors of a millionth.
 TEST(ModesOfAFile, OfABeamCloseAsTheBeam_optimized) {
   constexpr double time = 1e-8, speed = 1e-6, height = 1e-5;
   const Workplace here;
@@ -92,7 +92,7 @@ TEST(ModesOfAFile, OfABeamCloseAsTheBeam_optimized) {
   EXPECT_LE(relative(table, beam, "major_bounce_height_m"), height);
 }
 
-// The results of a search need no other file, wherever they are moved.
+// The results of a search include the modes, so that they can be moved.
 TEST(ModesOfAFile, StandInTheResultOfASearch_optimized) {
   const Workplace here;
   write(here.path() / "modes.toml", shipped("mem-gold-modes.toml"));
@@ -109,7 +109,8 @@ TEST(ModesOfAFile, StandInTheResultOfASearch_optimized) {
   EXPECT_EQ(again["metrics"], best);
 }
 
-// A mesh of the beam of mem-gold.toml: 20-node bricks, no contraction across (Poisson's ratio 0), as the beam of a scene.
+// Returns a mesh of the beam of mem-gold.toml: 20-node bricks with Poisson's ratio 0, since the beam of a scene has no
+// contraction across.
 std::string mesh_of_gold() {
   constexpr int nx = 50, ny = 4, nz = 2;
   constexpr double length = 250e-6, width = 20e-6, thickness = 2e-6;
@@ -159,8 +160,8 @@ TEST(ModesOfAFile, OfAMeshByCalculixCloseAsTheBeam_slow) {
   EXPECT_LE(relative(mesh, beam, "initial_contact_time_s"), time);
   EXPECT_LE(relative(mesh, beam, "impact_velocity_m_s"), speed);
   EXPECT_LE(relative(mesh, beam, "major_bounce_height_m"), height);
-  // The peak of the force falls in the first rebounds with up to three modes; with more of them in later ones, which no two
-  // closings have alike.
+  // With up to three modes the peak force is in the first rebounds. With more modes it is in later ones, which differ in any
+  // two closings.
   constexpr double force = 5e-3;
   for (const char* modes : {"structure.modes=1", "structure.modes=2", "structure.modes=3"})
     EXPECT_LE(relative(closing(here, "modes.toml", {"--set", modes}), closing(here, "gold.toml", {"--set", modes}),

@@ -8,17 +8,17 @@ namespace softland::apps {
 namespace {
 
 TEST(Pace, OfAFinerGridCountsThePointsThatWillBeTakenOver) {
-  // A grid of 1000 points of which every other one is known.
+  // A grid of 1000 points, of which every second one is known.
   const Pace halfway{.remaining = 900, .computed = 50, .reused = 50, .earlier = 500, .seconds = 10};
   EXPECT_DOUBLE_EQ(halfway.to_compute(), 450);
   EXPECT_DOUBLE_EQ(halfway.seconds_left(), 90);
 }
 
 TEST(Pace, OfALargerSampleCountsItsNewPoints) {
-  // 400 points of which the first 300 are known: all that was taken until now was taken over.
+  // 400 points of which the first 300 are known: all points so far were taken over.
   EXPECT_DOUBLE_EQ((Pace{.remaining = 350, .reused = 50, .earlier = 300}).to_compute(), 100);
   EXPECT_TRUE(std::isnan((Pace{.remaining = 350, .reused = 50, .earlier = 300}).seconds_left()));
-  // The time since the first point that had to be computed is that of the new points alone.
+  // The time since the first computed point is the time of new points only.
   EXPECT_DOUBLE_EQ((Pace{.remaining = 80, .computed = 20, .reused = 300, .earlier = 300, .seconds = 5}).seconds_left(), 20);
 }
 
@@ -44,7 +44,7 @@ TEST(WorkPace, TellsTheTimeThatIsLeftOfWhatIsDoneNow) {
   EXPECT_EQ(pace.words(8), "closing: 25 %, 8 s, about 6 s left");
   pace.note("closing", 1, 14);
   EXPECT_EQ(pace.words(14), "closing: 100 %, 14 s, about 0 s left");
-  pace.note("closing", 0.1, 15);  // the same once more
+  pace.note("closing", 0.1, 15);  // the same note again
   EXPECT_EQ(pace.words(15), "closing: 10 %, 15 s");
   pace.note("closing", 0.4, 18);
   EXPECT_EQ(pace.words(18), "closing: 40 %, 18 s, about 6 s left");

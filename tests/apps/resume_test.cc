@@ -1,4 +1,4 @@
-// A search that goes on after whatever happened to it, and one that begins with what others have found.
+// A search that continues after any interruption, and a search that starts from earlier results.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,14 +22,14 @@ using namespace std::chrono_literals;
 
 class Resume : public test::Searches {
  protected:
-  /// A search that is killed when it has evaluated for a while.
+  /// Kills a search after it has evaluated for a while.
   void killed(const std::vector<std::string>& words, std::chrono::milliseconds after) const {
     const pid_t child = here.start(words);
     std::this_thread::sleep_for(after);
     kill(child, SIGKILL);
     (void)here.finish(child);
   }
-  /// One that was killed with evaluations in its store.
+  /// Kills a search that has evaluations in its store.
   void killed_once(const std::string& out, std::vector<std::string> more = {}) const {
     more.insert(more.end(), {"--budget", "100000000", "--out", out});
     const pid_t child = here.start(optimize(more));
@@ -48,7 +48,7 @@ TEST_F(Resume, AfterKillsAtRandomMomentsEndsWithTheSameBits_slow) {
   };
   done(with({"--out", "whole"}));
   std::mt19937 random(3);
-  constexpr int kills = 4;  // kills after the second in which rows may be lost
+  constexpr int kills = 4;  // number of kills later than the first second, in which rows may be lost
   for (int i = 0; i < kills; ++i)
     killed(with({"--out", "killed", "--resume"}), std::chrono::milliseconds(1200 + random() % 1200));
   done(with({"--out", "killed", "--resume"}));
@@ -71,7 +71,7 @@ TEST_F(Resume, WithALargerBudgetIsTheSearchThatBeganWithIt_optimized) {
   done(optimize({"--out", "whole", "--budget", "500", "--optimizer", "cma-es"}));
   expect_same_search(at("whole"), at("out"));
   EXPECT_EQ(rows_of(at("out/evaluations.sqlite")).size(), rows_of(at("whole/evaluations.sqlite")).size());
-  // A repeated run knows every evaluation.
+  // A repeated run reads every evaluation from the store.
   done({"optimize", "--resume", "--quiet", "--out", "out"});
   expect_same_search(at("whole"), at("out"));
   EXPECT_EQ(StudyReader(at("out/evaluations.sqlite")).sessions().back().rows, 0);
@@ -180,10 +180,10 @@ TEST_F(Start, FromTheWinnerOfAnotherSearchNeverEndsWorse_slow) {
   const json refined = test::result_in(at("two"));
   EXPECT_LE(refined["best"]["cost"].get<double>(), found["best"]["cost"].get<double>() * (1 + 1e-9));
   EXPECT_EQ(refined["scene"]["title"], found["scene"]["title"]);
-  // The same from the folder, and from its result.json.
+  // The folder and its result.json give the same start.
   done(optimize({"--out", "folder", "--budget", "12", "--start", "one"}));
   EXPECT_EQ(read(at("folder/best.toml")), read(at("two/best.toml")));
-  // A worse start beside it does no harm.
+  // A further, worse start does no harm.
   done(optimize({"--out", "more", "--budget", "12", "--start", "one/best.toml", "--start", "two/best.toml"}));
   EXPECT_LE(test::result_in(at("more"))["best"]["cost"].get<double>(), refined["best"]["cost"].get<double>() * (1 + 1e-9));
 }
@@ -195,7 +195,7 @@ TEST_F(Start, FromAnotherFamilyKeepsTheLandingUnlessItFindsABetterOne) {
   const json kept = test::result_in(at("two"));
   EXPECT_LE(kept["best"]["cost"].get<double>(), found["best"]["cost"].get<double>() * (1 + 1e-9));
   EXPECT_TRUE(kept["best"]["parameters"].empty()) << "of the winner, which is no broken line";
-  // A search with a few evaluations more than its starts has better ones than it would have by itself.
+  // With the starts, a few more evaluations give a better result than without.
   done(optimize({"--out", "with", "--budget", "30", "--waveform", "knots:12", "--start", "one"}));
   done(optimize({"--out", "without", "--budget", "30", "--waveform", "knots:12"}));
   const auto least = [&](const char* out) {
@@ -236,7 +236,7 @@ TEST_F(Start, RefusesWhatTheSearchCannotBeginWith) {
 TEST_F(Start, BelongsToTheSearchThatGoesOn) {
   done(optimize({"--out", "one", "--budget", "100"}));
   done(optimize({"--out", "two", "--budget", "30", "--start", "one/best.toml"}));
-  fs::remove(at("one/best.toml"));  // the plan holds what it says
+  fs::remove(at("one/best.toml"));  // the plan contains the scene
   done({"optimize", "--resume", "--quiet", "--out", "two"});
   EXPECT_LE(test::result_in(at("two"))["best"]["cost"].get<double>(),
             test::result_in(at("one"))["best"]["cost"].get<double>() * (1 + 1e-9));

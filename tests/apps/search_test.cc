@@ -1,4 +1,4 @@
-// Tests what a search leaves behind: when it ends, when it is interrupted, when it is killed.
+// Tests the files of a search: at its end, after an interruption, after a kill.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-// The window holds every landing a search may choose, and is a quarter of the scene's own.
+// The window contains every landing that a search may choose, and is a quarter of the scene's own.
 const std::vector<std::string> quick_search{"gold.toml", "--quiet", "--set", "simulate.duration=150 us"};
 
 std::vector<std::string> words(const std::string& verb, std::vector<std::string> more) {
@@ -37,7 +37,7 @@ Outcome search(const Workplace& here, const std::string& out, std::vector<std::s
 
 json result(const Workplace& here, const std::string& out) { return json::parse(read(here.path() / out / "result.json")); }
 
-// Removes what may differ between two runs of one search: how long they took and how they were called.
+// Removes everything that may differ between two runs of one search: times and command lines.
 void forget_circumstances(json& j) {
   if (j.is_object()) {
     for (const char* key : {"wall_s", "command", "reproduce"}) j.erase(key);
@@ -65,7 +65,7 @@ void expect_complete_log(const std::string& log, const char* first_parameter = "
   for (const std::string& line : all) EXPECT_EQ(commas(line), commas(all.front())) << line;
 }
 
-// A long search, once best.toml stands and a little more than the second between two writings has gone by.
+// Starts a long search, and returns after best.toml exists and the second between two writings has passed.
 pid_t start_long_search(const Workplace& here) {
   const pid_t child = here.start(words("optimize", {"--budget", "100000000", "--out", "out", "--jobs", "2"}));
   using namespace std::chrono_literals;
@@ -126,7 +126,7 @@ TEST_F(Search, IsNotExportedOnceASimulationHasLeftItsResultInTheFolder) {
   EXPECT_EQ(here->run({"export", "mixed"}).out, read(here->path() / "mixed/best.csv"));
   ASSERT_EQ(here->run({"simulate", "gold.toml", "--quiet", "--out", "mixed"}).status, 0);
   EXPECT_EQ(here->run({"export", "mixed"}).out, here->run({"export", "gold.toml"}).out);
-  fs::remove(here->path() / "mixed/result.json");  // a killed search leaves its folder so
+  fs::remove(here->path() / "mixed/result.json");  // as in the folder of a killed search
   EXPECT_EQ(here->run({"export", "mixed"}).out, read(here->path() / "mixed/best.csv"));
 }
 
@@ -174,7 +174,7 @@ TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereAsked_optimized) {
   const std::string told = "Touches in ";
   EXPECT_THAT(o.out, testing::HasSubstr(told));
   EXPECT_THAT(here->run({"report", "near"}).out, testing::HasSubstr(told)) << "from result.json";
-  // The same time as `limit` finds for that speed.
+  // The same time as `limit` finds for this velocity.
   const Outcome limit =
       here->run({"limit", scene, "--quiet", "--no-curves", "--impact-velocity",
                  found["metrics"]["impact_velocity_m_s"].dump() + " m/s", "--json", "least.json", "--out", "least"});
@@ -414,19 +414,19 @@ TEST(RobustSearch, LeavesWhatRobustnessFindsAgain_slow) {
   EXPECT_EQ(found["robust"]["conditions"].size(), 1U);
   EXPECT_LT(found["best"]["cost"], found["baseline"]["cost"]);
   EXPECT_EQ(lines(read(here.path() / "out/evaluations.csv")).size(), found["evaluations"].get<std::size_t>() + 1);
-  // best.toml says what is measured of a device, so that the report of robustness is the verdict, digit for digit.
+  // best.toml contains the calibration, so that a report of robustness gives the verdict digit for digit.
   const Outcome again = here.run({"robustness", "out/best.toml", "--quiet", "--json", "-"});
   ASSERT_EQ(again.status, 0) << again.err;
   json figures = json::parse(again.out)["drives"].back();
   for (const char* key : {"figures", "bounce_free", "closing"}) EXPECT_EQ(figures[key], verdict["drives"].back()[key]) << key;
-  // The report is made of the result alone.
+  // The report is made from the result alone.
   const Outcome report = here.run({"report", "out", "--out", "again"});
   ASSERT_EQ(report.status, 0) << report.err;
   EXPECT_NE(report.out.find("Searched over 16 devices"), std::string::npos) << report.out;
   EXPECT_NE(o.out.find("Searched over 16 devices"), std::string::npos) << o.out;
 }
 
-// A few modes and devices, and no race: the candidates of the nominal design are ranked again.
+// A few modes and devices, and no comparison of families: the candidates of the nominal design are ranked on the devices.
 const std::vector<std::string> for_few_devices{"--robust", "auto",  "--samples",         "100",   "--budget",
                                                "600",      "--set", "structure.modes=2", "--set", "simulate.accuracy=1e-3"};
 
@@ -463,7 +463,7 @@ TEST(SearchForDevices, LeavesTheDrawingAndWhatDevicesGet_optimized) {
   EXPECT_THAT(read(here.path() / "again/report.html"), testing::HasSubstr("Process variation"));
 }
 
-// A piezo carries the switch to its contact, and the plain step of the electrode comes then: on all devices softly.
+// A piezo moves the switch to its contact, and then the electrode steps: all devices land softly.
 TEST(SearchForDevices, ApproachesTheContactThroughStableEquilibria_optimized) {
   const Workplace here;
   write(here.path() / "pzt.toml", shipped("mem-gold-pzt.toml"));
@@ -504,7 +504,7 @@ TEST(SearchForDevices, ApproachesTheContactThroughStableEquilibria_optimized) {
   EXPECT_THAT(o.out, testing::HasSubstr("\n  softland export out")) << "what to do next";
 }
 
-// A piezo that closes the switch by itself holds it, too: there is no step to delay.
+// The piezo closes the switch and holds it, so that there is no step to delay.
 TEST(SearchForDevices, ApproachesTheContactByAPiezoAlone_optimized) {
   const Workplace here;
   std::string scene = shipped("mem-gold-pzt.toml");
@@ -552,14 +552,14 @@ TEST(SearchForDevices, SaysThatTheSpreadIsAssumed_optimized) {
 
 TEST(RobustSearch, DrivesDevicesBySourcesThatErr_slow) {
   const Workplace here;
-  std::string scene = edited(shipped("mem-gold.toml"), "accuracy = 1e-6", "tolerance = 1e-5");  // tolerance of robustness
+  std::string scene = edited(shipped("mem-gold.toml"), "accuracy = 1e-6", "tolerance = 1e-5");  // the tolerance of robustness
   scene +=
       "\"driver.main.gain\" = { distribution = \"normal\", cov = \"0.5 %\" }\n"
       "\"driver.main.offset\" = { distribution = \"uniform\", half_width = \"20 mV\" }\n"
       "\"driver.main.jitter\" = { distribution = \"normal\", standard_deviation = \"50 ns\" }\n";
   write(here.path() / "gold.toml", scene);
   ASSERT_EQ(search(here, "out", {"--robust", "cvar:0.9", "--samples", "8"}, "700").status, 0);
-  setenv("SOFTLAND_VECTORS", "none", 1);  // one at a time, as simulate closes it
+  setenv("SOFTLAND_VECTORS", "none", 1);  // close devices one at a time, as `simulate` does
   const Outcome o = here.run({"robustness", "out/best.toml", "--samples", "40", "--quiet", "--out", "devices"});
   unsetenv("SOFTLAND_VECTORS");
   ASSERT_EQ(o.status, 0) << o.err;
@@ -569,7 +569,7 @@ TEST(RobustSearch, DrivesDevicesBySourcesThatErr_slow) {
   EXPECT_NE(said.find("The sources of the drives err as the spread says."), std::string::npos) << o.out;
   const std::string header = lines(read(here.path() / "devices/devices.csv")).front();
   EXPECT_EQ(header.find("device,driver.main.gain,driver.main.jitter,driver.main.offset,gaps,"), 0U) << header;
-  // The worst device is a scene of its own, whose closing is the same to the bit.
+  // The scene of the worst device gives bit for bit the same closing.
   const json worst = json::parse(read(here.path() / "devices/robustness.json"))["drives"].back()["worst"][0];
   const Outcome again = here.run({"simulate", "devices/worst-1.toml", "--quiet", "--json", "-"});
   ASSERT_EQ(again.status, 0) << again.err;
@@ -600,7 +600,7 @@ TEST(RobustSearch, OfATinyBudgetStillAnswers_slow) {
   for (const char* budget : {"1", "100", "700"}) {
     std::vector<std::string> more{"--robust", "worst", "--samples", "8"};
     const std::string out = std::string("out") + budget;
-    const int status = search(here, out, more, budget).status;  // 4: no better than the step
+    const int status = search(here, out, more, budget).status;  // 4: no better than the plain step
     EXPECT_TRUE(status == 0 || status == 4) << budget << ": " << status;
     EXPECT_TRUE(result(here, out)["best"]["metrics"].is_object()) << budget;
   }
@@ -663,7 +663,7 @@ TEST(Robustness, LeavesTheWorstDevicesOfTheBox) {
   EXPECT_LE(box["closings"], 1800) << "as --help says";
   const Outcome latest = here.run({"simulate", "out/box-t_i.toml", "--quiet", "--json", "-"});
   ASSERT_EQ(latest.status, 0) << latest.err;
-  constexpr double integrated_with = 1e-4;  // error of another tolerance
+  constexpr double integrated_with = 1e-4;  // difference by another tolerance
   const double first_contact = box["figures"]["initial_contact_time_s"]["most"]["value"];
   EXPECT_NEAR(json::parse(latest.out)["metrics"]["initial_contact_time_s"].get<double>(), first_contact,
               integrated_with * first_contact);

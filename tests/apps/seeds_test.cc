@@ -58,7 +58,7 @@ TEST_F(Seeds, AreOneSearchEachAndTheBestIsReported_optimized) {
   EXPECT_EQ(study["cost"]["median"], costs[1]);
   EXPECT_EQ(study["cost"]["most"], costs[2]);
   EXPECT_EQ(j["seed"], study["best_seed"]);
-  // The page, made again of the result alone, has the table too.
+  // The page that is made again from the result has the table as well.
   const std::string page = read(at("one/report.html"));
   EXPECT_THAT(page, HasSubstr("Searches from other seeds"));
   done({"report", "one", "--out", "again"});
@@ -140,7 +140,7 @@ TEST_F(Seeds, ThatFailAreNamed) {
   const json missed = test::result_in(at("out"))["seeds"];
   EXPECT_EQ(missed["goal_met"], 0);
   EXPECT_EQ(missed["failed"], (json{{{"reason", "goal not met"}, {"seed", 1}}, {{"reason", "goal not met"}, {"seed", 2}}}));
-  // No waveform can close this one.
+  // No waveform can close this switch.
   const Outcome o = here.run({"optimize", "gold.toml", "--quiet", "--budget", "20", "--seeds", "2", "--out", "open", "--set",
                               "waveform.main.level=5 V", "--set", "driver.main.max_voltage=6 V"});
   EXPECT_EQ(o.status, 4) << o.err;

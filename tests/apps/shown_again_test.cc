@@ -1,5 +1,4 @@
-// `softland report` on the JSON of those verbs that the program runs in its own way; tests/verbs/shown_again_test.cc has the
-// others.
+// Tests `softland report` on the JSON of verbs without a common runner. tests/verbs/shown_again_test.cc has the others.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,9 +12,9 @@ namespace softland {
 namespace {
 
 struct Run {
-  const char* what;  ///< verb whose JSON it is
+  const char* what;  ///< verb that wrote the JSON
   std::vector<std::string> words;
-  std::vector<std::string> pages = {};  ///< files of out that are made again
+  std::vector<std::string> pages = {};  ///< files of `out` that are made again
 };
 
 std::ostream& operator<<(std::ostream& out, const Run& run) { return out << run.what; }
@@ -48,7 +47,7 @@ class EveryJson : public testing::TestWithParam<Run> {
   Workplace here;
 };
 
-// Up to where the files are.
+// Returns the text before the list of files.
 std::string findings(const std::string& text) { return text.substr(0, text.find("\nIn ")); }
 
 TEST_P(EveryJson, IsShownAgainWithItsPages_long) {
@@ -69,7 +68,7 @@ TEST_P(EveryJson, IsShownAgainWithItsPages_long) {
     EXPECT_THAT(here.run({"report", "run.json"}).err, testing::HasSubstr("\"store\" must name the store of the exploration"));
     return;
   }
-  // The search's statements on its devices, and on a part of them, come of the whole of them.
+  // The first run prints the statements on devices in parts; they are the beginning of the whole text.
   EXPECT_TRUE(first.out.starts_with(findings(again.out).substr(0, again.out.size() - 1))) << first.out << "\nagain:\n"
                                                                                           << again.out;
   if (pages.empty()) return;

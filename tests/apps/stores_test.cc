@@ -43,7 +43,7 @@ using Table = Stores;
 using StatusVerb = Stores;
 using MergeVerb = Stores;
 
-// The example of docs/scale.md, as it stands there.
+// Runs the example of docs/scale.md literally.
 TEST_F(Table, IsNotNeededByPandas_pandas) {
   std::string python;
   for (const char* name : {"python3", "/usr/bin/python3"}) {
@@ -228,7 +228,7 @@ TEST_F(Stores, KeepTheNamesOfTheirCompanions) {
   EXPECT_EQ(dump(at("a.sqlite")), dump(at("b.sqlite")));
 }
 
-// The store of a run that goes on for long is removed, and made anew by somebody else.
+// The store of a running exploration is removed, and another one is made in its place.
 TEST_F(Stores, ThatAreMadeAnewUnderTheirRunEndItAtOnce) {
   const pid_t child = here.start({"explore", "gold.toml", "--vary", "waveform.main.level=20 V:24 V:20000", "--jobs", "1", "--set",
                                   "structure.modes=2", "--set", "simulate.accuracy=1e-3", "--out", "a.sqlite", "--quiet"});
@@ -291,7 +291,7 @@ class SlurmVerb : public Stores {
           "set = [\"structure.modes=2\", \"simulate.accuracy=1e-3\", \"simulate.duration=80 us\"]\n"
           "vary = [\"waveform.main.level=20 V:24 V:11\"]\n");
     write(at("script.sh"), printed({"slurm", "map.toml", "--tasks", "3", "--out", std::string(folder) + "/map.sqlite"}));
-    // Stands for that of Slurm: tells what it was asked, and does it at once.
+    // A substitute for Slurm's sbatch: it records its arguments and runs the script at once.
     write(at("sbatch"), R"(#!/bin/bash
 printf '%s\n' "$*" >>"$(dirname -- "$0")/asked.txt"
 array= wrap= script=

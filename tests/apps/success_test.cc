@@ -1,4 +1,5 @@
-// Tests that a reported success is one: exit statuses and first lines of what does not last, is refused, or gains nothing.
+// Tests that a reported success is one: exit statuses and first lines for closings that do not last, are refused, or gain
+// nothing.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +20,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-// A nickel bridge that touches at its centre. It collapses there onto the electrode, long to both sides, from 66.1 V on.
+// A nickel bridge with its contact at the centre. From 66.1 V on it collapses onto the electrode, which is long to both sides.
 const std::string bridge = [] {
   std::string text(test::nickel_bridge);
   for (const auto& [from, to] : {std::pair("modes = 5", "modes = 4"),
@@ -30,7 +31,7 @@ const std::string bridge = [] {
   return text;
 }();
 
-// A plate between two electrodes at one voltage, one on either side.
+// A plate between two electrodes with the same voltage.
 const std::string between_two = R"(
 [structure]
 kind = "plate"
@@ -70,7 +71,7 @@ TEST(Success, IsNotAClosedStateThatIsPulledThrough_optimized) {
   EXPECT_EQ(leaves.status, 4);
   EXPECT_EQ(parsed(stays)["closed_state"]["stable"], true);
   EXPECT_EQ(stays.status, 0) << stays.err;
-  // One that is let go of again was meant to: it has an open equilibrium to go back to.
+  // A switch that is released on purpose has an open equilibrium to return to.
   const Outcome opens =
       here.run({"simulate", "bridge.toml", "--quiet", "--json", "-", "--set", "simulate.duration=60 us", "--set",
                 R"(waveform.main={family="pulse",levels=["63 V","0 V"],times=["30 us"],edge="1 us"})"});
@@ -108,7 +109,7 @@ TEST(Success, IsNotAVerdictThatMoreModesReverse_optimized) {
                 true)
                 .status,
             4);
-  // pull-in says by how much more modes move its voltages, and to what where that is above 1 %.
+  // pull-in prints the shift of its voltages by more modes, and the limit of a shift above 1 %.
   const Outcome voltages = run("pull-in", {"bridge.toml", "--quiet"}, true);
   EXPECT_EQ(voltages.status, 0);
   EXPECT_NEAR(parsed(voltages)["pull_in"]["by_modes"]["pulled_through_V"]["4"].get<double>(), 66.09, 0.01);
@@ -117,7 +118,7 @@ TEST(Success, IsNotAVerdictThatMoreModesReverse_optimized) {
   EXPECT_THAT(run("pull-in", {"bridge.toml", "--quiet"}, false).out,
               AllOf(HasSubstr("(fold of the static branch); more modes move it by −0.0085 %\n"),
                     HasSubstr("goes on to the electrode; more modes move it by −5.3 %, to 62.58 V")));
-  // A plate has no more modes.
+  // A plate has one mode only.
   write(here.path() / "plate.toml", edited(between_two, "side = \"both\"\ngap = \"3 um\"\n", ""));
   const Outcome plate =
       run("simulate", {"plate.toml", "--quiet", "--set", "waveform.main.level=16 V", "--set", "gap.contact=2 um"}, true);
@@ -158,13 +159,13 @@ TEST(NoStableRest, IsNotCalledOverdamped_optimized) {
   for (const char* verb : {"check", "pull-in"}) {
     const Outcome o = here.run({verb, "two.toml", "--quiet"});
     EXPECT_THAT(o.out, AllOf(HasSubstr("no step moves it, from there on its rest is unstable"), Not(HasSubstr("overdamped"))));
-    // A film as thick as honey holds a step back that would overshoot.
+    // In a very viscous film the step does not overshoot.
     const Outcome thick = here.run({verb, "gold.toml", "--quiet", "--set", "gas.viscosity=1 Pa s"});
     EXPECT_THAT(thick.out, HasSubstr("overdamped: equals the static one")) << thick.err;
   }
 }
 
-// Numbers that are none, wherever a scene or a file of it may hold one, in every verb that takes a scene.
+// Numbers that are not finite, at every place of a scene or its files, in every verb that takes a scene.
 TEST(NotFinite, IsRefusedByEveryVerbWithItsKey) {
   const Workplace here;
   const std::string gold = shipped("mem-gold.toml");
@@ -200,7 +201,7 @@ TEST(NotFinite, IsRefusedByEveryVerbWithItsKey) {
     EXPECT_EQ(here.run({"limit", "gold.toml", "--impact-velocity", speed}).status, 2) << speed;
 }
 
-// A search cannot tell one waveform from another if too many of the devices cannot be built.
+// If too many devices cannot be built, a search cannot compare waveforms.
 TEST(Success, OfARobustSearchIsNotThatOfDevicesThatAllFail_optimized) {
   const Workplace here;
   const std::string text = shipped("mem-gold.toml");
@@ -268,7 +269,7 @@ TEST(SetElement, OfAListIsThatOfTheWholeList_optimized) {
   EXPECT_EQ(modes("electrode.main.span[2]=2 V").err.substr(0, 47), "softland: --set electrode.main.span[2]=2 V: val");
 }
 
-// Files do not grow with the run: a beam in vacuum that swings, and bounces, for a thousand periods.
+// Files do not grow with the length of a run: a beam in vacuum bounces and vibrates for a thousand periods.
 TEST(LongRuns, LeaveFilesThatCanBeReadAgain_optimized) {
   const Workplace here;
   const std::string gold = shipped("mem-gold.toml");
@@ -285,7 +286,7 @@ TEST(LongRuns, LeaveFilesThatCanBeReadAgain_optimized) {
   EXPECT_LE(rows, 20'001);
   EXPECT_LT(bytes, std::uintmax_t{8} << 20U);
   EXPECT_EQ(here.run({"report", "out"}).status, 0);
-  // Every figure is that of all knots.
+  // The figures use all knots of the run.
   const json metrics = json::parse(read(here.path() / "out/result.json"), nullptr, false)["metrics"];
   const std::string csv = read(here.path() / "out/trajectory.csv");
   double highest = 0;
@@ -393,7 +394,7 @@ TEST(Check, AcceptsExactlyWhatSimulateRuns_optimized) {
   EXPECT_LT(refused, 22);
 }
 
-// A relay that is closed at 90 V, beyond its pull-in voltage, and switched off (circuitjs1, PR 289).
+// A relay that is closed at 90 V, above its pull-in voltage, and switched off (circuitjs1, PR 289).
 const std::string relay = R"(structure = { kind = "plate", mass = "1 ug", stiffness = "100 N/m", area = "0.04 mm^2" }
 gap = { electrode = "4 um", contact = "3 um" }
 electrode.main.fringing = "none"
@@ -428,7 +429,7 @@ TEST(ClosedStart, IsNamedWhereTheOpenOneDoesNotExistAndTakenWhereItIsAskedFor) {
   for (const char* none : {"initial_contact_time_s", "impact_velocity_m_s", "bounce_time_s", "peak_contact_force_N"})
     EXPECT_TRUE(j["metrics"][none].is_null()) << none;
   EXPECT_THAT(here.run({"report", "run"}).out, HasSubstr("begins closed, opens, and is at rest from"));
-  // The trajectory begins on the contact, and ends open.
+  // The trajectory begins on the contact and ends open.
   std::istringstream rows(read(here.path() / "run/trajectory.csv"));
   std::string line, first, last;
   std::getline(rows, line);
@@ -499,7 +500,7 @@ TEST(SummitsAtHold, AreToldByEveryReportThatTellsAContactForce_optimized) {
     }
     std::string text;
     for (const char one : o.out) text += one == '\n' ? ' ' : one;
-    // The text of a search has no room for it, and that of a limit tells no force.
+    // The texts of a search and of a limit do not contain the force.
     if (words[0] != "optimize" && words[0] != "limit") {
       EXPECT_THAT(text, HasSubstr(few)) << words[0];
     }
@@ -526,7 +527,7 @@ TEST(PiezoLayer, ThatIsNotCountedIsToldBesideTheDriveEnergy_optimized) {
   told.insert(told.end(), counted.begin(), counted.end());
   EXPECT_THAT(here.run(words).out, HasSubstr(sentence));
   EXPECT_THAT(here.run(told).out, Not(HasSubstr(sentence)));
-  // C V^2/2 of a layer of 235 x 20 um, 1 um thick.
+  // C V^2/2 of a layer of 235 x 20 um that is 1 um thick.
   const double charging = 8.8541878128e-12 * 1500 * 235e-6 * 20e-6 / 1e-6 * 0.9 * 0.9 / 2;
   EXPECT_NEAR(energy(counted) - energy({}), charging, 1e-6 * charging);
 }

@@ -1,4 +1,4 @@
-// The verbs of a laboratory as people use them: a device to practise on, and what tunes a waveform on one.
+// Tests the verbs of a laboratory as users do: a practice device, and the tuning of a waveform.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -125,7 +125,7 @@ TEST_F(DeviceVerb, NamesTheOptionThatItCannotTake) {
   }
 }
 
-// A device that is quick to tune on: a plate on a spring, of one degree of freedom.
+// A device that is tuned quickly: a plate on a spring with one degree of freedom.
 constexpr const char* plate = R"(
 [structure]
 kind = "plate"
@@ -193,7 +193,7 @@ TEST_F(TuneVerb, LandsADeviceAndLeavesWhatItKnows_optimized) {
   EXPECT_THAT(exported.err, HasSubstr("this waveform was tuned on one device"));
 }
 
-// A tuning goes on after a power cut, to the bits of a run that nothing interrupts.
+// A tuning continues after a kill, and ends bit for bit like an uninterrupted one.
 TEST_F(TuneVerb, GoesOnAfterAKillToTheSameBits_optimized) {
   ASSERT_EQ(here.run(words(device(), {"--closings", "4"})).status % 4, 0);
   const std::string whole = read(here.path() / "out/closings.jsonl");
@@ -212,7 +212,7 @@ TEST_F(TuneVerb, GoesOnAfterAKillToTheSameBits_optimized) {
   const Outcome other = here.run(words(device(), {"--resume", "--seed", "2"}));
   EXPECT_EQ(other.status, 2);
   EXPECT_THAT(other.err, HasSubstr("out/closings.jsonl:1: its closings are of another seed: 1 instead of 2"));
-  // It begins from the recipes of the log.
+  // It starts from the recipes in the log.
   json recipes = lines_of(whole)[1];
   ASSERT_TRUE(recipes.contains("recipes"));
   const auto resumed_with = [&](const std::string& line) {
@@ -241,7 +241,7 @@ TEST_F(TuneVerb, BeginsWithWhatAnotherDeviceOfTheWaferTold_optimized) {
   EXPECT_NE(next["closings"][0]["waveforms"], first["closings"][0]["waveforms"]);
   EXPECT_LT(next["closings"][0]["expected_cost"], first["closings"][0]["expected_cost"]);
   EXPECT_NE(next["belief"]["coordinates"]["prior"], first["belief"]["coordinates"]["prior"]);
-  // The same wafer, or the records are of something else.
+  // With --resume the wafer must be the same one.
   EXPECT_EQ(here.run(words(device(), {"--closings", "1", "--quiet", "--resume", "--wafer", "first"})).status % 4, 0);
   const Outcome without = here.run(words(device(), {"--closings", "1", "--quiet", "--resume"}));
   EXPECT_EQ(without.status, 2);
@@ -285,7 +285,7 @@ TEST_F(TuneVerb, EndsItsDeviceWhenItIsInterrupted_optimized) {
   EXPECT_EQ(tune_json()["status"], "interrupted");
 }
 
-// Nonsense is asked for again, in words.
+// Invalid answers are refused with a message, and asked for again.
 TEST_F(TuneVerb, AsksAPersonWhatTheOscilloscopeShowed_optimized) {
   write(here.path() / "edges.csv", "time_s,closed\n2e-05,1\n2.2e-05,0\n2.4e-05,1\n");
   write(here.path() / "stdin.txt",
@@ -306,7 +306,7 @@ TEST_F(TuneVerb, AsksAPersonWhatTheOscilloscopeShowed_optimized) {
   EXPECT_EQ(j["closings"][3]["record"]["edges_s"].size(), 0U);
   EXPECT_TRUE(fs::exists(here.path() / "out/shot-4.csv"));
   write(here.path() / "out/shot-of-mine.csv", "");
-  // The same voltages as a device would be told, as a waveform that softland reads.
+  // The voltages that a device would receive, as a waveform for softland.
   write(here.path() / "shot.toml",
         edited(plate, "family = \"step\"\nlevel = \"1.3 Vdp\"", "family = \"table\"\nfile = \"out/shot-1.csv\""));
   EXPECT_EQ(here.run({"check", "shot.toml", "--quiet"}).status, 0);
@@ -314,7 +314,7 @@ TEST_F(TuneVerb, AsksAPersonWhatTheOscilloscopeShowed_optimized) {
     return std::stod(read(here.path() / "out/shot-1.csv").substr(read(here.path() / "out/shot-1.csv").rfind(',') + 1));
   };
   const double held_at_switch = held();
-  // Another tuning in the folder leaves its own shots there, for a generator before its amplifier.
+  // Another tuning in the folder writes its own shots there, for a generator with an amplifier.
   write(here.path() / "stdin.txt", "21.5 us\n2\nstop\n");
   const Outcome amplified = here.run({"tune", "plate.toml", "--by-hand", "--effort", "0.2", "--jobs", "1", "--out", "out",
                                       "--quiet", "--set", "driver.main.amplifier=20"});
@@ -326,7 +326,7 @@ TEST_F(TuneVerb, AsksAPersonWhatTheOscilloscopeShowed_optimized) {
   EXPECT_TRUE(fs::exists(here.path() / "out/shot-of-mine.csv"));
 }
 
-// The formats that export knows, each loaded by a generator before an amplifier of 20, and read back.
+// Each format of export for a generator with an amplifier of gain 20, read back.
 TEST_F(TuneVerb, WritesItsShotsInEveryFormatOfExport_optimized) {
   const std::vector<std::string> sources{"--sample-rate", "25 MHz", "--bits", "14", "--amplifier", "20"};
   const auto shot_in = [&](const std::string& format, const std::vector<std::string>& more) {
@@ -363,7 +363,7 @@ TEST_F(TuneVerb, WritesItsShotsInEveryFormatOfExport_optimized) {
     const double held = tune_json()["next"]["waveforms"]["main"].back()[1].get<double>();
     const json limits =
         json::parse(here.run({"check", "out/best.toml", "--json", "-", "--quiet"}).out)["scene"]["driver"]["main"];
-    constexpr double highest_code = 16383, of_samples = 2e-4;  // code of 14 bit; error as a share of the range
+    constexpr double highest_code = 16383, of_samples = 2e-4;  // highest code of 14 bits; error over the range
     const double highest = std::stod(limits["max_voltage"].get<std::string>());
     const double last = channel["last"].get<double>() * (format == "codes" ? highest / highest_code : 20);
     EXPECT_NEAR(last, held, of_samples * highest) << format;
@@ -372,7 +372,7 @@ TEST_F(TuneVerb, WritesItsShotsInEveryFormatOfExport_optimized) {
     }
   }
   EXPECT_EQ(written, 8);
-  // The scene says the same of its source, and nothing of it.
+  // Settings of the source in the scene give the same file. Without any settings the shot is refused.
   ASSERT_EQ(shot_in("rigol-csv", sources).status, 4);
   const std::string by_options = read(here.path() / "out/shot-1-main.csv");
   ASSERT_EQ(shot_in("rigol-csv", {"--set", "driver.main.sample_rate=25 MHz", "--set", "driver.main.bits=14", "--set",
@@ -385,8 +385,8 @@ TEST_F(TuneVerb, WritesItsShotsInEveryFormatOfExport_optimized) {
   EXPECT_THAT(shot_in("rigol", sources).err, HasSubstr("--format rigol: must be one of csv"));
 }
 
-// A waveform that landed once and bounces when it is fired again is no success; one that lands then is. Touches are answered as
-// expected, so that one that landed stays the best known.
+// A waveform that landed once and bounces when it is fired again is no success; one that lands again is. The touch times are
+// those that the tuner expects, so that a waveform that landed remains the best known.
 TEST_F(TuneVerb, FiresTheWaveformKeptOnceMoreBeforeItEnds_optimized) {
   constexpr int most = 6;
   const auto answered = [&](int shot, const json& touch, int bounces, const std::vector<std::string>& more) {
@@ -422,7 +422,7 @@ TEST_F(TuneVerb, FiresTheWaveformKeptOnceMoreBeforeItEnds_optimized) {
   FAIL() << "no waveform that landed is kept";
 }
 
-// The voltage of the contact, as an oscilloscope has saved it.
+// The voltage at the contact, in the file of an oscilloscope.
 TEST_F(TuneVerb, TakesTheFileOfAnOscilloscope_optimized) {
   write(here.path() / "scope.csv", "time (us),CH1 (V)\n0,3.3\n20,3.3\n22,0.1\n24,0.1\n26,3.3\n28,0.1\n30,0.1\n");
   write(here.path() / "stdin.txt", "file none.csv\nfile scope.csv\nstop\n");
@@ -457,7 +457,7 @@ TEST_F(TuneVerb, TakesTheCaptureOfALogicAnalyser_optimized) {
   EXPECT_EQ(tune_json()["closings"][0]["record"]["edges_s"], json::parse("[[21e-6, 1], [25e-6, 0], [27e-6, 1]]"));
 }
 
-// A switch of nanoseconds: the errors of its instruments follow it.
+// A switch that closes within nanoseconds: the assumed errors of the instruments scale with it.
 TEST_F(TuneVerb, TakesASwitchThatIsQuickerThanAnOscilloscope_slow) {
   fs::copy_file(fs::path(SOFTLAND_SOURCE_DIR) / "scenes/nem-tin.toml", here.path() / "nem.toml");
   const Outcome o = here.run({"tune", "nem.toml", "--device", std::string(SOFTLAND_PROGRAM) + " device nem.toml --seed 3",
@@ -474,8 +474,7 @@ TEST_F(TuneVerb, NamesTheOptionThatItCannotTake) {
       {{"--device", "x", "--timeout", "0 s"}, "--timeout 0 s: must be above 0 s"},
       {{"--device", "x", "--timeout", "3"}, "--timeout 3: must be a time [s]"},
       {{"--device", "x", "--constrain", "initial_contact_time < 33"}, "--constrain: "},
-      {{"--device", "x", "--constrain", "impact_velocity < 1 mm/s"},
-       "a condition must limit initial_contact_time from above"},
+      {{"--device", "x", "--constrain", "impact_velocity < 1 mm/s"}, "a condition must limit initial_contact_time from above"},
       {{"--device", "x", "--trigger-delay", "1 V"}, "--trigger-delay 1 V: must be a time [s]"},
       {{"--device", "x", "--format", "csv"},
        "--format, --sample-rate, --bits and --amplifier are of the files that --by-hand writes"},

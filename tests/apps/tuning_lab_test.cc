@@ -1,4 +1,4 @@
-// Tests the commands that fire the shots of a tuning, and the keeper of their records: commands that answer, err, die and hang.
+// Tests the commands that fire the shots of a tuning, and the log of their records: commands that answer, fail, die and hang.
 #include "apps/tuning_lab.h"
 
 #include <gmock/gmock.h>
@@ -26,7 +26,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-// SIGPIPE is ignored as in a program of ours: writing to a closed pipe is an error of that write.
+// SIGPIPE is ignored, as in our programs: writing to a closed pipe then returns an error.
 class TuningLabs : public testing::Test {
  protected:
   static void SetUpTestSuite() { std::signal(SIGPIPE, SIG_IGN); }
@@ -135,7 +135,7 @@ TEST_F(TuningLabs, SayHowACommandEndedThatGaveNoAnswer) {
   EXPECT_THAT(refusal("sleep 100", 100ms), HasSubstr("did not answer shot 1 in 100\u00a0ms; --timeout says how long to wait"));
 }
 
-// Whole groups end: a pipeline has several processes, and one may not want to.
+// The whole process group is ended: a pipeline has several processes, and one may ignore the signal.
 TEST_F(TuningLabs, LeaveNoProcessBehind) {
   const std::string file = (here.path() / "pid").string();
   const auto begin = std::chrono::steady_clock::now();
@@ -201,7 +201,7 @@ TEST_F(TuningLogs, GoOnWithWhatTheyHold) {
   EXPECT_EQ(TuningLog(file(), {{"seed", 1}}, true).closings().size(), 3U);
 }
 
-// A power cut leaves any part of the line that was being written.
+// A power cut may leave any part of the line that was being written.
 TEST_F(TuningLogs, LoseTheClosingThatWasBeingWrittenAndNoOther) {
   {
     TuningLog first(file(), {{"seed", 1}}, false);

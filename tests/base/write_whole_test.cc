@@ -98,7 +98,7 @@ TEST(WriteWhole, KeepsTheOldFileWhenThereIsNoRoomForTheNewOne) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "kept";
   write_whole(file, "old");
-  // A limit on file size stands for a full disk: write gives fewer bytes, then an error.
+  // A limit on the file size simulates a full disk: write() writes fewer bytes, then fails.
   struct rlimit usual {};
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &usual), 0);
   struct rlimit tight = usual;

@@ -18,7 +18,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// f(i, j) at the cells of a map.
+/// Returns f(i, j) at the cells of a map.
 std::vector<double> tabulated(std::size_t columns, std::size_t rows, const std::function<double(double, double)>& f) {
   std::vector<double> values;
   for (std::size_t j = 0; j < rows; ++j) {
@@ -52,7 +52,7 @@ TEST(ContourLines, OfAPlaneAreOneStraightLine) {
   const auto lines = contour_lines(tabulated(9, 6, [](double i, double j) { return 2 * i + j; }), 9, 8.5);
   ASSERT_EQ(lines.size(), 1u);
   for (const auto& [i, j] : lines[0]) EXPECT_NEAR(2 * i + j, 8.5, 1e-12);
-  // The line goes from the lower edge of the map to the upper one.
+  // The line runs from the lower edge of the map to the upper one.
   EXPECT_NEAR(length_of(lines[0]), std::hypot(2.5, 5), 1e-12);
 }
 
@@ -61,13 +61,14 @@ TEST(ContourLines, OfAConeAreACircleThatEndsWhereItBegins) {
   const auto lines = contour_lines(tabulated(41, 41, cone), 41, 12.25);
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_EQ(lines[0].front(), lines[0].back());
-  // Chords of a circle, and a value that is linear between cells: both are of second order in the size of a cell over the radius.
+  // Chords of a circle and linear interpolation between cells: both errors are of second order in the cell size over the
+  // radius.
   EXPECT_NEAR(length_of(lines[0]), 2 * M_PI * 12.25, 0.005 * 2 * M_PI * 12.25);
   for (const auto& [i, j] : lines[0]) EXPECT_NEAR(cone(i, j), 12.25, 0.02);
 }
 
 TEST(ContourLines, PartTheCornersOfASaddle) {
-  // The middle is above the level: the two high corners belong together, each low one is cut off.
+  // The middle is above the level, so that the two high corners are connected, and each low corner is cut off.
   const auto lines = contour_lines({1, 0, 0, 1}, 2, 0.4);
   ASSERT_EQ(lines.size(), 2u);
   for (const ContourLine& line : lines) {
@@ -98,7 +99,7 @@ TEST(HeatMap, TellsASmoothFigureFromOneThatJumps) {
   EXPECT_FALSE(is_ragged(smooth, 30));
   std::uint64_t draw = 0;
   EXPECT_TRUE(is_ragged(tabulated(30, 30, [&](double, double) { return random_uniform(1, Stream::scene, draw++); }), 30));
-  // A figure that is zero in one half of the map and one in the other has one line.
+  // A figure that is zero in one half of the map and one in the other half has one line.
   EXPECT_FALSE(is_ragged(tabulated(30, 30, [](double i, double) { return i < 15 ? 0.0 : 1.0; }), 30));
   EXPECT_FALSE(is_ragged({}, 0));
 }
@@ -111,7 +112,7 @@ TEST(HeatMap, DoesNotSpendItsColoursOnAFewOutliers) {
   EXPECT_EQ(colour_range(values).high, 19);
   EXPECT_TRUE(colour_range(values).cut_above);
   EXPECT_FALSE(colour_range(values).cut_below);
-  // One value, and none.
+  // A single value, and no value.
   EXPECT_LT(colour_range({3, 3}).low, 3);
   EXPECT_GT(colour_range({0, 0}).high, 0);
   EXPECT_EQ(colour_range({kNaN}).low, 0);
@@ -152,7 +153,7 @@ TEST(ScaleColour, GoesFromDarkBlueToYellow) {
   EXPECT_EQ(scale_colour(7), scale_colour(1));
 }
 
-// Ends of columns that no physics gives, but a damaged or strange store does.
+// Ends of columns that only a damaged or strange store has.
 const std::vector<std::array<double, 2>> strange_ends{{1.8e-6, std::nextafter(1.8e-6, 1)},
                                                       {-std::nextafter(30.0, 31), -30},
                                                       {7, 7},
@@ -232,7 +233,7 @@ TEST(HeatMaps, OfAnyNumbersAreDrawn) {
     EXPECT_THAT(drawn, Not(HasSubstr("\"nan"))) << low << " " << high;
     EXPECT_THAT(drawn, Not(HasSubstr("inf"))) << low << " " << high;
     if (!(low < high) || !std::isfinite(low) || !std::isfinite(high)) continue;
-    map.x.values = {low, std::midpoint(low, high), high};  // axes are of finite numbers
+    map.x.values = {low, std::midpoint(low, high), high};  // axes have finite numbers
     map.y.values = {low, high};
     map.values.resize(6);
     map.missing.resize(6);

@@ -68,12 +68,12 @@ TEST(Quantity, IsRoundedToItsError) {
   EXPECT_EQ(error_of(54, kNaN, "", 4), "—");
 }
 
-/// A printed quantity read back.
+/// A printed quantity, parsed.
 struct Printed {
   double value = 0;
-  double last_place = 0;  ///< value of one more in the last digit; zeros before the unit are taken for no digits
-  int digits = 0;         ///< digits from the first that is not 0
-  bool bound = false;     ///< "< 1 pm"
+  double last_place = 0;  ///< value of one unit in the last digit; zeros before the unit do not count as digits
+  int digits = 0;         ///< number of digits from the first nonzero one
+  bool bound = false;     ///< true for "< 1 pm"
 };
 
 std::optional<Printed> read_back(std::string text, const std::string& unit) {
@@ -124,7 +124,7 @@ TEST(Quantity, OfAFastSlewIsInVoltsPerMicrosecond) {
 TEST(Quantity, NeverSaysMoreThanIsKnownNorLessThanIsAskedFor) {
   std::mt19937_64 generator(1);
   const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(generator); };
-  constexpr double slack = 1 + 1e-9;  // factor for the rounding of numbers read back
+  constexpr double slack = 1 + 1e-9;  // factor for the rounding of parsed numbers
   constexpr int runs = 20000;
   for (int run = 0; run < runs; ++run) {
     const std::vector<std::string> units{"m", "s", "m/s", "N", "J", "V", "V/s", "Hz", "N s/m^2"};
@@ -142,13 +142,14 @@ TEST(Quantity, NeverSaysMoreThanIsKnownNorLessThanIsAskedFor) {
       EXPECT_GT(value, 0) << text;
       continue;
     }
-    // No digit below the resolution, below the error's second digit, or beyond those asked for; "300" counts as three digits.
+    // No digit is below the resolution, below the second digit of the error, or beyond the requested digits; "300" has three
+    // digits.
     EXPECT_GE(p->last_place * slack, least) << text << " of " << value;
     if (known && p->value != 0) {
       EXPECT_LE(error, 20 * slack * p->last_place) << text << " known to " << error;
     }
     EXPECT_LE(p->digits, std::max(digits, 3)) << text << " of " << value;
-    // Off by half of the digit shown at most, by half of the last of the digits asked for, or by the error.
+    // The error of the text is at most half of its last digit, half of the last requested digit, or the error of the value.
     const double asked = std::pow(10, std::floor(std::log10(std::abs(value))) - digits + 1);
     const double allowed = std::max({asked, least, known ? error : 0.0});
     EXPECT_LE(std::abs(p->value - value), 0.5 * slack * allowed + 1e-12 * std::abs(value))
@@ -166,7 +167,7 @@ TEST(ErrorOf, HasTwoDigitsAndIsABoundWhereTheValueHidesIt) {
     const auto v = read_back(shown, "m"), e = read_back(text, "m");
     ASSERT_TRUE(v && e) << shown << " ± " << text;
     if (v->bound) continue;
-    EXPECT_LE(e->digits, 3) << shown << " ± " << text;  // two, and the 0 of "110 µm"
+    EXPECT_LE(e->digits, 3) << shown << " ± " << text;  // two digits, and the 0 of "110 µm"
     if (e->bound) {
       EXPECT_LT(error, e->value) << shown << " ± " << text;
     } else {
@@ -217,7 +218,7 @@ TEST(Quantity, IsReadAgainByAScene) {
       for (const double digits : {1.0, -2.5, 9.87654}) {
         const double value = digits * std::pow(10, exponent);
         for (const std::string& text : {quantity(value, unit), given_quantity(value, unit)}) {
-          if (text.starts_with("<")) continue;  // no number, but a bound
+          if (text.starts_with("<")) continue;  // a bound instead of a number
           Quantity read;
           ASSERT_NO_THROW(read = parse_quantity(text)) << text;
           const double shown = std::abs(value) < resolution(unit) ? 0 : value;

@@ -1,4 +1,4 @@
-// Tests the report of an accuracy study, made here of round numbers.
+// Tests the report of an accuracy study on synthetic numbers.
 #include "reports/accuracy_report.h"
 
 #include <gmock/gmock.h>
@@ -25,7 +25,7 @@ AccuracyRow row(Integrator integrator, double tolerance, double points, double e
   return r;
 }
 
-// Peak force is missing, B_H ill-conditioned.
+// The peak force is missing, and B_H is ill-conditioned.
 AccuracyStudy sample() {
   AccuracyStudy s;
   s.status = Status::done;

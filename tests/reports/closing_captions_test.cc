@@ -15,7 +15,7 @@ using softland::test::sample_simulate_result;
 
 constexpr std::size_t few_rows = 601;
 
-/// No-break spaces as plain ones, so that a test reads like the page.
+/// Replaces no-break spaces by plain ones, so that expected texts are readable.
 std::string plain(std::string words) {
   constexpr std::string_view no_break = "\u00a0";
   for (std::size_t at = 0; (at = words.find(no_break, at)) != std::string::npos;) words.replace(at, no_break.size(), " ");
@@ -192,7 +192,7 @@ TEST(Captions, OfASearchNameTheWinner) {
             "(4.0 times lower); the winner is "
             "number 120 of them.");
   result["search"]["best_so_far"] = {{1, 2.0}, {40, 1.0}, {120, 0.5}};
-  result["best"]["cost"] = 1.0;  // the lowest missed the goal
+  result["best"]["cost"] = 1.0;  // the run with the lowest cost misses the goal
   result["baseline"]["cost"] = 0.97;
   EXPECT_EQ(search_caption(read_closing(result), *read_closing(result).search),
             "Cost of every waveform tried (dots) and of the best so far (line); the plain step's is 0.97. In 300 evaluations "

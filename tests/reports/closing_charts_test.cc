@@ -40,7 +40,7 @@ TEST(Charts, FollowTheParts) {
             (std::vector<std::string>{"gap", "landing", "drive-0", "drive-1", "velocity", "force", "search"}));
   result.erase("search");
   result["curves"]["best"].erase("contact_force_N");
-  result["curves"]["baseline"]["contact_force_N"] = {1, 2, 3};  // a course of another length than its times
+  result["curves"]["baseline"]["contact_force_N"] = {1, 2, 3};  // not as many values as times
   EXPECT_EQ(ids(picture(read_closing(result))), (std::vector<std::string>{"gap", "landing", "drive-0", "drive-1", "velocity"}));
   EXPECT_TRUE(picture(read_closing(json::object())).charts.empty());
 }
@@ -67,7 +67,7 @@ TEST(Charts, ShowNanometresAroundThePlane) {
   EXPECT_LT(band()[0], deepest);
   EXPECT_GT(band()[0], 2 * deepest);
   EXPECT_GT(band()[1], -band()[0]);
-  EXPECT_LT(band()[1], 200e-9);  // not the plain step's 803 nm
+  EXPECT_LT(band()[1], 200e-9);  // the height of the result, not 803 nm of the plain step
   result["best"]["metrics"]["major_bounce_height_m"] = 300e-9;
   EXPECT_GT(band()[1], 300e-9);
   EXPECT_LT(band()[1], 400e-9);
@@ -161,7 +161,7 @@ TEST(Charts, SurvivePackingToOnePartInTenMillion) {
   const std::vector<double>& gap = drawn.tables.at("best").at("tip_gap_m");
   const std::vector<double> back = unpacked(packed.at("tables").at("best").at("tip_gap_m"));
   ASSERT_EQ(back.size(), gap.size());
-  constexpr double resolution = 1e-7 * 2e-6;  // share of the largest gap; integer steps do not accumulate error
+  constexpr double resolution = 1e-7 * 2e-6;  // over the largest gap; integer steps do not accumulate errors
   for (std::size_t row = 0; row < gap.size(); ++row) ASSERT_LE(std::abs(back[row] - gap[row]), resolution) << row;
 }
 
@@ -207,7 +207,7 @@ TEST(ChartSvg, SpacesDecadesEvenlyOnALogarithmicAxis) {
   for (auto found = svg.find("cx=\""); found != std::string::npos; found = svg.find("cx=\"", found + 1))
     at.push_back(std::stod(svg.substr(found + 4)));
   ASSERT_EQ(at.size(), 2U);
-  // Half of the 404 px between the margins of 78 and 18 px is one decade; positions have one decimal.
+  // A decade is half of the 404 px between the margins of 78 and 18 px; positions have one decimal.
   EXPECT_NEAR(at[1] - at[0], 202, 0.11);
   for (const char* tick : {">1<", ">10<", ">100<"}) EXPECT_NE(svg.find(tick), std::string::npos) << tick;
   chart.x_home = {0.9, 6};

@@ -29,7 +29,7 @@ std::size_t occurrences(const std::string& text, std::string_view what) {
   return count;
 }
 
-/// The resources that a browser would load: values of src and href, url(...) and @import, except fragments of the page itself.
+/// Returns the resources that a browser would load: values of src and href, url(...) and @import, except fragments of the page.
 std::vector<std::string> loads(const std::string& page) {
   static const std::regex pattern(R"re((?:\b(?:src|href|srcset)\s*=\s*["']?|url\(\s*["']?|@import\s+["']?)([^"'\s)>]+))re");
   std::vector<std::string> out;
@@ -51,7 +51,7 @@ TEST(HtmlReport, ForbidsTheBrowserToLoadAnything) {
 
 TEST(HtmlReport, StaysBelowAMegabyteForTwentyThousandRowsPerCurveAndALongScene) {
   json result = test::sample_optimize_result(20000);
-  // Noise on every column, so that no row looks dispensable.
+  // Noise on every column, so that no row can be left out.
   for (const char* run : {"best", "baseline"}) {
     for (const char* column : {"tip_gap_m", "tip_velocity_m_s", "contact_force_N"}) {
       std::uint64_t state = 5;
@@ -159,7 +159,7 @@ TEST(HtmlReport, DrawsTheSwitchAndWhatEveryDriveDemands) {
   EXPECT_THAT(page_html(closing_document(read_closing(result))), HasSubstr("± certified"));
 }
 
-// The width of letters is one that no sans serif exceeds on the average.
+// The assumed width of letters is above the average of any sans serif font.
 TEST(Sketch, HoldsAllOfItsWords) {
   constexpr double letter = 7.5;  // width of a letter at 12.5 px
   for (const char* structure : {"cantilever", "clamped-clamped", "plate"}) {

@@ -1,4 +1,4 @@
-// A result is reported alike whether it comes from a study or from the JSON that was written of it.
+// The report of a result is the same from a study and from the JSON of the study.
 #include "reports/closing_record.h"
 
 #include <gmock/gmock.h>

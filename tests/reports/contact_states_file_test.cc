@@ -28,8 +28,8 @@ using test::TemporaryFolder;
 
 constexpr double for_ever = std::numeric_limits<double>::infinity();
 
-// A connection that bounces twice, once for less than a picosecond less than a nanosecond, one of its contacts that begins
-// closed, and a contact of a device that never closes.
+// A connection with two bounces, one of them shorter than a nanosecond by less than a picosecond, a contact that begins closed,
+// and a contact of a device that never closes.
 StateRecord closed_twice() {
   const StateChannel connection{.has_resistance = true,
                                 .spans = {{1.2345678912e-6, 1.5e-6, {{1.2345678912e-6, 40}, {1.3e-6, 2}, {1.5e-6, 9}}},
@@ -77,7 +77,7 @@ void expect_edges(const std::vector<LevelEdge>& found, const StateChannel& one, 
   }
 }
 
-constexpr double half_a_picosecond = 0.5001e-12, written = 1e-21;  // [s]
+constexpr double half_a_picosecond = 0.5001e-12, written = 1e-21;  // half of the resolution; error of written numbers [s]
 
 TEST(ContactStatesFile, IsReadBackToTheSameEdges) {
   for (const StateRecord& record : {closed_twice(), devices()}) {
@@ -92,7 +92,7 @@ TEST(ContactStatesFile, IsReadBackToTheSameEdges) {
   }
 }
 
-// The value on straight lines just after a time.
+// Returns the value just after a time, with linear interpolation.
 double value_at(const Trace& trace, double time) {
   const auto to = static_cast<std::size_t>(std::ranges::upper_bound(trace.times, time) - trace.times.begin());
   if (to == trace.times.size()) return trace.values.back();
@@ -109,7 +109,7 @@ TEST(ContactStatesFile, HasTheResistanceWhileTheContactIsClosed) {
   const Trace table = trace(contact_states_csv(record), "x.csv", "resistance");
   const Trace dump = trace(contact_states_vcd(record), "x.vcd", "resistance_ohm");
   const Trace source = trace(contact_states_pwl(record), "x.cir", "softland_resistance_ohm.Vdrive");
-  constexpr double step = 0.051, digits = 1e-5;  // relative
+  constexpr double step = 0.051, digits = 1e-5;  // allowed relative error of interpolation; of written numbers
   for (const auto& [time, right] : {std::pair{1.25e-6, 40 - 38 * (1.25e-6 - 1.2345678912e-6) / (1.3e-6 - 1.2345678912e-6)},
                                     {1.4e-6, 5.5},
                                     {2e-6, 9.0},
@@ -126,7 +126,7 @@ TEST(ContactStatesFile, HasTheResistanceWhileTheContactIsClosed) {
   EXPECT_EQ(parse_recording(contact_states_csv(record), "x.csv").channels[1].missing.line, 2u) << "no number while it is open";
 }
 
-// A bounce of less than a picosecond is none in a dump, and edges do not overlap in a source.
+// A dump leaves out bounces of less than a picosecond, and edges of a source do not overlap.
 TEST(ContactStatesFile, KeepsShortStatesApart) {
   StateRecord record{.end = 2e-6, .channels = {{.spans = {{1e-6, 1e-6 + 0.2e-12}, {1e-6 + 0.3e-12, 1.5e-6}}}}};
   const StateChannel joined{.spans = {{1e-6, 1.5e-6}}};
@@ -137,7 +137,7 @@ TEST(ContactStatesFile, KeepsShortStatesApart) {
 
 TEST(ContactStatesFile, HasShortIdentifiersOfManyChannels) {
   StateRecord record{.end = 1e-3, .channels = {}};
-  constexpr std::size_t many = 9100;  // identifiers of one, two and three characters
+  constexpr std::size_t many = 9100;  // number of channels, whose identifiers have one, two and three characters
   for (std::size_t k = 0; k < many; ++k) record.channels.push_back({.device = k, .spans = {{1e-9 * static_cast<double>(k + 1)}}});
   const std::string dump = contact_states_vcd(record);
   for (const std::size_t k : {std::size_t{0}, std::size_t{93}, std::size_t{94}, std::size_t{8929}, std::size_t{8930}, many - 1})
@@ -167,7 +167,7 @@ TEST(ContactStatesFile, IsReadByGtkWave_optimized) {
   }
 }
 
-// Few rows of a long file are drawn, and a step of one variable among many changes of another is upright.
+// Only few rows of a long file are drawn. A step of one variable among many changes of another is vertical.
 TEST(ContactStatesFile, IsDrawnAsSteps) {
   StateRecord record{.end = 1e-3, .channels = {{.spans = {}}, {.contact = "left", .spans = {{0.123456e-3}}}}};
   for (int k = 1; k < 20'000; ++k) record.channels[0].spans.push_back({2e-8 * k, 2e-8 * k + 1e-8});
@@ -177,7 +177,7 @@ TEST(ContactStatesFile, IsDrawnAsSteps) {
   EXPECT_LE(std::ranges::count(line, ' '), 9) << line;
 }
 
-// A switch that the state drives and a resistor with the resistance, each below 1 kOhm at 1 V.
+// A switch that is driven by the state, and a resistor with the contact resistance, in a circuit at 1 V.
 TEST(ContactStatesFile, DrivesASwitchAndAResistorInNgspice_optimized) {
   if (std::system("command -v ngspice >/dev/null 2>&1") != 0) GTEST_SKIP() << "skipped: no circuit simulator; needs: ngspice";
   const StateRecord record = closed_twice();
@@ -216,7 +216,7 @@ quit 0
     }
   }
   EXPECT_GT(state.times.size(), 1000u);
-  constexpr double corner = 5e-12;  // [s]: ngspice takes corners that are nearer for one
+  constexpr double corner = 5e-12;  // ngspice merges corners that are closer [s]
   expect_edges(level_edges(state, {.threshold = 0.5}), record.channels.front(), corner);
   for (const auto& [at, resistance] : {std::pair{1.4e-6, 5.5}, {2e-6, 9.0}, {3.5e-6, 2.25}, {5e-6, 0.5}, {1e-6, 1e12}})
     EXPECT_NEAR(value_at(voltage, at), 1 / (1 + resistance), 1e-4) << at;

@@ -1,4 +1,4 @@
-// The page of cycles: the whole cycle on one axis of time.
+// The page of cycles shows the whole cycle on one time axis.
 #include "reports/cycle_report.h"
 
 #include <gmock/gmock.h>

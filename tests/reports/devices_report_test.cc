@@ -1,4 +1,4 @@
-// Tests the report of a search for devices, on figures that are made up.
+// Tests the report of a search for devices on synthetic figures.
 #include "reports/devices_report.h"
 
 #include <gmock/gmock.h>
@@ -128,7 +128,7 @@ TEST(DevicesReport, DrawsDevicesUnderTheStepAndTheWaveformSideBySide) {
     EXPECT_THAT(text, HasSubstr("band of 5 to 95 %"));
     EXPECT_THAT(text, HasSubstr("clip-devices-best"));
   }
-  DevicesFindings changed = *r.search->devices;  // a file that somebody has edited
+  DevicesFindings changed = *r.search->devices;  // a file that a user has edited
   changed.courses->own.front().pop_back();
   EXPECT_TRUE(internal::gaps_picture(changed).charts.empty());
   changed.courses->step = changed.courses->own = {{1}};

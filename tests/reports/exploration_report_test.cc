@@ -28,7 +28,7 @@ using ::testing::Not;
 
 constexpr std::size_t most_bytes = 2'000'000;
 
-/// Pages are too long to be printed where they do not hold what they should.
+/// Returns whether the page holds the words. EXPECT_THAT would print the whole page.
 bool holds(const std::string& page, const std::string& words) { return page.find(words) != std::string::npos; }
 
 std::string aims_refusal(const std::string& list) {
@@ -126,7 +126,7 @@ TEST(Effects, OfManyValuesAreThoseOfIntervalsOfEquallyManyPoints) {
   EXPECT_TRUE(std::is_sorted(bins.begin(), bins.end(), [](const auto& a, const auto& b) { return a.at < b.at; }));
 }
 
-/// The value of a column at a drawn point, read as the page reads it.
+/// Returns the value of a column at a drawn point, decoded as the page does.
 double decoded(const nlohmann::json& column, std::size_t row) {
   const std::string letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   const std::string& text = column["data"].get_ref<const std::string&>();

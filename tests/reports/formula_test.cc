@@ -1,4 +1,4 @@
-// Formulas that laws leave, worked out again from their text.
+// Evaluates the formulas of laws from their text, and compares with the laws.
 #include "reports/formula.h"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@
 namespace softland {
 namespace {
 
-// Numbers, names, + - * ( ), max, pow, sqrt, ln, abs, and "a<b ? x : y".
+// Evaluates numbers, names, + - * ( ), max, pow, sqrt, ln, abs, and "a<b ? x : y".
 class Evaluator {
  public:
   Evaluator(std::string text, std::map<std::string, double> names) : text_(std::move(text)), names_(std::move(names)) {}
@@ -105,7 +105,7 @@ class Evaluator {
   std::size_t at_ = 0;
 };
 
-// Expects that a function of gap and velocity leaves a formula which has its value.
+// Expects the formula of a function of gap and velocity to have the values of the function.
 template <class F>
 void expect_same(F f, const std::vector<double>& gaps) {
   const Formula made = f(Formula::named("h"), Formula::named("v"));

@@ -1,4 +1,4 @@
-// Tests the report of a limit: that of a plate, which takes a second.
+// Tests the report of the limit of a plate, which takes a second to compute.
 #include "reports/limit_report.h"
 
 #include <gmock/gmock.h>
@@ -36,7 +36,7 @@ TEST(LimitPicture, WithoutCurvesShowsTheLanding) {
   EXPECT_GE(count(svg, "<polyline") + count(svg, "<path"), 2U);
 }
 
-// The others were not found.
+// The time at 60 V was not found, so that the curve has a single point.
 TEST(LimitPicture, OfACurveOfOnePlaceHasAxesAround) {
   Limit found = of_a_plate();
   found.landing.reset();

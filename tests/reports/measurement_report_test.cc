@@ -1,4 +1,4 @@
-// Tests the report of measurements, made here of numbers that are easy to find again.
+// Tests the report of measurements on synthetic numbers.
 #include "reports/measurement_report.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// The moving switch of a page: what it draws, with a script and without.
+// The animated switch of a page, with a script and without.
 #include "reports/motion_figure.h"
 
 #include <gmock/gmock.h>
@@ -74,8 +74,7 @@ TEST(MotionFigure, IsNotThereWhereTheMotionIsNotKnownOrDamaged) {
 
 TEST(MotionFigure, LeavesThePageBelowAMegabyte) { EXPECT_LT(page_html(closing_document(bouncing())).size(), 1'000'000U); }
 
-// Functions for the script of a visit: the time that is shown [s], the gap that is drawn at the contact and that of the chart
-// [m].
+// Functions for scripts: the shown time [s], the gap in the drawing at the contact, and the gap in the chart [m].
 constexpr const char* readers =
     "const wait = (time) => new Promise((done) => setTimeout(done, time));"
     "const figure = page.getElementById('figure-motion'), slider = figure.querySelector('input'), play = "
@@ -104,7 +103,7 @@ TEST_F(PageInBrowser, MovesTheSwitchInSilence_browser) {
 
 TEST_F(PageInBrowser, PlaysWhenAskedAndPauses_browser) {
   EXPECT_EQ(seen(program,
-                 // A browser draws few frames in virtual time.
+                 // In virtual time a browser draws few frames.
                  "const own = frame.contentWindow; own.requestAnimationFrame = (draw) => setTimeout(() => "
                  "draw(own.performance.now()), 16);"
                  "await wait(400); if (clock() !== 0) say('it begins by itself');"

@@ -1,4 +1,4 @@
-// The page in a real browser: what the script draws and what it complains about.
+// The page in a real browser: what the script draws, and which errors it reports.
 #include <gmock/gmock.h>
 
 #include <string>
@@ -62,7 +62,7 @@ TEST_F(PageInBrowser, RunsNoScriptOfAHostileTitle_browser) {
   EXPECT_THAT(seen.dom, HasSubstr("class=\"drawn\""));
 }
 
-/// A search of the scene with the sketch, the limits and the picture of its parameters.
+/// Returns a search of the scene with sketch, limits and the chart of its parameters.
 json searched() {
   json result = test::sample_optimize_result(3000);
   result["scene"]["structure"] = {{"kind", "cantilever"}, {"length", "250 um"}};

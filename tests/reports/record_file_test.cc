@@ -22,7 +22,7 @@ TEST(ParseClosing, ReadsWhatTheVerbsWrite) {
   EXPECT_EQ(parse_closing(result.dump(), "x.json"), result);
 }
 
-// Pads are as scenes may write them: by a percentage of the length, up to the tip, and several.
+// Ends of pads in all forms that scenes allow: a percentage of the length, up to the tip, and several pads.
 TEST(ReadClosing, KnowsWherePadsLie) {
   nlohmann::json result = test::sample_simulate_result(11);
   nlohmann::json& scene = result["scene"];
@@ -84,7 +84,7 @@ TEST(RequireReportable, TakesWhatTheVerbsWriteAndSaysWhatIsMissing) {
   }
 }
 
-// 300 000 brackets among the parameters once overflowed the stack of the report.
+// A case that once overflowed the stack of the report: 300 000 brackets among the parameters.
 TEST(ParseClosing, RefusesNestingThatNoReportCanWalkThrough) {
   const auto nested = [](std::size_t depth) {
     return R"({"kind": "optimize", "best": {"parameters": {"a": )" + std::string(depth, '[') + std::string(depth, ']') + "}}}";

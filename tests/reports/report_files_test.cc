@@ -1,4 +1,4 @@
-// The files that a search leaves: which there are, and what of a waveform they hold.
+// The files of a search, and their content about a waveform.
 #include "reports/report_files.h"
 
 #include <gmock/gmock.h>

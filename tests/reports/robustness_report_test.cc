@@ -1,4 +1,4 @@
-// Tests the report of varied devices, made here of outcomes that are easy to count.
+// Tests the report of varied devices on synthetic outcomes.
 #include "reports/robustness_report.h"
 
 #include <fmt/format.h>
@@ -118,7 +118,7 @@ TEST(RobustnessReport, SaysWhereChaosFails_optimized) {
   BoxAndChaos ways = study().box_and_chaos.value();
   ways.left_out = 3;
   ways.chaos[0].q2_unseen = 0.95;
-  ways.chaos[1].q2 = 0.99;  // the other devices know better
+  ways.chaos[1].q2 = 0.99;  // the error on the other devices is larger
   ways.chaos[1].q2_unseen = 0.4;
   ways.chaos[2].q2 = ways.chaos[2].q2_unseen = Metrics::unset;
   ways.ranges[2].most.figure = std::numeric_limits<double>::infinity();
@@ -167,14 +167,14 @@ TEST(RobustnessReport, ShowsOfJitterTheTimeOfAnEdge_optimized) {
   EXPECT_EQ(times.size(), 64U);
   for (const double time : times) EXPECT_LT(std::abs(time), 50e-9);
   EXPECT_GT(*times.rbegin() - *times.begin(), 70e-9);
-  // A plain step that is late by it is late by it.
+  // The waveform of a device with jitter is shifted by the time in the report.
   const std::size_t k = jittered.found.drives[0].worst[0];
   const double shown = json_of(record_of(jittered.report()))["drives"][0]["worst"][0]["values"]["driver.main.jitter"];
   EXPECT_TRUE(times.contains(shown));
   const SceneFile own = scene_of_device(jittered.nominal, jittered.found.drives[0], k, jittered.options);
   const Signal drive = prepare(own).signals().front();
   EXPECT_EQ(drive.pieces().back().begin, std::max(0.0, shown));
-  // So is what is found in a box, whose numbers are those that the times are drawn by.
+  // The devices of a box have random numbers, from which their times follow.
   BoxAndChaos ways;
   ways.ranges.push_back({.key = "major_bounce_height_m", .most = {.values = {0.75}}});
   const auto found = internal::record_of(ways, jittered.found.drives[0], jittered.nominal);
@@ -182,7 +182,7 @@ TEST(RobustnessReport, ShowsOfJitterTheTimeOfAnEdge_optimized) {
   EXPECT_LT(std::abs(in_box), 50e-9);
 }
 
-// Grazing, what has no derivative, and what is left out are said in words, wherever derivatives are read.
+// Reports say in words where derivatives graze, which figures have none, and what is left out.
 TEST(RobustnessReport, SaysWhatItsDerivativesAreWorth_optimized) {
   Derivatives told = study().derivatives;
   told.grazing = 0.03;
@@ -226,7 +226,7 @@ TEST(RobustnessReport, AsAPageHasEverySectionAndEscapesNames) {
   EXPECT_LT(page.size(), 1'000'000U);
 }
 
-// The heights of the bins, read from what the page's script draws: pairs of equal values, one pair per bin.
+// Returns the heights of the bins that the script of the page draws: two equal values for each bin.
 std::vector<double> bins_of(const std::string& page, const std::string& table) {
   const std::string mark = "id=\"data\">";
   const std::size_t begin = page.find(mark) + mark.size();
@@ -337,7 +337,7 @@ TEST(RobustnessReport, FitsOnATerminalWithManyDrivesOfLongNames) {
     EXPECT_THAT(terminal_text(robustness_document(s.report())), HasSubstr("/of_run_" + std::to_string(k)));
 }
 
-// An estimate may leave [0, 1] by chance.
+// An estimated index may lie outside of [0, 1] by chance.
 TEST(RobustnessReport, SharesAreNeverBeyondAll) {
   Study s = study();
   for (FigureSensitivity& f : s.sensitivity.figures) {
@@ -361,7 +361,7 @@ TEST(RobustnessReport, SaysWhatIsMissingForShares) {
   EXPECT_THAT(terminal_text(robustness_document(s.report())), Not(HasSubstr("too many"))) << "all devices of the sample close";
 }
 
-// Derivatives of first order say nothing of devices whose spread is another one.
+// First-order derivatives are not shown if the spread of the devices contradicts them.
 TEST(RobustnessReport, ShowsNoDerivativesThatTheDevicesContradict) {
   Study s = study();
   EXPECT_THAT(terminal_text(robustness_document(s.report())), HasSubstr(" %/%"));

@@ -1,4 +1,4 @@
-// Writes sample pages and pictures into a folder, for looking at them.
+// Writes sample pages and figures into a folder, for inspection by eye.
 #include <cstdio>
 #include <filesystem>
 

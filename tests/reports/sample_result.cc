@@ -22,7 +22,7 @@ struct Sample {
   double velocity;
 };
 
-/// A repeatable number in [0, 1).
+/// Returns a reproducible number in [0, 1).
 double random_unit(std::uint64_t& state) {
   state = state * 6364136223846793005u + 1442695040888963407u;
   return static_cast<double>(state >> 11) * 0x1p-53;
@@ -32,7 +32,7 @@ struct Arc {
   double begin, end, height;
 };
 
-/// 57 parabolic arcs: five macro-rebounds, each followed by micro-rebounds, from 23.186 us to 374 us.
+/// Returns 57 parabolic arcs: five macro-rebounds, each followed by micro-rebounds, from 23.186 us to 374 us.
 std::vector<Arc> plain_step_arcs() {
   constexpr double first = 23.186e-6;
   constexpr double last = 374e-6;

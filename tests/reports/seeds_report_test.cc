@@ -49,7 +49,7 @@ TEST(SeedsReport, PrefersWhatIsConfirmedThenWhatMeetsTheGoalThenTheFigureThenThe
 
 TEST(SeedsReport, TellsTheSpreadAndWhatFails) {
   SeedsFindings seeds{.planned = 5, .searches = {search(1, 0.1), search(2, 0.2), search(3, 0.4, false), search(4, 0.3)}};
-  seeds.searches.front().better_than_baseline = false;  // a goal that is met is a success
+  seeds.searches.front().better_than_baseline = false;  // a met goal is a success nevertheless
   seeds.searches.back().better_than_baseline = seeds.searches.back().goal_met = false;
   rank(seeds, Target::bounce, 1e-9, false);
   EXPECT_EQ(internal::seeds_caption(seeds),
@@ -62,7 +62,7 @@ TEST(SeedsReport, TellsTheSpreadAndWhatFails) {
   EXPECT_EQ(j["best_seed"], 1);
   EXPECT_EQ(j["goal_met"], 2);
   EXPECT_DOUBLE_EQ(j["cost"]["upper_quartile"].get<double>(), 0.325);
-  // One that found nothing is worse than all.
+  // A search without a result is worse than all others.
   seeds.searches[2].cost = Metrics::unset;
   EXPECT_TRUE(json_of(SeedsRecord{.origin = {}, .seeds = seeds})["seeds"]["cost"]["most"].is_null());
   EXPECT_EQ(internal::seeds_caption(SeedsFindings{.planned = 3}), "None of 3 searches is done.");

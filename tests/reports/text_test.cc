@@ -33,7 +33,7 @@ TEST(Wrapped, BreaksAtBlanksOnly) {
   EXPECT_EQ(wrapped("µµ µµ µ", 5), "µµ µµ\nµ") << "columns, not bytes";
 }
 
-/// The text that a reader of the page sees: without scripts, pictures, the listed scene and tags.
+/// Returns the visible text of a page: without scripts, figures, the listed scene and tags.
 std::string read_aloud(const std::string& page) {
   std::string text;
   for (std::size_t at = page.find("<main>"); at < page.size();) {
@@ -53,7 +53,7 @@ std::string read_aloud(const std::string& page) {
 TEST(EveryReport, SaysNoMoreThanIsKnown) {
   for (json result : {sample_optimize_result(few_rows), softland::test::sample_simulate_result(few_rows)}) {
     EXPECT_EQ(absurd_number(terminal_text(closing_document(read_closing(result)))), "");
-    // Figures of a landing so soft that its remainders are those of arithmetic, and errors of a run judged by one like it.
+    // Figures of a landing so soft that its residuals are rounding errors, and errors from a run of the same kind.
     for (const char* part : {"metrics", "errors"}) {
       for (auto& [key, value] : result[part].items()) {
         if (value.is_number_float() && !key.starts_with("initial")) value = 35.3e-18 * (part[0] == 'e' ? 1e-3 : 1);
@@ -69,7 +69,7 @@ TEST(EveryReport, SaysNoMoreThanIsKnown) {
   }
 }
 
-/// Every number of `value` whose turn it is of `period` replaced; `turn` counts them.
+/// Replaces every number of `value` whose index is a multiple of `period`; `turn` counts them.
 void damage(json& value, double absurd, int period, int& turn) {
   if (value.is_structured()) {
     for (json& inner : value) damage(inner, absurd, period, turn);
@@ -78,7 +78,7 @@ void damage(json& value, double absurd, int period, int& turn) {
   }
 }
 
-/// The first number in a report that people cannot read; empty when all is well.
+/// Returns the first badly written number of a report; empty if there is none.
 std::string misshapen(const std::string& report) {
   static const std::regex none(".{0,40}\\b(nan|inf)\\b"), long_number(".{0,40}[0-9]{26}");
   std::string text = report;
@@ -110,7 +110,7 @@ TEST(EveryReport, DrawsAndPrintsWhatNoSwitchHas_slow) {
 
 TEST(TextReport, KeepsItsSentencesWithinAHundredColumns) {
   std::istringstream lines(terminal_text(closing_document(read_closing(sample_optimize_result(few_rows)))));
-  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 110U) << line;  // bytes
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 110U) << line;  // in bytes
 }
 
 TEST(TextReport, ConfirmsOnlyAWinnerThatLandsSoftly) {

@@ -44,7 +44,7 @@ TuningReport::Shot tuned_shot(int number, double low = 36e-6, double high = 42e-
   return shot_of(tuned_scene(), shot);
 }
 
-// A bounce, a shot that failed, one that stayed open, one of which the times are all that is known, and two landings.
+// A bounce, a failed shot, a shot that stayed open, one with times only, and two landings.
 TuningReport tuned_sample() {
   const std::vector<ContactRecord> records{
       {.edges = {{40e-6, true}, {41e-6, false}, {44e-6, true}, {44.5e-6, false}, {46e-6, true}}},
@@ -163,7 +163,7 @@ TEST(TuningReport, BringsNothingIntoItsPageButText) {
   for (const char* part :
        {"id=\"records\"", "id=\"belief\"", "id=\"waveforms\"", "id=\"reproduce\"", "kept so far", "proposed next"})
     EXPECT_THAT(page, HasSubstr(part));
-  // Three intervals of the first record are closed, under the prediction.
+  // The first record has three closed intervals, drawn below the prediction.
   const std::size_t first = page.find("aria-label=\"closing 1 touched");
   const std::string strip = page.substr(first, page.find("</svg>", first) - first);
   std::size_t seen = 0;
