@@ -30,19 +30,19 @@ constexpr double mode_digits = 1e-8;  // relative, of mode numbers and frequenci
 
 constexpr BeamSection uniform{.begin = 0, .end = 2, .rigidity = 3, .mass_per_length = 5};
 
-/// beta_i L of the uniform cantilever: root number `mode` (from 0) of cos x cosh x = -1, written without overflow.
+/// Returns beta_i L of the uniform cantilever: root number `mode` (from 0) of cos x cosh x = -1, written without overflow.
 double cantilever_number(int mode) {
   const double middle = (mode + 0.5) * pi;
   return bracketed_zero([](double x) { return std::cos(x) + 1 / std::cosh(x); }, middle - 1, middle + 1);
 }
 
-/// The same, clamped and pinned: tan x = tanh x.
+/// Returns beta_i L of the clamped and pinned beam: tan x = tanh x.
 double clamped_pinned_number(int mode) {
   const double middle = (mode + 1.25) * pi;
   return bracketed_zero([](double x) { return std::sin(x) - std::tanh(x) * std::cos(x); }, middle - 0.3, middle + 0.3);
 }
 
-/// The same, clamped at both ends: cos x cosh x = 1.
+/// Returns beta_i L of the beam that is clamped at both ends: cos x cosh x = 1.
 double clamped_clamped_number(int mode) {
   const double middle = (mode + 1.5) * pi;
   return bracketed_zero([](double x) { return std::cos(x) - 1 / std::cosh(x); }, middle - 1, middle + 1);
@@ -59,7 +59,7 @@ double tension_characteristic(double force, double w) {
 
 constexpr BeamSupport two_clamps{.far_clamp = true};
 
-/// [rad/s] of a mode number of the uniform section above.
+/// Returns the angular frequency of the uniform section for a mode number [rad/s].
 double uniform_frequency(double number) {
   return number * number * std::sqrt(uniform.rigidity / uniform.mass_per_length) / (uniform.end * uniform.end);
 }
@@ -93,7 +93,7 @@ TEST(BeamModes, OfTheUniformCantileverHaveTheClosedFormNumbers) {
 
 TEST(BeamModes, DoNotDependOnHowTheBeamIsCut) {
   std::vector<BeamSection> pieces{uniform, uniform, uniform};
-  pieces[0].end = pieces[1].begin = 0.013;  // a short root among long elements must not cost the low modes their digits
+  pieces[0].end = pieces[1].begin = 0.013;  // a short piece next to long elements must not reduce the precision of the low modes
   pieces[1].end = pieces[2].begin = 1.7;
   const BeamModes whole({uniform}, 8), cut(pieces, 8);
   for (int i = 0; i < 8; ++i) {
@@ -103,7 +103,8 @@ TEST(BeamModes, DoNotDependOnHowTheBeamIsCut) {
 }
 
 TEST(BeamModes, DoNotJumpWhenASectionVanishes) {
-  // A layer that ends just short of a place, or covers next to nothing, is nearly one that ends there, or none.
+  // A layer that ends very close to a section boundary, or covers almost nothing, acts nearly like one that ends there, or
+  // none.
   const Device device = test::gold_pzt_cantilever();
   const double length = device.structure.length;
   const auto modes = [&](double begin, double end) {
@@ -134,7 +135,7 @@ TEST(BeamModes, OfASteppedBeamAreTheZerosOfTheTransferDeterminant) {
   ASSERT_EQ(sections.size(), 3u);
   const BeamModes beam(sections, 6);
   const auto determinant = [&](double omega) { return characteristic(sections, omega); };
-  // All zeros up to the sixth mode, from a scan fine enough for their spacing.
+  // All zeros up to the sixth mode, from a scan that is fine compared with their spacing.
   std::vector<double> zeros;
   const double step = beam.angular_frequencies()[0] / 4;
   for (double omega = step; zeros.size() < 6; omega += step) {
@@ -155,7 +156,7 @@ TEST(BeamModes, AreOrthonormalInTheMassOfTheBeam) {
   const BeamModes beam(sections, modes);
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(modes, modes);
   for (const BeamSection& s : sections) {
-    constexpr int parts = 12;  // number of parts, with thirty Gauss points each: far more than the shapes need
+    constexpr int parts = 12;  // number of parts with thirty Gauss points each, many more than the shapes need
     using Rule = boost::math::quadrature::gauss<double, 30>;
     const double width = (s.end - s.begin) / parts;
     for (int p = 0; p < parts; ++p) {
@@ -195,7 +196,7 @@ TEST(BeamModes, SlopeIsTheDerivativeOfTheShape) {
     const Eigen::VectorXd difference =
         (8 * (beam.value(x + h) - beam.value(x - h)) - (beam.value(x + 2 * h) - beam.value(x - 2 * h))) / (12 * h);
     const Eigen::VectorXd slope = beam.slope(x);
-    // At a change of section the curvature jumps: the slope there is the mean of one-sided differences to first order in h.
+    // At a change of section the curvature jumps: the derivative is the mean of one-sided differences to first order in h.
     const double tolerance = (x == 5_um ? 1e-3 : 1e-7) * slope.cwiseAbs().maxCoeff();
     for (int i = 0; i < 6; ++i) EXPECT_NEAR(slope[i], difference[i], tolerance) << "mode " << i << " at " << x;
   }
@@ -240,7 +241,7 @@ TEST(BeamModes, OfASteppedBeamBetweenTwoClampsAreTheZerosOfTheTransferDeterminan
 }
 
 TEST(BeamModes, UnderAnAxialForceAreTheZerosOfTheCharacteristicFunction) {
-  // The forces range from nearly buckled to a string; in units of EI/L^2.
+  // The forces range from nearly buckled to a stretched string; in units of EI/L^2.
   for (const double force : {-39.0, -20.0, 5.0, 100.0, 3000.0}) {
     const double unit = uniform.rigidity / (uniform.end * uniform.end);
     const BeamModes beam({uniform}, 6, {.far_clamp = true, .axial_force = force * unit});
@@ -254,7 +255,7 @@ TEST(BeamModes, UnderAnAxialForceAreTheZerosOfTheCharacteristicFunction) {
 }
 
 TEST(BeamModes, BucklesAtTheClosedFormLoad) {
-  // -4 pi^2 EI/L^2: the first frequency goes to zero there, its square nearly in proportion, and beyond there is no stable beam.
+  // At -4 pi^2 EI/L^2 the beam buckles: the square of the first frequency goes to zero nearly in proportion to the distance.
   const double load = -4 * pi * pi * uniform.rigidity / (uniform.end * uniform.end);
   const auto beam = [&](double part) { return BeamModes({uniform}, 2, {.far_clamp = true, .axial_force = part * load}); };
   constexpr double close = 1e-7;
@@ -268,8 +269,8 @@ TEST(BeamModes, BucklesAtTheClosedFormLoad) {
   EXPECT_THROW((void)beam(1 + close), InvalidInput);
 }
 
-/// Vanishes at the modes of a cantilever under the axial force [EI/L^2], omega in units of sqrt(EI/(mu L^4)): its free end
-/// has no moment and the shear force times w'.
+/// Returns a function that vanishes at the modes of a cantilever under the axial force [EI/L^2], omega in units of sqrt(EI/(mu
+/// L^4)). At its free end the moment is zero, and the shear force balances the axial force times w'.
 double free_end_characteristic(double force, double omega) {
   const double half = force / 2, root = std::hypot(half, omega);
   const double a = std::sqrt(root + half), b = std::sqrt(root - half);  // w of cosh ax, cos bx, sinh ax, sin bx
@@ -338,7 +339,7 @@ TEST(PinnedBeam, HasTheClampedPinnedFrequencyWhenHeldAtTheTip) {
 }
 
 TEST(PinnedBeam, HasTheFreeFrequencyWhenHeldAtANode) {
-  // Held where its second mode does not move the beam keeps that frequency.
+  // A beam that is held at a node of its second mode keeps that frequency.
   const BeamModes beam({uniform}, 4);
   const double node = bracketed_zero([&](double x) { return beam.value(x)[1]; }, 1.2, uniform.end);
   EXPECT_NEAR(beam.pinned_frequency(node), beam.angular_frequencies()[1], 1e-6 * beam.angular_frequencies()[1]);
@@ -423,7 +424,7 @@ TEST(PiezoMoment, BendsTheBeamIntoACircularArcAsFarAsTheLayerReaches) {
     const Eigen::VectorXd force = moment * (beam.slope(end) - beam.slope(begin));
     return force.cwiseQuotient(beam.angular_frequencies().cwiseAbs2()).dot(beam.value(tip_position));
   };
-  // Constant curvature M / EI over the layer, straight beyond it.
+  // Exact solution: constant curvature M / EI over the layer, straight beyond it.
   const double exact =
       moment / layered_section(d.structure, *d.piezo).rigidity * (end - begin) * (tip_position - (begin + end) / 2);
   EXPECT_NEAR(exact, -2.121_um, 0.001_um);  // independent program, per volt
@@ -432,7 +433,7 @@ TEST(PiezoMoment, BendsTheBeamIntoACircularArcAsFarAsTheLayerReaches) {
   EXPECT_LT(std::abs(tip(12) - exact), std::abs(tip(4) - exact));
 }
 
-// A beam whose sections, support and tension differ from those of the nominal one by about `spread`.
+// A beam whose sections, support and tension differ from the nominal ones by about `spread`.
 struct Sample {
   std::vector<BeamSection> sections;
   BeamSupport support;
@@ -458,8 +459,9 @@ Sample sampled(int shape, double spread, std::mt19937_64& random) {
 }
 
 TEST(BeamModes, FromThoseOfASimilarBeamAreTheSame) {
-  // Frequencies to the rounding of a search, which grows as the highest lambda over the lowest; shapes to that over the distance
-  // to the next lambda. Measured: 1e-11 and 1e-10 of GCC, 5e-11 and 4e-10 of clang, which fuses other products and sums.
+  // Frequencies agree up to the rounding of a search, which grows as the highest lambda over the lowest. Shapes agree up to
+  // that over the distance to the next lambda. Observed: 1e-11 and 1e-10 with GCC, 5e-11 and 4e-10 with clang, which fuses
+  // other products and sums.
   constexpr double frequency_rounding = 1e-10, shape_rounding = 1e-9;
   std::mt19937_64 random(5);
   for (const int modes : {1, 4, 6}) {
@@ -480,7 +482,7 @@ TEST(BeamModes, FromThoseOfASimilarBeamAreTheSame) {
           };
           SCOPED_TRACE(fmt::format("{} modes, shape {}, spread {}, device {}", modes, shape, spread, i));
           const std::optional<BeamModes> searched = built(nullptr), followed = built(known.normalised());
-          ASSERT_EQ(searched.has_value(), followed.has_value());  // a beam that buckles is refused in both ways
+          ASSERT_EQ(searched.has_value(), followed.has_value());  // a beam that buckles is refused by both methods
           if (!searched) continue;
           const Eigen::ArrayXd ratio = followed->angular_frequencies().array() / searched->angular_frequencies().array();
           EXPECT_LT((ratio - 1).abs().maxCoeff(), frequency_rounding);
@@ -504,7 +506,7 @@ TEST(BeamModes, FromThoseOfASimilarBeamAreTheSame) {
 }
 
 TEST(BeamModes, FromThoseOfAnotherBeamAreStillItsOwn) {
-  // Beams that have little in common with the known one: no mode may be skipped, or taken twice.
+  // The beams differ much from the known one: no mode may be skipped or found twice.
   const BeamModes known({{0, 1.5, 1, 1}, {1.5, 2, 1, 1}}, 5);
   std::mt19937_64 random(8);
   const auto factor = [&] { return std::exp(3 * std::uniform_real_distribution<>(-1, 1)(random)); };

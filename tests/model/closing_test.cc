@@ -1,4 +1,4 @@
-// Events, endings and bad arguments of a closing.
+// Events, ends and invalid arguments of a closing.
 #include "model/closing.h"
 
 #include <fmt/format.h>
@@ -130,7 +130,7 @@ TEST(Closing, TouchesAreKnotsOnThePlaneAndForceActsOnlyInside) {
 }
 
 TEST(Closing, MissesNoTouchThatADenseRunSees) {
-  // A sine of no amplitude to speak of makes the integrator take steps of nanoseconds and restarts nothing.
+  // A sine of negligible amplitude makes the integrator take steps of nanoseconds, without restarts.
   const std::vector<Signal> dense{signal(Harmonic{.base = step_level, .amplitude = 1e-12_V, .angular_frequency = 1e8_rad_s})};
   constexpr double tolerance = 1e-9;
   const Trajectory fine = simulate_closing(gold(), dense, {.duration = 90_us, .tolerance = tolerance});
@@ -149,7 +149,7 @@ TEST(Closing, MissesNoTouchThatADenseRunSees) {
 TEST(Closing, InterpolantBetweenKnotsNeverCrossesThePlaneUnseen) {
   for (const double tolerance : {1e-3, 1e-5, 1e-7}) {
     const Trajectory t = simulate_closing(gold(), step(), {.duration = 300_us, .tolerance = tolerance});
-    std::size_t next = 0;  // touch that begins next, or is under way
+    std::size_t next = 0;  // index of the touch that is in progress, or next
     for (std::size_t i = 1; i < t.points.size(); ++i) {
       const TrajectoryPoint &a = t.points[i - 1], &b = t.points[i];
       while (next < t.touches.size() && !(a.time < t.touches[next].end)) {
@@ -169,7 +169,7 @@ TEST(Closing, InterpolantBetweenKnotsNeverCrossesThePlaneUnseen) {
 }
 
 TEST(Closing, IntegratorsAgree) {
-  // The multistep methods spend their errors more freely, so they set the bounds.
+  // Multistep methods have the largest errors, and so determine the tolerances.
   const Metrics reference = metrics(simulate_closing(gold(), step(), {.duration = 60_us, .tolerance = 1e-11}));
   constexpr double time_digits = 1e-6, velocity_digits = 1e-4, height_digits = 1e-3;  // relative
   for (const Integrator integrator :
@@ -205,7 +205,7 @@ TEST(Closing, StopsAtEveryBreakpoint) {
 }
 
 TEST(Closing, SeesAPulseFarShorterThanItsSteps) {
-  // Two nanoseconds of 300 V while the beam is at rest under 0 V: a step over them would see nothing.
+  // A pulse of 300 V for two nanoseconds while the beam is at rest under 0 V: one long step would miss it.
   const std::vector<Signal> kick{Signal::piecewise_linear({{0, 0}, {10_us, 0}, {10_us, 300}, {10.002_us, 300}, {10.002_us, 0}})};
   Device d = test::gold_cantilever();
   d.gas.reset();
@@ -261,7 +261,7 @@ TEST(Closing, GivesUpWaitingForContactWhenTold) {
   EXPECT_TRUE(t.touches.empty());
   EXPECT_GE(t.points.back().time, 50_us);
   EXPECT_LT(t.points.back().time, 80_us);
-  // Once touched it no longer counts.
+  // The limit has no effect after a touch.
   const Trajectory closing = simulate_closing(gold(), step(), {.duration = 100_us, .no_contact_before = 50_us});
   EXPECT_DOUBLE_EQ(closing.points.back().time, 100_us);
 }
@@ -358,7 +358,7 @@ TEST(ContactMemory, TakesFromTheMotionWhatTheDentSays) {
     d.structure.modes = 1;
     d.contacts.front().model = law;
     const Switch device(d);
-    // One undamped mode, kicked at the contact and then left alone.
+    // One undamped mode gets an impulse, reaches the contact, and then has no drive.
     const std::vector<Signal> kick{Signal::piecewise_linear({{0, 0}, {0, 300}, {0.3_us, 300}, {0.3_us, 0}})};
     const Trajectory t = simulate_closing(device, kick, {.duration = 200_us, .tolerance = 1e-9});
     ASSERT_EQ(t.status, Status::done);
@@ -371,10 +371,10 @@ TEST(ContactMemory, TakesFromTheMotionWhatTheDentSays) {
     const double expected = dent(device.contact(), t.deepest_penetration).lost;
     EXPECT_LT(after, 0);
     EXPECT_NEAR(mass * (before * before - after * after) / 2, expected, 1e-6 * expected);
-    // The beam passes rest on its way back and, driven no more, returns as fast as it left.
+    // The beam moves through its rest position, and without a drive returns at the same speed.
     EXPECT_NEAR(t.touches[1].impact_velocity, -after, 1e-6 * before);
     if (std::holds_alternative<HystereticSpring>(law)) {
-      // The beam's own spring works beside the contact, by a share of the interference over the gap.
+      // The beam's own spring acts beside the contact: its effect is the interference over the gap.
       EXPECT_NEAR(std::pow(after / before, 2), 0.5, 0.01);
       EXPECT_NEAR(std::pow(speed(t.touches[1].end) / after, 2), 0.5, 0.02) << "the dent heals";
     } else {
@@ -383,9 +383,9 @@ TEST(ContactMemory, TakesFromTheMotionWhatTheDentSays) {
   }
 }
 
-// Touches that tighter and tighter runs agree on: later ones magnify what the earlier ones leave.
+// Compares only touches on which tighter runs agree: later touches magnify the errors of the earlier ones.
 TEST(ThroughContact, IsTheSameClosingUnderEveryLawWithoutMemory) {
-  constexpr std::size_t compared = 3;  // touches
+  constexpr std::size_t compared = 3;  // number of compared touches
   constexpr double drift = 1_ns, digits = 1e-4;
   std::vector<Contact> contacts = test::contacts();
   for (const Contact& c : test::pad_contacts()) contacts.push_back(c);

@@ -1,5 +1,5 @@
-// A dielectric on the electrode: a plate that lands on it, by closed forms, and a beam over it beside one over a deeper
-// electrode. A charge on its face shifts the voltage by V0 = -charge t / (eps_r eps0).
+// A dielectric on the electrode: a plate that lands on it, by closed forms, and a beam above it, compared with a beam above a
+// deeper electrode. A charge on its face shifts the voltage by V0 = -charge t / (eps_r eps0).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,8 @@ void expect_within(double value, double kept, double relative, const char* what)
   EXPECT_NEAR(value, kept, relative * std::abs(kept)) << what;
 }
 
-// Values of ../shared by closed forms and quadrature: the plate under sqrt(8 K D^3 / (27 eps0 A)), D = 4 um + t / eps.
+// The plate has closed forms at sqrt(8 K D^3 / (27 eps0 A)), D = 4 um + t / eps; other values come from quadrature in an
+// independent program.
 TEST(Dielectric, APlateLandsOnItAsClosedFormsSay) {
   const Switch model(plate_over_nitride());
   const StaticPullIn fold = static_pull_in(model, 0);
@@ -69,7 +70,7 @@ TEST(Dielectric, RoughnessIsAirThatIsLeft) {
                 "release");
 }
 
-// A dielectric on which the beam does not land is a metal that lies deeper by t / eps.
+// A dielectric that the beam does not reach acts as if the electrode were deeper by t / eps.
 TEST(Dielectric, ABeamFeelsADeeperElectrode) {
   Device coated = test::gold_cantilever(), bare = coated;
   for (Device* d : {&coated, &bare}) {
@@ -97,7 +98,7 @@ TEST(Dielectric, ABeamFeelsADeeperElectrode) {
       << "it does something";
 }
 
-// A beam that is pulled onto it ends its run, and says so.
+// A run ends with a message if the beam collapses onto the dielectric.
 TEST(Dielectric, ABeamThatReachesItEndsItsRun) {
   Device coated = test::gold_cantilever();
   coated.electrodes[0].dielectric = Dielectric{.thickness = 0.2_um, .permittivity = 7.6};
@@ -108,7 +109,7 @@ TEST(Dielectric, ABeamThatReachesItEndsItsRun) {
   EXPECT_TRUE(run.message.ends_with("the beam came within 35 nm of the dielectric on the electrode")) << run.message;
 }
 
-// A contact that is too soft for the field at the face lets the plate sink in.
+// A contact that is too soft for the field at the face does not hold the plate.
 TEST(Dielectric, APlateOnASoftContactSinksIn) {
   Device soft = plate_over_nitride();
   soft.contacts = {Contact{.model = LinearSpring{.stiffness = 100}}};
@@ -119,7 +120,7 @@ TEST(Dielectric, APlateOnASoftContactSinksIn) {
   EXPECT_TRUE(run.message.ends_with("the plate sank 13.16 nm into the dielectric on the electrode")) << run.message;
 }
 
-// The plate over nitride with so much charge on its face.
+// The plate over nitride with a charge on the face.
 struct ChargedPlate {
   static constexpr double stiffness = 10, gap = 4e-6, area = 1e-8, thickness = 0.2e-6, permittivity = 7.6;
   static constexpr double depth = thickness / permittivity, field_gap = gap + depth;
@@ -127,12 +128,12 @@ struct ChargedPlate {
   explicit ChargedPlate(double charge) : neutral(-charge * thickness / (permittivity * vacuum_permittivity)) {
     device.electrodes[0].dielectric->charge = charge;
   }
-  // The (V - V0)^2 that holds the plate at a deflection [V^2].
+  // Returns the (V - V0)^2 at which the plate is in equilibrium at a deflection [V^2].
   [[nodiscard]] static double balance(double x) {
     return 2 * stiffness * x * std::pow(field_gap - x, 2) / (vacuum_permittivity * area);
   }
   [[nodiscard]] static double capacitance(double x) { return vacuum_permittivity * area / (field_gap - x); }
-  // The charge holds it there at 0 V: the lesser root of the cubic, by bisection up to the fold.
+  // Returns the deflection at 0 V, under the charge alone: the smaller root of the cubic, by bisection up to the fold.
   [[nodiscard]] double rest() const {
     double low = 0, high = field_gap / 3;
     for (int i = 0; i < 100; ++i) {
@@ -141,7 +142,8 @@ struct ChargedPlate {
     }
     return low;
   }
-  // The least (V - V0)^2 under which a step from that rest passes the fold: no speed is left on the top of the potential.
+  // Returns the least (V - V0)^2 under which a step from rest passes the fold: the speed vanishes at the maximum of the
+  // potential.
   [[nodiscard]] double dynamic_balance() const {
     const double x0 = rest();
     const auto passes = [&](double square) {
@@ -222,7 +224,7 @@ TEST(DielectricCharge, ActsAsAShiftOfTheVoltageInAllStatics) {
   ASSERT_TRUE(path);
   expect_within(path->reaches(), neutral + std::sqrt(ChargedPlate::balance(1e-6)), 1e-9, "stable path");
   expect_within(release_voltage(shifted, 0), neutral + release_voltage(plain, 0), 1e-9, "release");
-  for (const double level : {50.0, -50.0}) {  // these hold the plain switch
+  for (const double level : {50.0, -50.0}) {  // these hold the switch without charge
     const std::vector<double> volts{neutral + level}, without{level};
     const auto closed = closed_equilibrium(shifted, volts), other = closed_equilibrium(plain, without);
     ASSERT_TRUE(closed && other);
@@ -232,7 +234,7 @@ TEST(DielectricCharge, ActsAsAShiftOfTheVoltageInAllStatics) {
   }
 }
 
-// A capacitor at a steady voltage takes C0 V^2 / 2 as it is charged by a jump, and V dQ as the plate moves.
+// At a jump a capacitor takes C0 V^2 / 2, and V dQ as the plate moves at constant voltage.
 TEST(DielectricCharge, KeepsTheEnergyBalance) {
   for (const double charge : {much_charge, -much_charge}) {
     SCOPED_TRACE(charge);
@@ -247,7 +249,7 @@ TEST(DielectricCharge, KeepsTheEnergyBalance) {
     ASSERT_EQ(run.points.back().position, plate.device.gap.contact) << "the plate rests on the face";
     const double closed = ChargedPlate::capacitance(ChargedPlate::gap);
     expect_within(run.energy.source_work, open * volts * volts / 2 + volts * acting * (closed - open), 1e-8, "source work");
-    // Ramps, jumps and a voltage that changes while the plate rests, down to an opening through V0.
+    // Ramps, jumps, and voltage changes while the plate rests, down to an opening at V0.
     const Signal course = Signal::piecewise_linear(
         {{0, 3}, {2e-6, 70}, {5e-6, 70}, {5e-6, 50}, {35e-6, 50}, {40e-6, 30}, {42e-6, plate.neutral}, {60e-6, plate.neutral}});
     const Trajectory whole = simulate_closing(model, std::vector<Signal>{course}, {.duration = 60e-6, .tolerance = 1e-10});
@@ -258,7 +260,7 @@ TEST(DielectricCharge, KeepsTheEnergyBalance) {
   }
 }
 
-// The same motion as of a switch without charge whose voltage is less by V0 at all times.
+// The motion is that of a switch without charge whose voltage is lower by V0 at all times.
 TEST(DielectricCharge, MovesABeamAsAShiftedVoltageDoes) {
   Device bare = test::gold_cantilever();
   bare.electrodes[0].dielectric = Dielectric{.thickness = 0.2_um, .permittivity = 7.6};

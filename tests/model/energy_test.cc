@@ -1,4 +1,4 @@
-// Energy: what the sources put in is stored or dissipated, for any combination of effects and waveforms.
+// Energy balance: the work of the sources is stored or dissipated, for any combination of effects and waveforms.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -50,8 +50,8 @@ std::vector<Signal> waveforms(int kind, double volts, bool layer) {
 
 void expect_balanced(bool layer, const Loss& loss, const Contact& contact, int kind) {
   constexpr double tolerance = 1e-9;
-  constexpr double balance = 1e-6;   // share of the sources' work: what users may rely on
-  constexpr double measured = 1e-7;  // five times the worst seen
+  constexpr double balance = 1e-6;   // residual over the sources' work that users may rely on
+  constexpr double measured = 1e-7;  // five times the largest observed residual
   Device d = layer ? test::gold_pzt_cantilever() : test::gold_cantilever();
   if (!loss.gas) d.gas.reset();
   d.structure.damping_ratio = loss.damping_ratio;
@@ -63,7 +63,7 @@ void expect_balanced(bool layer, const Loss& loss, const Contact& contact, int k
       fmt::format("piezo {}, loss {}, contact {}, waveform {}", layer, loss.name, test::described(contact), kind);
   ASSERT_EQ(t.status, Status::done) << name;
   EXPECT_GE(t.touches.size(), std::holds_alternative<AdhesiveRepulsiveSurfaces>(contact.model) ? 2u : 3u)
-      << name;  // it also holds
+      << name;  // its adhesion holds the beam
   EXPECT_GT(t.energy.source_work, 0) << name;
   EXPECT_LT(std::abs(t.energy.residual()), balance * t.energy.source_work) << name;
   EXPECT_LT(std::abs(t.energy.residual()), measured * t.energy.source_work) << name;
@@ -87,7 +87,7 @@ void for_every_switch(F&& f) {
   }
 }
 
-// One waveform to a switch, so that any two of layer, loss, contact and waveform meet.
+// Each switch has one waveform, so that every pair of layer, loss, contact and waveform occurs.
 TEST(EnergyBalance, ClosesOverSeveralBouncesForEveryPair) {
   std::map<std::string, int> next;  // waveform, per contact
   for_every_switch([&](bool layer, const Loss& loss, const Contact& contact) {
@@ -185,12 +185,12 @@ TEST(EnergyBalance, ClosesForThePlate) {
 }
 
 TEST(EnergyBalance, ClosesForEveryDispersionForceWhileItsFactorChanges) {
-  constexpr double balance = 1e-6;  // share of the energy that bends the beam by the contact gap
+  constexpr double balance = 1e-6;  // residual over the energy that bends the beam by the contact gap
   for (const DispersionModel law : {DispersionModel::casimir, DispersionModel::van_der_waals, DispersionModel::automatic}) {
     for (const Conductor conductor : {Conductor::ideal, Conductor::gold}) {
       for (const double edge : {0.0, 0.3}) {
         Device d = test::casimir_cantilever();
-        // Weak enough to leave an open state under every law; the crossover of `auto` lies inside the travel.
+        // The force is so weak that every law leaves an open state, and the crossover of `auto` is within the travel.
         d.structure.length = 3_um;
         d.dispersion =
             Dispersion{.model = law, .conductor = conductor, .hamaker_constant = 6e-19, .equilibrium_distance = 0.4_nm};
@@ -231,7 +231,7 @@ TEST(Rest, IsWhereARunBegins) {
   ASSERT_TRUE(model.rest().has_value());
   const double tip = model.contact_deflection(model.rest()->data());
   EXPECT_GT(tip, 1_nm);
-  // The tip stays there under the nominal force. The steps of an explicit method grow at rest until the motion that they cause
+  // The tip stays at rest under the nominal force. The steps of an explicit method grow at rest until the motion by rounding
   // reaches the tolerance.
   const std::vector<Signal> drives(1);
   const Trajectory t = simulate_closing(model, drives, {.duration = 1_us, .tolerance = 1e-9});
@@ -291,7 +291,7 @@ TEST(EnergyBalance, OfEveryRunIsCheckedAtEveryTouch) {
   const auto run = [&](double tolerance) {
     return simulate_closing(model, drives, {.duration = 100_us, .tolerance = tolerance, .integrator = Integrator::arkode_erk});
   };
-  // Measured: 3.2e-5 of the bending energy at 1e-6, 4 % at 1e-3, almost five times the bending energy at 1e-2.
+  // Observed: 3.2e-5 of the bending energy at 1e-6, 4 % at 1e-3, almost five times the bending energy at 1e-2.
   const Trajectory good = run(1e-6);
   EXPECT_LT(good.energy_error, 1e-4 * model.bending_energy());
   EXPECT_GE(good.energy_error, std::abs(good.energy.residual()));
@@ -319,7 +319,7 @@ TEST(EnergyBalance, ShowsWhatTooLooseATolerancePutsIn) {
   EXPECT_EQ(loose.status, Status::numerical_failure);
   EXPECT_NE(loose.message.find("residual of the energy balance"), std::string::npos) << loose.message;
   EXPECT_GT(loose.energy_error, 0.5 * model.bending_energy());
-  // Long steps alone do no harm: so stiff a contact begins where it is, not where the interpolant of the flight ends.
+  // Long steps alone are harmless: so stiff a contact is located at the plane, not at the end of the flight's interpolant.
   for (const Integrator integrator : {Integrator::esdirk, Integrator::bdf}) {
     const Trajectory t = run(integrator, 1e-3);
     EXPECT_EQ(t.status, Status::done) << t.message;
@@ -382,7 +382,7 @@ TEST(LandingExcess, WaitsForTheHoldLevels) {
   const Switch model(test::gold_cantilever());
   const auto closed = closed_equilibrium(model, std::vector<double>{step_level});
   ASSERT_TRUE(closed.has_value());
-  // A last edge that ends after the window: the drives never stand at their hold levels.
+  // The last edge ends after the window, so that the drives never are at their hold levels.
   const std::vector<Signal> drives{signal(Pulse{.levels = {step_level, 0.9 * step_level}, .times = {90_us}, .edge = 1_us})};
   const ClosingOptions options{.duration = 80_us, .closed_potential = closed->potential};
   EXPECT_FALSE(simulate_closing(model, drives, options).touches.empty());
@@ -390,7 +390,7 @@ TEST(LandingExcess, WaitsForTheHoldLevels) {
 }
 
 TEST(Contact, StoresNoMoreThanTheFieldHasGiven) {
-  // The contact's energy without losses is at most the field's work so far, (C - C0) V^2 / 2: a tip that fell through a stiff
+  // The energy of a lossless contact is at most the work of the field, (C - C0) V^2 / 2. A tip that moves through a stiff
   // contact would store orders of magnitude more.
   for (const double stiffness : {1e5, 1e7, 1e9}) {
     Device d = test::gold_cantilever();

@@ -1,4 +1,4 @@
-// The motion before the first touch: against the right-hand side of closings, and its derivatives against differences.
+// The motion before the first touch, against the right-hand side of closings, and its derivatives, against differences.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -49,7 +49,7 @@ struct Motion {
   std::vector<double> values, strengths;
 };
 
-// The beam on its way, bent by several modes, with every drive on.
+// The moving beam, deflected in several modes, with every drive on.
 Motion motion_of(const Switch& model) {
   Motion m;
   const Index n = model.modes();
@@ -111,11 +111,11 @@ TEST(FreeMotion, CurvesAsDifferencesOfItsSlopesDo) {
     const Index n = model.modes(), drives = static_cast<Index>(m.strengths.size());
     VectorXd weights(n), scale(2 * n + drives), at(2 * n + drives);
     for (Index i = 0; i < n; ++i) weights[i] = 1 + 0.5 * std::cos(static_cast<double>(i));
-    // Rows of very different units are compared in units of the motion itself.
+    // Rows with very different units are compared relative to the motion.
     scale << VectorXd::Constant(n, m.q.cwiseAbs().maxCoeff()), VectorXd::Constant(n, m.v.cwiseAbs().maxCoeff()),
         Eigen::Map<const VectorXd>(m.strengths.data(), drives).cwiseAbs();
     at << m.q, m.v, Eigen::Map<const VectorXd>(m.strengths.data(), drives);
-    // The slope of the weighted sum by everything.
+    // Returns the derivative of the weighted sum by all parameters.
     const auto slope = [&](const VectorXd& x) {
       const VectorXd q = x.head(n), v = x.segment(n, n);
       const std::vector<double> strengths(x.data() + 2 * n, x.data() + 2 * n + drives);

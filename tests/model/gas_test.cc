@@ -27,7 +27,7 @@ TEST(Gas, OfAirHasTheTabulatedViscosity) {
   // U.S. Standard Atmosphere, 1976, at sea level and in the tropopause.
   for (const auto& [temperature, tabulated] : {std::pair{288.15, 1.7894e-5}, std::pair{216.65, 1.4216e-5}})
     EXPECT_NEAR(viscosity({.temperature = temperature}), tabulated, printed) << temperature;
-  // Incropera & DeWitt, Fundamentals of Heat and Mass Transfer, table A.4, which another formula made.
+  // Incropera & DeWitt, Fundamentals of Heat and Mass Transfer, table A.4, which is based on another formula.
   for (const auto& [temperature, tabulated] :
        {std::pair{250.0, 159.6e-7}, std::pair{300.0, 184.6e-7}, std::pair{350.0, 208.2e-7}, std::pair{400.0, 230.1e-7}})
     EXPECT_NEAR(viscosity({.temperature = temperature}), tabulated, 0.01 * tabulated) << temperature;
@@ -79,12 +79,12 @@ TEST(GasLimits, AreNotMentionedWithinThem) {
 
 TEST(GasLimits, ThatATrajectoryLeavesAreWarnings) {
   using testing::ElementsAre;
-  // The closed gap is 1.5 um; 1e4 Pa make the mean free path 663 nm and the contact gives a little.
+  // The closed gap is 1.5 um; at 1e4 Pa the mean free path is 663 nm. The contact yields a little.
   EXPECT_THAT(closing(StripGas{.film = {.pressure = 1e4}}).warnings,
               ElementsAre("gas law strip: Knudsen number 0.46 exceeds 0.1"));
   EXPECT_THAT(closing(NearContactGas{.film = {.mean_free_path = 10_nm}}).warnings,
               ElementsAre("gas law near-contact: Knudsen number 0.0029 is below 0.0047"));
-  // Four digits, and not 4.5e+03.
+  // Printed with four digits, not as 4.5e+03.
   EXPECT_THAT(closing(StripGas{.film = {.pressure = 1}}).warnings,
               testing::Contains(testing::ContainsRegex("Knudsen number [0-9]{4} exceeds 0.1")));
   // Squeeze numbers of 12 mu a^2 v / (p h^3): about 0.025 at 101325 Pa.

@@ -39,17 +39,17 @@ Device capacitive_bridge(Landing landing = {.stiffness = 1e15, .from = 30_nm}) {
                           .dielectric = Dielectric{.thickness = 0.2_um, .permittivity = 7, .landing = landing}}}};
 }
 
-// Summits as high as the air that they leave under the bridge adds to the gap of its field.
+// Summits with a height equal to the layer of air that they keep between bridge and dielectric.
 constexpr UniformAsperities summits_of_nitride{.summits = {.radius = 100_nm, .density = 1e12, .effective_modulus = 48e9},
                                                .height = 30_nm};
 constexpr Landing rough{.asperities = summits_of_nitride};
 
-// Their pressure as a sum over heights: summits of even heights share a thousand of them.
+// Returns their pressure as a sum over a thousand equally probable heights.
 double pressure_of_summits(const UniformAsperities& face, double depth) {
   constexpr int heights = 1000;
   double sum = 0;
   for (int k = 0; k < heights; ++k) {
-    const double lower = face.height * (k + 0.5) / heights;  // than the highest one
+    const double lower = face.height * (k + 0.5) / heights;  // depth below the highest summit
     if (depth > lower) sum += std::pow(depth - lower, 1.5) / heights;
   }
   const Summits& all = face.summits;
@@ -62,8 +62,8 @@ void expect_share(double value, double kept, double relative, const std::string&
   EXPECT_NEAR(value, kept, relative * std::abs(kept)) << what;
 }
 
-// Kept values of an independent program, by 168 and 336 finite elements. Twenty symmetric modes, which know no corner of the
-// shear force at the edge of what is in touch, are off by up to 0.8 % in capacitance and 1.3 % in force.
+// Values of an independent program with 168 and 336 finite elements. Twenty symmetric modes cannot describe the corner of the
+// shear force at the edge of the contact, and differ by up to 0.8 % in capacitance and 1.3 % in force.
 TEST(Landing, ABridgeClosesAsElementsSay) {
   const Switch model = fine(capacitive_bridge(), 40);
   expect_share(model.basis().angular_frequencies()[0] / (2 * pi), 164430.31735, 1e-6, "first frequency");
@@ -91,7 +91,7 @@ TEST(Landing, ABridgeClosesAsElementsSay) {
   }
 }
 
-// Kept values with as many symmetric modes: half of these are not.
+// Expected values have as many symmetric modes; half of the modes here are antisymmetric.
 TEST(Landing, TouchesAndReleasesAsOtherModesSay) {
   struct Kept {
     int modes;
@@ -115,8 +115,8 @@ TEST(Landing, TouchesAndReleasesAsOtherModesSay) {
   }
 }
 
-// The gap under a wall is at least a small part of what the dielectric adds to it, at any voltage, and the capacitance of
-// what lies on it is that of the dielectric.
+// At any voltage the gap under a wall is at least a small part of the gap that the dielectric adds, and the capacitance of the
+// part in contact is that of the dielectric.
 TEST(Landing, AWallLetsNothingThrough) {
   const Device device = capacitive_bridge({});
   const Switch model = fine(device, 16);
@@ -137,8 +137,8 @@ TEST(Landing, AWallLetsNothingThrough) {
   EXPECT_GT(std::get<LinearSpring>(model.device().contacts.front().model).stiffness, least_face_stiffness(90, depth_of_nitride));
 }
 
-// A soft bed gives way to the field where plates on springs of that rest length would, and a little before: a beam presses
-// hardest on the edge of what lies on it.
+// A soft face collapses under the field at the voltage of plates on springs of the same length, or slightly below: a beam
+// presses hardest at the edge of its contact.
 TEST(Landing, AFieldPullsTheBeamThroughASoftFace) {
   for (const double from : {0.0, 30e-9}) {
     const Device device = capacitive_bridge({.stiffness = 1e15, .from = from});
@@ -149,7 +149,8 @@ TEST(Landing, AFieldPullsTheBeamThroughASoftFace) {
   }
 }
 
-// Asperities hold plates off whose springs are at rest at the highest one up to a voltage that a look at all depths finds, too.
+// Plates on asperities whose springs are unloaded at the highest summit: the highest voltage that holds them is also found by a
+// scan over all depths.
 TEST(Landing, AFieldPullsTheBeamThroughSoftAsperities) {
   for (const double depth : {10e-9, 40e-9, 400e-9}) {
     const double bed = most_face_voltage(LinearContact{.stiffness = 1e15}, depth);
@@ -174,8 +175,7 @@ TEST(Landing, AFieldPullsTheBeamThroughSoftAsperities) {
   EXPECT_FALSE(closed_equilibrium(model, std::vector<double>{1.05 * most}));
 }
 
-// The face carries what the sum over its summits does at every point of the beam that lies on it, and the beam touches it where
-// it reaches the highest one.
+// At every point of the beam the face carries the sum over its summits, and the beam touches it at the highest one.
 TEST(Landing, AsperitiesPressAsTheirSummitsDo) {
   const Switch model = fine(capacitive_bridge(rough), 16);
   EXPECT_DOUBLE_EQ(model.contact_gap(), 2.97_um);
@@ -194,7 +194,8 @@ TEST(Landing, AsperitiesPressAsTheirSummitsDo) {
   }
 }
 
-// An undamped bridge lands on stiff asperities and rebounds: what the source gave is in the beam, its motion and the summits.
+// An undamped bridge lands on stiff asperities and rebounds: the work of the source is stored in the beam, its motion and the
+// summits.
 TEST(Landing, ABridgeOnAsperitiesKeepsItsEnergy) {
   Device device = capacitive_bridge(rough);
   Electrode& wide = device.electrodes.front();
@@ -210,11 +211,11 @@ TEST(Landing, ABridgeOnAsperitiesKeepsItsEnergy) {
     EXPECT_LT(run.energy_error, 1e-5 * model.bending_energy()) << after_contact;
     return figures.metrics(run);
   };
-  run_until(5e-9);  // the bridge is on its way down
+  run_until(5e-9);  // the bridge moves down
   EXPECT_GT(run_until(1).impact_energy, model.bending_energy()) << "the summits stored it";
 }
 
-// A bridge that lands hard swings beside the electrode below the level of the face, where there is nothing to touch.
+// After a hard landing the bridge may move below the level of the face beside its electrode, where there is no face.
 TEST(Landing, ABridgeMaySwingLowerBesideItsElectrode) {
   const Switch model = fine(capacitive_bridge({.stiffness = 1e18}), 6);
   const Trajectory run = simulate_closing(model, std::vector{Signal::constant(48)}, {.duration = 20e-6, .tolerance = 1e-9});
@@ -223,7 +224,7 @@ TEST(Landing, ABridgeMaySwingLowerBesideItsElectrode) {
   EXPECT_LT(run.energy_error, 1e-4 * model.bending_energy());
 }
 
-// A plate lands on asperities with all of its area at once: as on a [contact] of that area.
+// A plate lands with its whole area at once, as on a [contact] of that area.
 TEST(Landing, APlateOnAsperitiesClosesAsOnAContactOfThem) {
   constexpr double height = 100_nm;
   const UniformAsperities asperities{.summits = {.radius = 100_nm, .density = 1e12, .effective_modulus = 48e9}, .height = height};
@@ -271,7 +272,7 @@ TEST(Landing, APlateOnAsperitiesClosesAsOnAContactOfThem) {
   expect_share(landed.peak_contact_force, expected.peak_contact_force, 1e-6, "largest force, told from three points of a step");
 }
 
-// A plate lands with all of its area at once: the wall gives it the numbers of a rigid stop.
+// A plate lands with its whole area at once, so that a wall acts as a rigid stop.
 TEST(Landing, APlateOnAWallClosesAsOnAStop) {
   Device device = {.structure = {.length = 100_um, .width = 100_um, .kind = Plate{.mass = 1e-10, .stiffness = 10}},
                    .gap = {.electrode = 4_um, .contact = 4_um},
@@ -301,7 +302,8 @@ Device with_dimple(Device device, double gap, Place at = 70_um) {
   return device;
 }
 
-// Forces are the slope of the energy, and the Jacobian is that of the forces, where part of the beam lies on the face.
+// Forces are the derivative of the energy, and the Jacobian is that of the forces, also while a part of the beam is on the
+// face.
 TEST(Landing, ForcesAreTheSlopeOfTheEnergy) {
   const Landing wall, bed{.stiffness = 3e15, .from = 20_nm};
   for (const Device& device :
@@ -331,7 +333,7 @@ TEST(Landing, ForcesAreTheSlopeOfTheEnergy) {
   }
 }
 
-// Records what the connection and each contact of a closing touch first, and how fast.
+// Records the first touch of the connection and of each contact, with the impact velocity.
 class FirstTouches final : public ClosingObserver {
  public:
   void knot(const TrajectoryPoint&) override {}
@@ -358,7 +360,7 @@ Trajectory observed(const Device& device, ClosingObserver& observer, double dura
                          {.duration = duration, .tolerance = 1e-9}, observer);
 }
 
-// The dimple is the connection, and holds the bridge far above the face: the closing is that of a bridge which has no face.
+// The dimple is the connection and holds the bridge high above the face: the closing is that of a bridge without a face.
 TEST(LandingBesideContacts, AFaceOutOfReachDoesNothing) {
   const Device device = with_dimple(capacitive_bridge(), 0.5_um, 140_um);
   Device without = device;
@@ -376,7 +378,7 @@ TEST(LandingBesideContacts, AFaceOutOfReachDoesNothing) {
   EXPECT_EQ(landing.contacts[1].name, face_name);
 }
 
-// The bridge lies on the face before its dimple is down: the face is touched as if it were alone, and makes no connection.
+// The bridge touches the face before its dimple: the face acts as without a dimple, and makes no connection.
 TEST(LandingBesideContacts, TheFaceMakesNoConnection) {
   const Device alone = capacitive_bridge(Landing{}), device = with_dimple(alone, 2.96_um);
   FirstTouches one, other;
@@ -388,7 +390,7 @@ TEST(LandingBesideContacts, TheFaceMakesNoConnection) {
   EXPECT_NEAR(one.of_contacts[1].first->impact_velocity, other.first->impact_velocity, 1e-4 * other.first->impact_velocity);
 }
 
-// An undamped plate lands on a dimple and a face. The work of the source is in its springs and motion when it meets the face.
+// An undamped plate lands on a dimple and a face. At the face, the work of the source is in the springs and the motion.
 TEST(LandingBesideContacts, APlateKeepsItsEnergy) {
   constexpr double mass = 1e-10, stiffness = 10, dimple = 200, gap = 4_um, dimple_gap = 3_um, volts = 60;
   constexpr double area = 100_um * 100_um, depth = 0.2_um / 7.6, bed = 1e17;
@@ -416,7 +418,7 @@ TEST(LandingBesideContacts, APlateKeepsItsEnergy) {
   EXPECT_NEAR(touches.of_contacts[0].first->impact_velocity, speed_at(dimple_gap), 1e-7 * speed_at(dimple_gap));
   EXPECT_NEAR(touches.of_contacts[1].first->impact_velocity, speed_at(gap), 1e-7 * speed_at(gap));
 
-  // The field carries all three springs at rest.
+  // In equilibrium the field balances all three springs.
   const std::optional<ClosedEquilibrium> closed = closed_equilibrium(model, std::vector<double>{volts});
   ASSERT_TRUE(closed);
   const double y = model.contact_deflection(closed->q.data());

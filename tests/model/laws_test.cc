@@ -1,4 +1,4 @@
-// Every force law: its value in closed form, its derivative, and the energy that belongs to it.
+// Every force law: its value in closed form, its derivative, and its energy.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ namespace {
 
 using namespace literals;
 
-/// f'(x) by central differences of eighth order with step h.
+/// Returns f'(x) by central differences of eighth order with step h.
 template <class F>
 double derivative(F&& f, double x, double h) {
   return (672 * (f(x + h) - f(x - h)) - 168 * (f(x + 2 * h) - f(x - 2 * h)) + 32 * (f(x + 3 * h) - f(x - 3 * h)) -
@@ -39,7 +39,7 @@ double derivative(F&& f, double x, double h) {
          (840 * h);
 }
 
-/// The laws that a scene can name, from the variant that holds one of them.
+/// Lists the laws that a scene can name, from the variant that holds them.
 template <class Variant>
 struct LawsOf;
 template <class... Laws>
@@ -76,7 +76,7 @@ TYPED_TEST(FringingLawOfType, ForceIsMinusHalfTheSlopeOfTheCapacitance) {
 }
 
 TYPED_TEST(FringingLawOfType, DualSlopeIsTheComplexStepDerivative) {
-  constexpr double step = 1e-30;  // no difference is taken, so no step is too small
+  constexpr double step = 1e-30;  // complex step: no rounding limits its size
   const ElectrostaticForce<TypeParam> law{fringing<TypeParam>(20_um, 2_um)};
   for (const double h : gaps) {
     const Dual dual = law.load(Dual(h, 1), Dual(0.1));
@@ -109,7 +109,7 @@ TEST(ParallelPlate, IsEps0AreaOverTwoGapSquared) {
   EXPECT_NEAR(law.capacitance(2_um), 8.8541878128e-12 * 10, 1e-24);
 }
 
-// An electrode above the beam, 5 um away at rest, and one with a face on either side. Rest gap below: 3.5 um.
+// An electrode above the beam, 5 um away at rest, and one with faces on both sides. The rest gap below is 3.5 um.
 template <class Law>
 FarSide<ElectrostaticForce<Law>> above() {
   return {.law = {fringing<Law>(20_um, 2_um)}, .both_gaps = 8.5_um, .floor = 0.05_um};
@@ -143,7 +143,7 @@ TYPED_TEST(FringingLawOfType, OnTheFarSideHasItsPotentialAndGoesOnAsATangent) {
 
 TEST(FringingFactor, IsTheTabulatedOne) {
   constexpr double printed = 6e-5;         // four decimals
-  constexpr double differentiated = 2e-4;  // the table took this column from a difference quotient of the capacitance
+  constexpr double differentiated = 2e-4;  // the table has this column from difference quotients of the capacitance
   struct Row {
     double a_over_h, b_over_h, bao, linear, meijs_fokkema;
   };
@@ -174,7 +174,7 @@ TEST(FringingFactor, OfMeijsAndFokkemaHasTheirExponents) {
 }
 
 TEST(FringingFactor, OfMeijsAndFokkemaIsCloseToTheBoundaryElementSolution) {
-  // Two-dimensional boundary elements, computed independently; the header claims 1.5 % for b <= h.
+  // Independent two-dimensional boundary elements; the header states an error of 1.5 % for b <= h.
   struct Row {
     double a_over_h, b_over_h, truth;
   };
@@ -290,7 +290,7 @@ TEST(Casimir, OfGoldIsTheTabulatedFactorOfTheIdealOne) {
 }
 
 TEST(Casimir, OfGoldIsTheLifshitzIntegralAlsoBetweenTheKnots) {
-  constexpr double interpolated = 2e-5;  // relative: what the header claims over the whole table
+  constexpr double interpolated = 2e-5;  // relative error over the whole table, as stated in the header
   for (double h = 1.02_nm; h < 10_um; h *= 1.17) {
     const double expected = lifshitz_factor(h);
     EXPECT_NEAR(GoldCasimir{}.factor(h), expected, interpolated * expected) << h;
@@ -298,7 +298,7 @@ TEST(Casimir, OfGoldIsTheLifshitzIntegralAlsoBetweenTheKnots) {
 }
 
 TEST(Casimir, OfGoldFollowsTheLifshitzIntegralBeyondTheTable) {
-  constexpr double extrapolated = 0.01;  // error of eta below the table, of 1 - eta above it: what the header claims
+  constexpr double extrapolated = 0.01;  // error of eta below the table, and of 1 - eta above it, as stated in the header
   for (const double h : {0.3_nm, 0.7_nm}) {
     EXPECT_NEAR(GoldCasimir{}.factor(h), lifshitz_factor(h), extrapolated * lifshitz_factor(h)) << h;
   }
@@ -340,7 +340,7 @@ TEST(VanDerWaals, RepelsBelowTheEquilibriumDistance) {
   const double strongest = std::pow(3, 1.0 / 6) * h0;
   EXPECT_NEAR(gold_surfaces.pressure(strongest), 0.3849 * unit, 1e-4 * unit);
   EXPECT_NEAR(gold_surfaces.pressure(Dual(strongest, 1)).slope * h0, 0, 1e-13 * unit);
-  // The published energy of separation at A = 4e-19 J and h0 = 0.165 nm without repulsion, times 3/4 with it.
+  // The published energy of separation for A = 4e-19 J and h0 = 0.165 nm without repulsion; with repulsion it is 3/4 of that.
   const VanDerWaals surfaces{.hamaker_constant = 4e-19, .equilibrium_distance = 0.165_nm};
   EXPECT_NEAR(surfaces.energy(0.165_nm), -0.75 * 0.390, 1e-3);
 }
@@ -361,7 +361,8 @@ TEST(SmallerOfBoth, ChangesOverWhereTheLimitsAreEqual) {
     EXPECT_NEAR(below, above, 1e-10 * std::abs(above));
   }
   EXPECT_NEAR((SmallerOfBoth<IdealCasimir>{{}, {.hamaker_constant = 4e-19}}.crossover), 61.3_nm, 0.05_nm);
-  // The Lifshitz law of gold has a Hamaker constant of 2.1e-19 J of its own at short distance: a larger one is never the smaller.
+  // At short distance the Lifshitz law of gold has a Hamaker constant of 2.1e-19 J: a law with a larger one is never the
+  // smaller.
   EXPECT_EQ((SmallerOfBoth<GoldCasimir>{{}, {.hamaker_constant = 4e-19}}.crossover), 0);
   EXPECT_GT((SmallerOfBoth<GoldCasimir>{{}, {.hamaker_constant = 1e-19}}.crossover), 10_nm);
 }
@@ -403,7 +404,8 @@ TYPED_TEST(GasLawOfType, OpposesTheMotionAndTakesItsEnergy) {
 }
 
 TYPED_TEST(GasLawOfType, DualSlopesAreTheComplexStepDerivatives) {
-  if constexpr (!std::is_same_v<TypeParam, NearContactFilm>) {  // its pieces are told apart by an order that complex numbers lack
+  if constexpr (!std::is_same_v<TypeParam,
+                                NearContactFilm>) {  // its pieces are chosen by comparisons, which complex numbers lack
     constexpr double step = 1e-30;
     const auto law = gas_law_of_type<TypeParam>(20_um, 65_nm);
     using Complex = std::complex<double>;
@@ -451,17 +453,17 @@ TEST(StripOverSlit, IsTheStripWhereTheSlitIsWideAndTwiceAsWideWhereItIsClosed) {
   };
   for (const double h : gaps) {
     EXPECT_NEAR(slit(100 * h).load(h, 1.0), open.load(h, 1.0), 1e-6 * std::abs(open.load(h, 1.0))) << h;
-    // The closed edge is the middle of a strip of twice the width, of which this is one half.
+    // The closed edge is the middle of a strip of twice the width, of which the film is one half.
     EXPECT_NEAR(slit(h / 1000).load(h, 1.0), twice.load(h, 1.0) / 2, 1e-6 * std::abs(twice.load(h, 1.0))) << h;
   }
 }
 
 TEST(StripOverSlit, SolvesReynoldsEquationWithItsEdges) {
-  // p'' = -12 mu v / h^3 by a shooting sum on a fine grid: p(0) = 0 and -p'(a) h^3 = p(a) s^3 / l. Linear in p'(0), so two shots
-  // do.
+  // Solves p'' = -12 mu v / h^3 with p(0) = 0 and -p'(a) h^3 = p(a) s^3 / l by shooting. The solution is linear in p'(0), so
+  // that two shots suffice.
   constexpr double mu = 1.86e-5, a = 20_um, s = 2_um, l = 2.1_um, h = 3_um;
   constexpr double source = 12 * mu / (h * h * h);
-  const auto shoot = [&](double slope) {  // the parabola of constant source, exactly
+  const auto shoot = [&](double slope) {  // the parabola for a constant source is exact
     const double pressure = slope * a - source * a * a / 2, end = slope - source * a;
     return std::pair{-end * h * h * h - pressure * s * s * s / l, slope * a * a / 2 - source * a * a * a / 6};
   };
@@ -473,7 +475,7 @@ TEST(StripOverSlit, SolvesReynoldsEquationWithItsEdges) {
 }
 
 TEST(EndFlow, IsThatOfARectangularFilm) {
-  // The double Fourier series of Poisson's equation on a rectangle converges slowly and says the same.
+  // The double Fourier series of Poisson's equation on a rectangle converges slowly to the same value.
   for (const double ratio : {0.05, 0.3, 0.5256, 1.0, 2.5}) {
     double sum = 0;
     for (int m = 1; m < 2000; m += 2) {
@@ -497,12 +499,12 @@ TEST(EndFlow, WeakensTheFilmsThatTakeALength) {
   }
 }
 
-// The viscosity of air at 300 K, as the tables have it: 2.3 % less than the standard atmosphere says [Pa s].
+// Viscosity of air at 300 K in the tables, 2.3 % below the standard atmosphere [Pa s].
 const double viscosity_of_the_tables = 1.7894e-5 * std::pow(300.0 / 297, 0.77);
 
 TEST(GasLaw, HasTheTabulatedDampingPerLength) {
-  // Computed independently: a = 123 um, b = 4 um, mean free path 65.45 nm; air as it was known there, near contact 1.98e-5 Pa s.
-  // The values are as printed: the tolerance is half a unit of the last digit.
+  // Independent values for a = 123 um, b = 4 um, mean free path 65.45 nm; air with the viscosity above, near contact 1.98e-5 Pa
+  // s. The tolerance is half a unit of the last printed digit.
   struct Row {
     double gap;
     const char *strip, *veijola, *gallis_torczynski, *near_contact, *guo_alexeenko;
@@ -593,7 +595,7 @@ std::vector<ContactLaw> remembering() {
   return {law_of(hysteretic), plastic_law(Plasticity::zmc), plastic_law(Plasticity::kogut_etsion)};
 }
 
-/// Lists every law that acts in contact alone and has a force, with damping where it takes it.
+/// Lists every law that acts only in contact and has a force, with damping if the law has it.
 std::vector<ContactLaw> every_contact_law() {
   std::vector<ContactLaw> laws;
   for_each_law<ContactModel>([&]<class Law>(std::type_identity<Law>) {
@@ -611,7 +613,7 @@ TEST(ContactLaw, ForceIsTheSlopeOfTheStoredEnergy) {
   constexpr double differences = 1e-9;
   for (const ContactLaw& law : every_contact_law()) {
     for (const double d : interferences) {
-      const double h = std::abs(d - 100_nm) < 2_nm ? 0.05_nm : d / 100;  // not across the end of the asperities
+      const double h = std::abs(d - 100_nm) < 2_nm ? 0.05_nm : d / 100;  // do not step across the end of the asperities
       const double slope = derivative([&](double x) { return contact_energy(law, x); }, d, h);
       const double force = contact_force(law, d);
       EXPECT_NEAR(slope, force, differences * std::abs(force)) << "d = " << d << ", law " << law.index();
@@ -694,7 +696,7 @@ TEST(UniformAsperities, CarryTheHertzLawIntegratedOverTheirHeights) {
   boost::math::quadrature::tanh_sinh<double> integrator;
   for (const double d : interferences) {
     const double per_depth = 1e11 * beam_width * 5_um / 100_nm * 4.0 / 3 * 48e9 * std::sqrt(100_nm);
-    // The values are in units of d: the integrator's absolute floor is not for metres.
+    // The integrator's absolute tolerance does not suit metres, so that values are in units of d.
     const double deepest = std::min(1.0, 100_nm / d);
     const double sum = integrator.integrate([](double s) { return std::pow(1 - s, 1.5); }, 0.0, deepest);
     const double expected = per_depth * std::pow(d, 2.5) * sum;
@@ -706,7 +708,7 @@ TEST(UniformAsperities, HaveTwoContinuousDerivativesAtFirstTouch) {
   const auto law = std::get<UniformAsperityContact>(contact_law(gold_pad, beam_width));
   const auto slope = [&](double d) { return law.force(Dual(d, 1)).slope; };
   EXPECT_EQ(slope(0), 0);
-  // P'' at 0 is the limit of P'(d) / d, which falls like the root of d from both sides.
+  // P'' at 0 is the limit of P'(d) / d, which decreases like the root of d from both sides.
   for (const double d : {1_nm, 0.01_nm, 1e-4 * 1_nm}) {
     EXPECT_NEAR((slope(d) / d) / (slope(d / 100) / (d / 100)), 10, 1e-6);
     EXPECT_EQ(slope(-d), slope(d));
@@ -723,18 +725,18 @@ TEST(UniformAsperities, GoOnSmoothlyWhenTheLastSummitTouches) {
   const double curvature_below = (slope(hm) - slope(hm - 0.001 * hm)) / (0.001 * hm);
   const double curvature_above = (slope(hm + 1e-6 * hm) - slope(hm)) / (1e-6 * hm);
   EXPECT_NEAR(curvature_above, curvature_below, 0.01 * curvature_below);
-  // All summits share the load beyond: stiffer than linear, softer than while summits were still joining.
+  // All summits are loaded: stiffer than a linear law, softer than while further summits come into touch.
   EXPECT_GT(law.force(2 * hm), 2 * law.force(hm));
   EXPECT_LT(law.force(2 * hm), std::pow(2, 2.5) * law.force(hm));
 }
 
-/// F_n(h) by quadrature.
+/// Returns F_n(h) by quadrature.
 double gaussian_integral(double n, double h) {
   boost::math::quadrature::exp_sinh<double> integrator;
-  // The weight exp(-h t) is kept inside, the constant exp(-h^2/2) outside: relative accuracy far out in the tail.
+  // The factor exp(-h t) is inside of the integral and exp(-h^2/2) outside, which keeps the relative accuracy in the tail.
   const auto integrand = [&](double t) { return std::pow(t, n) * std::exp(-t * (t / 2 + h)); };
   if (h >= 0) return std::exp(-h * h / 2) / std::sqrt(2 * pi) * integrator.integrate(integrand, 1e-15);
-  // Split where the integrand peaks.
+  // Split the interval at the peak of the integrand.
   boost::math::quadrature::tanh_sinh<double> finite;
   const auto whole = [&](double t) { return std::pow(t, n) * std::exp(-(t + h) * (t + h) / 2); };
   return (finite.integrate(whole, 0.0, -h, 1e-15) + integrator.integrate([&](double t) { return whole(t - h); }, 1e-15)) /
@@ -742,7 +744,7 @@ double gaussian_integral(double n, double h) {
 }
 
 TEST(GaussianAsperities, IntegralsAreThoseOfQuadrature) {
-  constexpr double digits = 1e-10;  // relative: what the header promises is ten times better
+  constexpr double digits = 1e-10;  // relative; the header states a tenth of it
   for (double h = -12; h <= 8; h += 0.173) {
     const double f = gaussian_integral(1.5, h);
     EXPECT_NEAR(GaussianAsperityContact::tail(h), f, digits * f) << "h = " << h;
@@ -784,7 +786,8 @@ TEST(GaussianAsperities, CarryTheHertzLawIntegratedOverTheirHeights) {
   }
 }
 
-/// Rebound velocity of a mass that hits the law at v, by Runge-Kutta; the last step is not finished.
+/// Returns the rebound velocity of a mass that hits the law at v, by Runge-Kutta. The last step is not truncated at the end of
+/// contact.
 double rebound(const ContactLaw& law, double mass, double v) {
   double d = 0, time_step = 1e-3 * std::sqrt(mass / (contact_force(law, 10_nm) / 10_nm));
   const auto acceleration = [&](double x, double u) { return -contact_force(law, x, true, u) / mass; };
@@ -802,7 +805,7 @@ double rebound(const ContactLaw& law, double mass, double v) {
 
 TEST(HuntCrossley, HasTheRestitutionOfItsClosedFormWhateverTheElasticLaw) {
   constexpr double mass = 1e-11;  // [kg]
-  constexpr double end = 1e-4;    // relative: the last step is not finished, and the force there is next to nothing
+  constexpr double end = 1e-4;    // relative; the last step is not truncated, but the force there is negligible
   for (const ContactModel& model : damping_contacts) {
     for (const double c : {0.4, 4.0}) {
       const ContactLaw law = law_of(model, c);
@@ -910,7 +913,7 @@ TEST(Hysteretic, ReturnsTheShareOfTheWorkThatTheStiffnessesSay) {
   EXPECT_TRUE(dent(law, 1_nm).heals);
 }
 
-/// One asperity of Zhao, Maietta & Chang, as published.
+/// Returns the load of one asperity of Zhao, Maietta & Chang, as published.
 double zmc_asperity(double w, double radius, double hardness, double modulus) {
   constexpr double k = 0.4;
   const double w1 = std::pow(3 * pi * k * hardness / (4 * modulus), 2) * radius, w2 = 54 * w1;
@@ -921,7 +924,7 @@ double zmc_asperity(double w, double radius, double hardness, double modulus) {
   return area * (hardness - hardness * (1 - k) * (std::log(w2) - std::log(w)) / (std::log(w2) - std::log(w1)));
 }
 
-/// One asperity of Kogut & Etsion: the published fits times what makes them continuous.
+/// Returns the load of one asperity of Kogut & Etsion: the published fits times factors that make them continuous.
 double ke_asperity(double w, double radius, double hardness, double modulus, bool as_published = false) {
   constexpr double factor = 0.577;
   const double wc = std::pow(pi * factor * hardness / (2 * modulus), 2) * radius, u = w / wc;
@@ -1021,7 +1024,7 @@ double returned_by_flattened_summit(double u) {
 
 TEST(ElasticPlastic, GivesBackMoreThanAFlattenedSummitByWhatTheDocumentationSays) {
   const double w = yield(Plasticity::kogut_etsion).first, critical = ke_asperity(w, radius, hardness, modulus);
-  // The sharp summit unloads along Hertz' curve from the load p: 0.4 p p^(2/3).
+  // The sharp summit unloads along Hertz's curve from the load p: 0.4 p p^(2/3).
   const auto sharp = [](double load) { return 0.4 * std::pow(load, 2.0 / 3); };
   constexpr double printed = 5e-3;  // three digits
   struct {
@@ -1055,7 +1058,7 @@ TEST(UniformAsperities, InterferenceBelongsToItsForce) {
   EXPECT_EQ(law.interference(0), 0);
 }
 
-/// The published pressure of the adhesive-repulsive law, less the line that ends it at its reach [Pa].
+/// Returns the published pressure of the adhesive-repulsive law, less the linear term that makes it vanish at its reach [Pa].
 double surface_pressure(double x) {
   constexpr double nm = 1e-9, reach = 1000 * nm, asperities = 110, adhesion = 112;
   const auto far = [](double at) {
@@ -1066,7 +1069,8 @@ double surface_pressure(double x) {
          1e3 * std::max(0.0, adhesion - x / nm);
 }
 
-// Distances above the plane, in the soft wall, around the onsets of adhesion and asperities (50.06 and 52.06 nm), deep inside.
+// Distances above the plane, in the soft wall, around the onsets of adhesion and asperities (50.06 and 52.06 nm), and deep
+// inside.
 constexpr std::array near_and_far{-830_nm, -300_nm, -40_nm, -1_nm, 10_nm, 49_nm, 51_nm, 53_nm, 60_nm, 100_nm, 150_nm};
 
 TEST(AdhesiveRepulsive, IsThePublishedPressureLessALine) {
@@ -1077,7 +1081,7 @@ TEST(AdhesiveRepulsive, IsThePublishedPressureLessALine) {
     const double expected = beam_width * 5_um * surface_pressure(law.touch_distance() - d);
     EXPECT_NEAR(law.force(d), expected, digits * (std::abs(expected) + beam_width * 5_um)) << "d = " << d;
   }
-  // The line takes this share of the attraction where that is felt.
+  // The linear term is a small share of the attraction at typical distances.
   for (const double x : {150_nm, 112_nm}) {
     const double attraction = 0.215e-18 / (6 * pi * (std::pow(x, 3) + std::pow(30_nm, 3)));
     const double line = surface_pressure(x) + attraction - 0.5e9 * std::exp(-x / 8.5_nm);
@@ -1133,7 +1137,7 @@ TEST(AdhesiveRepulsive, SaysWhereItIsNotSmooth) {
   const double jump = slope(kinks[0] + 1e-15) - slope(kinks[0] - 1e-15);
   const double adhesion = beam_width * 5_um * SurfacePressure{}.adhesion_pressure / 1_nm;
   EXPECT_NEAR(jump, -adhesion, 1e-3 * adhesion) << "where adhesion begins";
-  // The slope grows like a root where asperities meet.
+  // The slope grows like a root at the onset of the asperities.
   const auto bend = [&](double at) { return slope(kinks[1] + at) - slope(kinks[1] - at); };
   EXPECT_NEAR(bend(1e-13) / bend(1e-15), 10, 0.1);
   EXPECT_TRUE(contact_kinks(contact_law(gold_pad, beam_width)).empty());
@@ -1166,7 +1170,7 @@ TEST(Dual, FollowsTheRulesOfDifferentiation) {
 }
 
 TEST(Power, IsThatOfTheLibrary) {
-  constexpr double claimed = 1e-14;  // relative; 4e-15 seen with fused multiply-add, 5.4e-15 without
+  constexpr double claimed = 1e-14;  // relative, as stated; observed: 4e-15 with fused multiply-add, 5.4e-15 without
   double worst = 0;
   for (double x = 1e-9; x < 1e9; x *= 1.0037) {
     for (const double y : {1.159, 3.1, 1.825, 0.966, -1.2, 0.0}) {
@@ -1181,7 +1185,7 @@ TEST(Power, IsThatOfTheLibrary) {
 }
 
 TEST(Power, InverseFourthRootIsExactToRounding) {
-  constexpr double claimed = 1e-15;  // relative; 4e-16 seen
+  constexpr double claimed = 1e-15;  // relative, as stated; observed: 4e-16
   double worst = 0;
   for (double x = 1e-15; x < 1e15; x *= 1.0037) worst = std::max(worst, std::abs(inverse_fourth_root(x) * std::pow(x, 0.25) - 1));
   EXPECT_LT(worst, claimed);
@@ -1197,7 +1201,7 @@ TEST(Dual, RootAtZeroHasNoInfiniteSlope) {
 
 // ---- a law along the beam
 
-// Makes at most a lane of points, and idle ones that fill it.
+// Returns a field of at most one lane of points, filled with unused ones.
 GapField field(const std::vector<double>& gap, double velocity) {
   constexpr double rest_gap = 3.5_um;
   GapField f{.gap = Eigen::ArrayXd::Constant(lanes, rest_gap), .velocity = Eigen::ArrayXd::Constant(lanes, velocity)};
@@ -1219,7 +1223,7 @@ void expect_tangent_below(const Law& physics, double floor, double velocity) {
   const DistributedLawOf<Law> law(physics, 0, 1, floor);
   const double value = physics.load(floor, velocity), slope = physics.load(Dual(floor, 1), Dual(velocity)).slope;
   EXPECT_DOUBLE_EQ(load_at(law, floor, velocity), value);
-  constexpr double close = 1e-6;  // distance of the two sides that are compared, as a share of the floor
+  constexpr double close = 1e-6;  // distance of the two sides that are compared, over the floor
   EXPECT_NEAR(load_at(law, floor * (1 - close), velocity), value, 10 * close * std::abs(value));
   for (const double below : {0.5 * floor, 0.0, -3 * floor}) {
     const double expected = value + slope * (below - floor);
@@ -1264,7 +1268,7 @@ using LawsAlongTheBeam = AlongTheBeam<FringingLaw, GasLaw::variant, DispersionFo
 TYPED_TEST_SUITE(LawAlongTheBeam, LawsAlongTheBeam);
 
 constexpr double gap_floor = 35_nm;
-// Above, just above, at, just below and far below the floor; deep below no gap is left.
+// Gaps above, just above, at, just below and far below the floor; deep below, no gap is left.
 constexpr std::array around_the_floor{
     10 * gap_floor, 1.5 * gap_floor, 1.0000001 * gap_floor, gap_floor, 0.9999999 * gap_floor, 0.5 * gap_floor, 0.0,
     -gap_floor,     -5 * gap_floor};

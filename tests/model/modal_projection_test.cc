@@ -1,4 +1,4 @@
-// A right-hand side put together from laws and modal projection, over the three scalars, beside that of a Switch.
+// A right-hand side from laws and modal projection, over the three scalars, compared with that of a Switch.
 #include "model/modal_projection.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ Device device() {
   return d;
 }
 
-/// A place of the beam.
+/// A point of the beam.
 struct Place {
   double weight = 0;  ///< [m]
   bool on_electrode = false;
@@ -61,7 +61,7 @@ Beam beam() {
   return b;
 }
 
-/// The quantities in which manufactured devices differ.
+/// The quantities that vary between devices.
 template <class P>
 struct Sample {
   P thickness, width, gap, viscosity;
@@ -73,7 +73,7 @@ Sample<double> nominal() {
 
 std::span<const double> of(const Eigen::VectorXd& shape) { return {shape.data(), modes}; }
 
-/// Modal accelerations with the tip in contact.
+/// Returns the modal accelerations with the tip in contact.
 template <class S>
 std::array<S, modes> accelerations(const Beam& b, const Sample<S>& sample, const S* q, const S* v, S volts) {
   const ElectrostaticForce<MeijsFokkemaFringingOf<S>> electrode{{.width = sample.width, .thickness = sample.thickness}};
@@ -101,7 +101,7 @@ struct Motion {
   double volts = 12;
 };
 
-/// The tip in the contact by 20 nm.
+/// The tip is in the contact, at a depth of 20 nm.
 Motion motion(const Beam& b) {
   Motion m{.q = {1, 0.02, -0.005}, .v = {1, -2, 3}};
   const double tip = deflection(of(b.tip), m.q.data()), speed = deflection(of(b.tip), m.v.data());

@@ -1,4 +1,4 @@
-// The linear limit: without electrodes and contact every mode is an oscillator driven by the piezo, known in closed form.
+// The linear limit: without electrodes and contact every mode is an oscillator driven by the piezo, with a closed form.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 using namespace literals;
 
 constexpr double tight = 1e-10;        // integrator tolerance
-constexpr double shape_digits = 1e-7;  // share of the largest deflection: error that `tight` leaves after twenty periods
+constexpr double shape_digits = 1e-7;  // error for `tight` after twenty periods, over the largest deflection
 constexpr double window = 200_us;
 
 Device oscillator(double damping_ratio) {
@@ -30,20 +30,20 @@ Device oscillator(double damping_ratio) {
   return device;
 }
 
-/// Response of q'' + 2 zeta w q' + w^2 q = 1 from rest.
+/// Returns the response of q'' + 2 zeta w q' + w^2 q = 1 from rest.
 double step_response(double w, double zeta, double t) {
   const double root = std::sqrt(1 - zeta * zeta);
   return (1 - std::exp(-zeta * w * t) * (std::cos(w * root * t) + zeta / root * std::sin(w * root * t))) / (w * w);
 }
 
-/// Response of q'' + 2 zeta w q' + w^2 q = t from rest.
+/// Returns the response of q'' + 2 zeta w q' + w^2 q = t from rest.
 double ramp_response(double w, double zeta, double t) {
   const double wd = w * std::sqrt(1 - zeta * zeta), decay = std::exp(-zeta * w * t);
   const double a = 2 * zeta / w;  // particular solution (t - a) / w^2
   return (t - a + decay * (a * std::cos(wd * t) + (zeta * w * a - 1) / wd * std::sin(wd * t))) / (w * w);
 }
 
-/// Response of q'' + w^2 q = sin(f t + phase) from rest.
+/// Returns the response of q'' + w^2 q = sin(f t + phase) from rest.
 double sine_response(double w, double f, double phase, double t) {
   const double gain = 1 / (w * w - f * f);
   return gain * (std::sin(f * t + phase) - std::sin(phase) * std::cos(w * t) - f / w * std::cos(phase) * std::sin(w * t));
@@ -115,7 +115,7 @@ TEST(LinearLimit, EveryIntegratorFollowsTheClosedForm_optimized) {
     for (Eigen::Index i = 0; i < device.modes(); ++i) {
       exact += -0.2 * gain[i] * step_response(device.basis().angular_frequencies()[i], 0, 100_us);
     }
-    constexpr double multistep_digits = 2e-5;  // multistep methods let many thousand small errors add up
+    constexpr double multistep_digits = 2e-5;  // in multistep methods many thousand small errors add up
     EXPECT_NEAR(trajectory.points.back().position, exact, multistep_digits * 1_um) << static_cast<int>(integrator);
   }
 }
@@ -142,7 +142,7 @@ TEST(LinearLimit, EnergyOfTheModesIsTheWorkOfTheDrive_optimized) {
   const Trajectory trajectory = simulate_closing(device, drives, {.duration = 130_us, .tolerance = tight});
   EXPECT_GT(trajectory.energy.source_work, 0);
   EXPECT_NEAR(trajectory.energy.residual(), 0, 1e-7 * trajectory.energy.source_work);
-  // Work of a constant voltage: V times the charge the deflection moved, theta q.
+  // The work of a constant voltage is V times the charge theta q of the deflection.
   double work = 0;
   for (Eigen::Index i = 0; i < device.modes(); ++i) {
     work += 0.2 * 0.2 * std::pow(device.basis().piezo_shape()[i], 2) *
@@ -152,7 +152,8 @@ TEST(LinearLimit, EnergyOfTheModesIsTheWorkOfTheDrive_optimized) {
 }
 
 TEST(Touch, ThatGrazesThePlaneIsFoundAndItsNearMissIsNot) {
-  // One undamped mode swings to twice its static deflection: the plane stands a ten-millionth of that short of or beyond it.
+  // One undamped mode overshoots to twice its static deflection. The plane is a ten-millionth of that below or above this
+  // point.
   constexpr double margin = 1e-7, volts = -0.2;
   Device d = oscillator(0);
   d.structure.modes = 1;
@@ -169,7 +170,7 @@ TEST(Touch, ThatGrazesThePlaneIsFoundAndItsNearMissIsNot) {
     if (touches) {
       const double early = std::acos(1 - 2 * margin) / w;  // half the time above the plane
       const Touch& touch = trajectory.touches[0];
-      constexpr double event_digits = 0.01;  // error as a share of that short time
+      constexpr double event_digits = 0.01;  // error over that short time
       EXPECT_NEAR(touch.begin, pi / w - early, event_digits * early);
       EXPECT_NEAR(touch.end, pi / w + early, event_digits * early);
       EXPECT_NEAR(trajectory.deepest_penetration, margin * peak, event_digits * margin * peak);

@@ -1,4 +1,4 @@
-// A contact law of a program's own beside the law of softland that has the same formula.
+// A contact law of a user's program, compared with softland's law of the same formula.
 #include "tests/support/own_contact.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ namespace {
 using namespace literals;
 
 constexpr double same_formula = 1e-12;
-constexpr double looked_for = 1e-11;  // a damped force is largest before the deepest point: in between two values of a search
+constexpr double looked_for = 1e-11;  // error of the search for the largest damped force, which is before the deepest point
 
 UniformAsperities asperities(double damping) {
   UniformAsperities law = UniformAsperities::example();
@@ -106,7 +106,7 @@ TEST(OwnContactLaw, IsRefusedWhereItsLawWouldHaveToBeKnown) {
   EXPECT_THROW(validate(device), InvalidInput);
 }
 
-/// Pulls within the first nanometre.
+/// A contact that attracts within the first nanometre.
 struct Glue final : OwnContactLaw {
   [[nodiscard]] std::string_view name() const override { return "glue"; }
   [[nodiscard]] double force(double d, double) const override { return 1e4 * (d - 1e-9 * std::tanh(d / 0.1e-9)); }

@@ -32,11 +32,11 @@ Device padded(const Contact& contact) {
   return d;
 }
 
-/// Interference of the free end [m] and its slope: part of the pad in touch from the free end, all of it, all of it the other way
-/// round, part of it from the inner end.
+/// Interference of the free end [m] and slope of the beam there: a part of the pad in touch at the free end, the whole pad, the
+/// whole pad with the opposite slope, a part at the inner end.
 constexpr std::array tilts{std::pair{20e-9, 0.01}, std::pair{80e-9, 0.01}, std::pair{30e-9, -0.004}, std::pair{-5e-9, -0.008}};
 
-/// First two modes so that the free end stands there.
+/// Returns amplitudes of the first two modes that give the free end this interference and slope.
 Eigen::VectorXd tilted(const Switch& model, double depth, double slope) {
   const BeamModes modes(beam_sections(model.device()), model.modes());
   const double end = model.device().structure.length;
@@ -47,7 +47,7 @@ Eigen::VectorXd tilted(const Switch& model, double depth, double slope) {
   return q;
 }
 
-/// Velocities as in a closing: the contact point moves at about 0.1 m/s.
+/// Returns random velocities as in a closing: the contact point moves at about 0.1 m/s.
 Eigen::VectorXd velocities(const Switch& model, std::mt19937_64& random) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   Eigen::VectorXd v(model.modes());
@@ -68,7 +68,7 @@ const std::vector<double>& no_volts() {
 
 TEST(PadQuadrature, IntegratesTheHalfIntegerPowersOfTheLaws) {
   constexpr double length = 5e-6, rounding = 1e-13;
-  constexpr double all_in_touch = 1e-11;  // relative: five times the worst seen, with the inner end just in touch
+  constexpr double all_in_touch = 1e-11;  // relative; five times the largest observed error, with the inner end barely in touch
   const PadQuadrature quadrature(length);
   for (const double inner : {-200e-9, -30e-9, -1e-9, 0.0, 1e-12, 1e-10, 1e-9, 3e-9, 1e-8, 3e-8, 1e-7}) {
     for (const double slope : {-0.02, -1e-3, 1e-3, 0.01}) {
@@ -158,7 +158,7 @@ TEST(PadContact, HasItsExactDerivativesAndEnergy) {
     for (const auto& tilt : tilts) {
       Eigen::VectorXd q = tilted(model, tilt.first, tilt.second), v = velocities(model, random);
       const std::string name = named(contact, tilt);
-      // The contact's own part: what the same device has when it is not active goes off.
+      // The force of the contact alone: subtract the force of the same device without it.
       const auto force = [&](const Eigen::VectorXd& rate) {
         Eigen::VectorXd with(n), without(n);
         model.accelerations(q.data(), rate.data(), no_volts(), true, work, with.data());
@@ -221,7 +221,8 @@ TEST(PadContact, IsSeenFromTheFreeEnd) {
   EXPECT_EQ(d.contact_position(), d.structure.length);
   EXPECT_EQ(model.basis().contact_shape(), modes.value(d.structure.length));
   EXPECT_DOUBLE_EQ(model.basis().in_contact_period(), 2 * pi / modes.pinned_frequency(d.structure.length));
-  // The scale of penetration carries the force that bends the beam by the contact gap, on the pad as tilted by that force.
+  // The scale of penetration corresponds to the force that bends the beam by the contact gap, on the pad as tilted by that
+  // force.
   const Eigen::VectorXd bent = model.basis().contact_shape().cwiseQuotient(model.basis().angular_frequencies().cwiseAbs2());
   const double compliance = model.basis().contact_shape().dot(bent);
   const Eigen::VectorXd q = bent * ((d.gap.contact + model.penetration_scale()) / compliance), still = 0 * q;

@@ -21,7 +21,7 @@ namespace {
 using namespace literals;
 using test::gold;
 
-/// An electrode near the root: the contact point reaches the contact plane before the fold.
+/// A switch with an electrode near the root, whose contact point reaches the contact plane before the fold.
 Switch contact_first() {
   Device d = test::gold_cantilever();
   d.electrodes[0].begin = 0;
@@ -29,8 +29,8 @@ Switch contact_first() {
   return Switch(d);
 }
 
-/// True if the contact reaches the plane within a hundred periods of a step: the definition of dynamic pull-in, without its
-/// shortcuts.
+/// True if the contact point reaches the plane within a hundred periods of a step: the definition of dynamic pull-in, without
+/// the shortcuts of the implementation.
 bool reaches(const Switch& model, double volts) {
   const std::vector<Signal> drives{Signal::constant(volts)};
   const double window = 100 * 2 * pi / model.basis().angular_frequencies()[0];
@@ -38,7 +38,7 @@ bool reaches(const Switch& model, double volts) {
 }
 
 TEST(StaticPullIn, AtTheFoldLeavesNoEquilibriumForASlowerRamp) {
-  // An independent path: a step damped to rest settles below the fold and closes above it.
+  // An independent method: a damped step comes to rest below the fold, and closes the switch above it.
   Device d = test::gold_cantilever();
   d.structure.damping_ratio = 0.7;
   const Switch model(d);
@@ -50,7 +50,7 @@ TEST(StaticPullIn, AtTheFoldLeavesNoEquilibriumForASlowerRamp) {
 }
 
 TEST(StablePath, OfAPiezoIsItsVoltsTimesTheDeflectionPerVolt) {
-  // A beam by itself under its layer is linear: nothing else acts at 0 V on the electrode.
+  // At 0 V on the electrode the beam under its layer is linear.
   Device d = test::gold_cantilever();
   d.piezo = Piezo{.begin = 5_um, .end = 240_um, .thickness = 1_um, .youngs_modulus = 61e9, .density = 7750, .d31 = -171e-12};
   const Switch model(d);
@@ -61,7 +61,7 @@ TEST(StablePath, OfAPiezoIsItsVoltsTimesTheDeflectionPerVolt) {
   EXPECT_NEAR(path->slope(), per_volt, 1e-9 * std::abs(per_volt));
   for (std::size_t k = 0; k < path->values.size(); ++k)
     EXPECT_NEAR(path->deflections[k], per_volt * path->values[k], 1e-9 * d.gap.contact);
-  // An electrode that stands low softens the beam: the piezo needs less.
+  // A low voltage on an electrode softens the beam, so that the piezo needs less voltage.
   EXPECT_LT(std::abs(stable_path(model, 1, std::vector<double>{5.0, 0.0})->reaches()), std::abs(path->reaches()));
 }
 
@@ -71,7 +71,7 @@ TEST(StablePath, OfAnElectrodeEndsWhereTheContactComesBeforeTheFold) {
   ASSERT_TRUE(path);
   EXPECT_NEAR(path->reaches(), static_pull_in(model, 0).voltage, 1e-6 * path->reaches());
   EXPECT_FALSE(stable_path(gold(), 0)) << "its contact lies beyond the fold";
-  // An independent path: a step damped to rest at a voltage of the path stands at its deflection.
+  // An independent method: a damped step at a voltage of the path comes to rest at the deflection of the path.
   Device damped = model.device();
   damped.structure.damping_ratio = 0.7;
   const std::size_t middle = path->values.size() / 2;
@@ -88,7 +88,7 @@ TEST(StablePath, OfAnElectrodeOnTheFarSideIsNone) {
 }
 
 TEST(StaticPullIn, SettledBeamStandsOnTheBranch) {
-  // Damped to rest at the voltage of an equilibrium beyond no fold: the fold's deflection is the limit of such rests.
+  // An independent method: a damped step just below pull-in comes to rest near the deflection of the fold.
   Device d = test::gold_cantilever();
   d.structure.damping_ratio = 0.7;
   const Switch model(d);
@@ -96,7 +96,7 @@ TEST(StaticPullIn, SettledBeamStandsOnTheBranch) {
   const std::vector<Signal> drives{Signal::constant(0.9999 * found.voltage)};
   const double rest = simulate_closing(model, drives, {.duration = 20'000_us, .tolerance = 1e-8}).points.back().position;
   EXPECT_LT(rest, found.deflection);
-  EXPECT_GT(rest, 0.97 * found.deflection);  // the branch is a parabola there: one per cent of deflection per 1e-4 of voltage
+  EXPECT_GT(rest, 0.97 * found.deflection);  // the branch is a parabola there: one per cent of deflection for 1e-4 of voltage
 }
 
 TEST(StaticPullIn, IsTheContactWhereThatComesFirst) {
@@ -107,12 +107,12 @@ TEST(StaticPullIn, IsTheContactWhereThatComesFirst) {
   EXPECT_EQ(to_string(found.kind), "contact");
   EXPECT_EQ(to_string(StaticKind::fold), "fold");
   EXPECT_DOUBLE_EQ(found.deflection, model.device().gap.contact);
-  // Nothing snaps: it closes where it opens.
+  // Without a fold the switch opens at the voltage at which it closes.
   EXPECT_NEAR(release_voltage(model, 0), found.voltage, 1e-9 * found.voltage);
 }
 
 TEST(StaticPullIn, AtTheContactIsWhatABiasLeavesOfTheBalance) {
-  // k x = eps0 (A V^2 + B U^2) / (2 (g - x)^2) where the plate touches.
+  // At touch, k x = eps0 (A V^2 + B U^2) / (2 (g - x)^2).
   Device d = test::full_plate();
   d.gap.contact = 1_um;  // a gap before the fold
   for (Electrode& e : d.electrodes) e.fringing = Fringing::none;
@@ -183,7 +183,7 @@ TEST(DynamicPullIn, PassesOnWhatStaticPullInSaid) {
 }
 
 TEST(DynamicPullIn, TellsProgressThatNeverRunsBack) {
-  // The stiff film makes the switch creep, the undamped switch closes at the first trial: brackets of both kinds.
+  // A switch in a viscous film creeps, an undamped one closes at the first trial: tests brackets of both kinds.
   for (const double viscosity : {0.0, 1.86e-5, 1e-2}) {
     Device device = test::gold_cantilever();
     if (viscosity == 0) device.gas.reset();
@@ -227,7 +227,7 @@ TEST(StaticPullIn, OfFacesOnBothSidesIsTheMaximumOfTheBalance) {
     most = std::max(most, x / factor / (1 / ((g - x) * (g - x)) - 1 / ((G + x) * (G + x))));
   }
   EXPECT_NEAR(static_pull_in(Switch(d), 0).voltage, std::sqrt(most), 1e-8 * std::sqrt(most));
-  d.electrodes[0].gap = 1;  // far enough not to matter
+  d.electrodes[0].gap = 1;  // so far away that it has no effect
   const double alone = std::sqrt(8 * std::pow(g, 3) / (27 * 2 * factor));
   EXPECT_NEAR(static_pull_in(Switch(d), 0).voltage, alone, 1e-9 * alone);
 }
@@ -245,11 +245,12 @@ TEST(ReleaseVoltage, IsWhereTheClosedEquilibriumVanishes) {
 }
 
 TEST(ReleaseVoltage, IsWhereAClosedSwitchOpens) {
-  // An independent path: close with a step, then lower the voltage slowly with strong damping and see whether contact ends.
+  // An independent method: close by a step, then lower the voltage slowly with strong damping until the contact opens.
   Device gold_damped = test::gold_cantilever();
   gold_damped.structure.damping_ratio = 0.5;
   Device soft = gold_damped;
-  test::rough(soft).summits.density = 1e6;  // so soft that the branch falls well below the plane before contact turns it up
+  test::rough(soft).summits.density =
+      1e6;  // so soft that the voltage decreases well below the plane before the contact makes it increase
   for (const Device& d : {gold_damped, soft}) {
     const Switch model(d);
     const double release = release_voltage(model, 0), high = 1.2 * static_pull_in(model, 0).voltage;
@@ -258,13 +259,13 @@ TEST(ReleaseVoltage, IsWhereAClosedSwitchOpens) {
       const Trajectory t = simulate_closing(model, drives, {.duration = 20'000_us});
       return std::isfinite(t.touches.back().end);
     };
-    constexpr double margin = 2e-4;  // relative; nearer the fold opening takes longer than the window
+    constexpr double margin = 2e-4;  // relative; closer to the fold, opening takes longer than the window
     EXPECT_TRUE(opens((1 - margin) * release));
     EXPECT_FALSE(opens((1 + margin) * release));
   }
 }
 
-/// Contacts from far softer than the beam (0.2 N/m) to far stiffer, of both laws.
+/// Contacts from much softer than the beam (0.2 N/m) to much stiffer, with both laws.
 std::vector<Device> contacts_of_every_stiffness() {
   std::vector<Device> all;
   std::mt19937_64 random(7);
@@ -307,7 +308,7 @@ TEST(ReleaseVoltage, IsWhereTheClosedEquilibriumVanishesForEveryContact_optimize
     EXPECT_GT(force, 0);
     for (const double share : {1.001, 1.01, 1.1, 1.5}) {
       const auto harder = closed(share * release);
-      if (!harder) break;  // the electrode has won
+      if (!harder) break;  // the beam collapses onto the electrode
       EXPECT_GT(harder->contact_force, force) << name << ", " << share;
       force = harder->contact_force;
     }
@@ -347,7 +348,7 @@ TEST(ClosedEquilibrium, IsAnEquilibrium) {
 }
 
 TEST(ClosedEquilibrium, IsFoundBetweenASoftContactAndTheElectrode) {
-  // A spring softer than the beam gives way by much of what is left between contact plane and electrode.
+  // A spring that is softer than the beam is compressed by much of the distance between contact plane and electrode.
   Device d = test::gold_cantilever();
   d.contacts.front().model = LinearSpring{.stiffness = 0.15_N_m};
   d.electrodes[0].begin = 0;

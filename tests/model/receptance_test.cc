@@ -24,7 +24,7 @@ const std::vector<BeamElement> even = cut({0, 0.25, 0.5, 0.75, 1}), uneven = cut
 
 TEST(Receptance, WithoutInertiaIsTheTextbookFlexibility) {
   for (const auto& elements : {even, uneven}) {
-    for (const double x : {0.5, 1.0}) {  // nodes: within an element the moment has no corner
+    for (const double x : {0.5, 1.0}) {  // nodes of the elements: within an element the moment is smooth
       Receptance free(elements, 0, false);
       EXPECT_NEAR(free.at(Lane::Zero(), x).deflection[0], x * x * x / 3, rounding * x);
       if (x == 1) continue;
@@ -35,7 +35,7 @@ TEST(Receptance, WithoutInertiaIsTheTextbookFlexibility) {
 }
 
 TEST(Receptance, UnderTensionIsThatOfAStiffenedString) {
-  // EI y'''' = N y'': with k^2 = N / EI, the tip of a cantilever yields by (k - tanh k) / (k^3 EI) under one.
+  // EI y'''' = N y'': with k^2 = N / EI, the tip of a cantilever deflects by (k - tanh k) / (k^3 EI) under a unit force.
   for (const double k : {0.5, 3.0}) {
     Receptance free(uneven, k * k, false);
     EXPECT_NEAR(free.at(Lane::Zero(), 1).deflection[0], (k - std::tanh(k)) / (k * k * k), 1e-11);
@@ -68,7 +68,7 @@ TEST(Receptance, CountsTheFrequenciesBelow) {
   for (const bool held : {false, true}) {
     Receptance beam(uneven, 0, held);
     for (int mode = 0; mode < 6; ++mode) {
-      // Numbers of the modes, cos x cosh x = 1 or -1, lie within a tenth of these, but the first of a cantilever at 1.875.
+      // Mode numbers from cos x cosh x = 1 or -1 are within a tenth of these; that of a cantilever's first mode is 1.875.
       const double number = mode == 0 && !held ? 1.875104 : (mode + (held ? 1.5 : 0.5)) * pi;
       const Lane around = beam.at({std::pow(number - 0.3, 4), std::pow(number + 0.3, 4), 0, 1e-9}, 0.4).below;
       EXPECT_EQ(around[0], mode);
@@ -81,7 +81,7 @@ TEST(Receptance, CountsTheFrequenciesBelow) {
 TEST(Receptance, MotionIsADeflectionByTheForce) {
   Receptance beam(even, 0, false);
   ASSERT_NEAR(beam.at(Lane::Zero(), 1).deflection[1], 1.0 / 3, rounding);
-  // Its bending energy is half of force times deflection, and that of every function is a half.
+  // Its bending energy is half of force times deflection, and that of every basis function is a half.
   EXPECT_NEAR(beam.motion(1).squaredNorm(), 1.0 / 3, rounding);
 }
 

@@ -1,4 +1,4 @@
-// Contact resistance against values of an independent program (../shared: one spot, gold on gold), limits and identities.
+// Contact resistance, against values of an independent program (one spot, gold on gold), limits and identities.
 #include "model/contact/resistance.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ TEST(ContactResistance, OfOnePlasticSpotAgreesWithAnIndependentProgram) {
     expect_ohm(resistance_law(contact).resistance(any_depth, row.force), row.both, kept_to, "Sharvin and Holm");
     contact.conduction.mean_free_path = 0;
     expect_ohm(resistance_law(contact).resistance(any_depth, row.force), row.holm, kept_to, "Holm");
-    // Electrons that fly through the spot leave this of the whole: G falls to 0.83 / 1.33, and Holm's part to nothing.
+    // For ballistic electrons G falls to 0.83 / 1.33, and Holm's part vanishes.
     const double radius = std::sqrt(row.force / (std::numbers::pi * gold_pair.hardness));
     constexpr double long_path = 1e-2;  // [m]
     expect_ohm(ContactResistance::of_spot(radius, gold_pair.resistivity, long_path) * gold_pair.mean_free_path / long_path,
@@ -60,7 +60,7 @@ TEST(ContactResistance, OfAnElasticSpotAgreesWithAnIndependentProgram) {
   for (const Row& row :
        {Row{1e-5, 0.4399999999999995, 0.56769507167925}, Row{2e-5, 0.3492282314330035, 0.35762548536513306},
         Row{5e-5, 0.257313560962732, 0.19414898352368426}, Row{1e-4, 0.20422990867896207, 0.12230619557859135}}) {
-    // One summit in all, and no hardness: the spot is elastic.
+    // A single summit without hardness: the spot is elastic.
     Contact contact = test::gold_contact(UniformAsperities{
         .summits = {.radius = 100_nm, .density = 1 / (20_um * 5_um), .effective_modulus = 48_GPa}, .height = 100_nm});
     contact.conduction = {.resistivity = gold_pair.resistivity};
@@ -76,7 +76,7 @@ TEST(ContactResistance, OfNineSpotsAgreesWithAnIndependentProgram) {
   for (const auto& [force, right] : {std::pair{1e-5, 0.1586502237014923}, std::pair{2e-5, 0.09036869139426915},
                                      std::pair{5e-5, 0.04539369387121459}, std::pair{1e-4, 0.028148821975657587}}) {
     expect_ohm(resistance_law(gold_spring(9)).resistance(any_depth, force), right, kept_to, "nine contacts side by side");
-    // Nine summits of a rough pad, all of them in touch. They are plastic: elastic spots would be smaller.
+    // A rough pad with nine summits, all in touch. The spots are plastic: elastic ones would be smaller.
     Contact rough = test::gold_contact(UniformAsperities{
         .summits = {.radius = 100_nm, .density = 9 / (20_um * 5_um), .effective_modulus = 48_GPa}, .height = 100_nm});
     rough.conduction = gold_spring().conduction;
@@ -84,7 +84,7 @@ TEST(ContactResistance, OfNineSpotsAgreesWithAnIndependentProgram) {
   }
 }
 
-// The abstract of Nikolic and Allen says so of the exact formula.
+// The bound is from the abstract of Nikolic and Allen, for the exact formula.
 TEST(ContactResistance, StaysWithin11PercentOfThePlainSumOfItsLimits) {
   constexpr double path = 38e-9;  // [m]
   double most = 0;
@@ -105,7 +105,7 @@ TEST(ContactResistance, OfManySpotsFallsByHolmAndStaysBySharvin) {
   contact.conduction.mean_free_path = many.conduction.mean_free_path = 0;
   expect_ohm(resistance_law(many).resistance(any_depth, force),
              resistance_law(contact).resistance(any_depth, force) / std::sqrt(spots), to_rounding);
-  // Electrons that fly through every spot: the area of all spots together decides, and that is the load's.
+  // With ballistic electrons in every spot only the total area of the spots matters, which follows from the load.
   contact.conduction.mean_free_path = many.conduction.mean_free_path = 1e-2;
   expect_ohm(resistance_law(many).resistance(any_depth, force), resistance_law(contact).resistance(any_depth, force), 1e-4);
 }
@@ -116,7 +116,7 @@ TEST(ContactResistance, CountsTheSummitsInTouch) {
   Contact uniform = test::gold_contact(
       UniformAsperities{.summits = {.radius = 1_nm, .density = 1e12, .effective_modulus = 48_GPa}, .height = 100_nm});
   uniform.conduction = gold_spring().conduction;
-  // 100 summits under the pad of 20 um by 5 um; the small radius keeps every spot plastic.
+  // 100 summits under the pad of 20 um by 5 um; their small radius keeps every spot plastic.
   expect_ohm(resistance_law(uniform).resistance(20_nm, force), spots_alone(20), to_rounding, "a fifth of the heights");
   expect_ohm(resistance_law(uniform).resistance(250_nm, force), spots_alone(100), to_rounding, "crushed");
   expect_ohm(resistance_law(uniform).resistance(0.1_nm, force), spots_alone(1), to_rounding, "one at least");
@@ -126,7 +126,7 @@ TEST(ContactResistance, CountsTheSummitsInTouch) {
   gaussian.conduction = gold_spring().conduction;
   expect_ohm(resistance_law(gaussian).resistance(40_nm, force), spots_alone(50), to_rounding,
              "the plane is at the mean of the summits");
-  // Two standard deviations above the mean there are 2.275 % of them.
+  // 2.275 % of the summits are more than two standard deviations above the mean.
   expect_ohm(resistance_law(gaussian).resistance(20_nm, force), spots_alone(2.2750131948179), 1e-9);
 }
 
@@ -138,7 +138,7 @@ TEST(ContactResistance, OfASpotIsElasticUntilItsPressureIsTheHardness) {
     return resistance_law(contact).resistance(any_depth, force);
   };
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  // (3 R / (4 E*))^2 (pi H)^3: the load at which the two radii are equal [N].
+  // (3 R / (4 E*))^2 (pi H)^3: the load at which elastic and plastic radius are equal [N].
   const double at = std::pow(3 * 100e-9 / (4 * 48e9), 2) * std::pow(std::numbers::pi * gold_pair.hardness, 3);
   EXPECT_EQ(of_one(0.5 * at, gold_pair.hardness), of_one(0.5 * at, none)) << "elastic";
   expect_ohm(of_one(at, gold_pair.hardness), of_one(at, none), to_rounding, "continuous");

@@ -33,7 +33,7 @@ TEST(RestShape, OfAPlainCantileverIsAParabola) {
   EXPECT_EQ(curled(d, 0).contact_gap(), d.gap.contact);
 }
 
-// A layer makes its stretch stiffer, so that it curls less; value and slope go on at its ends.
+// A layer stiffens its part of the beam, which curls less. Deflection and slope are continuous at its ends.
 TEST(RestShape, IsStraighterWhereALayerStiffensTheBeam) {
   const Device d = curled(test::gold_pzt_cantilever());
   const double plain = gradient / 78_GPa;
@@ -54,8 +54,8 @@ TEST(RestShape, IsStraighterWhereALayerStiffensTheBeam) {
   }
 }
 
-// The reference device, curled up: values of an independent program with four modes (Meijs-Fokkema fringing, strip film,
-// asperities).
+// The reference device with an upward curl. Expected values come from an independent program with four modes (Meijs-Fokkema
+// fringing, strip film, asperities).
 TEST(RestShape, MovesPullInAndTheFirstTouchAsAnIndependentProgramSays) {
   const Switch model(curled(test::gold_cantilever()));
   constexpr double digits = 1e-5;
@@ -81,7 +81,7 @@ TEST(RestShape, IsRefusedWhereItWouldTouchAtRest) {
       "contact.distribution = pad: not with a structure that is curled at rest, whose pad is tilted before it moves");
 }
 
-// The parabola of a stress gradient as a table with even steps.
+// Returns the parabola of a stress gradient as a table with equal steps.
 Device sampled(Device device, int steps) {
   const Device as_curled = curled(device);
   RestShape shape;
@@ -94,7 +94,7 @@ Device sampled(Device device, int steps) {
   return device;
 }
 
-// A line between two places of a parabola lies above it by at most kappa h^2/8.
+// A chord of a parabola lies above it by at most kappa h^2/8.
 TEST(RestShapeTable, HasTheGapsOfTheCurveThatItSamples) {
   const Device smooth = curled(test::gold_cantilever());
   const double curvature = gradient / 78_GPa;
@@ -112,7 +112,7 @@ TEST(RestShapeTable, HasTheGapsOfTheCurveThatItSamples) {
   }
 }
 
-// The table makes the gap larger by two thirds of kappa h^2/8 in the mean, and V^2 grows with the gap's cube.
+// The table makes the gap larger by two thirds of kappa h^2/8 on average, and V^2 grows with the cube of the gap.
 TEST(RestShapeTable, HasThePullInAndTheFirstTouchOfTheCurveThatItSamples) {
   const double smooth = static_pull_in(Switch(curled(test::gold_cantilever())), 0).voltage;
   const auto error = [&](int steps) {
@@ -127,12 +127,12 @@ TEST(RestShapeTable, HasThePullInAndTheFirstTouchOfTheCurveThatItSamples) {
   };
   const Touch by_curve = first_touch(curled(test::gold_cantilever())),
               by_table = first_touch(sampled(test::gold_cantilever(), 20));
-  constexpr double few = 3e-4;  // three times the error of the gap, 0.2 nm of 2 um
+  constexpr double few = 3e-4;  // relative; three times the error of the gap, 0.2 nm of 2 um
   EXPECT_NEAR(by_table.begin / by_curve.begin, 1, few);
   EXPECT_NEAR(by_table.impact_velocity / by_curve.impact_velocity, 1, few);
 }
 
-// Points of the quadrature do not lie across a kink: more of them change nothing.
+// Panels of the quadrature end at the kinks, so that more points change nothing.
 TEST(RestShapeTable, HasKinksWherePanelsEnd) {
   Device d = test::gold_cantilever();
   part_of<Beam>(d.structure).rest_shape =

@@ -1,4 +1,4 @@
-// The compressible gas film: against the closed form of the linear strip, its limits, its derivatives and its energy.
+// The compressible gas film, against the closed form of the linear strip: limits, derivatives and energy.
 #include "model/gas/reynolds_film.h"
 
 #include <gtest/gtest.h>
@@ -29,14 +29,15 @@ const ReynoldsGas air{.film = {.viscosity = 1.82e-5_Pa_s, .mean_free_path = 64_n
 
 ReynoldsFilm film(Eigen::Index stations = 1) { return {air.film, width, stations, 20_nm}; }
 
-/// Force per area over p/h of a small oscillation with the squeeze number sigma (Blech 1983): 1 - tanh(B/2)/(B/2), B = sqrt(i
-/// sigma).
+/// Returns the force per area over p/h of a small oscillation with the squeeze number sigma (Blech 1983): 1 - tanh(B/2)/(B/2),
+/// B = sqrt(i sigma).
 Complex blech(double sigma) {
   const Complex half = std::sqrt(Complex(0, sigma)) / 2.0;
   return 1.0 - std::tanh(half) / half;
 }
 
-/// The same of our film: the linear response of its states to a gap that oscillates by one about h, with slip.
+/// Returns the same of the implemented film, with slip: the linear response of its states to a unit oscillation of the gap
+/// about h.
 Complex response(double sigma) {
   const double h = 2.3_um, rarefied = 1 + 6 * mean_free_path(air.film) / h;
   const double omega = sigma * rarefied * air.film.pressure * h * h / (12 * viscosity(air.film) * width * width);
@@ -47,7 +48,7 @@ Complex response(double sigma) {
   const Eigen::MatrixXcd system = rate * Eigen::MatrixXcd::Identity(nodes, nodes) - d.by_film.cast<Complex>();
   const Eigen::VectorXcd p = system.partialPivLu().solve(Eigen::VectorXcd(-rate * d.by_velocity.cast<Complex>()));
   const Complex load = f.load_by_film().cast<Complex>().dot(p);
-  return load / (width * air.film.pressure / h);  // a growing gap pulls, towards the electrode
+  return load / (width * air.film.pressure / h);  // a growing gap pulls towards the electrode
 }
 
 TEST(ReynoldsFilm, OfASmallOscillationIsBlechsStrip) {
@@ -61,10 +62,11 @@ TEST(ReynoldsFilm, OfASmallOscillationIsBlechsStrip) {
 }
 
 TEST(ReynoldsFilm, IsADamperBelowTheCutOffAndASpringAbove) {
-  // Both are equal at pi^2 with the first mode across the width alone; the others move that by a few per cent.
+  // Real and imaginary parts are equal at pi^2 for the first mode across the width alone; the other modes shift that by a few
+  // per cent.
   EXPECT_GT(response(0.9 * pi * pi).imag(), response(0.9 * pi * pi).real());
   EXPECT_LT(response(1.15 * pi * pi).imag(), response(1.15 * pi * pi).real());
-  // Slow: the incompressible film with slip.
+  // In the slow limit the film is incompressible, with slip.
   const double h = 2.3_um, slow = 1e-4;
   const double damping = response(slow).imag() / slow * 12 * viscosity(air.film) * std::pow(width / h, 3) / (1 + 6 * 64_nm / h);
   const GasLaw limit = gas_law(air, {.width = width}, 1);
@@ -114,7 +116,7 @@ TEST(ReynoldsFilm, DerivativesAreThoseOfTheRates) {
 }
 
 TEST(ReynoldsFilm, WorkOnItIsStoredOrDissipated) {
-  // dU/dt + D = -f v, exactly, in any state.
+  // dU/dt + D = -f v holds exactly, in any state.
   constexpr double rounding = 1e-6;  // error of the difference quotient
   std::mt19937_64 random(2);
   const ReynoldsFilm f = film();
@@ -148,7 +150,7 @@ std::vector<double> parabola(double amplitude) {
 }
 
 TEST(ReynoldsFilm, FlowsAsTheNonlinearEquationSays) {
-  // The closed form at rest, p = pa (1 + A (1 - x^2)), x = 2 z/a, is h dp/dt = (h^3 + 6 lambda h^2)/(12 mu) (p^2/2)''.
+  // In closed form at rest, p = pa (1 + A (1 - x^2)), x = 2 z/a, gives h dp/dt = (h^3 + 6 lambda h^2)/(12 mu) (p^2/2)''.
   const double gap = 1.3_um, amplitude = 0.8;
   const std::vector<double> p = parabola(amplitude);
   std::array<double, nodes> rate{};
@@ -161,7 +163,7 @@ TEST(ReynoldsFilm, FlowsAsTheNonlinearEquationSays) {
 }
 
 TEST(ReynoldsFilm, DissipatesWhatTheFlowDoes) {
-  // (h^3 + 6 lambda h^2)/(12 mu) int (dp/dz)^2 dz of the parabola.
+  // (h^3 + 6 lambda h^2)/(12 mu) int (dp/dz)^2 dz for the parabola.
   const double gap = 1.3_um, amplitude = 1e-3;
   const std::vector<double> p = parabola(amplitude);
   const double expected =
@@ -172,7 +174,7 @@ TEST(ReynoldsFilm, DissipatesWhatTheFlowDoes) {
 }
 
 TEST(ReynoldsFilm, OfAFastAndLargeStrokeIsAnIsothermalGasSpring) {
-  // Much faster than gas can leave p h stays as it is, except at the edges.
+  // If the gap changes much faster than gas can leave, p h is constant except at the edges.
   const double h0 = 2_um, h1 = 1_um, speed = 1e5;
   std::vector<double> p(nodes, 0.0), rate(nodes);
   const ReynoldsFilm f = film();
@@ -241,7 +243,7 @@ Trajectory closing(const Device& d, double tolerance, Integrator integrator = In
 }
 
 TEST(ReynoldsFilm, InAClosingAtOneAtmosphereIsNearlyIncompressible) {
-  // Squeeze numbers stay small here: the compressible film and its limit land within a per cent of each other, at the same
+  // Squeeze numbers are small here: the compressible film and its incompressible limit agree within a per cent in landing and
   // energy.
   const ReynoldsGas gas{.film = {.viscosity = 1.86e-5_Pa_s, .mean_free_path = 1e-12_m}};
   const Trajectory compressible = closing(gold_with(gas), 1e-6), strip = closing(test::gold_cantilever(), 1e-6);

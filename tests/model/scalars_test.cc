@@ -1,4 +1,4 @@
-// Every law over the three scalars of its state and of its parameters: a number, a lane with a device to each number, and a dual
+// Every law over the three scalars of its state and parameters: a number, a lane with one number for each device, and a dual
 // number with a direction for each parameter and for the state.
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ using DeviceLane = std::experimental::fixed_size_simd<double, devices>;
 using State = std::pair<double, double>;
 
 constexpr std::array gaps{State{2e-6, 0.1}, State{0.29e-6, -0.02}, State{61e-9, 0.3}, State{8e-9, 0.05}};
-// Deep, crushed, shallow, and above the plane.
+// Deep, at the crushing limit, shallow, and above the plane.
 constexpr std::array interferences{State{70e-9, 0.05}, State{210e-9, -0.03}, State{1.5e-9, 0.02}, State{-2e-9, 0.01}};
 
 template <class Derived>
@@ -78,7 +78,7 @@ struct GuoAlexeenko : PerLength<GuoAlexeenko> {
     return GuoAlexeenkoFilmOf<P>{.mean_free_path = p[0], .width = p[1], .thickness = p[2]};
   }
 };
-/// A rate of the film's own unknowns, and its load, which do not lean on the same parameters.
+/// A rate of the film's own states, or its load; they depend on different parameters.
 template <bool rate>
 struct Compressible {
   static constexpr std::array parameters{101325.0, 1.8e-5, 65e-9, 20e-6};
@@ -118,7 +118,7 @@ struct OfSection : PerLength<OfSection<Law>> {
     return ElectrostaticForce<Law<P>>{{.width = p[0], .thickness = p[1]}};
   }
 };
-/// The law's tangent holds at the last of the gaps.
+/// At the last of the gaps the law is its tangent.
 struct OnBothSides : PerLength<OnBothSides> {
   static constexpr std::array parameters{20e-6, 2e-6, 2.015e-6, 40e-9};
   template <class P>
@@ -210,7 +210,7 @@ struct Yielding : AtContact<Yielding<Asperity>> {
     return PlasticAsperityLoading<Asperity, P>(p[0], p[1], p[2], p[3], p[4]);
   }
 };
-/// A law with memory, on its way back where the rate is negative; each device has its own dent.
+/// A law with memory, which unloads if the rate is negative; each device has its own dent.
 struct Remembering : AtContact<Remembering> {
   static constexpr std::array parameters{500.0, 900.0, 30e-9};
   template <class P>
@@ -270,7 +270,7 @@ struct Repulsive : AtContact<Repulsive> {
   }
 };
 
-/// Stretching of two modes: the force on the second one, or the energy.
+/// Stretching with two modes: the force on the second one, or the energy.
 template <bool energy>
 struct Stretched {
   static constexpr std::array parameters{3e5, -2e4, 8e5, 40.0};
@@ -296,7 +296,7 @@ using Laws =
                    Yielding<ZmcAsperity>, Yielding<KogutEtsionAsperity>, Remembering, Repulsive>;
 TYPED_TEST_SUITE(ScalarsOf, Laws);
 
-/// The parameters of a law, the k-th device's each some per cent off the last one's.
+/// Returns the parameters of a law for a device, which differ by some per cent from those of the device before.
 template <class Law>
 auto parameters_of(std::size_t device) {
   auto p = Law::parameters;
@@ -339,7 +339,7 @@ TYPED_TEST(ScalarsOf, SlopesAreThoseOfEveryParameterAndOfTheState) {
     for (std::size_t k = 0; k < count + 2; ++k) {
       const double size = k < count ? TypeParam::parameters[k] : k == count ? at.first : at.second;
       if (size == 0) continue;
-      // Central differences, the error of second order taken out.
+      // Central differences, extrapolated to remove the error of second order.
       const auto moved = [&](double share) {
         auto p = TypeParam::parameters;
         State there = at;

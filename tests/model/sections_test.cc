@@ -34,7 +34,7 @@ using testing::HasSubstr;
 
 constexpr double digits_of_modes = 1e-9;  // relative, of frequencies
 
-/// The gold beams of the cases: no fringing, gas and damping, a linear contact at 247.5 um.
+/// Returns a gold beam: no fringing, gas and damping, a linear contact at 247.5 um.
 Device gold(std::vector<SectionPart> sections, double electrode_begin, int modes) {
   Device d = test::gold_cantilever();
   d.structure.modes = modes;
@@ -50,7 +50,7 @@ Device hinged(int modes = 4) {
   return gold({{.length = 60_um, .width = 10_um, .thickness = 1_um}, {.length = 190_um, .width = 40_um, .thickness = 2_um}},
               40_um, modes);
 }
-/// Its anchor turns as one thickness more of the beam would.
+/// Returns a beam whose anchor turns like a further piece of beam with a length of one thickness.
 Device turning(int modes = 4) {
   Device d = even_beam(modes);
   part_of<Beam>(d.structure).anchor = Anchor{.rotation = plain_section(d.structure).rigidity / 2_um};
@@ -58,7 +58,7 @@ Device turning(int modes = 4) {
 }
 constexpr double case_a_volts = 4, case_u_volts = 20;
 
-/// Values of an independent program of Hermite elements, with the tolerance of each.
+/// Values of an independent program of Hermite elements, each with its tolerance.
 struct Value {
   double value, tolerance;
 };
@@ -73,7 +73,7 @@ struct KeptCase {
   std::array<double, 4> frequencies;  // [Hz]
   double vsp;                         // static pull-in voltage of all modes [V]
   std::vector<ByModes> by_modes;
-  Value bounce, penetration;  // results of four modes: B_H, and the largest penetration of the run [m]
+  Value bounce, penetration;  // with four modes: B_H, and the largest penetration of the run [m]
 };
 
 constexpr double none = 0;
@@ -150,7 +150,7 @@ TEST_P(BuiltBeams, CloseAsInAnIndependentProgram) {
   }
 }
 
-// One section after the other, each with this rigidity and mass in its middle.
+// Sections in sequence; rigidity and mass are those at the middle of each section.
 std::vector<BeamSection> stepped() {
   return {{.begin = 0, .end = 0.3, .rigidity = 1, .mass_per_length = 1},
           {.begin = 0.3, .end = 0.7, .rigidity = 6, .mass_per_length = 1.7},
@@ -243,7 +243,7 @@ TEST(SectionModes, OfAnEvenBeamOnHingesAreSines) {
   for (int i = 0; i < 6; ++i) EXPECT_NEAR(slopes(i, i), std::pow((i + 1) * pi / 2, 2) / 5, 1e-7 * slopes(i, i)) << i;
 }
 
-// A stiff spring must end in the clamp, without a loss of digits on the way.
+// A very stiff spring must give the frequencies of a clamp, without a loss of precision on the way.
 TEST(SectionModes, OnStiffSpringsAreThoseBetweenClamps) {
   const BeamModes clamped(tapered(), 4, {.far_clamp = true});
   const Anchor stiff{.rotation = 1e13, .translation = 1e13};
@@ -255,7 +255,7 @@ TEST(SectionModes, OnStiffSpringsAreThoseBetweenClamps) {
   }
 }
 
-// The same beam by both methods: a spring that does nothing asks for the general one.
+// The same beam by both methods: a spring without effect selects the general method.
 TEST(SectionModes, AreTheSameByBothMethods) {
   const BeamModes plain(stepped(), 6), general(stepped(), 6, {.far = {.rotation = 0, .translation = 1e-13}});
   for (int i = 0; i < 6; ++i) {
@@ -277,7 +277,7 @@ TEST(SectionModes, OfOneBeamInTwoPartsAreThoseOfTheWhole) {
   }
 }
 
-// A staircase of many steps comes near a linear width, with every law of a field and a film.
+// A staircase of many steps approximates a linear width, for every law of a field and a film.
 TEST(Tapers, AreTheLimitOfManySteps) {
   constexpr int steps = 40;
   const auto with = [](std::vector<SectionPart> sections, const Gas& gas, Fringing fringing) {
@@ -306,7 +306,7 @@ TEST(Tapers, AreTheLimitOfManySteps) {
   }
 }
 
-// The gradient of the potential is minus the force, and the power of the force of a field that of its charge, on sections too.
+// The gradient of the potential is minus the force, and the power of a field is that of its charge, also on sections.
 TEST(Tapers, HaveAForceThatIsTheSlopeOfThePotential) {
   Device d = gold({{.length = 60_um, .width = 12_um}, {.length = 190_um, .width = 40_um, .end_width = 20_um}}, 40_um, 4);
   d.electrodes.front().fringing = Fringing::meijs_fokkema;
@@ -343,8 +343,8 @@ TEST(Layers, BendAsAnIndependentProgramSays) {
   EXPECT_NEAR(plate.rigidity, 4.1657847673650004e-08, digits * 4.2e-8);
 }
 
-// The layer of the case lies on the first 60 um of a beam of 1 um, which is an arc there and straight behind it. A layer
-// on the other face turns the beam the other way.
+// The layer covers the first 60 um of a beam that is 1 um thick, which is an arc there and straight beyond. A layer on the
+// other face bends the beam the other way.
 TEST(Layers, CurlTheBeamWhereTheyLie) {
   Device d = even_beam();
   d.structure.thickness = 1_um;
@@ -380,7 +380,7 @@ TEST(Layers, LeaveTheLowestPointInsideABeamThatBendsBothWays) {
   EXPECT_NEAR(part_of<Cantilever>(d.structure).lowest_rest_offset(d), least, 1e-6 * -least);
 }
 
-// A layer of the beam's own material is a thicker beam.
+// A layer of the beam's own material makes the beam thicker.
 TEST(Layers, OfTheBeamsMaterialMakeItThicker) {
   Device thick = even_beam(), thin = even_beam();
   thin.structure.thickness = 1.5_um;
@@ -393,7 +393,7 @@ TEST(Layers, OfTheBeamsMaterialMakeItThicker) {
   }
 }
 
-// Sections of one size and a layer of piezo are what they are without sections.
+// Sections of equal size with a piezo layer act like a beam without sections.
 TEST(Layers, OfPiezoPushAsOnAPlainBeam) {
   const Device plain = test::gold_pzt_cantilever();
   Device parts = plain;
@@ -408,7 +408,7 @@ TEST(Layers, OfPiezoPushAsOnAPlainBeam) {
   EXPECT_NEAR(layer_capacitance(parts), layer_capacitance(known), 1e-12 * layer_capacitance(known));
 }
 
-// The layer's moment under a linear width is linear, too: many steps come near it.
+// Under a linear width the moment of the layer is linear as well: many steps approximate it.
 TEST(Layers, OfPiezoPushOnATaper) {
   constexpr int steps = 100;
   Device smooth = test::gold_pzt_cantilever(), rough = smooth;
@@ -431,32 +431,32 @@ TEST(HolesInABeam, LeaveStiffnessAndMass) {
     const double w = softer * plain.basis().angular_frequencies()[i];
     EXPECT_NEAR(holed.basis().angular_frequencies()[i], w, digits_of_modes * w);
   }
-  // The field keeps the share of the area, so that pull-in follows the root of stiffness over area.
+  // The field acts on the same share of the area, so that pull-in is proportional to the root of stiffness over area.
   const double volts = static_pull_in(plain, 0).voltage * std::sqrt(ligament_efficiency(holes) / area_left(holes));
   EXPECT_NEAR(static_pull_in(holed, 0).voltage, volts, 1e-9 * volts);
 }
 
 constexpr double viscosity_of_air = 1.86e-5;  // [Pa s]
 
-// The gas leaves at the edges alone where holes are few.
+// With few holes the gas leaves only at the edges.
 TEST(PerforatedFilm, IsTheStripFilmWhereHolesAreFew) {
   const StripSqueezeFilm strip{.viscosity = viscosity_of_air, .width = 20_um};
   const PerforatedStripFilm film(viscosity_of_air, 20_um, 2_um, {.pitch = 20_um, .size = 0.05_um});
   for (const double gap : {0.5_um, 2_um, 3.5_um}) EXPECT_NEAR(film.load(gap, 0.1) / strip.load(gap, 0.1), 1, 1e-3) << gap;
 }
 
-// Every cell under a wide plate lets its own gas out: the pressure is the same all over, but for its edges.
+// Under a wide plate the gas of every cell leaves through the cell's own hole: the pressure is uniform except at the edges.
 TEST(PerforatedFilm, OfAWidePlateIsThatOfItsCells) {
   const Holes holes{.pitch = 10_um, .size = 5_um};
   const double gap = 2_um, per_width = PerforatedStripFilm(viscosity_of_air, 1e-2, 2_um, holes).load(gap, 1.0) / 1e-2;
-  // The flow in a hole, its two ends, and the film around it, each as its own textbook has it.
+  // The flow in a hole, at its two ends, and in the film around it, each from a textbook.
   const double hole = 5_um / std::sqrt(pi), cell = 10_um / std::sqrt(pi), flow = 10_um * 10_um;
   const double channel = 8 * viscosity_of_air * 2_um * flow / (pi * std::pow(hole, 4)),
                ends = 3 * viscosity_of_air * flow / std::pow(hole, 3);
   const auto ring = [&](double r) {
     return 12 * viscosity_of_air / std::pow(gap, 3) * (cell * cell / 2 * std::log(r / hole) - (r * r - hole * hole) / 4);
   };
-  double mean = 0;  // mean pressure around the hole, over the cell
+  double mean = 0;  // mean pressure around the hole in the cell
   constexpr int rings = 20000;
   for (int k = 0; k < rings; ++k) {
     const double r = hole + (cell - hole) * (k + 0.5) / rings;
@@ -519,7 +519,7 @@ TEST(PerforatedFilm, ActsUnderASectionWithHoles) {
   }
 }
 
-// Sections in a row stretch like springs in a row.
+// Sections in series stretch like springs in series.
 TEST(Bridges, OfSectionsStretchAsSpringsInARow) {
   Structure s{
       .length = 300_um, .width = 20_um, .thickness = 2_um, .kind = Bridge{{.youngs_modulus = 78_GPa, .density = 19300}, 10e6}};
@@ -527,7 +527,8 @@ TEST(Bridges, OfSectionsStretchAsSpringsInARow) {
   part_of<Beam>(s).sections = {{.length = 100_um}, {.length = 200_um}};
   EXPECT_NEAR(beam_support(s).axial_force, force, 1e-12 * force);
   part_of<Beam>(s).sections[1].width = 60_um;
-  // 10 MPa over E is what every piece would shrink by: 300 um of it, against 100 um + 200 um / 3 of the narrow piece.
+  // Every piece would shrink by 10 MPa over E times its length: 300 um in total, against 100 um + 200 um / 3 for the narrow
+  // piece.
   EXPECT_NEAR(beam_support(s).axial_force, force * 300 / (100 + 200.0 / 3), 1e-9 * force);
   const Device d{.structure = s};
   const MidPlaneStretching stretching = stretching_of(beam_modes(d), s);
@@ -542,7 +543,7 @@ TEST(Bridges, BeyondTheirBucklingLoadAreRefused) {
   EXPECT_EQ(why_buckled(s), "");
   part_of<Bridge>(s).residual_stress = 1.001 * limit;
   EXPECT_THAT(why_buckled(s), HasSubstr("buckles"));
-  // Hinges at both ends carry a quarter of it.
+  // Hinges at both ends reduce the stiffness to a quarter.
   part_of<Beam>(s).sections.clear();
   part_of<Beam>(s).anchor = part_of<Beam>(s).far_anchor = Anchor{.rotation = 0};
   part_of<Bridge>(s).residual_stress = 0.999 * limit / 4;

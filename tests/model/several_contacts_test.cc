@@ -21,7 +21,7 @@ namespace {
 
 using namespace literals;
 
-// Keeps the figures of the connection and of each contact.
+// Records the figures of the connection and of each contact.
 class EachContact final : public ClosingObserver {
  public:
   explicit EachContact(const Switch& model) : connection(model.contact_gap()) {
@@ -78,7 +78,7 @@ struct ObservedRun {
         each(model),
         end(observe_closing(model, std::vector<Signal>{Signal::constant(volts)}, {.duration = duration, .tolerance = tolerance},
                             each)) {}
-  // Figures of a contact by itself.
+  // Returns the figures of one contact.
   Metrics of(std::size_t c) { return each.contacts[c]->figures.metrics(end_of(c)); }
   Trajectory end_of(std::size_t) {
     Trajectory own = end;
@@ -134,7 +134,7 @@ TEST(SeveralContacts, FirstReboundsAndDepthsAgreeWithAnIndependentProgram) {
   EXPECT_LT(run.end.energy_error, 1e-6 * run.model.bending_energy());
 }
 
-// The separation of a connection that needs all contacts is the largest of theirs; of one that needs any, the smallest.
+// A connection that needs all contacts has the largest of their separations; one that needs any contact has the smallest.
 TEST(SeveralContacts, TheConnectionIsAsFarAsTheFurthestOrTheNearestContact) {
   const std::vector<Contact> apart{spring("tip", 247.5_um, 2_um, 2000), spring("inner", 175_um, 1.1_um, 2000)},
       dimples{spring("high", 247.5_um, 2_um, 1000), spring("low", 242.5_um, 1.97_um, 1000)};
@@ -158,7 +158,7 @@ TEST(SeveralContacts, TheConnectionIsAsFarAsTheFurthestOrTheNearestContact) {
       EXPECT_NEAR(run.model.contact_gap() - p.position, expected, 1e-13) << p.time;
     }
     ASSERT_GT(run.each.points.size(), 100u);
-    // Every touch of the connection begins and ends where the separation is zero.
+    // Every touch of the connection begins and ends at zero separation.
     ASSERT_FALSE(run.each.touches.empty());
     for (const Touch& t : run.each.touches) {
       const auto on_plane = [&](double time) { return std::min(std::abs(separation(0, time)), std::abs(separation(1, time))); };
@@ -180,7 +180,7 @@ TEST(SeveralContacts, TwoDimplesOfUnequalHeightShareTheImpact) {
   expect_near(run.rebounds_of(0).front().height, 5.7910299649032405e-08, 1e-5, "first rebound of the first");
 }
 
-// Two equal contacts at one place are one of twice the stiffness.
+// Two equal contacts at one place act like one of twice the stiffness.
 TEST(SeveralContacts, CountIsTheNumberOfEqualContacts) {
   Contact both = spring("both", 247.5_um, 2_um, 1000);
   both.count = 2;
@@ -190,7 +190,7 @@ TEST(SeveralContacts, CountIsTheNumberOfEqualContacts) {
   EXPECT_EQ(two.energy.source_work, one.energy.source_work);
 }
 
-// A plate that is let go flies through its rest to the back stop: closed forms.
+// A released plate moves through its rest position to the back stop, in closed form.
 TEST(SeveralContacts, ABackStopCatchesAPlateThatIsLetGo) {
   Device device{
       .structure = {.length = 100_um, .width = 100_um, .kind = Plate{.mass = 1e-10, .stiffness = 10}},
@@ -239,7 +239,7 @@ TEST(SeveralContacts, ForcesHaveTheirPotentialAndDerivatives) {
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(n);
   int touching = 0;
   for (const double place : {1.7e-6, 2.02e-6, -0.4e-6}) {
-    // A shape that does not bring all contacts down together.
+    // A shape that does not bring all contacts into touch together.
     Eigen::VectorXd q = Eigen::VectorXd::Unit(n, 0) * (place / model.contact_shape()[0]);
     q[1] = 0.01 * q[0];
     Eigen::VectorXd v(n), force(n), damped(n);

@@ -15,7 +15,7 @@
 namespace softland {
 namespace {
 
-/// The example of a kind over an electrode of its whole length.
+/// Returns the example of a kind over an electrode of its whole length.
 template <class Kind>
 Device device_of() {
   const Structure s = Kind::template example<Structure>();
@@ -25,7 +25,7 @@ Device device_of() {
           .contacts = {Contact{.model = LinearSpring::example(), .pad_length = 5e-6}}};
 }
 
-/// The properties that a new kind must have: every test below runs on each.
+/// The properties that a new kind must have: every test below runs for each kind.
 template <class Kind>
 class KindOfStructure : public testing::Test {};
 using Kinds = testing::Types<Cantilever, Bridge, Plate, ModalStructure>;
@@ -41,9 +41,10 @@ TYPED_TEST(KindOfStructure, HasAnExampleThatIsASwitch) {
   EXPECT_TRUE(model.rest().has_value());
 }
 
-// Orthonormal in mass: of a plate and a beam the density is even, and so are the shapes' squares along them.
+// The modes are orthonormal in mass. The density of a plate and a beam is uniform, so that the integral of the squared shapes
+// is known.
 TYPED_TEST(KindOfStructure, HasModesOfUnitMass) {
-  constexpr double table_places = 2e-4;  // a table has cubics between its places, and rounded roots
+  constexpr double table_places = 2e-4;  // a table is interpolated by cubics, and its frequencies are rounded
   const Device device = device_of<TypeParam>();
   const Structure& s = device.structure;
   double mass_per_length = 19300 * s.width * s.thickness;

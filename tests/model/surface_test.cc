@@ -42,7 +42,7 @@ TEST(Surface, ChangesTheRigidityOfThinSiliconByThePublishedParts) {
 }
 
 TEST(Surface, SideFacesCountAsTheirSecondMoment) {
-  // Two plates of thickness b standing on edge: 2 E_s b^3 / 12, the part b / (3 a) of what upper and lower face add.
+  // Two plates of thickness b on edge: 2 E_s b^3 / 12, which is b / (3 a) of the contribution of upper and lower face.
   const double wide = relative_rigidity(silicon(30_nm)) - 1, all = relative_rigidity(silicon(30_nm, SurfaceFaces::all)) - 1;
   EXPECT_NEAR(all / wide, 1 + 30.0 / 300, 1e-10);
 }
@@ -80,8 +80,8 @@ TEST(Surface, ResidualCompressionSoftensACantileverUntilItBuckles) {
     d.electrodes[0].end = length;
     return d;
   };
-  // The first frequency goes to zero there. Its square: Rayleigh's quotient of the buckled shape, 1 - cos(pi x / (2 L)), times
-  // the part of the load that is missing.
+  // The first frequency goes to zero there. Its square is Rayleigh's quotient of the buckled shape, 1 - cos(pi x / (2 L)),
+  // times the missing part of the load.
   constexpr double close = 1e-6;
   const Switch near(of_length(buckling_length * (1 - close)));
   d.surface->cantilever_load = ResidualLoad::none;
@@ -92,7 +92,7 @@ TEST(Surface, ResidualCompressionSoftensACantileverUntilItBuckles) {
   EXPECT_LT(static_pull_in(near, 0).voltage, 0.01 * static_pull_in(free, 0).voltage);
   d.surface->cantilever_load = ResidualLoad::compression;
   EXPECT_THROW(validate(of_length(buckling_length * (1 + close))), InvalidInput);
-  d.surface->residual_stress *= -1;  // surfaces that push leave the bulk in tension
+  d.surface->residual_stress *= -1;  // surfaces in compression leave the bulk in tension
   EXPECT_GT(Switch(d).basis().angular_frequencies()[0], 1.2 * free.basis().angular_frequencies()[0]);
 }
 

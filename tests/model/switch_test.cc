@@ -1,4 +1,4 @@
-// The composed switch: exact Jacobian, potential and dissipation of any combination of effects, from one generic test.
+// The composed switch: exact Jacobian, potential and dissipation of any combination of effects, in one generic test.
 #include "model/switch.h"
 
 #include <fmt/format.h>
@@ -38,7 +38,7 @@ std::vector<Combination> combinations() {
             if (!gas) d.gas.reset();
             d.contacts = {contact};
             if (double* const corners = number_of(d.contacts.front().model, "asperity_distance"))
-              *corners = 60_nm;  // they lie beyond the states looked at
+              *corners = 60_nm;  // outside of the tested states
             all.push_back({fmt::format("fringing {}, piezo {}, gas {}, damping {}, contact {}", fringing.name, layer, gas,
                                        damping, test::described(contact)),
                            d});
@@ -48,18 +48,18 @@ std::vector<Combination> combinations() {
     }
   }
   for (const Gas& gas : test::gases()) {
-    if (is_compressible(gas)) continue;  // a system with more states: reynolds_film_test.cc
+    if (is_compressible(gas)) continue;  // it has further states: reynolds_film_test.cc
     for (const bool layer : {false, true}) {
       Device d = layer ? test::gold_pzt_cantilever() : test::gold_cantilever();
       d.gas = gas;
       all.push_back({fmt::format("gas {}, piezo {}", name_of(gas), layer), d});
     }
   }
-  Device two = test::gold_cantilever();  // two electrodes that meet on the beam
+  Device two = test::gold_cantilever();  // two adjacent electrodes
   two.electrodes[0].end = 150_um;
   two.electrodes.push_back({.name = "second", .begin = 150_um, .end = 250_um, .fringing = Fringing::linear});
   all.push_back({"two electrodes", two});
-  Device pads = test::gold_cantilever();  // a device of one electrode
+  Device pads = test::gold_cantilever();  // one electrode of several pads
   pads.electrodes[0].end = 100_um;
   pads.electrodes[0].further = {{.begin = 130_um, .end = 180_um}, {.begin = 200_um, .end = 250_um}};
   all.push_back({"three pads", pads});
@@ -114,8 +114,8 @@ std::vector<Combination> combinations() {
   return all;
 }
 
-/// Random coordinates whose deflection stays well inside the electrode gap, with the tip short of the contact plane or pressed
-/// into the contact where the law is smooth; velocities as in a closing.
+/// Random coordinates whose deflection stays well inside the electrode gap. The tip is before the contact plane, or so deep in
+/// the contact that the law is smooth. Velocities are as in a closing.
 struct State {
   Eigen::VectorXd q, v;
   std::vector<double> volts;
@@ -179,9 +179,9 @@ TEST(Switch, JacobianIsTheDerivativeOfTheAccelerations) {
   }
 }
 
-// Compares everything that a closing asks of a switch, in bits where both have the modes of one normalised beam. Otherwise it
-// compares to the rounding of modes, which a beam pressed into its contact by a thousandth of the gap, or near its static fold,
-// magnifies.
+// Compares all functions of a switch that a closing calls, bit for bit if both have the modes of one normalised beam. Otherwise
+// it compares up to the rounding of modes, which a beam is sensitive to if it is pressed into its contact by a thousandth of
+// the gap, or near its static fold.
 void expect_same(const Switch& a, const Switch& b, bool in_bits) {
   const double rounding = in_bits ? 0 : 1e-11, magnified = in_bits ? 0 : 1e-8;
   const auto expect_close = [](const Eigen::VectorXd& x, const Eigen::VectorXd& y, double relative) {
@@ -247,11 +247,11 @@ TEST(Switch, BuiltLikeAnotherIsTheSameSwitch) {
 TEST(Switch, TwiceTheQuadratureIsTwiceThePointsOfEveryPanel) {
   const SwitchOptions coarse{.points_per_length = 30}, fine{.points_per_length = 60, .points_per_panel = 6};
   Device d = test::gold_cantilever();
-  d.electrodes[0].begin = 0.3_um;  // a panel so short that it has as few points as there may be
+  d.electrodes[0].begin = 0.3_um;  // the shortest possible panel, with the least number of points
   EXPECT_EQ(Switch(d, fine).quadrature().points(), 2 * Switch(d, coarse).quadrature().points());
 }
 
-// An electrode of several pads is several electrodes under one voltage.
+// An electrode with several pads acts like several electrodes with one voltage.
 TEST(Switch, PadsOfOneElectrodeActAsElectrodesOfOneVoltage) {
   for (const Side side : {Side::near, Side::far, Side::both}) {
     Device pads = test::gold_cantilever(), apart = pads;
@@ -365,7 +365,7 @@ TEST(Quadrature, CornersThatDifferByARoundingAreOne) {
 
 TEST(Switch, QuadratureKnowsEveryCorner) {
   const Switch device(test::gold_pzt_cantilever());
-  // Weights over any stretch between corners add up to its length: seen through the capacitance of a straight beam.
+  // The weights between any two ends of panels sum to the length, as the capacitance of a straight beam shows.
   Device d = test::gold_pzt_cantilever();
   for (const auto& [begin, end] : {std::pair{0_um, 5_um}, {5_um, 60_um}, {60_um, 245_um}, {13_um, 14_um}, {245_um, 250_um}}) {
     d.electrodes[0] = {.name = "part", .begin = begin, .end = end, .fringing = Fringing::none};
@@ -393,7 +393,8 @@ TEST(Switch, ElectrodeUpToTheFreeEndCountsEveryPoint) {
 }
 
 TEST(Switch, UniformPressureOnAStiffBeamGivesTheTextbookDeflection) {
-  // A small voltage: force per length f = eps0 a V^2 / (2 d0^2) on the whole beam, tip f L^4 / (8 EI).
+  // At a small voltage the force per length is f = eps0 a V^2 / (2 d0^2) on the whole beam, and the tip deflects by f L^4 / (8
+  // EI).
   Device d = test::gold_cantilever();
   d.contacts.clear();
   d.structure.modes = 20;
@@ -433,7 +434,7 @@ TEST(Switch, PenetrationScaleCarriesTheForceThatBendsTheBeamByTheGap) {
 }
 
 TEST(Switch, InContactItVibratesAsTheBeamPinnedAtTheContact) {
-  // The first frequency about contact tends to that of the pinned beam as the contact's stiffness and the modes grow.
+  // As the contact's stiffness and the number of modes grow, the first frequency in contact approaches that of the pinned beam.
   Device d = test::gold_cantilever();
   d.electrodes.clear();
   d.structure.modes = 20;
@@ -462,7 +463,7 @@ TEST(Switch, BetweenTwoClampsHasItsContactInTheMiddle) {
 }
 
 TEST(Stretching, OfOneModeIsTheIntegralOfTheSlopes) {
-  // Held in the shape of its first mode the beam stores EA/(8 L) (int y'^2)^2.
+  // Deflected in the shape of its first mode the beam stores EA/(8 L) (int y'^2)^2 by stretching.
   Device d = test::gold_bridge();
   d.structure.modes = 1;
   part_of<Bridge>(d.structure).residual_stress = 0;
@@ -472,27 +473,27 @@ TEST(Stretching, OfOneModeIsTheIntegralOfTheSlopes) {
   const BeamModes beam(beam_sections(d), 1, beam_support(d.structure));
   const double middle = 1.5_um, q = middle / beam.value(125_um)[0];
   double squares = 0;
-  constexpr int points = 20000;  // midpoints: the integrand and its first derivative vanish at both ends
+  constexpr int points = 20000;  // midpoint rule: the integrand and its first derivative vanish at both ends
   for (int k = 0; k < points; ++k) squares += std::pow(q * beam.slope(250_um * (k + 0.5) / points)[0], 2) * 250_um / points;
   const double ea = 78e9 * 20_um * 2_um, expected = ea / (8 * 250_um) * squares * squares;
   const double stored = stretched.elastic_energy(&q) - plain.elastic_energy(&q);
   EXPECT_NEAR(stored, expected, 1e-7 * expected);
-  // The shape c (1 - cos(2 pi x/L))/2, much like it, stores 3/8 (c/b)^2 of its bending energy so.
+  // The similar shape c (1 - cos(2 pi x/L))/2 stores 3/8 (c/b)^2 of its bending energy by stretching.
   const double cosine = 0.375 * std::pow(middle / 2_um, 2);
   EXPECT_NEAR(stored / plain.elastic_energy(&q), cosine, 0.05 * cosine);
 }
 
 TEST(Switch, OfAPlateIsOneOscillator) {
   Device d = test::full_plate();
-  d.structure.modes = 4;  // a plate has one, whatever is said
+  d.structure.modes = 4;  // a plate has one mode, whatever the scene says
   const Switch device(d);
   ASSERT_EQ(device.modes(), 1);
-  EXPECT_EQ(device.quadrature().points(), 3);  // points where either electrode ends, and the rest
+  EXPECT_EQ(device.quadrature().points(), 3);  // points at the ends of either electrode, and one for the rest
   EXPECT_DOUBLE_EQ(device.basis().angular_frequencies()[0], std::sqrt(42 / 2.4e-9));
   const double x = 0.4_um, q = x / device.basis().contact_shape()[0];
   EXPECT_DOUBLE_EQ(device.contact_deflection(&q), x);
   EXPECT_NEAR(device.elastic_energy(&q), 42 * x * x / 2, 1e-14 * 42 * x * x);
-  // Areas make the force: eps0 A V^2 / (2 h^2) and the film's mu a^2 A / h^3.
+  // Forces are proportional to areas: eps0 A V^2 / (2 h^2), and mu a^2 A / h^3 of the film.
   for (Electrode& e : d.electrodes) e.fringing = Fringing::none;
   const Switch plain(d);
   Switch::Workspace work = plain.workspace();
@@ -507,7 +508,7 @@ TEST(Switch, OfAPlateIsOneOscillator) {
 }
 
 TEST(Switch, ElectrodeOnTheFarSideLiftsTheBeam) {
-  // A small voltage on two plates: eps0 A V^2 / (2 d^2) each, one towards the contact and one away from it.
+  // At a small voltage on two plates each force is eps0 A V^2 / (2 d^2), one towards the contact and one away from it.
   Device d = test::plate_between_electrodes();
   for (Electrode& e : d.electrodes) {
     e.fringing = Fringing::none;
@@ -527,7 +528,7 @@ TEST(Switch, ElectrodeOnTheFarSideLiftsTheBeam) {
   EXPECT_NEAR(newtons({0, 1}), -force / 4, 1e-12 * force);
   EXPECT_NEAR(newtons({1, 2}), 0, 1e-12 * force);
   EXPECT_NEAR(device.capacitance(1, &rest, work), vacuum_permittivity * 5e-9 / (2 * 3.8_um), 1e-27);
-  // Both films together.
+  // Both films act together.
   const double one = 1e-6 * 1e-8 * 1e-8 / std::pow(3.8_um, 3) * 0.01;
   EXPECT_NEAR(device.dissipated_power(&rest, &v, work), 2 * one, 1e-12 * one);
 }

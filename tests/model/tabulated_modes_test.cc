@@ -1,4 +1,4 @@
-// A structure of modes from a table against the beam whose modes they are.
+// A structure with modes from a table, compared with the beam that has these modes.
 #include "model/structure/tabulated_modes.h"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@
 namespace softland {
 namespace {
 
-/// The modes of a device's beam at even places.
+/// Returns the modes of a device's beam at equal distances.
 std::shared_ptr<const ModalTable> modal_table_of(Device device, int modes, int parts) {
   device.structure.modes = modes;
   const BeamModes beam = beam_modes(device, nullptr);
@@ -80,7 +80,7 @@ TEST(TabulatedModes, OfABeamAreItsModes) {
 }
 
 TEST(TabulatedModes, HoldTheBeamAtItsContactAsTheBeamIsHeld) {
-  constexpr double modes_left_out = 2e-3;  // twelve of all modes
+  constexpr double modes_left_out = 2e-3;  // effect of modes beyond twelve
   const Device device = test::gold_cantilever();
   const BeamModes beam(beam_sections(device), 4);
   const TabulatedModes table(modal_table_of(device, 12, table_places), 4, 1);
@@ -107,7 +107,7 @@ TEST(TabulatedModes, MoveASwitchAsTheBeamDoes) {
   EXPECT_LT((found - expected).norm(), interpolated * expected.norm());
 }
 
-/// The gold bridge by its modes, and its axial stiffness.
+/// Returns the gold bridge with tabulated modes and its axial stiffness.
 Device bridge_by_modes(const Device& bridge, int parts) {
   const Structure& s = bridge.structure;
   Device device = by_modes(bridge, modal_table_of(bridge, s.modes, parts));
@@ -128,7 +128,7 @@ TEST(TabulatedModes, BetweenTwoClampsStretchAsTheBeamDoes) {
   EXPECT_DOUBLE_EQ(table.device().contact_position(), device.structure.length / 2);
 }
 
-// The figures of the table are those of the beam, and nearer to them with the fourth power of the distance of its places.
+// The figures with the table approach those of the beam with the fourth power of the table's spacing.
 TEST(TabulatedModes, BetweenTwoClampsPullInAndCloseAsTheBeamDoes) {
   constexpr double interpolated = 1e-5;
   const Device device = test::gold_bridge();
@@ -151,7 +151,7 @@ TEST(TabulatedModes, BetweenTwoClampsPullInAndCloseAsTheBeamDoes) {
   const auto [coarse_volts, coarse_time] = errors(10);
   EXPECT_GT(coarse_volts, 10 * volts_error);
   EXPECT_GT(coarse_time, 10 * time_error);
-  // It is another switch without its axial stiffness.
+  // Without its axial stiffness it is another switch.
   Device straight = bridge_by_modes(device, table_places);
   part_of<ModalStructure>(straight.structure).axial_stiffness = not_given;
   EXPECT_LT(static_pull_in(Switch(straight), 0).voltage, 0.9 * volts);

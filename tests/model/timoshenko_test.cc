@@ -1,4 +1,4 @@
-// Frequencies of Timoshenko's beam against its frequency equations, published values, and the limit of slender beams.
+// Frequencies of Timoshenko's beam, against its frequency equations, published values, and the limit of slender beams.
 #include "model/timoshenko.h"
 
 #include <gmock/gmock.h>
@@ -44,7 +44,7 @@ double frequency_equation(bool far_clamp, double b, double thickness) {
 }
 
 TEST(Timoshenko, FrequenciesAreZerosOfTheFrequencyEquations) {
-  constexpr double close = 1e-7;  // relative: the equation changes sign within this of the frequency
+  constexpr double close = 1e-7;  // relative distance within which the equation changes sign at the frequency
   for (const StructureKind& kind : {StructureKind(Cantilever{unit_beam}), StructureKind(Bridge{unit_beam})}) {
     const bool far_clamp = beam(kind, 0, 1).has_far_clamp();
     const auto& euler = far_clamp ? clamped_clamped : clamped_free;
@@ -55,7 +55,8 @@ TEST(Timoshenko, FrequenciesAreZerosOfTheFrequencyEquations) {
         const double b = euler[i] * euler[i] / (1 + excess[i]);
         const double below = frequency_equation(far_clamp, b * (1 - close), thickness);
         const double above = frequency_equation(far_clamp, b * (1 + close), thickness);
-        if (!(b * b * thickness * thickness / 12 * thickness * thickness / 12 * 3.12 < 1)) continue;  // not valid beyond
+        if (!(b * b * thickness * thickness / 12 * thickness * thickness / 12 * 3.12 < 1))
+          continue;  // the equation is not valid beyond
         EXPECT_LT(below * above, 0) << "mode " << i + 1 << ", thickness " << thickness;
       }
     }
@@ -75,11 +76,11 @@ TEST(Timoshenko, FrequenciesAreThosePublished) {
   expect(0.2, {4.24201});
 }
 
-// Rotary inertia and shear to first order in (thickness / length)^2, for high modes, whose ends do not count.
+// Rotary inertia and shear to first order in (thickness / length)^2, for high modes, on which the ends have little effect.
 TEST(Timoshenko, ExcessOfSlenderBeamsGoesWithTheSquareOfThickness) {
   const auto last = [](double thickness) { return frequency_excess(beam(Cantilever{unit_beam}, thickness, 12)).back(); };
   const double beta = 11.5 * pi, first_order = (1 + 2 * (1 + poissons_ratio) / shear_coefficient) / 24;
-  constexpr double of_the_ends = 0.2;  // effect of the ends at the twelfth mode, as a share of the first order
+  constexpr double of_the_ends = 0.2;  // effect of the ends at the twelfth mode, over the first order
   EXPECT_NEAR(last(1e-3) / std::pow(beta * 1e-3, 2), first_order, of_the_ends * first_order);
   for (const double thickness : {1e-3, 1e-5, 1e-7}) {
     EXPECT_NEAR(last(thickness) / last(2 * thickness), 0.25, 1e-3) << thickness;

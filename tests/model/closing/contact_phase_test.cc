@@ -50,7 +50,7 @@ TEST(ContactPhase, ThatRemembersTurnsUnloadsAndHeals) {
   phase.enter(Phase::loading);
   EXPECT_TRUE(phase.ends_at_turn());
   constexpr double deepest = 20_nm;
-  // Loading takes k_l d^2 / 2, of which k_l / k_u comes back; the unloading line starts at s = d (1 - k_l / k_u).
+  // Loading takes k_l d^2 / 2, of which k_l / k_u is returned; the unloading line starts at s = d (1 - k_l / k_u).
   constexpr double lost = 1e4 * deepest * deepest / 2 * (1 - 0.25), shift = 0.75 * deepest;
   EXPECT_NEAR(phase.lost(plane + deepest), lost, 1e-6 * lost);
   phase.turn(deepest);
@@ -65,7 +65,7 @@ TEST(ContactPhase, ThatRemembersTurnsUnloadsAndHeals) {
   EXPECT_TRUE(phase.in_contact()) << "below the plane, though nothing is carried";
   EXPECT_FALSE(phase.law().active);
   phase.enter(Phase::flight);
-  expect_edge(phase.edges()[0], plane, -1, Phase::loading);  // healed
+  expect_edge(phase.edges()[0], plane, -1, Phase::loading);  // the dent has healed
   EXPECT_NEAR(phase.lost(0), lost, 1e-6 * lost);
   phase.enter(Phase::loading);
   phase.turn(deepest);

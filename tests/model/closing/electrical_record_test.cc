@@ -1,4 +1,4 @@
-// Electrical closing against closed forms of a plate, against the knots of whole closings, and against the mechanical figures.
+// Electrical closing, against closed forms of a plate, the knots of whole closings, and the mechanical figures.
 #include "model/closing/electrical_record.h"
 
 #include <fmt/format.h>
@@ -28,7 +28,8 @@ using namespace literals;
 constexpr Conduction gold_metal{.resistivity = 2.2e-8, .hardness = 1e9, .mean_free_path = 38e-9};
 constexpr double never = std::numeric_limits<double>::quiet_NaN();
 
-/// A lossless plate on springs that rests closed on a linear contact, and is let go at t = 0: it swings away and comes back.
+/// A lossless plate on springs that rests closed on a linear contact and is released at t = 0: it leaves the contact and
+/// returns.
 struct LetGo {
   static constexpr double mass = 1e-10, stiffness = 10, gap = 3e-6, contact_stiffness = 5000;  // [kg], [N/m], [m], [N/m]
 
@@ -44,12 +45,12 @@ struct LetGo {
     return simulate_closing(model, std::vector<Signal>{Signal::constant(0)},
                             {.duration = duration, .tolerance = 1e-11, .begins_closed = start});
   }
-  /// Returns the time from the start until the contact force has fallen to this [s].
+  /// Returns the time from the release until the contact force has this value [s].
   [[nodiscard]] static double time_to(double force) {
     const double still = contact_stiffness * gap / (stiffness + contact_stiffness), swing = gap + penetration - still;
     return std::acos((gap + force / contact_stiffness - still) / swing) / std::sqrt((stiffness + contact_stiffness) / mass);
   }
-  /// The time between leaving the contact and coming back to it [s].
+  /// Returns the time between leaving the contact and returning to it [s].
   [[nodiscard]] static double flight() {
     const double free = std::sqrt(stiffness / mass), bound = std::sqrt((stiffness + contact_stiffness) / mass);
     const double still = contact_stiffness * gap / (stiffness + contact_stiffness), swing = gap + penetration - still;
@@ -69,7 +70,7 @@ TEST(ElectricalRecord, AgreesWithTheClosedFormOfAPlateThatComesBack) {
     plate.device.electrical = {.force = threshold};
     const double opens = LetGo::time_to(threshold), leaves = LetGo::time_to(0), period = 2 * leaves + LetGo::flight();
     const double closes = period - opens;
-    // It ends when it is pressed hardest for the third time.
+    // The window ends at the largest force of the third touch.
     const ElectricalOutcome found = plate.run(2 * period).electrical;
     EXPECT_EQ(found.first_closed, 0);
     EXPECT_EQ(found.openings, 2);
@@ -109,7 +110,7 @@ TEST(ElectricalRecord, OfAResistanceIsThatOfTheForceThatHasIt) {
   }
 }
 
-// The course of every contact, as whoever asks for it receives it.
+// Records the course of every contact.
 class Courses final : public ClosingObserver {
  public:
   explicit Courses(std::size_t contacts) {
@@ -129,7 +130,7 @@ class Courses final : public ClosingObserver {
   std::vector<std::unique_ptr<Own>> each;
 };
 
-// The place of a contact at a time by the interpolant between its knots.
+// Returns the position of a contact at a time, by the interpolant between its knots.
 double place_at(const std::vector<TrajectoryPoint>& points, double time) {
   const auto to = std::ranges::lower_bound(points, time, {}, &TrajectoryPoint::time);
   if (to == points.begin()) return to->position;
@@ -228,7 +229,7 @@ TEST(ElectricalRecord, OfAConnectionAgreesWithTheCoursesOfItsContacts) {
   EXPECT_GE(lasting, 3);
 }
 
-// This holds under every law, whatever it remembers or loses.
+// Holds under every law, also with memory or losses.
 TEST(ElectricalRecord, OfTouchIsTheMechanicalOneUnderEveryLaw) {
   int several = 0;
   for (const Contact& contact : test::contacts()) {
@@ -255,7 +256,7 @@ TEST(ElectricalRecord, OfTouchIsTheMechanicalOneUnderEveryLaw) {
   EXPECT_GE(several, 3);
 }
 
-// The force record finds the last time above a threshold on its own way.
+// The force record finds the last time above a threshold independently.
 TEST(ElectricalRecord, OfAForceEndsWhereTheForceIsSteady) {
   int steady = 0;
   std::vector<Contact> all = test::contacts();
@@ -281,7 +282,7 @@ TEST(ElectricalRecord, OfAForceEndsWhereTheForceIsSteady) {
   EXPECT_GE(steady, 5);
 }
 
-// A plate at rest on a rigid contact: what its drive presses it on with is in closed form.
+// The contact force of a plate at rest on a rigid contact has a closed form.
 TEST(ElectricalRecord, FollowsAPlateThatRestsOnARigidContact) {
   constexpr double threshold = 20e-6;  // [N]
   LetGo plate;

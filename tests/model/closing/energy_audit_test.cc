@@ -1,4 +1,4 @@
-// Drives, energies and the resting plate of a closing, each by itself.
+// Drives, energies and the resting plate of a closing, separately.
 #include "model/closing/energy_audit.h"
 
 #include <gtest/gtest.h>
@@ -66,7 +66,7 @@ TEST(EnergyAudit, ChargesACapacitorAtRest) {
 }
 
 TEST(EnergyAudit, BalancesAFreeSwingAndMissesWhatAStepLoses) {
-  // Half a period of the plate on its springs, from a push, without any drive.
+  // Half a period of the plate on its springs, from an initial velocity, without a drive.
   Parts p(test::nickel_plate(), {Signal::constant(0)});
   EnergyAudit audit(p.model, p.drives, p.phases, p.equations, p.start);
   audit.enter_stretch(p.start, true);
@@ -138,7 +138,7 @@ TEST(RestingPlate, ReboundsByTheRestitution) {
 }
 
 TEST(RestingPlate, RestsUntilItsSpringsOutweighTheDrive) {
-  // A ramp down from 60 V: it leaves where electrode and spring balance at the plane.
+  // A ramp down from 60 V: the plate leaves the plane when the forces of electrode and spring balance there.
   Parts p(on_stop(0.5), {Signal::piecewise_linear({{0, 60}, {1e-3, 0}})});
   p.drives.enter(0, 0);
   RestingPlate plate(p.model, p.drives, p.equations);

@@ -1,4 +1,4 @@
-// The contact force of whole closings: from when on it is steady and how low it falls, against their knots and the contact law.
+// The contact force of whole closings: the time from which on it is steady, and its minimum, against knots and contact law.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -21,11 +21,11 @@ namespace {
 
 using namespace literals;
 
-/// Drives for a softer landing: the drive lets go before the touch and pulls again after it.
+/// Returns drives for a softer landing: released before the touch, and pulled again after it.
 std::vector<Signal> thrown() { return {signal(Pulse{.levels = {21_V, 0_V, 17_V}, .times = {20_us, 33_us}, .edge = 0.5_us})}; }
 
 struct Brackets {
-  double steady_from = std::numeric_limits<double>::quiet_NaN();  // not before the first of these, not after the second [s]
+  double steady_from = std::numeric_limits<double>::quiet_NaN();  // bounds of the time from which on the force is steady [s]
   double steady_by = steady_from;
   double least = std::numeric_limits<double>::infinity();  // [N]
 };
@@ -81,7 +81,7 @@ TEST(ForceRecord, IsBracketedByTheKnotsUnderEveryLaw) {
   EXPECT_GE(lost, 1);
 }
 
-/// The force of an undamped law without memory depends on the place alone.
+/// The force of an undamped law without memory depends on the position alone.
 TEST(ForceRecord, IsThatOfTheLawAlongTheMotion) {
   const Switch& model = test::gold();
   const std::vector<Signal> drives = thrown();
@@ -113,14 +113,14 @@ TEST(ForceRecord, IsThatOfTheLawAlongTheMotion) {
       continue;
     }
     ++inside;
-    constexpr double sampled = 5e-9;  // [s] of a fiftieth of a piece
+    constexpr double sampled = 5e-9;  // [s]; a fiftieth of a piece
     EXPECT_NEAR(t.steady_force_time, last_below, sampled);
     EXPECT_GT(t.steady_force_time, t.touches.front().begin);
   }
   EXPECT_GT(inside, 10);
 }
 
-/// The most that an adhesive contact pulls on its way out is a number of the law alone.
+/// The largest pull of an adhesive contact as it opens depends on the law alone.
 TEST(ForceRecord, OfAContactThatPullsIsTheMostThatItPulls) {
   for (const double energy : {0.05, 0.2}) {
     Device device = test::gold_cantilever();
@@ -159,7 +159,7 @@ TEST(ForceRecord, OfWhatNeverTouchesIsNotKnown) {
   EXPECT_TRUE(std::isnan(t.least_force_after_touch));
 }
 
-/// A plate that does not rebound rests at once: its force is that of the electrode less that of the spring.
+/// A plate without a rebound rests at once: the contact force is that of the electrode less that of the spring.
 TEST(ForceRecord, FollowsAPlateAtRest) {
   Device device = test::nickel_plate();
   device.contacts = {Contact{.model = RigidStop{.restitution = 0}}};
