@@ -1,4 +1,4 @@
-// The spline that keeps a clamp: what it takes exactly, and how fast its error falls.
+// The spline with a clamped end: what it reproduces exactly, and the order of its error.
 #include "base/clamped_spline.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,8 @@ TEST(ClampedSpline, KeepsValueAndSlopeOfTheClampWhateverThePoints) {
   for (const double at : {1.0, 2.0, 3.0}) EXPECT_NEAR(s.value(at), at == 1 ? 5 : at == 2 ? -7 : 2, 10 * rounding);
 }
 
-// The first mode of a cantilever keeps both ends: fourth order. A natural spline has second order at the clamp.
+// The first mode of a cantilever meets both end conditions, so that the error has fourth order. A natural spline has second
+// order at the clamp.
 TEST(ClampedSpline, HasAnErrorOfFourthOrderForTheModeOfACantilever) {
   constexpr double root = 4.694091132974174;
   const double sigma = (std::cosh(root) + std::cos(root)) / (std::sinh(root) + std::sin(root));

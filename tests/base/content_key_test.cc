@@ -6,7 +6,7 @@ namespace softland {
 namespace {
 
 TEST(ContentKey, IsMurmurHash3) {
-  // The vectors of the reference implementation.
+  // Test vectors of the reference implementation.
   EXPECT_EQ(content_key("").hexadecimal(), "00000000000000000000000000000000");
   EXPECT_EQ(content_key("hello").hexadecimal(), "cbd8a7b341bd9b025b1e906a48ae1d19");
   EXPECT_EQ(content_key("hello, world").hexadecimal(), "342fac623a5ebc8e4cdcbc079642414d");

@@ -1,4 +1,4 @@
-// Decompositions against what defines them.
+// Decompositions against their definitions.
 #include "base/decompositions.h"
 
 #include <gtest/gtest.h>

@@ -26,13 +26,14 @@ using namespace std::chrono_literals;
 
 constexpr int job_counts[] = {1, 2, 3, 8};
 
-/// Waits until it holds, or a few seconds after `begin`: tests fail then, and do not hang. Returns whether it does.
+/// Waits until `holds` returns true, until a few seconds after `begin`, so that a test fails instead of hanging. Returns
+/// whether it does.
 bool wait_until(const std::function<bool()>& holds, std::chrono::steady_clock::time_point begin) {
   while (!holds() && std::chrono::steady_clock::now() < begin + 5s) std::this_thread::sleep_for(1ms);
   return holds();
 }
 
-/// Counts the threads that are between entry and exit at once.
+/// Counts the threads that are between entry and exit at the same time.
 class Crowd {
  public:
   void enter() {
@@ -73,7 +74,7 @@ TEST(RunTasks, RunsOneAfterTheOtherWithOneJob) {
   EXPECT_EQ(order, expected);
 }
 
-// Also on a machine of fewer cores: a search with --jobs 8 keeps eight evaluations going that wait for something.
+// Holds on a machine with fewer cores as well: a search with --jobs 8 has eight evaluations in progress, which may wait.
 TEST(RunTasks, HasAsManyTasksUnderWayAsJobsAndNeverMore) {
   for (const int jobs : job_counts) {
     Crowd crowd;
@@ -96,7 +97,7 @@ std::string message_of(const std::function<void()>& run) {
   return "nothing was thrown";
 }
 
-// Tasks 3 and 5 fail; with eight jobs both are under way at once and fail in either order.
+// Tasks 3 and 5 fail; with eight jobs both run at the same time and fail in either order.
 TEST(RunTasks, ThrowsWhatTheFirstOfSeveralFailingTasksThrewWhicheverFailsSooner) {
   for (const std::size_t sooner : {3U, 5U}) {
     for (const int jobs : job_counts) {
@@ -179,7 +180,7 @@ TEST(RunTasks, NestedShareTheThreadsOfTheOutermostLoop) {
   }
 }
 
-// Threads that the outer loop has no task for work for an inner one.
+// Threads without a task of the outer loop work for an inner loop.
 TEST(RunTasks, NestedUseThreadsThatAreFree) {
   Crowd crowd;
   run_tasks(1, 3, [&](std::size_t) {
@@ -205,7 +206,7 @@ TEST(RunTasks, NestedThrowThroughBothLoops) {
   }
 }
 
-// A task of the outer loop that began inside of another one would meet the locks that this one holds.
+// A task of the outer loop that began inside of another one could wait for a lock that the other task holds.
 TEST(RunTasks, NestedBeginNoOuterTaskWhileTheyWait) {
   static thread_local bool in_outer_task = false;
   std::atomic<int> within_another = 0;
@@ -215,7 +216,7 @@ TEST(RunTasks, NestedBeginNoOuterTaskWhileTheyWait) {
       in_outer_task = true;
       run_tasks(8, 8, [&](std::size_t k) {
         const bool own = in_outer_task;
-        in_outer_task = false;  // a thread that helps is in no outer task
+        in_outer_task = false;  // a helping thread is in no outer task
         std::this_thread::sleep_for(std::chrono::microseconds(10 * ((i + k) % 7)));
         in_outer_task = own;
       });
@@ -239,17 +240,17 @@ TEST(RunTasks, RefusesToRunOnNoThread) {
   EXPECT_EQ(message_of([] { run_tasks(1, 0, [](std::size_t) {}); }), "jobs = 0 must be at least 1");
 }
 
-/// Lets this process start at most `further` more threads. As root it becomes another user first: root has no limit.
+/// Limits the number of threads that this process can still start. Root has no such limit, and so becomes another user first.
 void limit_threads(rlim_t further) {
   constexpr uid_t nobody_else = 54'321;
   if (geteuid() == 0 && setuid(nobody_else) != 0) std::_Exit(2);
-  const bool counts = geteuid() == nobody_else;  // another user may have processes already, and gets no thread at all
+  const bool counts = geteuid() == nobody_else;  // another user may already have processes, and then gets no thread
   const rlim_t all = counts ? 1 + further : 1;
   const rlimit limit{.rlim_cur = all, .rlim_max = all};
   if (setrlimit(RLIMIT_NPROC, &limit) != 0) std::_Exit(3);
 }
 
-// oneTBB itself ends the process there.
+// oneTBB itself would end the process if it cannot start a thread.
 TEST(RunTasks, MakeDoWithTheThreadsThatTheMachineHas) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   for (const rlim_t further : {0U, 1U, 3U}) {

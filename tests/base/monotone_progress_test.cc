@@ -1,4 +1,4 @@
-// Oracle: what is shown of one name is never less than what was shown of it before, for any reported sequence.
+// Oracle: for any reported sequence, the shown progress of a name never decreases.
 #include "base/monotone_progress.h"
 
 #include <gtest/gtest.h>

@@ -23,7 +23,7 @@ TEST(SplitMix64, GivesThePublishedNumbers) {
   }
 }
 
-// The numbers are those of earlier versions: a seed that someone has written down must go on to mean the same search.
+// The numbers are those of earlier versions, so that a recorded seed keeps its meaning.
 TEST(Random, GivesTheNumbersItAlwaysGave) {
   constexpr std::uint64_t largest = std::numeric_limits<std::uint64_t>::max();
   EXPECT_EQ(random_bits(1, Stream::library_seed, 0), 0xca32e53bf572740bu);

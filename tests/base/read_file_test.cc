@@ -21,7 +21,7 @@ class ReadFile : public testing::Test {
     fs::remove_all(folder);
     fs::create_directories(folder);
   }
-  // Not after every test: a new file could get the inode of a removed one, and that one counts as read.
+  // Remove the folder at the end only: a new file could get the inode of a removed one, which counts as read.
   void TearDown() override { made.push_back(folder); }
   static void TearDownTestSuite() {
     for (const fs::path& one : made) fs::remove_all(one);

@@ -1,4 +1,4 @@
-// The spread that is assumed where a scene does not say how devices differ.
+// The spread that is assumed for a scene without [spread].
 #include "config/assumed_spread.h"
 
 #include <gmock/gmock.h>
@@ -16,7 +16,7 @@ namespace {
 
 const std::filesystem::path scenes = std::string(SOFTLAND_SOURCE_DIR) + "/scenes";
 
-// The keys of every variable, with its relative deviation.
+// Returns the keys of every variable, with its relative standard deviation.
 std::map<std::vector<std::string>, double> assumed(SceneFile file) {
   file.erase("spread");
   EXPECT_TRUE(assume_spread(file));

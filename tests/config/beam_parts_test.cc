@@ -1,4 +1,4 @@
-// Scenes whose beams are made of sections, layers and anchors: what they are read as, what may vary, and what is refused.
+// Scenes with beams of sections, layers and anchors: how they are read, which keys may vary, and what is refused.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-// Lines are cited by the expected messages.
+// Expected messages cite the line numbers.
 constexpr std::string_view built_scene = R"([structure]
 kind = "cantilever"
 sections = [
@@ -271,7 +271,7 @@ TEST(BeamParts, AreToldOfWhereTheyKeepANumberThatVaries) {
   EXPECT_THAT(warnings("both = { keys = [\"structure.thickness\", \"structure.sections[1].thickness\"],"), Not(is_told));
 }
 
-// Lines are cited by the expected messages.
+// Expected messages cite the line numbers.
 constexpr std::string_view bent_scene = R"([structure]
 kind = "cantilever"
 length = "250 um"

@@ -1,4 +1,4 @@
-// Files of measurements, and scenes that get other numbers and keep their words.
+// Files of measurements, and scenes in which numbers are replaced and the rest of the text is kept.
 #include "config/bench.h"
 
 #include <gtest/gtest.h>
@@ -91,7 +91,8 @@ until = "0.5 us"
   EXPECT_EQ(bench.measurements[2].times, (std::vector<double>{0, 1e-6}));
   for (const std::size_t moves : {1U, 2U}) EXPECT_EQ(bench.measurements[moves].levels, (std::vector<double>{20, 20}));
 }
-// A Tektronix export: 10 ns rows from 2 us before the trigger on, the contact's voltage low where it is closed.
+// An export of a Tektronix oscilloscope: rows every 10 ns from 2 us before the trigger, with a low voltage while the contact is
+// closed.
 constexpr const char* scope_file = R"(Record Length,8
 Sample Interval,1e-06
 Vertical Units,V

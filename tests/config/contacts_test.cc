@@ -1,4 +1,4 @@
-// Scenes with several contacts: what they are read as, and what is refused.
+// Scenes with several contacts: how they are read, and what is refused.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -17,7 +17,7 @@ std::string section(const std::string& name, const std::string& keys) {
   return "[contact." + name + "]\nmodel = \"linear\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"\n" + keys + "\n";
 }
 
-/// The small scene with these sections instead of its contact.
+/// Returns the small scene with these sections in place of its contact.
 std::string with(const std::string& contacts, const std::string& more = "") {
   return edited(edited(small_scene, "contact = \"2 um\"\n", ""), one_contact, contacts) + more;
 }
@@ -29,7 +29,7 @@ const std::string left = section("left", "gap = \"2 um\""), right = section("rig
 TEST(Contacts, HaveAPlaceAGapAndASide) {
   const Device d = read_scene(SceneFile::parse(with(inner + stop + right + left), "x.toml")).device;
   ASSERT_EQ(d.contacts.size(), 4u);
-  // The outermost comes first, of two at one place the nearer one; back stops come last.
+  // The outermost contact is first. Of two contacts at one place the nearer one is first. Back stops are last.
   const std::vector<std::string> names{"left", "right", "inner", "a_stop"};
   const std::vector<double> places{247.5e-6, 247.5e-6, 175e-6, 200e-6}, gaps{2e-6, 2.1e-6, 1.2e-6, 0.5e-6};
   for (std::size_t c = 0; c < names.size(); ++c) {

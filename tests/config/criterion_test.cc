@@ -1,4 +1,4 @@
-// Tests the criterion of a robust search: it is read, or refused with the reason.
+// Tests the criterion of a robust search: how it is read, and the reasons for which it is refused.
 #include "config/criterion.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// [electrode.NAME] dielectric: what is read, what is refused, and where its keys may vary.
+// [electrode.NAME] dielectric: how it is read, what is refused, and where its keys may vary.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -157,7 +157,7 @@ TEST(LandingKeys, MakeTheFaceTheContact) {
   EXPECT_DOUBLE_EQ(wall.gap.contact, 3e-6);
 }
 
-// The bridge over asperities, by the keys that [contact] has for them.
+// Returns the bridge over asperities, with the keys that [contact] has for them.
 std::string rough_bridge(const std::string& numbers) {
   std::string text = edited_bridge(linear_bed, "model = \"asperity-uniform\", " + numbers);
   return text.replace(text.find("landing.stiffness"), std::string("landing.stiffness").size(), "landing.asperity_radius");
@@ -197,7 +197,7 @@ TEST(LandingKeys, DescribeAsperities) {
               HasSubstr("landing.asperity_height = \"40 nm\": belongs to model = \"asperity-uniform\""));
 }
 
-// Dimples of 0.8 um at places of the bridge.
+// Returns the bridge with dimples of 0.8 um at several places.
 std::string with_stops(const std::vector<std::string>& names, const std::string& more = "") {
   std::string text;
   double at = 60;

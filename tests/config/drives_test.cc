@@ -148,7 +148,7 @@ TEST(Drives, ErrorsOfSourcesAreReadAndWrittenBack) {
     EXPECT_EQ(errors.delay, 50e-9);
   }
   EXPECT_EQ(resolved(with_driver(""), pull_in).json()["driver"]["main"].size(), 2U) << "nothing more than limits";
-  // Limits are held against what is asked for: 50 V, amplified beyond 60 V.
+  // Limits apply to the commanded voltage of 50 V, not to the amplified one, which is above 60 V.
   EXPECT_NO_THROW(static_cast<void>(with_driver("gain = 1.3\n").drives(pull_in)));
   const auto said = [](const std::string& keys) {
     return message(std::string(small_scene) + "[driver.main]\nmax_voltage = \"60 V\"\n" + keys);
@@ -176,7 +176,7 @@ TEST(Drives, AnAmplifierIsNoGain) {
     EXPECT_THAT(message(text(fmt::format("gain = {}\n", gain))),
                 testing::AllOf(testing::HasSubstr("x.toml:42: driver.main.gain"), testing::HasSubstr("must be in [0.5, 2]"),
                                testing::HasSubstr("key amplifier")));
-    // The message is the same for devices that vary in it.
+    // The message is the same for a spread of this key.
     const std::string spread =
         fmt::format("[spread]\n\"driver.main.gain\" = {{ distribution = \"empirical\", values = [\"{} %\", \"{} %\"] }}\n",
                     99 * gain, 101 * gain);
@@ -266,7 +266,7 @@ TEST(Drives, ATableStandsInTheSceneOrInAFileBesideIt) {
   const auto file_table = std::get<Table>(scene.drives(pull_in).at("main").waveform.value());
   EXPECT_EQ(file_table.time, inline_table.time);
   EXPECT_EQ(file_table.voltage, inline_table.voltage);
-  // The resolved scene no longer needs the file.
+  // The resolved scene does not need the file.
   std::filesystem::remove(directory / "drive.csv");
   const Scene again =
       read_scene(SceneFile::parse(resolved(with_main("family = \"table\"\ntimes = [\"0 s\", \"10 us\"]\nvoltages = [\"0 V\", "
@@ -291,7 +291,7 @@ TEST(Drives, AnElectrodeIsLimitedByDefaultWhereItsPullInIsKnown) {
   EXPECT_EQ(limits.min_voltage, 0);
   EXPECT_EQ(limits.max_voltage, 1.5 * 50) << "of the larger of Vsp and Vdp";
   EXPECT_TRUE(std::isinf(limits.max_slew));
-  // Vdp is the larger one where more than the static voltage closes the switch from rest.
+  // Vdp is the larger one if a step from rest needs more than the static voltage.
   const std::map<std::string, PullInVoltages> slow{{"main", {.static_pull_in = 30, .dynamic_pull_in = 40}}};
   EXPECT_EQ(scene.drives(slow).at("main").limits.value().max_voltage, 1.5 * 40);
   const Scene above = with_main("family = \"step\"\nlevel = \"1.2 Vsp\"\n");
@@ -356,7 +356,7 @@ TEST(Drives, LevelsOfTheDispersionForceAreFactorsAndRestIsOne) {
     const std::string text = edited(small_scene, "[gas]", section + keys + "[gas]");
     return read_scene(SceneFile::parse(text, "x.toml")).drives(pull_in).at("dispersion").waveform.value();
   };
-  // Inside, the value of this drive is the factor less one.
+  // The internal value of this drive is the factor less one.
   EXPECT_EQ(std::get<Step>(waveform("family = \"step\"\nlevel = 1.25\n")).level, 0.25);
   EXPECT_EQ(std::get<Step>(waveform("family = \"step\"\nlevel = \"125 %\"\n")).level, 0.25);
   const auto pulse = std::get<Pulse>(waveform("family = \"pulse\"\nlevels = [1.5, 0.75]\ntimes = [\"1 us\"]\n"));

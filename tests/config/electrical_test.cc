@@ -1,4 +1,4 @@
-// Resistance of contacts and electrical closing in scenes: what is read, and what is refused.
+// Contact resistance and electrical closing in scenes: how they are read, and what is refused.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -93,7 +93,7 @@ TEST(Electrical, AResistanceNeedsEveryContactThatConnects) {
   EXPECT_THAT(softland::message(with(left + stop, "")), HasSubstr("back stop"));
 }
 
-// The law elastic-plastic has a hardness of its own, by which its spots are as large as their load asks for.
+// The law elastic-plastic has its own hardness, which determines the size of its spots under a load.
 TEST(Electrical, TheHardnessOfALawIsThatOfItsSpots) {
   const std::string text = edited(
       small_scene, "model = \"linear\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"\n",

@@ -21,7 +21,7 @@ using testing::HasSubstr;
 
 const std::string step_of_main = "family = \"step\"\nlevel = \"1.25 Vdp\"\n";
 
-/// The small scene whose main electrode is driven by a file of this content.
+/// The small scene, with the waveform of its main electrode from a file with this content.
 struct FileScene {
   FileScene(const std::string& content, const std::string& keys, const std::string& more = "") : folder() {
     static_cast<void>(folder.write("scope.csv", content));

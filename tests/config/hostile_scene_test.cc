@@ -1,5 +1,5 @@
-// Hostile scenes and options: each is taken, or refused with place, key, value and rule in a message of one
-// readable line, quickly.
+// Hostile scenes and options. Each is accepted, or refused with place, key, value and rule in a message of one readable line,
+// within a short time.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ std::string utf_16(const std::string& text) {
 struct Hostile {
   std::string name;
   std::string text;
-  std::string expected;  ///< part of the message; empty: the scene is taken
+  std::string expected;  ///< part of the message; empty if the scene is accepted
 };
 
 std::ostream& operator<<(std::ostream& out, const Hostile& hostile) { return out << hostile.name; }
@@ -184,7 +184,7 @@ TEST_P(Hostility, IsAnsweredInOneReadableLine) {
   }
   EXPECT_LT(answer.size(), 600U);
   EXPECT_TRUE(std::none_of(answer.begin(), answer.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; })) << answer;
-  constexpr double patience = 20;  // [s]: a second, on a busy machine under sanitizers
+  constexpr double patience = 20;  // [s]; a second usually, more on a busy machine under sanitizers
   EXPECT_LT(taken.count(), patience);
 }
 

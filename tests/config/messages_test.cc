@@ -1,4 +1,4 @@
-// Bad input, one case each, with the whole message: where, key path, value as written, rule, nearest known name.
+// Bad input, one case each, with the whole message: place, key path, value as written, rule, and the nearest known name.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -36,7 +36,7 @@ const std::string main_step = "family = \"step\"\nlevel = \"1.25 Vdp\"";
 const std::string harmonic = "family = \"harmonic\"\n";
 const std::string table = "family = \"table\"\n";
 
-/// The families as a message lists them.
+/// Returns the families as a message lists them.
 std::string listed_families() {
   std::string all;
   for_each_family(
@@ -45,10 +45,10 @@ std::string listed_families() {
 }
 const std::string more_damping = R"(; for more give [gas] model = "linear" and quality_factor = 1 / (2 damping_ratio))";
 
-/// A line in [structure] that is not in the small scene.
+/// Adds a line to [structure] that is not in the small scene.
 Edit structure_line(const std::string& line, const std::string& expected) { return {"[gap]", line + "\n[gap]", expected}; }
 
-/// A line in [spread].
+/// Adds a line to [spread].
 Edit spread_line(const std::string& line, const std::string& expected) {
   return {"[gas]", "[spread]\n" + line + "\n[gas]", expected};
 }
@@ -258,7 +258,7 @@ INSTANTIATE_TEST_SUITE_P(Toml, BadFile, testing::Values(
     Edit{"[gas]", "[a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q]", "x.toml:14: a key has more than 16 parts"}));
 // clang-format on
 
-// A complete plate, changed the same way.
+// A complete plate, with changes in the same way.
 constexpr std::string_view small_plate = R"([structure]
 kind = "plate"
 mass = "2.4e-9 kg"

@@ -1,4 +1,4 @@
-// [structure] kind = "modes": what is taken from a file, what a resolved scene holds, and what is refused by name.
+// [structure] kind = "modes": what is read from a file, the content of a resolved scene, and what is refused by name.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -106,7 +106,7 @@ TEST_F(ModalScene, TellsWhatItTookFromTheFileOfAnotherProgram) {
   EXPECT_THAT(refusal(text, {"structure.mass=1 ng"}), HasSubstr("mass-normalised already, by the generalised mass"));
 }
 
-// A result holds the table itself: it is read anywhere, to the same bits.
+// A result contains the table itself, so that it can be read anywhere, bit for bit.
 TEST_F(ModalScene, ResolvedHoldsItsTable) {
   const Scene first = scene(std::string(modes_scene));
   const SceneFile held = resolved(first, {});
@@ -159,7 +159,7 @@ TEST_F(ModalScene, RefusesByNameWhatItCannotDo) {
               HasSubstr("the width in the file varies from 10 um to 20 um along the axis"));
 }
 
-// Row 7 of 10 is 20 um wide; between the rows the width runs straight.
+// Row 7 of 10 is 20 um wide; the width is linear between the rows.
 TEST_F(ModalScene, HasTheWidthsOfItsTable) {
   write("modes.csv", modes_csv("2e-05"));
   const Scene first = scene(std::string(modes_scene));
@@ -170,13 +170,13 @@ TEST_F(ModalScene, HasTheWidthsOfItsTable) {
     EXPECT_NEAR(width_at(s, 65e-6), 15e-6, 1e-15);
     EXPECT_NEAR(width_at(s, 70e-6), 20e-6, 1e-15);
   }
-  // The field over the wide place pulls more.
+  // The field pulls more strongly on the wide place.
   const double wide = static_pull_in(Switch(first.device), 0).voltage;
   write("modes.csv", modes_csv());
   EXPECT_LT(wide, 0.98 * static_pull_in(Switch(scene(std::string(modes_scene)).device), 0).voltage);
 }
 
-// The face of row 7 of 10 is 100 nm nearer to the electrode.
+// The face of row 7 of 10 is 100 nm closer to the electrode.
 TEST_F(ModalScene, TakesTheRestShapeOfItsFile) {
   write("modes.csv", modes_csv("1e-05", "1e-7"));
   const Scene bent = scene(std::string(modes_scene));
@@ -216,7 +216,7 @@ TEST_F(ModalScene, MayBeClampedAtItsFarEnd) {
   EXPECT_FALSE(Switch(linear.device).stretching());
   ASSERT_TRUE(Switch(cubic.device).stretching());
   EXPECT_EQ(Switch(cubic.device).stretching()->stiffness, 6e3);
-  // A result reads back to the same.
+  // A result is read back unchanged.
   const SceneFile held = resolved(cubic, {});
   const Scene again = read_scene(SceneFile::parse(held.text(), "elsewhere.toml"));
   EXPECT_TRUE(*part_of<ModalStructure>(again.device.structure).table == *part_of<ModalStructure>(cubic.device.structure).table);

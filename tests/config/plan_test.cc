@@ -1,4 +1,4 @@
-// Plans of explorations: which points they have, what identifies them, and what is refused.
+// Plans of explorations: their points, their identity, and what is refused.
 #include "config/plan.h"
 
 #include <fmt/format.h>
@@ -82,7 +82,8 @@ TEST(Plan, InMultiplesOfAPullInVoltageKeepsThem) {
       1.05 * 40);
 }
 
-// A percentage varies a place that is a length by a share of that length, and one that is a percentage by one of the beam's.
+// A position that is a length varies by a percentage of that length. One that is a percentage varies by percentages of the
+// beam's length.
 TEST(Plan, OfAPlaceVariesAsItIsWritten) {
   const Plan of_length = plan({"electrode.main.span[2]=50 %:100 %:2"});
   EXPECT_TRUE(of_length.variables()[0].is_factor);
@@ -242,7 +243,7 @@ TEST(Plan, RefusesWhatAFileSaysWrongWithItsPlace) {
       return error.what();
     }
   };
-  const auto line = 4 + std::count(small_scene.begin(), small_scene.end(), '\n');  // line that follows the scene
+  const auto line = 4 + std::count(small_scene.begin(), small_scene.end(), '\n');  // number of the line after the scene
   const std::string place = fmt::format("map.toml:{}: plan.", line);
   EXPECT_EQ(told("vari = 1\n"), place + "vari = 1: unknown key (did you mean 'vary'?)");
   EXPECT_EQ(told("vary = [3]\n"), place + "vary = [3]: value 1: expected a text in quotes");

@@ -1,4 +1,4 @@
-// Every number that a scene can hold, at and beyond the ends of its range. The list of keys is the schema itself.
+// Every number that a scene can have, at the ends of its range and beyond. The list of keys is the schema itself.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ std::string some_value(const Key& key) {
   return fmt::format("[{}]", fmt::join(std::vector<std::string>(std::max<std::size_t>(1, key.count), one), ", "));
 }
 
-/// A section that holds this value of `key`, and of the others what it cannot do without.
+/// A section with this value of `key` and with the other keys that it needs.
 struct Example {
   Example(const Section& section, const Key& key, const std::string& choice) : section_(section), key_(key) {
     entry_ = !section.is_named ? "" : section.entry.empty() ? "some" : std::string(section.entry);
@@ -68,7 +68,7 @@ struct Example {
     path_ = join_path(section.is_named ? fmt::format("{}.{}", section.name, entry_) : std::string(section.name), key.name);
   }
 
-  /// The reader's message for this value as TOML; empty when it takes it.
+  /// Returns the reader's message for this value in TOML; empty if it is accepted.
   [[nodiscard]] std::string answer(const std::string& value) const {
     const SceneFile file = SceneFile::parse(fmt::format("{}{} = {}\n", head_, key_.name, value), "x.toml");
     try {
@@ -78,7 +78,7 @@ struct Example {
       return error.what();
     }
   }
-  /// The value of this number in the SI unit of `dimension`, as a list where one is due.
+  /// Returns the value of the number in the SI unit of `dimension`, as a list if the key needs one.
   [[nodiscard]] std::string text(double value, const Dimension& dimension) const {
     const bool bare = key_.type == KeyType::integer || key_.is_bare_number();
     std::string one = key_.type == KeyType::integer ? fmt::format("{:.0f}", value)
@@ -97,7 +97,7 @@ struct Example {
   std::string entry_, head_, path_;
 };
 
-/// Calls `check` with every number of the schema, in every dimension that it can have.
+/// Calls `check` with every number of the schema, in every dimension that it may have.
 template <class Check>
 void with_every_number(const Check& check) {
   for (const Section& section : schema()) {
@@ -174,8 +174,9 @@ TEST(Ranges, WhatIsNoSuchNumberIsRefusedWithWhatIsExpected) {
   with_every_number([](const Key& key, const Dimension&, const Example& example) {
     for (const std::string& value :
          std::vector<std::string>{"true", "{}", "2020-01-01", "'nan m'", "'inf'", "''", "'1 furlong'", "[[]]", "'1 m^9 A^9'"}) {
-      if (key.any_word && value.starts_with('\'')) continue;                                           // a name
-      if (value == "'1 m^9 A^9'" && key.dimensions.empty() && key.type != KeyType::integer) continue;  // decided by another key
+      if (key.any_word && value.starts_with('\'')) continue;  // a name
+      if (value == "'1 m^9 A^9'" && key.dimensions.empty() && key.type != KeyType::integer)
+        continue;  // another key decides the dimension
       const std::string answer = example.answer(value);
       EXPECT_THAT(answer, HasSubstr("x.toml:")) << value;
       EXPECT_THAT(answer, HasSubstr(example.path() + " = ")) << value;

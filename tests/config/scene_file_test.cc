@@ -1,4 +1,4 @@
-// Scenes as text: options, waveforms put in, round trips.
+// Scenes as text: options, inserted waveforms, round trips.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -106,12 +106,12 @@ TEST(SceneFile, AnOptionTakesThePlaceOfTheOtherWayToGiveAQuantity) {
   const Scene scene = read_scene(file);
   EXPECT_EQ(scene.simulate.tolerance, 1e-8);
   EXPECT_FALSE(file.json()["simulate"].contains("accuracy"));
-  // Options that contradict each other: the last one holds.
+  // The last of several options for a key counts.
   file.set("simulate.accuracy=1e-4");
   EXPECT_EQ(read_scene(file).simulate.accuracy, 1e-4);
 }
 
-/// Bits of every waveform after a trip through text.
+/// Returns a waveform after it was written as text and read again.
 Waveform after_text(const Waveform& waveform) {
   SceneFile file = small_file();
   file.set("driver.main={ min_voltage = \"-1e9 V\", max_voltage = \"1e9 V\" }");
@@ -286,7 +286,7 @@ TEST(Resolved, MessagesDoNotCiteTheLinesOfTheOriginal) {
   EXPECT_EQ(full.name(), "x.toml (resolved)");
 }
 
-// Whatever the bytes, reading ends in a scene or in a message.
+// Reading any bytes gives a scene or a message.
 TEST(SceneFile, DamagedTextNeverDoesWorseThanAMessage) {
   constexpr int trials = 1000;
   constexpr std::string_view bytes = "\"'[]{}=.,#\n\\ 0e-^/*%\0\xff\x80uVz";
@@ -342,7 +342,7 @@ TEST(SceneFile, DamagedOptionsNeverDoWorseThanAMessage) {
 }
 
 TEST(SceneFile, DeepNestingOfAnyKindIsRefused) {
-  constexpr int deep = 200000;  // far beyond what a recursive destructor survives
+  constexpr int deep = 200000;  // far deeper than a recursive destructor can handle
   std::string dotted = "a";
   for (int i = 0; i < deep; ++i) dotted += ".a";
   const std::string arrays(deep, '[');

@@ -34,7 +34,7 @@ TEST(Scene, TakesTheStressPerFieldOfALayerInsteadOfTheStrain) {
   EXPECT_DOUBLE_EQ(moment(edited(small_scene, R"(d31 = "-171 pm/V")", R"(e31 = "-10.431 C/m^2")")), by_strain);
 }
 
-// The force per velocity of a plate as a whole, by the length along which films act on it.
+// The force per velocity of a whole plate, divided by the length along which films act on it.
 TEST(Scene, TakesTheDampingOfAWholePlate) {
   const auto damping = [](const std::string& damper) {
     const SceneFile file = SceneFile::parse(
@@ -205,7 +205,7 @@ TEST(Scene, OptionalKeysArrive) {
 }
 
 TEST(Scene, OfTheGapClosingActuatorIsThatOfTheComparison) {
-  constexpr double written = 2e-4;  // relative: digits of the scene
+  constexpr double written = 2e-4;  // relative; number of digits in the scene
   const Device scene = read_file("gap-closing-actuator.toml").device, d = test::gap_closing_actuator(76.5e-6);
   EXPECT_NEAR(part_of<Plate>(scene.structure).mass, part_of<Plate>(d.structure).mass, written * part_of<Plate>(d.structure).mass);
   EXPECT_NEAR(part_of<Plate>(scene.structure).stiffness, part_of<Plate>(d.structure).stiffness,
@@ -439,7 +439,7 @@ TEST(Scene, SummitsThatStickTooWellAreWarnedAbout) {
 }
 
 TEST(Scene, AWideBeamWithoutPlateStrainIsWarnedAbout) {
-  // Exactly five thicknesses is not wide yet.
+  // A width of exactly five thicknesses does not count as wide.
   EXPECT_THAT(read(edited(small_scene, "\"20 um\"", "\"20.00 um\"")).warnings, testing::IsEmpty());
   EXPECT_THAT(read(edited(small_scene, "\"20 um\"", "\"20.1 um\"")).warnings,
               testing::ElementsAre("x.toml:5: structure.width = \"20.1 um\": more than five thicknesses; "

@@ -21,7 +21,7 @@ namespace {
 
 using testing::UnorderedElementsAre;
 
-/// A scene in which every part is there to be set.
+/// Returns a scene in which every part exists, so that every key has a member.
 Scene whole_scene() {
   Scene scene{.title = {},
               .device = {.electrodes = {{.name = "main"}}},
@@ -51,9 +51,9 @@ TEST(Schema, EveryKeySetsAMemberOrIsKnownToSetNone) {
       if (!is_bound(key.bound)) without_member.push_back(fmt::format("{}.{}", section.name, key.name));
     }
   }
-  // The areas decide lengths together with a width, the models and the kind what is there to have members. The keys of a file
-  // of modes make a table; those in sections, layers and a dielectric set members of their own. The side of a contact and what is
-  // closed decide which of them make the connection.
+  // These keys set no member of their own. Areas decide lengths together with a width; models and the kind decide which members
+  // exist. Keys of a file of modes make a table; those in sections, layers and a dielectric set members of these. The side of a
+  // contact and `closed` decide which contacts make the connection.
   EXPECT_THAT(without_member,
               UnorderedElementsAre("structure.area", "electrode.area", "electrode.dielectric", "contact.model", "contact.side",
                                    "metrics.closed", "gas.model", "structure.kind", "structure.sections", "structure.layers",
@@ -79,7 +79,7 @@ TEST(Schema, EveryKeySetsAMemberOfTheKindItReads) {
   }
 }
 
-/// Counts the members of a scene under these laws that the keys set.
+/// Returns the number of members of a scene with these laws that the keys set.
 int members_set(const ContactModel& contact, const Gas& gas) {
   Scene scene = whole_scene();
   for (Contact& one : scene.device.contacts) one.model = contact;
@@ -88,11 +88,11 @@ int members_set(const ContactModel& contact, const Gas& gas) {
   for (const Section& section : schema()) {
     std::set<std::string_view> seen;
     for (const Key& key : section.keys) {
-      if (!seen.insert(key.name).second) continue;  // the same key of another kind of structure
+      if (!seen.insert(key.name).second) continue;  // the same key for another kind of structure
       if (section.name == "contact" && !key.belongs_to(name_of(contact))) continue;
       if (section.name == "gas" && !key.belongs_to(name_of(gas))) continue;
       const Bound& b = key.bound;
-      const std::size_t entry = section.name == "contact" ? 1 : 0;  // the gap of the first contact is that of [gap]
+      const std::size_t entry = section.name == "contact" ? 1 : 0;  // the gap of the first contact is in [gap]
       const bool is_span = b.place != nullptr && key.count == 2;
       for (const void* member : {b.number != nullptr ? static_cast<const void*>(&b.number(scene, entry)) : nullptr,
                                  b.place != nullptr ? static_cast<const void*>(&b.place(scene, entry, 0)) : nullptr,

@@ -1,4 +1,4 @@
-// [spread]: which numbers vary, how, and what is refused.
+// [spread]: which numbers vary, how they vary, and what is refused.
 #include "config/spread.h"
 
 #include <fmt/format.h>
@@ -43,7 +43,7 @@ TEST(Spread, InTheUnitOfTheKeyIsItsValue) {
 "gap.contact" = { distribution = "triangular", low = "1.8 um", high = "2.1 um" }
 "piezo.d31" = { distribution = "normal", standard_deviation = "9 pm/V", truncate_low = "-190 pm/V" }
 )");
-  ASSERT_EQ(spread.variables.size(), 4U);  // they are ordered by name
+  ASSERT_EQ(spread.variables.size(), 4U);  // ordered by name
   const auto& [gap, d31, thickness, modulus] =
       std::tie(spread.variables[0], spread.variables[1], spread.variables[2], spread.variables[3]);
   for (const SpreadVariable& v : spread.variables) EXPECT_FALSE(v.is_factor) << v.name;
@@ -109,7 +109,7 @@ gaps = { keys = ["gap.electrode", "gap.contact"], distribution = "normal", cov =
   EXPECT_DOUBLE_EQ(film_of(*scene.device.gas)->viscosity, 1.5 * 1.86e-5);
 }
 
-// The keys are those of --vary.
+// The keys are written as for --vary.
 TEST(Spread, TakesTheEndsOfASpan) {
   const DeviceSpread spread = spread_of(R"(
 "electrode.main.span[2]" = { distribution = "normal", standard_deviation = "1 um" }
@@ -168,7 +168,7 @@ correlation = [["structure.thickness", "gaps", 0.8]]
   };
   EXPECT_EQ(spread.correlation(at("gaps"), at("structure.thickness")), 0.8);
   EXPECT_EQ(spread.correlation(at("gaps"), at("structure.density")), 0);
-  // The median of both, and one far out that draws the other along: z_2 = 0.8 z_1.
+  // Both medians, and an extreme value of one variable with the resulting one of the other: z_2 = 0.8 z_1.
   std::vector<double> u{0.5, 0.5, 0.5};
   u[static_cast<std::size_t>(std::min(at("gaps"), at("structure.thickness")))] = 0.5 * std::erfc(-2 / std::sqrt(2.0));  // 2 sigma
   spread.to_values(u);
@@ -195,7 +195,7 @@ TEST_F(SpreadFile, GivesTheValuesOfAColumn) {
   EXPECT_NEAR(v.distribution.quantile(0.5), 4e-6, rounding * 4e-6);
   EXPECT_NEAR(v.distribution.support().high, 4.2e-6, rounding * 4e-6);
 
-  // The resolved scene needs no file.
+  // The resolved scene does not need the file.
   const Scene again = read_scene(resolved(scene, {{"main", {.static_pull_in = 50, .dynamic_pull_in = 40}}}));
   for (const double p : {0.1, 0.3, 0.77})
     EXPECT_DOUBLE_EQ(again.spread.variables.at(0).distribution.quantile(p), v.distribution.quantile(p)) << p;
@@ -246,7 +246,7 @@ trigger = { keys = ["driver.main.delay", "driver.piezo.delay"], distribution = "
 correlation = [["amplifier", "trigger", 0.5]]
 )");
   EXPECT_TRUE(spread.varies_drives());
-  ASSERT_EQ(spread.variables.size(), 5U);  // they are ordered by name
+  ASSERT_EQ(spread.variables.size(), 5U);  // ordered by name
   const SpreadVariable &gain = spread.variables[0], &offset = spread.variables[1], &jitter = spread.variables[2],
                        &delay = spread.variables[4];
   EXPECT_TRUE(gain.is_factor);
@@ -262,7 +262,7 @@ correlation = [["amplifier", "trigger", 0.5]]
   EXPECT_NEAR(offset.distribution.support().low, -0.02, rounding);
   EXPECT_EQ(offset.keys[0].unit, "V");
   EXPECT_EQ(offset.keys[0].refusal(-0.1), "") << "an offset may be negative";
-  // Several drives have the same value of one error.
+  // Several drives share the value of one error.
   ASSERT_EQ(delay.keys.size(), 2U);
   EXPECT_EQ(DeviceSpread::value(delay, delay.keys[0], 3e-8), 3e-8);
   EXPECT_EQ(DeviceSpread::value(delay, delay.keys[1], 3e-8), 3e-8);

@@ -27,7 +27,7 @@ std::ostream& operator<<(std::ostream& out, const Good& good) { return out << go
 
 class GoodQuantity : public testing::TestWithParam<Good> {};
 
-// Exact equality throughout: a decimal prefix must not cost a bit.
+// Values are compared exactly: a decimal prefix must not cause rounding.
 TEST_P(GoodQuantity, IsReadExactly) {
   const Quantity quantity = parse_quantity(GetParam().text);
   EXPECT_EQ(quantity.value, GetParam().value);

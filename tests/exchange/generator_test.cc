@@ -1,4 +1,4 @@
-// Files of generators, read back.
+// Files for generators, read back.
 #include "exchange/generator.h"
 
 #include <fmt/format.h>
@@ -38,7 +38,7 @@ TEST(GeneratorFile, OfEveryFormatIsReadBack) {
       EXPECT_EQ(back.values, s.volts);
       continue;
     }
-    // Codes: within half of one, and the same codes again.
+    // Codes are within half a step of the voltages, and unchanged after another round trip.
     const double code = (1.05 + 0.1 / 3) / 65534;
     for (std::size_t k = 0; k < s.volts.size(); ++k) EXPECT_NEAR(back.values[k], s.volts[k], 0.5001 * code);
     GeneratorSamples again = s;

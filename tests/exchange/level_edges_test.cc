@@ -32,7 +32,7 @@ TEST(LevelEdges, AreWhereStraightLinesCrossTheThreshold) {
 TEST(LevelEdges, NoiseWithinTheHysteresisIsNone) {
   const Trace noisy = trace({0, 1.2, 0.9, 1.3, 4, 1.1, 0.8, 1.2, 4, 0});
   expect_edges(level_edges(noisy, {.threshold = 1}), {1 / 1.2, 1 + 2.0 / 3, 2.25, 5 + 1.0 / 3, 6.5, 8.75});
-  // Closed for good from the last crossing before it is 2, open where it is 0.
+  // The contact closes at the last crossing before the level reaches 2, and opens at the last one before it reaches 0.
   expect_edges(level_edges(noisy, {.threshold = 1, .hysteresis = 2}), {2.25, 8.75});
 }
 

@@ -1,4 +1,4 @@
-// Modes of other programs: the same table from every format, and a true reason for what is none.
+// Modes of other programs: the same table from every format, and the true reason for each refusal.
 #include "exchange/mode_table.h"
 
 #include <gmock/gmock.h>
@@ -62,7 +62,7 @@ TEST(ModeTable, IsTheSameFromEveryFormat) {
     for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(table.positions[i], x[i], sample.digits * test::sample_length);
     for (std::size_t k = 0; k < 2; ++k) {
       EXPECT_NEAR(table.frequencies[k], test::sample_frequencies[k], sample.digits * test::sample_frequencies[k]);
-      // Normalisation by a mass is exact up to what a cubic of five points tells of its integral.
+      // Normalisation by a mass is exact except for the integral of a cubic through five points.
       const double scale = sample.keys.mass ? table.shapes[k].back() / test::sample_shape(k, test::sample_length) : 1;
       EXPECT_GT(scale, 0);
       for (std::size_t i = 0; i < x.size(); ++i)
@@ -97,7 +97,7 @@ TEST(ModeTable, LeavesOutByNameWhatDoesNotBendAlongTheDirection) {
   EXPECT_NEAR(in_plane.widths.front(), 2e-6, 1e-11) << "the other extent is across that motion";
 }
 
-// A cantilever of mass m: the integral of its mass per length times the square of a mode is 1, and so its end moves by 2 /
+// A cantilever of mass m: the integral of its mass per length times the squared mode is 1, so that its end moves by 2 /
 // sqrt(m).
 TEST(ModeTable, NormalisesByAMassThatIsEvenAlongTheAxis) {
   constexpr double mass = 3e-12, root = 1.8751040687119611;  // cos z cosh z = -1
@@ -132,8 +132,8 @@ TEST(ModeTable, RefusesWithTheRule) {
     change(keys);
     return refusal_of(sample_named(name).content, keys);
   };
-  // These files lack something.
-  EXPECT_THAT(keyed("comsol", [](ModeKeys& k) { k.mass.reset(); }), HasSubstr("give structure.mass"));
+  // These files are incomplete.
+  EXPECT_THAT(keyed("comsol", [](ModeKeys& k) { k.mass.reset(); }), HasSubstr("structure.mass gives that of the structure"));
   EXPECT_THAT(keyed("frd", [](ModeKeys& k) { k.mass = 1e-12; }),
               HasSubstr("structure.mass: must be omitted, because the modes of the file are mass-normalised"));
   EXPECT_THAT(keyed("rom", [](ModeKeys& k) { k.length_unit.reset(); }), HasSubstr("structure.length_unit says it"));
@@ -150,11 +150,11 @@ TEST(ModeTable, RefusesWithTheRule) {
   EXPECT_THAT(refusal_of(test::sample_uff(0), sample_named("uff").keys), HasSubstr("structure.mass"));
   EXPECT_THAT(refusal_of(test::sample_uff(2, false), sample_named("uff").keys),
               HasSubstr("modes of 25 kHz, 156 kHz at 6 nodes, but no positions"));
-  // These files hold no modes.
-  EXPECT_THAT(edited("comsol", "w (m)", "acpr.p_t (Pa)"), HasSubstr("\"acpr.p_t (Pa) @ freq=25000\" must be a displacement"));
+  // These files contain no modes.
+  EXPECT_THAT(edited("comsol", "w (m)", "acpr.p_t (Pa)"), HasSubstr("\"acpr.p_t (Pa) @ freq=25000\" is no displacement"));
   EXPECT_THAT(refusal_of("$SENE    \n      25     1.0000\n", {}), HasSubstr("(.pcs), no modes; they stand in the .rom"));
-  EXPECT_THAT(refusal_of("time_s,main\n0,1\n", {}), HasSubstr("unknown kind of file"));
-  // These files contradict themselves.
+  EXPECT_THAT(refusal_of("time_s,main\n0,1\n", {}), HasSubstr("no known file of modes"));
+  // These files are contradictory.
   EXPECT_THAT(edited("frd", " -1         7 2.0", " -1        7 2.0"),
               HasSubstr("the line of a node must have 49 columns, and has 48"));
   EXPECT_THAT(edited("frd", "MODAL", "XXXXX"), HasSubstr("accepted")) << "the kind of step is told by its number";

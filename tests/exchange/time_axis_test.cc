@@ -1,4 +1,4 @@
-// Every source of a time axis against the others: column of times, interval, rate, start, count, period, units.
+// Compares every source of a time axis with the others: column of times, interval, rate, start, count, period, units.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -28,13 +28,13 @@ void axis_refused(const std::string& text, const std::vector<std::string>& parts
   expect_invalid([&] { (void)read_axis(text, keys); }, parts);
 }
 
-/// A source of a time axis as a header writes it, and one that contradicts it; the same interval, start or count otherwise.
+/// A source of a time axis in a header, and a contradictory one, with the same interval, start or count otherwise.
 struct Contradiction {
   std::string written, contradicting;
-  std::vector<std::string> named;  ///< parts of the refusal's message
+  std::vector<std::string> named;  ///< texts that the message of the refusal contains
 };
 
-/// The sources that a sample of every format has in its header.
+/// Returns the sources in the header of a sample, for every format.
 std::vector<Contradiction> contradictions_of(const std::string& sample) {
   const std::vector<std::string> interval{"apart", "interval = "}, count{"samples", "holds 24", "interval = "};
   if (sample == "tektronix")
@@ -84,7 +84,7 @@ TEST(TimeAxis, SourcesThatContradictEachOtherAreRefusedInEveryFormat) {
       std::string text = sample.content;
       text.replace(at, one.written.size(), one.contradicting);
       axis_refused(text, one.named, sample.keys);
-      // The keys decide.
+      // Keys have precedence over the header.
       ReadKeys keys = sample.keys;
       keys.interval = 1e-6;
       EXPECT_NO_THROW((void)read_axis(text, keys));
@@ -97,7 +97,7 @@ TEST(TimeAxis, SourcesThatContradictEachOtherAreRefusedInEveryFormat) {
 TEST(TimeAxis, SourcesThatAgreeToAnIntervalAreTaken) {
   const std::string numbers = rows(24, [](std::size_t i) { return fmt::format("{:.6f},1", 1e-4 * static_cast<double>(i)); });
   const auto head = [&](const std::string& lines) { return lines + "Time (s),U (V)\n" + numbers; };
-  // One interval more or less, and what digits round.
+  // A difference of up to one interval, and rounded digits, are accepted.
   for (const double start : {0.0, 0.9e-4, -0.9e-4})
     EXPECT_NO_THROW((void)read_axis(head(fmt::format("Sample Interval,1e-4\nStart,{}\n", start))));
   for (const double interval : {1.03e-4, 0.97e-4})
@@ -107,12 +107,12 @@ TEST(TimeAxis, SourcesThatAgreeToAnIntervalAreTaken) {
                  {"\"Start\"", "first row", "interval = \"uneven\""});
   for (const double interval : {1.05e-4, 0.95e-4, 1e-7, 0.1})
     axis_refused(head(fmt::format("Sample Interval,{}\n", interval)), {"\"Sample Interval\"", "drift", "time_unit"});
-  // A time of the day is no time of a sample.
+  // A time of day is not the time of a sample.
   EXPECT_NO_THROW((void)read_axis(head("Sample Interval,1e-4\nStart Time: 14:09:15\n")));
   EXPECT_EQ(read_axis(head("Sample Interval,1\n"), {.uneven = true}).times[1], 1e-4);
 }
 
-/// Rows of EasyWave whose "xpos" is one of what it may be.
+/// Returns rows of EasyWave, whose "xpos" has one of its possible meanings.
 std::string easywave(std::size_t declared, std::size_t count, const std::function<double(std::size_t)>& xpos) {
   std::string text = fmt::format("data length,{}\nfrequency,1000\namp,3\noffset,0\nphase,0\n,\n,\nxpos,value\n", declared);
   for (std::size_t i = 0; i < count; ++i) text += fmt::format("{},{}\n", xpos(i), test::level(i, 0));
@@ -173,7 +173,7 @@ TEST(TimeAxis, TheUnitAboveIsThatOfTheTimes) {
   axis_refused(head("Horizontal Units,ms\nSample Interval,5\n"), {"\"Sample Interval\"", "time_unit"});
   axis_refused(head("Horizontal Units,V\n"), {"in V and no time"});
   axis_refused("Horizontal Units,ms\nSample Interval,1e-3\nVolts\n1.5\n2.5\n3.5\n", {"1 us or 1 ms", "interval = "});
-  // A column that names its own unit must be that of the header, unless an interval in seconds says that it is right.
+  // The unit in the name of a column must be that of the header, unless an interval in seconds confirms it.
   const std::string own = "Time (s),CH1\n" + numbers;
   axis_refused("Horizontal Units,us\n" + own, {"times are in s", "in us", "time_unit"});
   EXPECT_EQ(read_axis("Horizontal Units,us\n" + own, {.time_unit = "s"}).times[1], 1e-3);
@@ -189,7 +189,7 @@ TEST(TimeAxis, SignsAndRoundedTimesInBlanksAreNoPwl) {
         text +=
             has_suffix ? fmt::format("{:+}n {:+.2f}\n", time, 0.1 * i) : fmt::format("{:+.2e} {:+.2e}\n", time * 1e-9, 0.1 * i);
       }
-      if (has_suffix && from == 0) continue;  // every time has a plus and a suffix, as times relative to the one before have
+      if (has_suffix && from == 0) continue;  // every time has a plus sign and a suffix, as times relative to the one before have
       const Recording made = read_axis(text);
       EXPECT_NEAR(made.times.back(), from + 29e-9, 1e-15) << text.substr(0, 60);
     }

@@ -28,7 +28,7 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 Recording read_dump(const std::string& text, const ReadKeys& keys = {}) { return parse_recording(text, "x.vcd", keys); }
 
-// A capture of two probes as sigrok-cli writes it.
+// A capture of two probes by sigrok-cli.
 const std::string of_analyser = R"($date Mon Nov 30 08:00:00 2026 $end
 $version libsigrok 0.5.2 $end
 $comment
@@ -48,7 +48,7 @@ $enddefinitions $end
 #9000
 )";
 
-// A module in a module as a simulator writes it: a vector, an integer, a real number, an alias, unknown states.
+// A dump of a simulator with nested modules: a vector, an integer, a real number, an alias, unknown states.
 const std::string of_simulator = R"($comment a test $end
 $timescale
 	10ps
@@ -204,7 +204,7 @@ TEST(Vcd, OfChangedBytesIsReadOrRefused_long) {
   }
 }
 
-// Rows times variables would be more than any memory; so would the paths of scopes in one another.
+// All rows of all variables would exceed the memory, and so would the paths of nested scopes.
 TEST(Vcd, OfMoreThanFitsIsRefusedUnlessAVariableIsNamed_optimized) {
   std::string head = "$timescale 1 ns $end\n", scopes = head, changes;
   constexpr int variables = 20'000;
@@ -225,7 +225,7 @@ TEST(Vcd, OfAMillionChangesIsReadInAboutASecond_optimized) {
   for (int k = 0; k < changes; ++k) text += fmt::format("#{}\n{}{}\n", 3 * k, k / 2 % 2, k % 2 == 0 ? '!' : '"');
   const auto begin = std::chrono::steady_clock::now();
   EXPECT_EQ(read_dump(text).rows(), 2u * changes - 1);
-  constexpr double busy = 10;  // [s], on a machine that does other things
+  constexpr double busy = 10;  // [s], on a busy machine
   EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), busy);
 }
 

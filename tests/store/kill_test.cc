@@ -1,4 +1,4 @@
-// A writer that is killed, again and again, and in the end has the rows of one that was not.
+// A writer that is killed repeatedly has in the end the rows of a writer that was not.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
@@ -23,19 +23,19 @@ using Kill = WithStore;
 
 constexpr std::int64_t points = 60'000;
 
-// The writer's report on itself, in memory that outlives it.
+// The writer's report in memory that outlives it.
 struct Told {
-  std::atomic<bool> writes = false;  ///< the store is open
+  std::atomic<bool> writes = false;  ///< true while the store is open
   std::atomic<std::int64_t> taken = 0;
-  std::array<double, points> when{};  ///< [s] a row was taken
+  std::array<double, points> when{};  ///< time at which each row was taken [s]
 };
 
 struct Pace {
-  int rows;                        ///< rows between two rests
-  std::chrono::microseconds rest;  ///< so long that no machine is done before it is killed
+  int rows;                        ///< number of rows between two pauses
+  std::chrono::microseconds rest;  ///< so long that the writer is killed before it is done
 };
 
-// Writes what is missing until it is killed, or done.
+// Writes the missing rows until it is done or killed.
 [[noreturn]] void write_on(const std::filesystem::path& file, Told& told, Pace pace) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   StudyStore store(file, plan_of(points), origin(), Opening::resume);
@@ -59,12 +59,12 @@ class Writer {
     child_ = ::fork();
     if (child_ == 0) write_on(file, told, pace);
   }
-  // Wait until it has the store open, for a minute at most.
+  // Waits until the writer has opened the store, for at most a minute.
   void await() const {
     for (int i = 0; i < 60'000 && !told_.writes; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     ASSERT_TRUE(told_.writes);
   }
-  // Returns true if it was still at work.
+  // Kills the writer; returns true if it was still running.
   bool kill() const {
     ::kill(child_, SIGKILL);
     int status = 0;
@@ -104,8 +104,7 @@ TEST_F(Kill, FiftyTimesEndsWithTheSameBits_slow) {
   EXPECT_GT(held, 0u);
   EXPECT_LT(held, static_cast<std::size_t>(points));
 
-  // Rows that come slowly become durable by time alone. Disks may be busy: the last second is lost, here at most three and a
-  // half.
+  // Rows that come slowly become durable by time alone. On a busy disk the last second is lost; allow three and a half.
   const Writer slow(file, *told, {.rows = 1, .rest = std::chrono::milliseconds(5)});
   slow.await();
   std::this_thread::sleep_for(std::chrono::milliseconds(4500));

@@ -1,4 +1,4 @@
-// Parts of a study as one.
+// Merges parts of a study.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -42,7 +42,7 @@ TEST_F(Merge, OfAllPartsHasTheBitsOfTheUnsharedStudy) {
   EXPECT_EQ(StudyReader(file).by_status(), StudyReader(path("whole.sqlite")).by_status());
   EXPECT_EQ(StudyReader(file).plan().shard, Shard{});
   EXPECT_EQ(StudyReader(file).sessions().size(), 9u);
-  // It can be gone on with.
+  // The merged store can be continued.
   EXPECT_EQ(StudyStore(file, plan_of(5003), origin(), Opening::resume).done(), std::vector<bool>(5003, true));
 }
 
@@ -69,7 +69,7 @@ TEST_F(Merge, OfMergedPartsIsTheSame) {
   const std::vector<fs::path> parts = parts_of(100, 4);
   static_cast<void>(merge_studies({parts[0], parts[1]}, path("a"), origin()));
   static_cast<void>(merge_studies({parts[1], parts[2], parts[3]}, path("b"), origin()));
-  EXPECT_THAT(merge_studies({path("b"), path("a")}, file, origin()).notes, IsEmpty());  // rows in both have the same bits
+  EXPECT_THAT(merge_studies({path("b"), path("a")}, file, origin()).notes, IsEmpty());  // rows in both stores have the same bits
   EXPECT_EQ(rows_in(file).size(), 100u);
 }
 

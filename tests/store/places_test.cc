@@ -1,4 +1,4 @@
-// Tests what may stand where a store is or should be, and the answer to each.
+// Tests all that may be in the place of a store, and the answer to each.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sqlite3.h>
@@ -48,7 +48,7 @@ void run_sql(const fs::path& file, const char* sql) {
   sqlite3_close(database);
 }
 
-// Neither read nor continued, for this reason, and not touched.
+// Expects that the file is neither read nor continued, for this reason, and stays unchanged.
 void expect_refused(const fs::path& file, const std::string& reason) {
   const bool regular = fs::is_regular_file(file);
   const std::string before = regular ? content_of(file) : "";
@@ -136,7 +136,7 @@ TEST_F(Place, OfAStoreWithMissingTablesIsRefused) {
               ThrowsMessage<InvalidInput>(HasSubstr("is a copy")));
 }
 
-// Neither read nor gone on with, in words that name file and fault.
+// Expects that the file is neither read nor continued, with a message that names file and fault.
 void expect_damaged(const fs::path& file, std::int64_t points, const std::string& reason) {
   const auto is_damaged =
       ThrowsMessage<InvalidInput>(AllOf(HasSubstr(file.string() + ": the store is damaged"), HasSubstr(reason)));
@@ -240,7 +240,7 @@ TEST_F(Place, OfAStoreOfTheFirstSchemaIsReadAndGoneOnWith) {
   EXPECT_EQ(dump(path("merged.sqlite")), dump(path("whole.sqlite")));
   run_sql(file, "DELETE FROM results WHERE point = 9");
   expect_damaged(file, 100, "it has 99 rows, and 100 were written");
-  // Another plan of the same columns.
+  // Another plan with the same columns.
   fs::remove(file);
   make_store(file, 50);
   run_sql(file, "ALTER TABLE results DROP COLUMN checksum; ALTER TABLE study DROP COLUMN checksum; PRAGMA user_version = 1");
@@ -314,7 +314,7 @@ TEST_F(Place, UnderTwoNamesIsNotWritten) {
 TEST_F(Place, ThatCannotBeWrittenToIsReadWithoutLitter) {
   make_store(file, 100);
   make_store(path("logged"), 100);
-  // A writer leaves the store so if its last reader went after it: no log, but the header says that there may be one.
+  // A writer leaves the store like this if its last reader ends after it: without a log, but with a header that allows one.
   run_sql(path("logged"), "PRAGMA journal_mode = WAL");
   fs::remove(path("logged-wal"));
   fs::remove(path("logged-shm"));
@@ -344,7 +344,7 @@ TEST_F(Place, OfAFileThatMayNotBeWrittenOrReadIsRefused) {
   });
 }
 
-// A process that dies within a transaction of a rollback journal, as one does that is killed while it closes a store.
+// A process that dies within a transaction of a rollback journal, such as one that is killed while it closes a store.
 void leave_hot_journal(const fs::path& file) {
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);
@@ -364,7 +364,7 @@ TEST_F(Place, WithTheJournalOfOneThatDiedIsPutInOrder) {
   make_store(file, 3000);
   const std::string before = dump(file);
   leave_hot_journal(file);
-  EXPECT_NE(content_of(file).find("lost"), std::string::npos);  // so there is something to put in order
+  EXPECT_NE(content_of(file).find("lost"), std::string::npos);  // the file has a change to roll back
   fs::copy(TemporaryFolder::path(), path("copy"));
   fs::permissions(path("copy"), fs::perms::owner_read | fs::perms::owner_exec);
   expect_where_access_rights_bind([&] {
@@ -379,7 +379,7 @@ TEST_F(Place, WithTheJournalOfOneThatDiedIsPutInOrder) {
 }
 
 TEST_F(Place, OnAFullDiskLosesNoRowThatItTold) {
-  // The limit of a file's size stands for the end of the disk, in a process of its own.
+  // A limit on the file size simulates a full disk, in a separate process.
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
@@ -402,7 +402,7 @@ TEST_F(Place, OnAFullDiskLosesNoRowThatItTold) {
       EXPECT_THROW(store.flush(), OutputLost);
       EXPECT_EQ(rows_in(file).size() % 100, 0u);
       EXPECT_LT(rows_in(file).size(), 5000u);
-      limit.rlim_cur = before;  // there is room again: what was taken is still there
+      limit.rlim_cur = before;  // there is room again: accepted rows are still there
       ::setrlimit(RLIMIT_FSIZE, &limit);
       store.flush();
       store.close();
@@ -416,7 +416,7 @@ TEST_F(Place, OnAFullDiskLosesNoRowThatItTold) {
   EXPECT_EQ(dump(file), dump(path("whole.sqlite")));
 }
 
-// Writes rows until the store says that it lost its place, and returns what it says.
+// Writes rows until the store reports that its file was replaced, and returns the message.
 std::string said_while_writing(StudyStore& store, std::int64_t from, std::int64_t to) {
   for (std::int64_t point = from; point < to; ++point) {
     try {
@@ -456,7 +456,7 @@ TEST_F(Place, ThatIsTakenFromUnderAWriterLosesNoRow) {
     EXPECT_THAT(said, AllOf(HasSubstr("study.sqlite"), HasSubstr("was removed, moved or replaced while it was written"),
                             HasSubstr("study.sqlite.rescued")))
         << event;
-    // Those who were computing meanwhile hand in what they have, and are told too.
+    // Threads that were computing meanwhile get the error when they add their rows.
     for (int point = 201; point < 400; ++point) EXPECT_THROW(store.add(row_of(point)), OutputLost);
     EXPECT_THROW(store.close(), OutputLost);
     EXPECT_EQ(dump(file.string() + ".rescued"), dump(path("whole.sqlite"))) << event;
@@ -512,7 +512,7 @@ TEST(Journal, IsNoSharedMemoryWhereSeveralMachinesSeeTheFile) {
   EXPECT_STREQ(internal::journal_on(0x01021994), "WAL");                                            // tmpfs
   EXPECT_STREQ(internal::journal_on(0x6969), "TRUNCATE");                                           // NFS
   EXPECT_STREQ(internal::journal_on(0x0BD00BD0), "TRUNCATE");                                       // Lustre
-  EXPECT_STREQ(internal::journal_on(static_cast<long>(static_cast<int>(0xFF534D42))), "TRUNCATE");  // CIFS, sign and all
+  EXPECT_STREQ(internal::journal_on(static_cast<long>(static_cast<int>(0xFF534D42))), "TRUNCATE");  // CIFS, sign-extended
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Expressions that choose rows: they compare, and do nothing else.
+// Expressions that select rows: they can compare, and do nothing else.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

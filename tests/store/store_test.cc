@@ -1,4 +1,4 @@
-// Tests that a store gives back what went into it, whoever goes on with it.
+// Tests that a store returns what was written, whoever continues it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sqlite3.h>
@@ -38,7 +38,7 @@ TEST_F(Store, LeavesOneFileWhenItIsClosed) {
   EXPECT_THAT(names_in(file.parent_path()), ::testing::ElementsAre("study.sqlite"));
 }
 
-// The system's files under a clock that stands after the year 9999, of which SQLite knows no date.
+// The system's files with a clock after the year 9999, for which SQLite has no date.
 class FarClock {
  public:
   FarClock() : usual_(sqlite3_vfs_find(nullptr)), files_(*usual_) {
@@ -111,7 +111,7 @@ TEST_F(Store, CountsItsRowsByStatus) {
 
 TEST_F(Store, GoesOnWhereItWasLeft) {
   {
-    StudyStore store(file, plan_of(10), origin(), Opening::resume);  // there is none yet
+    StudyStore store(file, plan_of(10), origin(), Opening::resume);  // there is no store yet
     for (const std::int64_t point : {0, 3, 4}) store.add(row_of(point));
   }
   StudyStore store(file, plan_of(10), origin(), Opening::resume);
@@ -159,7 +159,7 @@ TEST_F(Store, FindsTheRowsOfACoarserGridForAFinerOne) {
   EXPECT_EQ(found, 5);
   EXPECT_EQ(StudyReader(file).plan().points, 9);
   EXPECT_EQ(rows_in(file).size(), 9u);
-  // The coarser one is still there.
+  // The plan with fewer points is still there.
   const StudyStore again(file, plan_of(5), origin(), Opening::resume);
   EXPECT_EQ(again.done(), std::vector<bool>(5, true));
 }
@@ -202,7 +202,7 @@ TEST_F(Store, TakesARowOnceAndRefusesOtherBits) {
   StoredRow other = row_of(1);
   other.values[1] = std::nextafter(other.values[1], 1);
   store.add(other);
-  store.add(row_of(2));  // a row of the same batch: it is kept
+  store.add(row_of(2));  // a row of the same batch is kept
   EXPECT_THAT([&] { store.flush(); },
               ThrowsMessage<InvalidInput>(HasSubstr("point 1 already has a different row: impact_velocity_m_s")));
   store.close();
@@ -253,7 +253,7 @@ TEST_F(Store, IsReadWhileItIsWritten) {
   seen = 0;
   reader.read([&](const StoredRow&) { ++seen; });
   EXPECT_EQ(seen, 3000u);
-  store.close();  // there is still a reader
+  store.close();  // a reader is still open
   EXPECT_EQ(rows_in(file).size(), 3000u);
 }
 

@@ -52,7 +52,7 @@ TEST(BSpline, IsWhatDeBoorsAlgorithmGives) {
 }
 
 TEST(BSpline, OfLevelsOnALineAtTheMeansOfTheKnotsIsThisLine) {
-  // Greville: the levels of a straight line are its values where the means of three knots are.
+  // Greville: the levels of a straight line are its values at the means of three knots.
   const std::size_t n = 7;
   std::vector<double> levels;
   for (std::size_t i = 0; i < n; ++i) {
@@ -71,14 +71,15 @@ TEST(BSpline, IsContinuousWithItsFirstTwoDerivatives) {
     const double t = pieces[i].begin;
     EXPECT_EQ(spline.voltage_before(t), spline.voltage(t)) << t;
     EXPECT_NEAR(pieces[i - 1].rate(t), pieces[i].rate(t), 1e3 * kBsplineRounding) << t;
-    constexpr double h = 1e-4;  // the second derivative of a cubic is linear: this difference is exact but for rounding over h
+    constexpr double h =
+        1e-4;  // the second derivative of a cubic is linear, so that this difference is exact except for rounding over h
     const auto curvature = [&](const SignalPiece& piece) { return (piece.rate(t + h) - piece.rate(t - h)) / (2 * h); };
     EXPECT_NEAR(curvature(pieces[i - 1]), curvature(pieces[i]), 1e-6) << t;
   }
   EXPECT_TRUE(std::isinf(spline.peak_slew())) << "it begins with a jump";
 }
 
-// Its times are rounded, the more the later they are.
+// Rounding of the times grows with the time.
 TEST(BSpline, OfManyLevelsHasNoJumps) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(0, 1);

@@ -63,7 +63,7 @@ TEST(Chirp, ReachesTheRatioOfItsFrequencies) {
   plain.fade = 0;
   plain.decay_time = kInfinity;
   const Signal compiled = signal(plain);
-  // The rate at a zero of the sine is amplitude times frequency.
+  // At a zero of the sine the rate is amplitude times angular frequency.
   const SignalPiece& piece = compiled.pieces()[compiled.piece_at(50_us)];
   const double s = piece.begin - plain.start;
   ASSERT_EQ(piece.terms.size(), 1U);

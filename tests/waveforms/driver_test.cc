@@ -35,7 +35,8 @@ constexpr double tau = 2e-6;               // time constant of the filters below
 
 DriverModel of_time_constant(double seconds) { return {.bandwidth = 1 / (2 * std::numbers::pi * seconds)}; }
 
-/// T dV/dt + V = input by the trapezoidal rule with steps h: off by h^2 / 12 of second derivatives over the time.
+/// Solves T dV/dt + V = input by the trapezoidal rule with steps h, with an error of h^2 / 12 of second derivatives over the
+/// time.
 double integrated(const Signal& input, double time_constant, double time) {
   double output = 0;
   std::vector<double> stops = input.breakpoints();
@@ -77,7 +78,7 @@ TEST(Driver, ChargesItsLoadThroughItsResistance) {
             Signal::constant(40_V).pieces());
 }
 
-// A ramp into R and C by the trapezoidal rule, whose error is a twelfth of the square of its step.
+// Returns a ramp after R and C by the trapezoidal rule, with an error of a twelfth of the squared step.
 double charged(double slope, double resistance, double capacitance, double until) {
   constexpr int steps = 20'000;
   const double dt = until / steps, x = dt / (2 * resistance * capacitance);
@@ -132,7 +133,7 @@ TEST(Driver, FiltersEveryFamilyAsItsEquationDoes) {
                                    signal(sweeping)};
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const Signal out = driven(inputs[i], of_time_constant(tau), limits, 1);
-    // The rule is off by 1e-6 V, and the cubics of what sweeps by as much.
+    // The trapezoidal rule has an error of 1e-6 V, and so have the cubics of sweeping pieces.
     for (const double t : {1e-6, 7e-6, 22e-6, 44e-6, 61e-6})
       EXPECT_NEAR(out.voltage(t), integrated(inputs[i], tau, t), 1e-5) << i << " at " << t;
     for (const double t : out.breakpoints())
@@ -141,7 +142,7 @@ TEST(Driver, FiltersEveryFamilyAsItsEquationDoes) {
 }
 
 TEST(Driver, FiltersACurveThatOutlastsItsTransients) {
-  constexpr double quick = 0.1e-6;  // forgets where a piece began long before it ends
+  constexpr double quick = 0.1e-6;  // decays long before the end of a piece
   const Signal curve = signal(BSpline{.levels = {0, 40, 1, 7, 30}, .duration = 50_us});
   const Signal out = driven(curve, of_time_constant(quick), limits, 1);
   EXPECT_GT(out.pieces().size(), curve.pieces().size());
@@ -149,8 +150,8 @@ TEST(Driver, FiltersACurveThatOutlastsItsTransients) {
 }
 
 TEST(Driver, OfBandwidthAndResistanceHasTwoPoles) {
-  // The answer of 1 / ((1 + a p) (1 + b p)) to a step is 1 - (a exp(-t / a) - b exp(-t / b)) / (a - b), of equal ones
-  // 1 - (1 + t / a) exp(-t / a).
+  // The step response of 1 / ((1 + a p) (1 + b p)) is 1 - (a exp(-t / a) - b exp(-t / b)) / (a - b), and for a = b 1 - (1 + t /
+  // a) exp(-t / a).
   const double a = tau, b = 5e-6;
   const auto out = [&](double second) {
     DriverModel model = of_time_constant(a);
@@ -202,7 +203,7 @@ TEST(Driver, GoesFromSampleToSampleNoFasterThanItsSlewLimit) {
   EXPECT_NEAR(out.peak_slew(), 5e6, 5e6 * 1e-9);
   EXPECT_NEAR(out.voltage(3.5e-6), 8 + 5 * 0.5, 40 * kDriverRounding);
   EXPECT_NEAR(out.voltage(3.9e-6), 12, 40 * kDriverRounding);
-  // A jump takes as long as it takes.
+  // At the slew limit a jump takes several samples.
   const Signal jump = driven(Signal::constant(40_V), {.sample_rate = 1e6}, slow, 1);
   EXPECT_NEAR(jump.voltage(4e-6), 20, 40 * kDriverRounding);
   EXPECT_NEAR(jump.voltage(8e-6), 40, 40 * kDriverRounding);
@@ -258,7 +259,7 @@ TEST(Driver, GivesWhatItIsToldBeforeItBegins) {
   EXPECT_NEAR(driven(rises, sampled, slow, 1).voltage(10e-6), 30_V, 1e-9) << "at 1 V/us from where it stood";
 }
 
-// The converter samples the commanded voltage; what amplifies its output, and is late, comes after it and before the filters.
+// The converter samples the commanded voltage. Gain, offset and delay act after the converter and before the filters.
 TEST(Driver, ErrsAfterItsConverterAndBeforeItsFilters) {
   const Signal told = signal(Step{.level = 40_V, .rise_time = 10_us});
   DriverModel model = of_time_constant(tau);
@@ -296,7 +297,7 @@ std::vector<DriverModel> converters() {
   return {{.sample_rate = 25e6}, {.sample_rate = 25e6, .bits = 14}, {.sample_rate = 1e6 / 3, .bits = 3}, all};
 }
 
-// A signal that is written for a generator and read back is sampled to the same values.
+// A signal that is exported for a generator and read back has the same samples.
 TEST(Driver, SamplesItsOwnSamplesToTheSameBits) {
   const double end = 100_us;
   for (const auto& [name, waveform] : of_every_family()) {
@@ -331,7 +332,7 @@ TEST(Driver, SamplesItsOwnSamplesToTheSameBits) {
         ASSERT_LT(row, again.voltage.size());
         EXPECT_GE(code, 0);
         EXPECT_LE(code, most);
-        // The level before it begins is not rounded.
+        // The level before the begin is not rounded.
         const bool stands = again.voltage[row] == 0 && (row == 0 || again.voltage[row - 1] == 0);
         EXPECT_NEAR(limits.min_voltage + step * static_cast<double>(code), again.voltage[row], stands ? step / 2 : 1e-12);
       }
@@ -340,7 +341,7 @@ TEST(Driver, SamplesItsOwnSamplesToTheSameBits) {
   }
 }
 
-// The rounded samples of a ramp as steep as permitted are steeper by a step of the converter.
+// After rounding, the samples of the steepest permitted ramp are steeper by a step of the converter.
 TEST(Driver, PermitsTheSamplesOfWhatItPermits) {
   const DriverLimits slow{.min_voltage = -10, .max_voltage = 50, .max_slew = 20e6};
   const DriverModel coarse{.sample_rate = 25e6, .bits = 8};

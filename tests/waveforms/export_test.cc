@@ -85,7 +85,7 @@ TEST(Polyline, StaysWithinItsToleranceOfASineAndIsNotWasteful) {
       worst = std::max(worst, std::abs(interpolated(points, time) - sine.voltage(time)));
     }
     EXPECT_LE(worst, tolerance);
-    // Chords are equally long within a piece and an odd chord may miss the crests of a coarse polyline.
+    // Chords have equal length within a piece, so that a coarse polyline with an odd number of them may miss the extrema.
     constexpr double wasteful = 0.5;
     EXPECT_GE(worst, wasteful * tolerance);
   }
@@ -112,7 +112,7 @@ TEST(Csv, ReadsBackToTheSameSignalBitForBit) {
 }
 
 TEST(Csv, RampBeforeAJumpReadsBackBitForBit) {
-  // Ramps whose end, computed from the slope, is a rounding off: their slope must survive all the same.
+  // The end of these ramps, computed from the slope, differs by rounding; the slope must still be kept.
   const TemporaryFolder folder;
   for (const auto& [t0, v0, t1, v1] :
        {std::array{9.6, 1.6, 14.8, 9.3}, {7.2, 4.9, 13.9, 3.1}, {0.5, 2.1, 6.2, 8.0}, {1.9, 0.3, 9.0, 4.0}}) {
@@ -196,13 +196,15 @@ TEST(SpicePwl, RunsInNgspiceAndGivesTheSignal_optimized) {
     for (const auto& [drive, one] : signals) {
       double voltage = kNaN;
       ASSERT_TRUE(result >> voltage);
-      // ngspice prints times to 15 digits and treats corners closer than 5e-5 of its largest step as one: a few picoseconds.
+      // ngspice prints times with 15 digits, and merges corners that are closer than 5e-5 of its largest step: a few
+      // picoseconds.
       constexpr double same_time = 5e-12;
       bool near_jump = false;
       for (const double b : one.breakpoints())
         near_jump |= one.voltage_before(b) != one.voltage(b) && std::abs(time - b) < same_time;
       if (near_jump) continue;
-      // Straight lines between points of a sine are 1e-4 of the peak off; elsewhere the slope over the few picoseconds.
+      // Straight lines between points of a sine have an error of 1e-4 of the peak; elsewhere the error is the slope times a few
+      // picoseconds.
       const double exact_to = 1e-9 * one.peak();
       const double tolerance = one.pieces()[one.piece_at(time)].oscillates() ? 1e-4 * one.peak() : exact_to;
       EXPECT_NEAR(voltage, one.voltage(time), tolerance) << drive << " at " << time;

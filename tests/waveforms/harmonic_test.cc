@@ -57,7 +57,7 @@ TEST(Harmonic, FollowsItsFormula) {
 TEST(Harmonic, RisesToItsBaseWhereverTheSineBegins) {
   const Harmonic faded{
       .base = 40_V, .amplitude = 6_V, .angular_frequency = 1e6_rad_s, .phase = 0.4, .start = 11_us, .end = 83_us, .fade = 17_us};
-  // The times are before the sine, up to its start, inside each of its parts, up to its end, after it.
+  // Times before the sine, up to its start, inside of each of its parts, up to its end, and after it.
   for (const double rise : {5_us, 11_us, 19_us, 40_us, 70_us, 83_us, 95_us}) {
     Harmonic risen = faded;
     risen.rise_time = rise;
@@ -88,7 +88,7 @@ TEST(Harmonic, RisesAsAStepDoes) {
   EXPECT_EQ(signal(calm).pieces(), signal(Step{.level = 40_V, .rise_time = 7_us}).pieces());
   const Harmonic late{.base = 40_V, .rise_time = 8_us, .amplitude = 1_V, .angular_frequency = 1e6_rad_s, .start = 9_us};
   EXPECT_EQ(signal(late).peak_slew(8.5_us), signal(Step{.level = 40_V, .rise_time = 8_us}).peak_slew());
-  // Nothing to rise to: no breakpoint.
+  // With a base of 0 V the rise has no breakpoint.
   EXPECT_EQ(signal(Harmonic{.rise_time = 7_us, .amplitude = 1_V, .angular_frequency = 1e6_rad_s}).pieces().size(), 1U);
 }
 
@@ -106,7 +106,7 @@ TEST(Harmonic, FadesAreContinuousAndMeetWithoutAPieceBetween) {
   EXPECT_NEAR(both.breakpoints()[2], 0.4, kSineRounding);
   EXPECT_TRUE(std::isfinite(both.peak_slew()));
   EXPECT_EQ(both.voltage_before(0.7), 0);
-  // 0.1 + 0.5 is below 1.1 - 0.5: they miss each other by rounding only.
+  // 0.1 + 0.5 is below 1.1 - 0.5: the fades are apart by rounding only.
   EXPECT_EQ(signal(Harmonic{.amplitude = 1, .angular_frequency = 50, .start = 0.1, .end = 1.1, .fade = 0.5}).pieces().size(), 4U);
 }
 

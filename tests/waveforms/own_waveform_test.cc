@@ -19,7 +19,7 @@ namespace {
 using namespace literals;
 using test::expect_invalid;
 
-/// A waveform made of functions, as a test wants it.
+/// An own waveform from functions.
 class Made final : public OwnWaveform {
  public:
   std::function<double(double)> at;
@@ -38,7 +38,7 @@ Own made(std::function<double(double)> voltage, std::vector<double> breakpoints)
   return own(std::make_shared<Made>(std::move(voltage), std::move(breakpoints)));
 }
 
-// Rings, and is cut off: a kink at 20 us, from where it falls back as a bell.
+// Returns a decaying oscillation with a kink at 20 us, from where it falls as a bell.
 double ringing(double time) {
   const double pi = std::numbers::pi;
   if (time < 20_us) return 12 * (1 - std::exp(-time / 3_us) * std::cos(2 * pi * time / 7_us));
@@ -48,7 +48,7 @@ double ringing(double time) {
 constexpr double ringing_end = 60e-6;
 
 TEST(OwnWaveform, IsFollowedWithinTheStatedAccuracy) {
-  constexpr double between_checks = 1.1;  // a cubic may miss a little more where it is not held against the waveform
+  constexpr double between_checks = 1.1;  // between the points that are checked the error of a cubic may be slightly larger
   const Signal followed = signal(made(ringing, {20_us, ringing_end}));
   const double largest = followed.peak();
   EXPECT_GT(largest, 12);
@@ -67,7 +67,7 @@ TEST(OwnWaveform, DoesNotJumpWhereItsVoltageDoesNot) {
 }
 
 TEST(OwnWaveform, DoesNotJumpWhereItFallsSteeplyToAKinkLate) {
-  // One step of the time's last bit before the kink the voltage is more than the rounding of what ends there.
+  // One bit of the time before the kink the voltage exceeds the rounding of the piece that ends there.
   const auto falling = [](double t) { return t < 40_us ? 20 : t < 41_us ? 20 * (41_us - t) / 1_us : 0; };
   const Signal followed = signal(made(falling, {40_us, 41_us}), 20);
   EXPECT_EQ(followed.voltage_before(41_us), followed.voltage(41_us));

@@ -1,4 +1,4 @@
-// Properties that hold for every waveform, tried on random ones.
+// Properties of every waveform, tested on random ones.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
@@ -12,10 +12,10 @@
 namespace softland {
 namespace {
 
-/// A number in [low, high] that is rarely round.
+/// Returns a number in [low, high] that is rarely round.
 double number(double low, double high) { return low + (high - low) * *rc::gen::inRange(0, 999983) / 999983.0; }
 
-/// Rows with jumps, ramps and voltages of very different size.
+/// Returns rows with jumps, ramps and voltages of very different sizes.
 Table random_table() {
   Table table{.time = {0}, .voltage = {number(-5, 5)}};
   const int rows = *rc::gen::inRange(0, 12);
@@ -40,7 +40,7 @@ Pulse random_pulse() {
   return pulse;
 }
 
-/// Two pieces with any slopes and envelopes, then rest.
+/// Returns two pieces with random slopes and envelopes, then a constant.
 Signal random_sines() {
   std::vector<SignalPiece> pieces;
   double begin = 0;

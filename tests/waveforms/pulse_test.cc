@@ -49,7 +49,7 @@ TEST(Pulse, OfOneLevelIsAStep) {
 TEST(Pulse, EdgesThatMeetLeaveNoPieceBetween) {
   const Signal exact = signal(Pulse{.levels = {1, 2, 3}, .times = {1, 2}, .edge = 1});
   EXPECT_EQ(exact.breakpoints(), (std::vector<double>{0, 1, 2, 3}));
-  // 0.1 + 0.2 > 0.3 in binary, and 0.7 + 0.1 < 0.8: both mean that the edges meet.
+  // In binary 0.1 + 0.2 > 0.3, and 0.7 + 0.1 < 0.8: both mean that the edges meet.
   EXPECT_EQ(signal(Pulse{.levels = {1, 2, 3}, .times = {0.2, 0.4}, .edge = 0.2}).breakpoints().size(), 4U);
   EXPECT_EQ(signal(Pulse{.levels = {1, 2}, .times = {0.3}, .edge = 0.1 + 0.2}).breakpoints(),
             (std::vector<double>{0, 0.3, 0.3 + (0.1 + 0.2)}));

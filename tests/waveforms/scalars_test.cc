@@ -1,5 +1,5 @@
-// Waveform families over the three scalars of their parameters: a number, a lane with a device to each number, and a dual number
-// with a direction for each parameter.
+// Waveform families over the three scalars of their parameters: a number, a lane with one number for each device, and a dual
+// number with a direction for each parameter.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -23,7 +23,8 @@ namespace {
 constexpr std::size_t devices = 4;
 using DeviceLane = std::experimental::fixed_size_simd<double, devices>;
 
-/// A number with N slopes, of a waveform's parameters: what the model's dual numbers are, which this folder does not know.
+/// A number with N derivatives by parameters of a waveform. It stands for the model's dual numbers, which this folder cannot
+/// include.
 template <std::size_t N>
 struct Sloped {
   double value = 0;
@@ -51,7 +52,7 @@ struct Sloped {
   friend bool operator>(const Sloped& a, const Sloped& b) { return a.value > b.value; }
 };
 
-/// Voltage of the piece that holds at this time in every device.
+/// Returns the voltage of the piece that is valid at this time in every device.
 template <class P>
 P voltage(const Pieces<P>& pieces, double time) {
   std::size_t k = 0;
@@ -79,7 +80,7 @@ struct APulse {
     return PulseOf<P>{.levels = {p[0], p[1], p[2]}, .times = {p[3], p[4]}, .edge = p[5]};
   }
 };
-/// The second edge begins where the first one ends.
+/// The second edge begins at the end of the first one.
 struct AStaircase {
   static constexpr std::array parameters{40.0, 30.0, 4e-6};
   template <class P>
@@ -101,7 +102,7 @@ struct AHarmonic {
                          .fade = p[7]};
   }
 };
-/// Parameters that stand at 0 move the signal all the same.
+/// Parameters with the value 0 have derivatives as well.
 struct ASilentHarmonic {
   static constexpr std::array parameters{0.0, 5e-6, 0.0, 2e5, 0.3};
   template <class P>
@@ -110,7 +111,7 @@ struct ASilentHarmonic {
   }
 };
 
-/// A table with a jump: two rows of the same time.
+/// A table with a jump: two rows with the same time.
 struct ATable {
   static constexpr std::array parameters{5.0, 40.0, 10.0, 30.0, 10e-6, 25e-6, 50e-6};
   template <class P>
@@ -193,7 +194,7 @@ TYPED_TEST(ScalarsOf, SlopesAreThoseOfEveryParameter) {
     const Sloped<count> volts = voltage(all, t), slope = rate(all, t);
     const Signal alone = signal(TypeParam::template make<double>(TypeParam::parameters));
     EXPECT_NEAR(volts.value, alone.voltage(t), 1e-12) << t;
-    // Hundreds of radians of phase are rounded where a compiler fuses products and sums.
+    // Phases of hundreds of radians have rounding errors if a compiler fuses products and sums.
     EXPECT_NEAR(slope.value, alone.pieces()[alone.piece_at(t)].rate(t), 1e-11 * std::abs(slope.value)) << t;
     for (std::size_t k = 0; k < count; ++k) {
       const double size = TypeParam::parameters[k] == 0 ? 1 : TypeParam::parameters[k];
@@ -210,7 +211,7 @@ TYPED_TEST(ScalarsOf, SlopesAreThoseOfEveryParameter) {
 }
 
 TEST(Pieces, OfALaneAreTheSameInAllItsDevices) {
-  // The edge ends where the next one begins in some devices only.
+  // Only in some devices the edge ends where the next one begins.
   const DeviceLane edge([](auto i) { return 4e-6 - 1e-7 * static_cast<double>(i); });
   EXPECT_THROW((void)pieces(PulseOf<DeviceLane>{.levels = {40.0, 30.0}, .times = {4e-6}, .edge = edge}), InvalidInput);
 }

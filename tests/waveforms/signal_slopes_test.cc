@@ -1,4 +1,4 @@
-// Slopes of signals by parameters: exact ones of splines, and differences that several parameters share.
+// Derivatives of signals by parameters: exact ones of splines, and differences that several parameters share.
 #include "waveforms/signal_slopes.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t spline_levels = 60;
 constexpr double spline_duration = 50e-6;  // [s]
 
-// A spline of so many levels, with the levels and the duration as parameters; `calls` counts them.
+// A spline whose levels and duration are the parameters; `calls` counts its evaluations.
 struct ManySplines {
   std::vector<double> x, lower, upper;
   mutable int calls = 0;
@@ -89,7 +89,7 @@ TEST(SignalSlopes, OfSinesByAnAmplitudeAreItsSine) {
 }
 
 TEST(SignalSlopes, OfASplineByItsDurationAreThoseOfScaledTime) {
-  constexpr double differences = 1e-8;  // share of 20 V over a span: rounding of its times over a step of a millionth
+  constexpr double differences = 1e-8;  // over 20 V in the span: rounding of its times over a step of a millionth
   const ManySplines splines;
   const SignalSlopes slopes = splines.slopes();
   const Signal spline = signal(BSpline{.levels = {splines.x.begin(), splines.x.end() - 1}, .duration = spline_duration});
@@ -122,7 +122,7 @@ TEST(SignalSlopes, DoNotTakeGroupsThatAreWrong) {
   const std::vector<ParameterGroup> right = alone.groups();
   ASSERT_TRUE(splines.slopes(right).are_grouped());
 
-  std::vector<ParameterGroup> overlapping = right;  // the first level joins the next ones, and has the pieces that it shares
+  std::vector<ParameterGroup> overlapping = right;  // the first level is in the next group, and shares pieces with it
   std::erase(overlapping[0].parameters, 0U);
   overlapping[1].parameters.push_back(0);
   for (auto& mover : overlapping[0].movers[0]) {
@@ -130,13 +130,13 @@ TEST(SignalSlopes, DoNotTakeGroupsThatAreWrong) {
   }
   overlapping[1].movers[0][0] = 0;
 
-  std::vector<ParameterGroup> unclaimed = right;  // a piece that moves and has no mover
+  std::vector<ParameterGroup> unclaimed = right;  // a piece that changes belongs to no parameter
   unclaimed[0].movers[0][0].reset();
 
   std::vector<ParameterGroup> of_another_length = right;
   of_another_length[0].movers[0].pop_back();
 
-  std::vector<ParameterGroup> without_one = right;  // a level that no group tries
+  std::vector<ParameterGroup> without_one = right;  // a level that is in no group
   std::erase(without_one[2].parameters, 2U);
 
   for (const auto& wrong : {overlapping, unclaimed, of_another_length, without_one}) {

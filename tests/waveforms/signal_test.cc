@@ -15,9 +15,9 @@ namespace {
 using namespace literals;
 using test::expect_invalid;
 
-// A handful of roundings of the formula at arguments of order one.
+// Some roundings of the formula at arguments of order one.
 constexpr double kRounding = 1e-14;
-// The error that signal.h promises for the extrema of sines, relative to their amplitude.
+// The error of the extrema of sines that signal.h states, relative to their amplitude.
 constexpr double kPromisedExtremum = 1e-9;
 
 Signal of(std::vector<SignalPiece> pieces) { return Signal(std::move(pieces)); }
@@ -62,7 +62,7 @@ TEST(Signal, TakesTheLaterPieceAtABreakpoint) {
 }
 
 TEST(Signal, LimitFromTheLeftIsTheVoltageWhereNothingJumps) {
-  // 0.7 / 0.3 has no finite binary form: the end of the ramp is 0.7 only to rounding.
+  // 0.7 / 0.3 has no finite binary form: the end of the ramp is 0.7 except for rounding.
   const Signal signal = Signal::piecewise_linear({{0, 0}, {0.3, 0.7}, {0.9, 0.1}});
   EXPECT_EQ(signal.voltage_before(0.3), 0.7);
   EXPECT_EQ(signal.voltage_before(0.9), 0.1);
@@ -112,7 +112,7 @@ TEST(Signal, PeakSlewIsInfiniteFromTheFirstJumpOn) {
 }
 
 TEST(Signal, ExtremaOfASineOnARampMatchTheClosedForm) {
-  // V = s t + a sin(w t): stationary where cos(w t) = -s / (a w); the last maximum before the end is the highest.
+  // V = s t + a sin(w t) is stationary at cos(w t) = -s / (a w); the last maximum before the end is the highest.
   constexpr double s = 2, a = 3, w = 4;
   const double angle = std::acos(-s / (a * w));
   const double last_maximum = (angle + 6 * std::numbers::pi) / w;
@@ -133,7 +133,7 @@ TEST(Signal, EndlessSineReachesItsAmplitudeFromAnyPhase) {
 }
 
 TEST(Signal, ExtremaOfFadingSinesMatchDenseSampling) {
-  // Includes an envelope that changes sign inside, many periods, and less than a quarter of one.
+  // Includes an envelope that changes its sign, many periods, and less than a quarter of a period.
   const std::vector<SignalPiece> cases{
       {.value = 1, .slope = 0.5, .amplitude = 0, .amplitude_slope = 3, .angular_frequency = 9, .phase = 0.3},
       {.value = 1, .slope = -0.5, .amplitude = 2, .amplitude_slope = -3, .angular_frequency = 40, .phase = -2},
@@ -153,7 +153,7 @@ TEST(Signal, ExtremaOfFadingSinesMatchDenseSampling) {
     }
     const double swing = std::abs(piece.amplitude) + std::abs(piece.amplitude_slope) * duration;
     const double w = piece.angular_frequency;
-    // A sample next to an extremum is h^2 V'' / 8 below it; for the rate one order of w more.
+    // The sample nearest to an extremum is h^2 V'' / 8 below it; for the rate the error has one more power of w.
     const double h = duration / samples;
     const double below = h * h / 8 * (swing * w * w + 2 * std::abs(piece.amplitude_slope) * w);
     EXPECT_GE(signal.maximum(), largest - kRounding);

@@ -32,7 +32,7 @@ TEST(Sines, FollowTheirFormula) {
   }
 }
 
-// Found by turning on from the first sine, at any time from a piece's beginning on.
+// Values by rotation from the first sine, at any time from the begin of a piece on.
 TEST(Sines, OfASeriesAreTheSumOfItsTerms) {
   Sines sines{.base = 30_V, .rise_time = 20_us, .start = 6_us, .duration = 50_us};
   double size = 30;

@@ -1,4 +1,4 @@
-// Tests how a source with errors changes a signal.
+// Tests the effect of source errors on a signal.
 #include "waveforms/source_errors.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ const std::vector<Waveform>& one_of_each() {
   return all;
 }
 
-// The signal as rows of a table.
+// Returns the signal as rows of a table.
 Table rows(const Signal& signal) {
   Table table;
   for (const auto& [time, voltage] : polyline(signal, signal.pieces().back().begin, 0, 0)) {
@@ -83,7 +83,7 @@ TEST(SourceErrors, EarlySignalsLoseNothingWhereTheClockBeginsAtTheirFirstEdge) {
     for (double t = 0; t < 120e-6; t += 0.173e-6)
       EXPECT_NEAR(early.voltage(t), given.voltage(t), 1e-9) << family(waveform) << " at " << t;
   }
-  // Another drive of that device, which is in time, is then later on the same clock.
+  // Another drive of that device, without an error, is later on the same clock.
   const Signal in_time = with_errors(signal(throw_and_catch), {}, -2e-6);
   EXPECT_DOUBLE_EQ(in_time.pieces()[3].begin, 24e-6);
 }
@@ -115,7 +115,7 @@ TEST(SourceErrors, EveryEdgeMovesByATimeOfItsOwn) {
   }
   EXPECT_DOUBLE_EQ(first_edge(given, {.delay = -3e-6, .edges = {1e-6}}), -2e-6);
   EXPECT_DOUBLE_EQ(with_errors(given, {.delay = 3e-6, .edges = {-1e-6}}).pieces()[1].begin, 2e-6) << "a delay beside it";
-  // Corners move alone, and their voltages with them.
+  // Corners move separately, and keep their voltages.
   const Signal bent = with_errors(signal(corners), {.edges = {0, 1e-6, -1e-6}});
   EXPECT_NEAR(bent.voltage(11e-6), 10, 1e-9);
   EXPECT_NEAR(bent.voltage(19e-6), 4, 1e-9);
@@ -134,7 +134,7 @@ TEST(SourceErrors, EdgesKeepTheirOrder) {
     for (const SignalPiece& piece : moved.pieces()) levels.push_back(piece.value);
     if (errors.edges[0] > 0) levels.erase(levels.begin());  // the 0 V before a late first edge
     EXPECT_EQ(levels, (std::vector<double>{20, 5, 17, 0, 3})) << pattern;
-    // Half of the time between neighbours is the most, in either direction.
+    // Each edge moves by at most half of the time to its neighbours, in either direction.
     for (std::size_t j = 1; j < 4; ++j) {
       const std::size_t at = j + (errors.edges[0] > 0 ? 1 : 0);
       const double by = moved.pieces()[at].begin + origin - given.pieces()[j].begin;
@@ -148,7 +148,7 @@ TEST(SourceErrors, EdgesKeepTheirOrder) {
 TEST(SourceErrors, ACarrierKeepsItsPhaseWhereItsEndsMove) {
   const Signal given = signal(dither);
   const Signal moved = with_errors(given, {.edges = {0, 2e-6, -3e-6}});
-  // Inside, the sine is the same to the bit; a fade is what it was, but later.
+  // Between the fades the sine is bit for bit the same; a fade is only shifted.
   for (double t = 35e-6; t < 65e-6; t += 1.3e-6) EXPECT_EQ(moved.voltage(t), given.voltage(t)) << t;
   EXPECT_EQ(moved.voltage(11e-6), 15) << "not yet";
   EXPECT_EQ(moved.voltage(88e-6), 15) << "over";
@@ -158,7 +158,7 @@ TEST(SourceErrors, ACarrierKeepsItsPhaseWhereItsEndsMove) {
   };
   EXPECT_NEAR(envelope(moved, 22e-6), 0.5, 1e-9);
   EXPECT_NEAR(envelope(moved, 77e-6), 0.5, 1e-9);
-  // The corner where fades meet is an edge, and both go on to meet there.
+  // The corner at which two fades meet is an edge, at which both fades still meet.
   Harmonic tent = dither;
   tent.fade = 40e-6;
   const Signal leaning = with_errors(signal(tent), {.edges = {0, 0, 4e-6}});
@@ -173,7 +173,7 @@ TEST(SourceErrors, AreFinite) {
 }
 
 TEST(SourceErrors, SurviveDelaysThatSwallowAnEdge) {
-  // 1 fs after ten minutes is less than a rounding: the ramp becomes a jump.
+  // 1 fs after ten minutes is below rounding: the ramp becomes a jump.
   const Signal given = signal(Pulse{.levels = {20, 5}, .times = {1e-6}, .edge = 1e-15});
   const Signal late = with_errors(given, {.delay = 600});
   EXPECT_EQ(late.hold_level(), 5);
@@ -191,7 +191,7 @@ TEST(SourceErrors, ADelayProlongsWhatTheDriveHasStoodAt) {
   EXPECT_EQ(edge_count(signal(Step{.level = before}, before)), 0U);
 }
 
-// V(t) = gain f(t - delay) + offset from t = 0 on; what has been before t = 0 has been there already.
+// V(t) = gain f(t - delay) + offset from t = 0 on; the voltage before t = 0 is unchanged.
 TEST(SourceErrors, OfGainOffsetAndDelayAreThatFormula) {
   for (const Waveform& waveform : one_of_each()) {
     const Signal given = signal(waveform, 2);

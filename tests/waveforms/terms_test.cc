@@ -1,4 +1,4 @@
-// Pieces that are more than straight lines and sines: polynomials, exponentials, sines that decay or change their frequency.
+// Pieces beyond straight lines and sines: polynomials, exponentials, sines that decay or change their frequency.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,10 +18,10 @@ namespace {
 
 using test::expect_invalid;
 
-// The error that signal.h promises for the extrema of terms, relative to their size.
+// The error of the extrema of terms that signal.h states, relative to their size.
 constexpr double kPromisedTermExtremum = 1e-9;
 
-/// Terms of every kind, of times of order one and voltages of order one.
+/// Returns terms of every kind, with times and voltages of order one.
 SignalPiece random_piece(std::mt19937_64& random) {
   std::uniform_real_distribution<double> any(-1, 1), positive(0, 1);
   SignalPiece piece{.value = any(random), .slope = any(random)};
@@ -49,7 +49,7 @@ TEST(Terms, RateIsTheDerivativeOfVoltage) {
   for (int i = 0; i < 200; ++i) {
     const SignalPiece piece = random_piece(random);
     for (double t = 0; t < 1.5; t += 0.1) {
-      // A central difference is off by h^2 / 6 of the third derivative, and by rounding over h.
+      // A central difference has an error of h^2 / 6 of the third derivative, and of rounding over h.
       const double third = internal::derivative_bound(piece, 3, t - h, t + h);
       EXPECT_NEAR(piece.rate(t), (piece.voltage(t + h) - piece.voltage(t - h)) / (2 * h), h * h / 6 * third + 1e-9) << i;
     }
@@ -81,7 +81,7 @@ TEST(Terms, ExtremaMatchDenseSampling_long) {
   constexpr int samples = 20000;
   for (int i = 0; i < 60; ++i) {
     SignalPiece piece = random_piece(random);
-    piece.value -= piece.voltage(0);  // no jump at the start
+    piece.value -= piece.voltage(0);  // removes the jump at the start
     const Signal signal = with_end(piece, duration);
     double largest = 0, smallest = 0, fastest = 0;
     for (int k = 0; k <= samples; ++k) {
@@ -109,7 +109,7 @@ TEST(Terms, ExtremaOfACubicAndOfADecayMatchTheClosedForm) {
   const Signal cubic = with_end({.slope = 1, .terms = {{.cosine = {0, 0, 0, -1}}}}, 1);
   EXPECT_NEAR(cubic.maximum(), 2 / std::sqrt(27.0), kPromisedTermExtremum * 2);
   EXPECT_NEAR(cubic.peak_slew(), 2, kPromisedTermExtremum * 4);
-  // t exp(-t) has its maximum 1 / e at 1, and lasts for ever.
+  // t exp(-t) has its maximum 1 / e at 1, and never ends.
   const Signal decay({{.terms = {{.cosine = {0, 1, 0, 0}, .decay = 1}}}});
   EXPECT_NEAR(decay.maximum(), 1 / std::numbers::e, kPromisedTermExtremum * 50);
   EXPECT_EQ(decay.minimum(), 0);
@@ -145,7 +145,7 @@ TEST(Terms, ThatEndWhereTheNextPieceBeginsAreNoJump) {
     const Signal signal = with_end(random_piece(random), 1.3);
     EXPECT_EQ(signal.voltage_before(1.3), signal.voltage(1.3)) << i;
   }
-  // The rest of an exponential is not a jump either.
+  // The remaining decay of an exponential is not a jump.
   const Signal decay({{.value = -10, .terms = {{.cosine = {10, 0, 0, 0}, .decay = 40}}}, {.begin = 1, .value = -10}});
   EXPECT_EQ(decay.voltage_before(1), -10);
   EXPECT_NEAR(decay.peak_slew(), 400, 400 * kPromisedTermExtremum * 2);
@@ -173,7 +173,8 @@ TEST(Terms, ThatLastForEverDecayWithoutSweep) {
 }
 
 TEST(Terms, AreStretchedBetweenEdgesThatErr) {
-  // An edge of half a cosine between two levels moves as a whole; a cubic between two corners is stretched and stays continuous.
+  // An edge of half a cosine between two levels moves as a whole. A cubic between two corners is stretched and stays
+  // continuous.
   const Signal edge({{.value = 1},
                      {.begin = 1, .value = 2, .terms = {{.cosine = {-1, 0, 0, 0}, .angular_frequency = std::numbers::pi}}},
                      {.begin = 2, .value = 3}});

@@ -34,7 +34,7 @@ TEST(Waveform, PassesOnWhatItsFamilyRefuses) {
   test::expect_invalid([] { (void)signal(Waveform(Step{.rise_time = -1})); }, {"rise_time", "-1 s"});
 }
 
-// Rises and first edges begin where the drive has stood, everything else jumps from there.
+// Rises and first edges begin at the level before; all other waveforms jump from it.
 TEST(Waveform, BeginsAtWhatItHasStoodAt) {
   constexpr double before = -7, rounding = 1e-14;
   const std::vector<Waveform> rising{

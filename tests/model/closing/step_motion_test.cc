@@ -1,4 +1,4 @@
-// A step between two knots: its interpolation, the events within it, and the touches that are taken from it.
+// A step between two knots: its interpolation, its events, and the touches that follow from them.
 #include "model/closing/step_motion.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 using namespace literals;
 using test::gold;
 
-// Modes that start with the velocities of `kick` under constant forces that would hold them at `pull`.
+// Modes with the initial velocities `kick` under constant forces whose equilibrium is `pull`.
 struct Swing {
   std::vector<double> pull, kick;
 
@@ -75,7 +75,7 @@ TEST(StepMotion, HalfwayIsOfSixthAndFourthOrder) {
   const Swing modes = swing();
   StepMotion motion(gold(), 1e-8);
   const double middle = length_of_phase(1);
-  // Error of the fastest mode, in steps about one instant.
+  // Returns the error of the fastest mode in steps around one instant.
   const auto error = [&](double h, bool accurate_rates) {
     const Knot begin = modes.at(middle - h / 2), end = modes.at(middle + h / 2);
     motion.set(begin, end, tip(end), accurate_rates);
@@ -102,7 +102,7 @@ constexpr double swing_plane = 2_um;
 
 class Events : public ::testing::Test {
  protected:
-  // A long step, within which the contact point is on the quintic alone.
+  // Finds the event in a long step, within which only the quintic gives the contact point.
   [[nodiscard]] std::optional<Event> event(const TrajectoryPoint& from, const TrajectoryPoint& to, const ContactPhase& phase) {
     const std::size_t n = static_cast<std::size_t>(gold().modes());
     begin_ = {.time = from.time, .state = std::vector<double>(2 * n), .rates = std::vector<double>(n)};
@@ -122,7 +122,7 @@ TrajectoryPoint on_parabola(double peak, double a, double middle, double t) {
   return {.time = t, .position = peak - a * x * x / 2, .velocity = -a * x, .acceleration = -a};
 }
 
-constexpr double a = 1e4, span = 20e-6;  // half a length of this deepens by 0.5 um
+constexpr double a = 1e4, span = 20e-6;  // half of this time deepens the contact by 0.5 um
 
 TEST_F(Events, FindAGrazingTouchBetweenTwoKnots) {
   const ContactPhase phase(gold());
@@ -147,8 +147,8 @@ TEST_F(Events, TakeTheFirstOfTwo) {
   }();
   ContactPhase phase(model);
   phase.enter(Phase::loading);
-  phase.turn(20_nm);  // the dent reaches to 15 nm
-  // Deeper than ever first, then out through the dent.
+  phase.turn(20_nm);  // the dent is 15 nm deep
+  // The motion first deepens the dent, then leaves the contact through it.
   const double middle = span / 2;
   const auto deeper = event(on_parabola(swing_plane + 100_nm, a, middle, middle - 4.2e-6),
                             on_parabola(swing_plane + 100_nm, a, middle, span), phase);
@@ -160,7 +160,7 @@ TEST_F(Events, TakeTheFirstOfTwo) {
   ASSERT_TRUE(out);
   EXPECT_EQ(out->edge->next, Phase::dent);
   EXPECT_NEAR(out->time, middle + std::sqrt(2 * 3e-9 / a), 1e-12);
-  // While it loads it turns back at the deepest point, through no edge.
+  // While loading, the motion turns back at the deepest point, which is no edge.
   phase.enter(Phase::loading);
   const auto turn = event(on_parabola(swing_plane + 100_nm, a, middle, middle - 4e-6),
                           on_parabola(swing_plane + 100_nm, a, middle, span), phase);
