@@ -1,4 +1,4 @@
-// Jump into contact and off it: a plate on springs under the adhesive-repulsive law against scans of its force and its energy.
+// Jump-in and pull-off: a plate on springs under the adhesive-repulsive law, against scans of its force and its energy.
 //
 //   static:   V^2 = 2 (g - s)^2 [k s + P(s - d_t)] / (eps0 A)
 //   dynamic:  V^2 = largest of 2 [k s^2 / 2 + U(s - d_t)] / [C(s) - C(0)] on the way, C = eps0 A / (g - s)
@@ -21,7 +21,7 @@ using namespace literals;
 
 constexpr double side = 100_um, pad_length = 50_um;
 
-/// A soft plate far from its electrode: without attraction the contact comes before the fold.
+/// A soft plate far from its electrode: without attraction it reaches the contact before the fold.
 Device soft_plate(double stiffness) {
   return {.structure = {.length = side, .width = side, .kind = Plate{.mass = 1e-10, .stiffness = stiffness}},
           .gap = {.electrode = 10_um, .contact = 2_um},
@@ -29,7 +29,7 @@ Device soft_plate(double stiffness) {
           .contacts = {Contact{.model = AdhesiveRepulsiveSurfaces(), .pad_length = pad_length}}};
 }
 
-/// The published pressure, without reach [Pa].
+/// Returns the published pressure, without a finite reach [Pa].
 double published(double x) {
   const double nm = 1e-9;
   return 1.2e3 * std::pow(std::max(0.0, 110 - x / nm), 1.5) + 0.5e9 * std::exp(-x / (8.5 * nm)) -
@@ -40,7 +40,7 @@ struct Scan {
   double value = 0, at = 0;
 };
 
-/// Largest (sign 1) or smallest (sign -1) f on [begin, end].
+/// Returns the largest (sign 1) or smallest (sign -1) f on [begin, end].
 template <class F>
 Scan extreme(F&& f, double begin, double end, double sign) {
   constexpr int looks = 200'000;
@@ -52,7 +52,7 @@ Scan extreme(F&& f, double begin, double end, double sign) {
   return best;
 }
 
-/// V^2 that holds the plate at s.
+/// Returns the V^2 that holds the plate at s.
 double square(const Device& d, const ContactLaw& law, double s) {
   const double depth = s - d.gap.contact;
   const double push = depth > -contact_reach(law) ? contact_force(law, depth) : 0;
@@ -102,12 +102,12 @@ TEST(AdhesiveRepulsive, HoldsUntilItsDeepestWellLetsGo) {
   EXPECT_NEAR(well.at - d.gap.contact, 52.4_nm, 1_nm) << "where asperities meet, not at the plane";
   EXPECT_NEAR(release_voltage(model, 0), std::sqrt(well.value), 1e-5 * std::sqrt(well.value));
   EXPECT_LT(release_voltage(model, 0), 0.9 * std::sqrt(square(d, model.contact(), d.gap.contact)));
-  // The force there is the pull-off force: at the published pressure.
+  // The force there is the pull-off force, at the published pressure.
   const Scan pressure = extreme(published, 60_nm, 150_nm, -1);
   EXPECT_NEAR(pressure.value, -874.6, 0.1);
   const Scan force = extreme([&](double x) { return contact_force(model.contact(), x); }, 0, 100_nm, -1);
   EXPECT_NEAR(force.value, side * pad_length * pressure.value, 1e-3 * side * pad_length * 874.6);
-  // Soft springs never pull it off.
+  // Soft springs never pull the plate off.
   EXPECT_EQ(release_voltage(Switch(soft_plate(0.01)), 0), 0);
 }
 
@@ -120,7 +120,8 @@ TEST(AdhesiveRepulsive, BookkeepsEveryPassageOfItsReach) {
     const Trajectory t = simulate_closing(model, drives, {.duration = 2e-3, .tolerance = 1e-9, .integrator = integrator});
     ASSERT_EQ(t.status, Status::done) << t.message;
     EXPECT_GE(t.touches.size(), 3u);
-    // The implicit method loses some; the explicit one lost 4e-6 while it stepped over the kinks of the law. Seen: 1e-10, 7e-7.
+    // The implicit method dissipates some energy. Stepping over the kinks of the law, the explicit method lost 4e-6. Observed:
+    // 1e-10, 7e-7.
     EXPECT_LT(t.energy_error, (integrator == Integrator::lawson ? 2e-9 : 5e-6) * model.bending_energy());
     const auto most = std::minmax_element(t.points.begin(), t.points.end(),
                                           [](const auto& a, const auto& b) { return a.contact_force < b.contact_force; });

@@ -1,5 +1,5 @@
-// Pull-in of beams between two clamps against an independent program: the integral equation of the beam (Green's function, no
-// modes) with displacement control. Beams with residual stress and stretching are published ones, by shooting (Runge-Kutta of
+// Pull-in of beams between two clamps, against an independent program: the integral equation of the beam (Green's function, no
+// modes) with displacement control. Values for residual stress and stretching are published ones, by shooting (Runge-Kutta of
 // order 4).
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ using namespace literals;
 constexpr int converged_bridge_modes = 20;   // ten of them symmetric
 constexpr double reference_beta = 70.09505;  // full-length electrode, no fringing field
 
-/// The ideal beam of the pull-in literature between two clamps, without stretching.
+/// The ideal beam between two clamps of the literature on pull-in, without stretching.
 Device bridge(int modes, double gap_over_width = 0.1, Fringing fringing = Fringing::none) {
   Device d = test::device({.modes = modes, .fringing = fringing, .gap_over_width = gap_over_width});
   d.structure.kind = Bridge{part_of<Beam>(d.structure)};
@@ -82,7 +82,7 @@ TEST(ClampedClamped, DynamicPullInOfAnUndampedStepIsTheReference) {
   }
 }
 
-constexpr double shooting_digits = 1e-6;  // relative: what the mode sums and the shooting program leave
+constexpr double shooting_digits = 1e-6;  // relative; truncation of the modes, and error of the shooting program
 
 TEST(ClampedClamped, StaticPullInWithStressAndStretchingIsTheReference) {
   // Osterberg 1995: 50 um wide, 3 um thick, gap 1 um, 169 GPa, nu = 0.06; stretching on, force factor 1 + 0.65 h/a.

@@ -40,7 +40,7 @@ Device casimir_cantilever() {
   return d;
 }
 
-/// The static pull-in of the dispersion force: factor and tip deflection over the gap.
+/// Static pull-in by the dispersion force: factor, and tip deflection over the gap.
 struct ForceFold {
   double factor, tip;
 };
@@ -92,7 +92,7 @@ TEST(Dispersion, LowersTheStaticPullInAsTheReferenceDoes) {
     if (row.al4 == 0) {
       d.dispersion.reset();
     } else {
-      // The length that has this parameter; the electrode stays as long as the beam.
+      // The length for this parameter; the electrode is as long as the beam.
       d.structure.length *= std::pow(row.al4 / casimir_parameter(d), 0.25);
       d.electrodes[0].end = d.structure.length;
     }
@@ -123,7 +123,7 @@ TEST(Dispersion, DetachmentLengthsOfFreestandingBeamsAreTheReference) {
       d.dispersion = Dispersion{.model = model, .hamaker_constant = 4e-19};
       const double found = d.structure.length * std::pow(fold_of_the_force(d).factor, 0.25);
       EXPECT_NEAR(found, length, printed * length) << row.name;
-      // The same by whether a beam a little shorter or longer has a rest.
+      // Beams that are slightly shorter have a rest position, slightly longer ones have none.
       for (const double part : {0.999, 1.001}) {
         Device near = d;
         near.structure.length = part * found;
@@ -134,7 +134,7 @@ TEST(Dispersion, DetachmentLengthsOfFreestandingBeamsAreTheReference) {
 }
 
 TEST(Dispersion, AtRestTheBendingBalancesTheForce) {
-  // The tip hangs down at a small parameter by al4 / 8 of the gap, as under a uniform load.
+  // For a small parameter the tip deflects by al4 / 8 of the gap, as under a uniform load.
   Device d = casimir_cantilever();
   d.structure.length *= std::pow(1e-4 / casimir_parameter(d), 0.25);
   d.electrodes[0].end = d.structure.length;
@@ -145,7 +145,7 @@ TEST(Dispersion, AtRestTheBendingBalancesTheForce) {
 }
 
 TEST(Dispersion, DoesNotNeedAFinerQuadratureAtGapsOfNanometres) {
-  // A tip that rests half way down a gap of 5 nm under the van der Waals force with its repulsion.
+  // A tip that rests in the middle of a gap of 5 nm, under the van der Waals force with its repulsion.
   constexpr double converged = 1e-9;
   Device d{.structure = {.length = 300_nm,
                          .width = 200_nm,

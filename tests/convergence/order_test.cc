@@ -1,4 +1,4 @@
-// Observed orders: modes, quadrature points and integrator tolerance each bring the answer closer at the rate theory gives.
+// Observed orders of convergence in modes, quadrature points and integrator tolerance, against theory.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -25,8 +25,8 @@ double pull_in_beta(int modes, double points_per_length = 48) {
 }
 
 TEST(Order, OfTheModesIsSeven) {
-  // The modal forces of a load that does not vanish at the clamp fall like 1/N; the null vector of the fold, whose load vanishes
-  // there together with its slope, like 1/N^7. The contributions beyond N modes therefore sum to 1/N^7.
+  // The modal forces of a load that does not vanish at the clamp decrease like 1/N. The null vector of the fold, whose load
+  // vanishes there together with its slope, decreases like 1/N^7. The contributions beyond N modes therefore sum to 1/N^7.
   const double exact = pull_in_beta(20);
   const double four = std::abs(pull_in_beta(4) - exact), eight = std::abs(pull_in_beta(8) - exact);
   const double order = std::log2(four / eight);
@@ -36,7 +36,7 @@ TEST(Order, OfTheModesIsSeven) {
 
 TEST(Order, OfTheQuadratureIsExponential) {
   const double exact = pull_in_beta(4, 64);
-  // Gauss points on a smooth load: each further point takes the error down by more than a factor of ten, until rounding.
+  // On a smooth load each further Gauss point reduces the error by more than a factor of ten, until rounding.
   constexpr double rounding = 1e-13;
   double previous = 1;
   for (const double points : {4.0, 5.0, 6.0, 7.0, 8.0}) {
@@ -59,7 +59,7 @@ Figures closing(const SwitchOptions& options, double tolerance) {
 }
 
 TEST(Order, OrdinaryQuadratureLeavesNineDigitsOfTheReferenceClosing) {
-  // The mesh error stays far below what any integrator tolerance in use leaves.
+  // The error by the quadrature is far below that of any integrator tolerance in use.
   constexpr double left = 3e-9, left_of_velocity = 3e-8;  // relative; the bounce height follows the velocities
   constexpr double finest = 1e-12;
   const Figures ordinary = closing({}, finest), fine = closing({.points_per_length = 96}, finest);
@@ -68,7 +68,7 @@ TEST(Order, OrdinaryQuadratureLeavesNineDigitsOfTheReferenceClosing) {
   EXPECT_NEAR(ordinary.bounce_height, fine.bounce_height, left_of_velocity * fine.bounce_height);
 }
 
-// Slope of the least-squares line through (log tolerance, log error).
+// Returns the slope of the least-squares line through (log tolerance, log error).
 double slope(const std::vector<double>& tolerances, const std::vector<double>& errors) {
   double sx = 0, sy = 0, sxx = 0, sxy = 0;
   const auto n = static_cast<double>(tolerances.size());
@@ -80,9 +80,9 @@ double slope(const std::vector<double>& tolerances, const std::vector<double>& e
 }
 
 TEST(Order, ErrorsOfAClosingAreProportionalToTheTolerance) {
-  // A run is a chain of smooth stretches, restarted at every make and break: no event costs an order.
+  // The integrator is restarted at every make and break, so that each part of a run is smooth and no event costs an order.
   const std::vector<double> tolerances{1e-7, 3e-8, 1e-8, 3e-9, 1e-9, 3e-10, 1e-10, 1e-11, 1e-12};
-  // A user may expect of a tolerance: t_i and v_i better than it, B_H within a hundred times it. Measured: 0.02, 1 and 6.
+  // Errors over the tolerance. Users may rely on about 1 for t_i and v_i, and on 100 for B_H. Observed: 0.02, 1 and 6.
   constexpr double of_contact_time = 0.1, of_impact_velocity = 3, of_bounce_height = 100;
   const Figures exact = closing({}, 1e-13);
   std::vector<double> bounce_height;
@@ -93,7 +93,7 @@ TEST(Order, ErrorsOfAClosingAreProportionalToTheTolerance) {
     EXPECT_NEAR(found.bounce_height / exact.bounce_height, 1, of_bounce_height * tolerance);
     bounce_height.push_back(std::abs(found.bounce_height / exact.bounce_height - 1));
   }
-  // The figure that the errors of many steps and events add up in.
+  // The figure to which the errors of many steps and events contribute.
   const double observed = slope(tolerances, bounce_height);
   EXPECT_GT(observed, 0.75);
   EXPECT_LT(observed, 1.25);

@@ -1,4 +1,4 @@
-// The rigid plate on springs against what is known of it exactly: pull-in in closed form, switching times as quadratures.
+// The rigid plate on springs, against exact results: pull-in in closed form, switching times as quadratures.
 //
 // The units are the gap g and sqrt(m / k), and lambda = eps0 A V^2 / (2 k g^3):  x'' + x' / Q + x = lambda / (1 - x)^2.
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ Device plate(double contact_over_gap, double damping_ratio = 0) {
           .electrodes = {{.name = "whole", .begin = 0, .end = plate_side, .fringing = Fringing::none}}};
 }
 
-/// sqrt(8 k g^3 / (27 eps0 A)).
+/// Returns sqrt(8 k g^3 / (27 eps0 A)).
 double static_voltage(const Device& d) {
   return std::sqrt(8 * part_of<Plate>(d.structure).stiffness * std::pow(plate_gap, 3) /
                    (27 * vacuum_permittivity * plate_side * plate_side));
@@ -50,7 +50,7 @@ TEST(Plate, TheContactComesFirstBeforeAThirdOfTheGap) {
   const Device d = plate(0.25);
   const StaticPullIn found = static_pull_in(Switch(d), 0);
   EXPECT_EQ(found.kind, StaticKind::contact);
-  // lambda = x (1 - x)^2 there, 4/27 at the fold.
+  // lambda = x (1 - x)^2 at this deflection, 4/27 at the fold.
   EXPECT_NEAR(found.voltage, static_voltage(d) * std::sqrt(0.25 * 0.5625 * 27 / 4), 1e-9 * found.voltage);
 }
 
@@ -72,7 +72,7 @@ TEST(Plate, DispersionForcesCollapseItAtAFifthAndAQuarterOfTheGap) {
 }
 
 TEST(Plate, AnUndampedStepPullsInAtTheRootOf27Over32) {
-  constexpr double bisected = 2e-7;  // relative: what dynamic_pull_in promises
+  constexpr double bisected = 2e-7;  // relative, as dynamic_pull_in states
   const Device d = plate(0.9);
   const Switch model(d);
   const DynamicPullIn found = dynamic_pull_in(model, 0, static_pull_in(model, 0));
@@ -96,7 +96,7 @@ TEST(Plate, DampingRaisesTheVoltageOfAStepToTheStaticOne) {
 }
 
 TEST(Plate, ClosesInTheTimeOfItsQuadratureWithTheSpeedOfItsEnergy) {
-  // Time: integral of dx / sqrt(2 lambda x / (1 - x) - x^2); speed: that root.
+  // Time: integral of dx / sqrt(2 lambda x / (1 - x) - x^2). Speed: the square root.
   constexpr double digits = 1e-6;  // relative
   struct Row {
     double over_static, time_two_thirds, speed_two_thirds, speed_nine_tenths;
@@ -127,9 +127,8 @@ TEST(Plate, ClosesInTheTimeOfItsQuadratureWithTheSpeedOfItsEnergy) {
 }
 
 TEST(Plate, HeavilyDampedLingersAtTheGhostOfTheFold) {
-  // The motion without inertia is x' k/c = -x + lambda / (1 - x)^2 with lambda = 4/27 (1 + eps); T k/c goes as 2 pi / sqrt(3
-  // eps).
-  constexpr double inertia = 2e-4;  // relative: what a damping ratio of 100 leaves of it, and the last 2 % of the gap
+  // Without inertia, x' k/c = -x + lambda / (1 - x)^2 with lambda = 4/27 (1 + eps); T k/c approaches 2 pi / sqrt(3 eps).
+  constexpr double inertia = 2e-4;  // relative; effect of inertia at a damping ratio of 100, and of the last 2 % of the gap
   constexpr double damping_ratio = 100;
   struct Row {
     double excess, time;

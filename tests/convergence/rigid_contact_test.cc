@@ -1,4 +1,4 @@
-// The rigid contact of a plate against what is known of it exactly: rebounds under a constant force are a geometric series.
+// The rigid contact of a plate, against exact results: rebounds under a constant force are a geometric series.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,9 +20,9 @@ using namespace literals;
 
 constexpr double gap = 1_um, mass = 1e-9, stiffness = 4e-5, volts = 1e8_V;
 constexpr double electrode = 100, area = 1e-8;
-constexpr double digits = 1e-7;  // error: 2e-8 of the electrode's force along 1 um of 100 m are not constant
+constexpr double digits = 1e-7;  // the force of the electrode varies by 2e-8 along 1 um of 100 m
 
-/// A plate under a constant force, its electrode being far away, on springs that carry a thousandth of it.
+/// A plate under a constant force from a distant electrode, on springs that carry a thousandth of the force.
 Device falling(double restitution) {
   return {.structure = {.length = 100_um, .width = 100_um, .kind = Plate{.mass = mass, .stiffness = stiffness}},
           .gap = {.electrode = electrode, .contact = gap},
@@ -30,7 +30,8 @@ Device falling(double restitution) {
           .contacts = {Contact{.model = RigidStop{.restitution = restitution}}}};
 }
 
-// Accelerations at rest, and at the plane; where both are the same (no springs) the rebounds' times are a geometric series too.
+// Accelerations at rest and at the plane. If they are equal (no springs), the times of the rebounds are a geometric series as
+// well.
 constexpr double at_rest = vacuum_permittivity * area * volts * volts / (2 * electrode * electrode) / mass;
 constexpr double at_plane = at_rest - stiffness / mass * gap;
 const double omega = std::sqrt(stiffness / mass);
@@ -42,7 +43,7 @@ Trajectory fall(double restitution, double duration, double tolerance = 1e-10) {
   return simulate_closing(Switch(falling(restitution)), drives, {.duration = duration, .tolerance = tolerance});
 }
 
-/// Time from plane to plane of a rebound that begins with velocity u.
+/// Returns the duration of a rebound that begins with velocity u.
 double lasts(double u) { return 2 / omega * std::atan(u * omega / at_plane); }
 double height(double u) { return (std::hypot(at_plane, omega * u) - at_plane) / (omega * omega); }
 
@@ -50,7 +51,7 @@ TEST(RigidContact, ReboundsUnderAConstantForceAreAGeometricSeries) {
   for (const double e : {0.0, 0.3, 0.9, 0.97}) {
     const Trajectory t = fall(e, first * (3 + 4 * e / (1 - e)));
     ASSERT_EQ(t.status, Status::done) << t.message;
-    // All rebounds that would rise at least 1e-6 of the gap.
+    // Count the rebounds that rise at least 1e-6 of the gap.
     std::size_t count = 0;
     for (double u = e * speed; u * u / (2 * at_plane) >= RigidContact::rest_height * gap; u *= e) ++count;
     ASSERT_EQ(t.touches.size(), count + 1) << e;
@@ -82,7 +83,7 @@ TEST(RigidContact, ReboundsUnderAConstantForceAreAGeometricSeries) {
     EXPECT_TRUE(std::isnan(t.touches.back().end)) << "it rests";
     EXPECT_EQ(t.points.back().velocity, 0);
     EXPECT_NEAR(t.points.back().contact_force, mass * at_plane, digits * mass * at_plane);
-    // The charge on so high a voltage is 1e8 times the energy of the fall.
+    // The energy of the charge at so high a voltage is 1e8 times that of the fall.
     EXPECT_LT(t.energy_error, digits * mass * speed * speed) << e;
   }
 }
@@ -110,7 +111,7 @@ TEST(RigidContact, HoldsThePlateUntilTheForceOfTheSpringsWins) {
   d.electrodes.pop_back();
   const Switch model(d);
   const double release = release_voltage(model, 0);
-  // Falls linearly from 110 V at 100 us to 0 V at 200 us.
+  // The voltage falls linearly from 110 V at 100 us to 0 V at 200 us.
   const std::vector<Signal> drives{Signal::piecewise_linear({{0, 110}, {100_us, 110}, {200_us, 0}})};
   const Trajectory t = simulate_closing(model, drives, {.duration = 220_us, .tolerance = 1e-10});
   ASSERT_EQ(t.status, Status::done);
@@ -120,7 +121,7 @@ TEST(RigidContact, HoldsThePlateUntilTheForceOfTheSpringsWins) {
   ASSERT_NE(resting, t.touches.end());
   EXPECT_NEAR(resting->end, leaves, 1e-9 * leaves);
   EXPECT_LT(t.points.back().position, 0.7 * d.gap.contact) << "it goes back";
-  // While it rests the contact carries what the springs do not.
+  // While the plate rests, the contact carries the difference between the electrode's force and the spring's.
   for (const TrajectoryPoint& p : t.points) {
     if (p.time < resting->begin || p.time > resting->end || p.velocity != 0) continue;
     EXPECT_GE(p.contact_force, 0);
@@ -156,7 +157,7 @@ TEST(RigidContact, LeavesAndReturnsWithEveryDipOfADither) {
   d.electrodes.pop_back();
   const Switch model(d);
   const double release = release_voltage(model, 0);
-  // Swings between -0.5 and 2.5 times the release voltage, 16 times: each time the plate is let go.
+  // The voltage oscillates 16 times between -0.5 and 2.5 times the release voltage, and each time releases the plate.
   constexpr double begin = 60_us, angular_frequency = 1e6_rad_s;
   const std::vector<Signal> drives{Signal(std::vector<SignalPiece>{{.value = 110},
                                                                    {.begin = begin,
@@ -166,7 +167,7 @@ TEST(RigidContact, LeavesAndReturnsWithEveryDipOfADither) {
                                                                     .phase = -angular_frequency * begin}})};
   const Trajectory t = simulate_closing(model, drives, {.duration = 160_us, .tolerance = 1e-10});
   ASSERT_EQ(t.status, Status::done);
-  // The number of rests between the dips is a matter of chance, but for the first time.
+  // The number of rests between the dips is chaotic after the first one.
   EXPECT_GE(t.touches.size(), 5u);
   EXPECT_TRUE(std::any_of(t.touches.begin(), t.touches.end(), [](const Touch& one) { return one.end > one.begin; }));
   EXPECT_LT(t.work.steps, 10000);
@@ -185,7 +186,7 @@ TEST(RigidContact, ClosedEquilibriumIsThePlateOnThePlane) {
   model.accelerations(closed->q.data(), rest.data(), volts_there, false, work, force.data());
   EXPECT_NEAR(closed->contact_force, force[0] / model.basis().contact_shape()[0], 1e-12 * closed->contact_force);
   EXPECT_EQ(closed->potential, model.potential(closed->q.data(), volts_there, false, work));
-  // Just above the release voltage there is one, just below none.
+  // Just above the release voltage there is a closed equilibrium, just below there is none.
   const double release = release_voltage(model, 0);
   EXPECT_TRUE(closed_equilibrium(model, std::vector<double>{1.0001 * release, 0}).has_value());
   EXPECT_FALSE(closed_equilibrium(model, std::vector<double>{0.9999 * release, 0}).has_value());
@@ -201,7 +202,7 @@ TEST(RigidContact, LandingExcessIsTheSameWhateverTheImpactTakes) {
     const auto closed = closed_equilibrium(model, hold);
     const Trajectory t = simulate_closing(
         model, drives, {.duration = 100_us, .tolerance = 1e-10, .after_contact = 1_us, .closed_potential = closed->potential});
-    // All kinetic energy of the first impact has to go.
+    // The contact has to dissipate the whole kinetic energy of the first impact.
     EXPECT_NEAR(t.landing_excess, t.touches[0].peak_energy, 1e-7 * t.landing_excess) << e;
     return t.landing_excess;
   };

@@ -72,14 +72,15 @@ TEST(StaticPullIn, OfPartialElectrodesIsTheReference) {
 }
 
 TEST(StaticPullIn, OfAHalfLengthElectrodeAtTheRootIsTheContactNotTheFold) {
-  // The fold of the reference lies at beta = 26.89345 with the tip 1.056 gaps down: the tip arrives first, at a lower voltage.
+  // The reference has its fold at beta = 26.89345, with a tip deflection of 1.056 gaps: the tip reaches the electrode first, at
+  // a lower voltage.
   const Device d = test::device({.modes = converged_modes, .electrode_end = 0.5});
   const StaticPullIn found = static_pull_in(Switch(d), 0);
   ASSERT_EQ(found.status, Status::done);
   EXPECT_EQ(found.kind, StaticKind::contact);
   EXPECT_DOUBLE_EQ(found.deflection, d.gap.contact);
   EXPECT_LT(beta(d, found.voltage), 26.89345);
-  EXPECT_GT(beta(d, found.voltage), 0.98 * 26.89345);  // near the fold the branch is flat
+  EXPECT_GT(beta(d, found.voltage), 0.98 * 26.89345);  // near the fold the voltage hardly changes
 }
 
 TEST(StaticPullIn, OfPublishedBeamsWithEveryFringingFactorIsTheReference) {
@@ -114,7 +115,7 @@ TEST(StaticPullIn, OfPublishedBeamsWithEveryFringingFactorIsTheReference) {
 }
 
 TEST(StaticPullIn, DoesNotDependOnTheScale) {
-  // The same beam a thousand times smaller in every length pulls in at the same beta and at the same fraction of its gap.
+  // A beam that is a thousand times smaller in every length has the same beta and relative deflection at pull-in.
   Device small = test::device({.modes = converged_modes});
   Structure& s = small.structure;
   for (double* length :

@@ -1,4 +1,4 @@
-// The programs of examples/, which others build against an installed softland (tests/install): what they print.
+// The output of the programs in examples/, which tests/install builds against an installed softland.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -57,7 +57,7 @@ Said run(int (*program)(int, char**), std::vector<std::string> arguments) {
   return said;
 }
 
-// The cells of the tables of a page of results/, by the first of each row.
+// Returns the cells of the tables in a page of results/, by the first cell of each row.
 std::map<std::string, std::vector<std::string>> rows_of(const std::string& page) {
   std::ifstream in(std::string(SOFTLAND_SOURCE_DIR) + "/results/" + page);
   std::map<std::string, std::vector<std::string>> all;
@@ -82,7 +82,7 @@ std::vector<std::string> words_of(const std::string& line) {
   return words;
 }
 
-// Lines of 03_search beside those of results/release.md.
+// Compares lines of 03_search with those of results/release.md.
 void expect_rows_of_release(const std::vector<std::string>& scenes) {
   std::vector<std::string> files;
   for (const std::string& one : scenes) files.push_back(scene(one));
@@ -93,7 +93,7 @@ void expect_rows_of_release(const std::vector<std::string>& scenes) {
   const auto kept = rows_of("release.md");
   for (std::size_t k = 0; k < scenes.size(); ++k) {
     const std::vector<std::string>& row = kept.at(scenes[k] + ", electrostatic");
-    // "28 us to 28 us": of five seeds, which found the same.
+    // Takes one of "28 us to 28 us": five seeds found the same time.
     const auto of_all_seeds = [](const std::string& range) { return range.substr(0, range.find(" to ")); };
     const std::string due = row[1] + " " + row[2] + " " + of_all_seeds(row[3]) + " " + of_all_seeds(row[4]) + " yes";
     std::vector<std::string> found = words_of(lines[k + 1]);

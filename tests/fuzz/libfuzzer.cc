@@ -1,4 +1,4 @@
-// One target as libFuzzer calls it. The build names it in SOFTLAND_FUZZ_TARGET.
+// Calls one target from libFuzzer. The build names the target in SOFTLAND_FUZZ_TARGET.
 #include <cstddef>
 #include <cstdint>
 

@@ -3,7 +3,7 @@
 
 namespace softland::fuzz {
 
-// A line between a tuning and a device: what is read is written as the same line.
+// A line between a tuning and a device: an accepted line is written again unchanged.
 void lines(std::string_view input) {
   nlohmann::json line;
   if (!accepted([&] { line = read_line(input); })) return;

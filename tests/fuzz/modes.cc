@@ -6,8 +6,8 @@
 
 namespace softland::fuzz {
 
-// A file of modes, read with and without what it may not say: a table has shapes of one length, positions and frequencies that
-// rise, a clamp, and finite numbers.
+// A file of modes, with and without optional keys: an accepted table has shapes of one length, increasing positions and
+// frequencies, a clamp, and finite numbers.
 void modes(std::string_view input) {
   const ModeKeys along{.axis = "x", .direction = "-z"};
   ModeKeys with_mass = along, with_all = along, normalised = along;

@@ -7,7 +7,7 @@
 
 namespace softland::fuzz {
 
-// A file of an instrument: what is taken has rows of one length, and a trace has finite numbers over times that do not go back.
+// A file of an instrument: accepted rows have one length, and a trace has finite numbers at times that do not decrease.
 void recording(std::string_view input) {
   Recording read;
   if (!accepted([&] { read = parse_recording(input, "fuzz.csv"); })) return;

@@ -1,4 +1,4 @@
-// Every kept input of the fuzzers, and every shipped scene, once more. The build names the targets in SOFTLAND_REPLAYED.
+// Runs every kept input of the fuzzers, and every shipped scene. The build names the targets in SOFTLAND_REPLAYED.
 #include <gtest/gtest.h>
 
 #include <algorithm>

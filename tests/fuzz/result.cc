@@ -21,7 +21,7 @@ std::size_t scripts(std::string_view page) {
   return count;
 }
 
-// The text that `report` makes.
+// Returns the text that `report` prints.
 std::string told(const std::string& kind, const json& read) {
   if (kind == "modes") return text_of(read_modes(read));
   for (const verbs::Study& study : verbs::all_studies()) {

@@ -7,7 +7,7 @@
 namespace softland::fuzz {
 namespace {
 
-/// Returns the result of `make`, or nothing when it refuses.
+/// Returns the result of `make`, or nothing if it refuses its input.
 template <class Make>
 auto taken(const Make& make) {
   std::optional<decltype(make())> value;
@@ -42,7 +42,7 @@ void check_scene(const SceneFile& file) {
 }
 
 void scene(std::string_view input) {
-  // No file of this machine is read in place of a table.
+  // The folder does not exist, so that no file of this machine is read as a table.
   if (const auto file = taken([&] { return SceneFile::parse(input, "fuzz.toml", "/nonexistent"); })) check_scene(*file);
 }
 

@@ -14,7 +14,7 @@ void table(std::string_view input) {
   std::string written;
   if (!accepted([&] { written = csv({{"main", voltage}}, end); })) return;
   const Signal again = signal(parse_table(written, "written.csv", "main"));
-  // Both are straight between the rows of `read`; a row that repeats the last voltage is not written.
+  // Both are linear between the rows of `read`; a row that repeats the last voltage is not written.
   for (const double time : read.time) {
     const bool same = again.voltage(time) == voltage.voltage(time) && again.voltage_before(time) == voltage.voltage_before(time);
     check(same, "a table changes when it is written and read again:\n" + written);

@@ -14,7 +14,7 @@ void units(std::string_view input) {
   check(!describe(read.dimension).empty(), "no description of " + written);
   const Quantity again = parse_quantity(written);
   check(again.dimension == read.dimension, "another dimension: " + written);
-  // Zero keeps its sign too.
+  // Zero keeps its sign as well.
   check(again.value == read.value && std::signbit(again.value) == std::signbit(read.value), "another value: " + written);
 }
 

@@ -1,4 +1,4 @@
-// Hard cases whose answer is known: a plate on springs without gas is a motion in a potential.
+// Hard cases with known solutions: a plate on springs without gas moves in a potential.
 //
 //   m v^2 / 2 = W(s) = eps A V^2 s / (2 g (g - s)) - k s^2 / 2 at deflection s from rest under a constant voltage V;
 //   pull-in: dynamic at V^2 = k g^3 / (4 eps A), where W touches 0 at s = g/2; static at V^2 = 8 k g^3 / (27 eps A), s = g/3
@@ -46,7 +46,7 @@ CheckedRun run(const Device& device, const Signal& drive, double duration, doubl
   return c;
 }
 
-/// First touch under a constant voltage; NaN when nothing touches.
+/// Returns the time of the first touch under a constant voltage; NaN without a touch.
 double first_touch(const Device& device, double volts, double duration) {
   const CheckedRun c = run(device, Signal::constant(volts), duration);
   EXPECT_EQ(c.trajectory.status, Status::done) << c.trajectory.message;
@@ -58,8 +58,9 @@ TEST(AHairAboveDynamicPullIn, TheClosingTimeGrowsLikeTheLogarithmOfTheHair) {
   double before = 0;
   for (const double hair : {1e-4, 1e-6, 1e-8}) {
     const double time = first_touch(device, dynamic * (1 + hair), 60 / omega);
-    // The springs win over the field at the pass as k does over m elsewhere: a hundredth of the hair is ln(100) / omega later.
-    constexpr double curvature = 5e-3;  // effect of the pass's curvature, where the larger hair still matters
+    // At the maximum of the potential the motion grows exponentially at the rate omega: for a hundredth of the excess, touch is
+    // ln(100) / omega later.
+    constexpr double curvature = 5e-3;  // effect of the curvature of the maximum at the larger excess
     if (before > 0) {
       EXPECT_NEAR((time - before) * omega, std::log(100), curvature * std::log(100)) << hair;
     }
@@ -73,7 +74,7 @@ TEST(AHairAboveStaticPullIn, TheClosingTimeGrowsLikeTheRootOfTheHair) {
   Device device = plate(3_um);
   device.gas = LinearGas{.quality_factor = quality};
   for (const double hair : {1e-6, 1e-8}) {
-    // Past the fold: c x' = 2 hair k g / 3 + 2.25 (k / g) x^2, from minus to plus infinity.
+    // Slow passage of the fold: c x' = 2 hair k g / 3 + 2.25 (k / g) x^2, from minus to plus infinity.
     const double passing = pi / (omega * quality * std::sqrt(1.5 * hair));
     EXPECT_NEAR(first_touch(device, statically * (1 + hair), 2 * passing), passing, 30 / omega) << hair;
     const CheckedRun below = run(device, Signal::constant(statically * (1 - hair)), passing);
@@ -90,7 +91,7 @@ TEST(AGrazingTouch, IsFoundWhenTheMotionReachesThePlaneAndOnlyThen) {
     const double plane = turns * (1 - share);
     const CheckedRun touches = run(plate(plane), Signal::constant(volts), 6 / omega, 1e-12);
     ASSERT_EQ(touches.trajectory.touches.size(), 1u) << share;
-    // A gap's rounding is 1e-16 of it: of the velocity's square, that over the share.
+    // The rounding of a gap is 1e-16 of it; that of the squared velocity is this over the share.
     EXPECT_NEAR(touches.metrics.impact_velocity / std::sqrt(2 * gained(volts, plane) / mass), 1, 1e-3) << share;
     EXPECT_EQ(run(plate(turns * (1 + share)), Signal::constant(volts), 6 / omega, 1e-12).metrics.status, Status::no_contact)
         << share;
@@ -122,14 +123,15 @@ TEST(APulseShorterThanAnyStep, GivesThePlateItsMomentum) {
     const double momentum = mass * omega * reaches;
     const double volts = std::sqrt(2 * momentum / lasts * gap * gap / (vacuum_permittivity * area));
     for (const double edge : {0.0, lasts / 10}) {
-      // The first edge begins at 0, the second where the pulse ends: under each V^2 is a third of a rectangle.
+      // The first edge begins at 0, the second at the end of the pulse: the integral of V^2 over each is a third of a
+      // rectangle.
       const double shape = edge > 0 ? 1 / (1 + edge / lasts * (2.0 / 3 - 1)) : 1;
       const Signal drive = signal(Pulse{.levels = {volts * std::sqrt(shape), 0}, .times = {lasts}, .edge = edge});
       const CheckedRun c = run(plate(3_um), drive, 3 / omega);
       EXPECT_EQ(c.metrics.status, Status::no_contact);
       double highest = 0;
       for (const TrajectoryPoint& p : c.trajectory.points) highest = std::max(highest, p.position);
-      constexpr double at_rest = 5e-3;  // it moves by 4e-4 of the gap in the longest pulse
+      constexpr double at_rest = 5e-3;  // the plate moves by 4e-4 of the gap in the longest pulse
       EXPECT_NEAR(highest, reaches, at_rest * reaches) << lasts << " " << edge;
     }
   }
@@ -149,7 +151,7 @@ TEST(ADitherFarAboveEveryMode, ActsByItsMeanSquare) {
   const double constant = first_touch(device, dynamic * std::sqrt(base * base + swing * swing / 2), 20 / omega);
   const Signal dither = signal(Harmonic{.base = base * dynamic, .amplitude = swing * dynamic, .angular_frequency = 1000 * omega});
   const CheckedRun c = run(device, dither, 20 / omega);
-  EXPECT_NEAR(c.metrics.initial_contact_time, constant, 2e-3 * constant);  // a period of the dither is 0.6 % of omega's
+  EXPECT_NEAR(c.metrics.initial_contact_time, constant, 2e-3 * constant);  // a period of the dither is 0.6 % of that of omega
 }
 
 TEST(AFilmSoThickThatTheMotionCreeps, SlowsAllInProportion) {
@@ -160,7 +162,7 @@ TEST(AFilmSoThickThatTheMotionCreeps, SlowsAllInProportion) {
     EXPECT_EQ(c.trajectory.status, Status::done) << c.trajectory.message;
     return c.metrics.initial_contact_time;
   };
-  constexpr double inertia = 5e-3;  // effect of inertia at the lower viscosity: it falls with the square
+  constexpr double inertia = 5e-3;  // effect of inertia at the lower viscosity; it decreases with the square of the viscosity
   EXPECT_NEAR(closes(1e-2) / closes(3e-3), 10.0 / 3, inertia * 10 / 3);
 }
 
@@ -203,14 +205,15 @@ TEST(AFilmTooThickForAnExplicitMethod, IsLeftToAnImplicitOneOnTheWay) {
       EXPECT_EQ(c.violations, std::vector<std::string>{});
       EXPECT_EQ(c.trajectory.status, Status::done) << c.trajectory.message;
       EXPECT_EQ(c.trajectory.work.integrator, Integrator::bdf);
-      EXPECT_LT(c.trajectory.energy_error, 1e-5 * device.bending_energy());  // 2e-6 seen
+      EXPECT_LT(c.trajectory.energy_error, 1e-5 * device.bending_energy());  // observed: 2e-6
       return c.trajectory;
     };
     const Trajectory t = closes(Integrator::automatic, 1e-7), expected = closes(Integrator::bdf, 1e-11);
-    constexpr double close = 2e-5;  // 3e-6 seen
+    constexpr double close = 2e-5;  // observed: 3e-6
     EXPECT_NEAR(test::landing(t).time, test::landing(expected).time, close * test::landing(expected).time);
     EXPECT_NEAR(test::landing(t).velocity, test::landing(expected).velocity, close * test::landing(expected).velocity);
-    // The explicit method at its limit of stability may part for a moment what creeps together: by less than can be seen.
+    // The explicit method at its limit of stability may separate surfaces that creep together for a moment, by a negligible
+    // distance.
     EXPECT_EQ(metrics(t, {.significant_rebound = 1e-6 * d.gap.contact}).bounce_count, 0);
     EXPECT_EQ(expected.touches.size(), 1U);
     EXPECT_NEAR(t.points.back().position, expected.points.back().position, close * d.gap.contact);

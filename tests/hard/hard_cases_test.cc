@@ -1,5 +1,5 @@
-// Hard cases, one table: each keeps the invariants of tests/support/invariants.h, and its landing is the same from two
-// integrators and from a run a hundred times tighter. The cases with a closed form are in exact_cases_test.cc.
+// A table of hard cases: each keeps the invariants of tests/support/invariants.h, and its landing is the same with two
+// integrators and in a run with a hundredth of the tolerance. Cases with a closed form are in exact_cases_test.cc.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ struct Case {
   Device device;
   std::vector<Signal> drives;
   double duration = 0;    // [s]
-  std::string ends = {};  // part of the message of a run that cannot end well
+  std::string ends = {};  // part of the message of a run that must fail
 };
 
 constexpr char electrode[] = "of the electrode";
@@ -72,7 +72,8 @@ std::vector<Case> cases() {
     d.structure.modes = 12;
     all.push_back({"twelve modes", d, {Signal::constant(step_level)}, 60_us});
   }
-  for (const double dither : {6.0, 600.0}) {  // multiples of the first mode's frequency; that of the fourth is 34 times higher
+  for (const double dither :
+       {6.0, 600.0}) {  // multiples of the first mode's frequency; the fourth mode has 34 times that frequency
     const Device d = test::gold_cantilever();
     const double omega = Switch(d).basis().angular_frequencies()[0];
     all.push_back({fmt::format("dither at {:g} times the first mode's frequency", dither),
@@ -155,7 +156,7 @@ std::vector<Case> cases() {
     const Pulse plates{.levels = {110, 0, 110, 0}, .times = {90_us, 120_us, 200_us}, .edge = 1_us};
     all.push_back({"a plate released from a rigid contact and closed again", plate, {signal(plates), Signal()}, 250_us});
   }
-  for (const double restitution : {0.0, 0.99}) {  // more than 600 impacts, after which the plate rests
+  for (const double restitution : {0.0, 0.99}) {  // with more than 600 impacts, after which the plate rests
     Device plate = test::full_plate();
     plate.contacts = {Contact{.model = RigidStop{.restitution = restitution}}};
     all.push_back({fmt::format("a plate on a rigid contact with restitution {:g}", restitution),
@@ -175,7 +176,7 @@ std::vector<Case> cases() {
 // Bounds of the difference between two runs of one case.
 constexpr double close = 1e-4;    // t_i and v_i, relative
 constexpr double apart = 2e-3;    // height of the first rebound: the motion before magnifies the difference
-constexpr double twelfth = 4e-4;  // v_i of twelve modes, the highest of which ring at impact
+constexpr double twelfth = 4e-4;  // v_i with twelve modes, the highest of which oscillate at impact
 
 TEST(HardCases, KeepTheInvariantsAndTheirLandingFromEveryIntegrator) {
   for (const Case& one : cases()) {
@@ -206,7 +207,7 @@ TEST(HardCases, KeepTheInvariantsAndTheirLandingFromEveryIntegrator) {
 }
 
 TEST(HardCases, AHairAboveOrBelowDynamicPullInABeamTouchesOrDoesNot) {
-  const Switch device(test::gold_cantilever());  // its gas: without it a beam may also touch after many periods
+  const Switch device(test::gold_cantilever());  // with its gas: without it a beam may also touch after many periods
   const double pull_in = dynamic_pull_in(device, 0, static_pull_in(device, 0)).voltage;  // pull-in to 1e-7
   const auto run = [&](double volts, Integrator integrator) {
     const CheckedRun c = checked_run(device, std::vector<Signal>{Signal::constant(volts)},
@@ -227,7 +228,8 @@ TEST(HardCases, AHairAboveOrBelowDynamicPullInABeamTouchesOrDoesNot) {
   }
 }
 
-// Errors at a tolerance, three times the worst of the runs below: of t_i, v_i and the first rebound, and of the energy.
+// Bounds at a tolerance, three times the largest errors of the runs below: of t_i, v_i and the first rebound, and of the
+// energy.
 struct Delivered {
   double tolerance = 0, error = 0, energy = 0;
 };
@@ -242,7 +244,7 @@ TEST(HardCases, AreEitherRightOrRefusedAtEveryTolerance) {
     const auto run = [&](Integrator integrator, double tolerance) {
       return checked_run(device, std::vector<Signal>{Signal::constant(step_level)},
                          {.duration = 70_us, .tolerance = tolerance, .integrator = integrator, .max_steps = 100'000},
-                         0.2);  // energy error that a run itself calls credible
+                         0.2);  // largest energy error that a run accepts
     };
     const Landing best = test::landing(run(Integrator::lawson, 1e-12).trajectory);
     for (const Integrator integrator : {Integrator::lawson, Integrator::esdirk, Integrator::bdf}) {
@@ -265,7 +267,8 @@ TEST(HardCases, AreEitherRightOrRefusedAtEveryTolerance) {
   }
 }
 
-// The rates of the stiff film are its error times its stiffness: what the energy audit makes of them must not fail a good run.
+// The rates of the stiff film have its error times its stiffness: their effect on the energy audit must not make a good run
+// fail.
 TEST(HardCases, ACompressibleFilmKeepsItsBooksAtEveryTolerance) {
   Device d = test::gold_cantilever();
   d.gas = ReynoldsGas{.film = {.viscosity = 1.86e-5_Pa_s}};

@@ -1,4 +1,4 @@
-// Properties of random scenes: bench/soak.cc asks the same of thousands.
+// Properties of random scenes: bench/soak.cc checks the same on thousands.
 #include "tests/support/random_scenes.h"
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t seed = 7;
 
-/// A prepared random scene without a compressible film, whose closings take a hundred times longer.
+/// Returns a prepared random scene without a compressible film, whose closings take a hundred times longer.
 PreparedScene random_closing() {
   while (true) {
     PreparedScene p = prepare(test::random_scene(seed, *rc::gen::inRange<std::uint64_t>(0, 1'000'000)));
@@ -38,36 +38,36 @@ TEST(EveryScene, KeepsTheInvariants) {
   }));
 }
 
-// Scenes that soaks have found wanting.
+// Scenes that once violated an invariant in bench/soak.cc.
 TEST(EveryScene, ThatOnceBrokeAnInvariantKeepsItNow) {
   struct Found {
     std::uint64_t seed, index;
     double tolerance;
   };
   for (const Found& f : {
-           Found{3, 50, 1e-5},      // a step that began beyond its edge, by rounding, ended before it began
-           Found{7, 165398, 1e-8},  // a drive far beyond pull-in gave more in contact than the bound of its depth allowed
+           Found{3, 50, 1e-5},      // a step that began after its end, by rounding
+           Found{7, 165398, 1e-8},  // a drive far above pull-in gave more energy in contact than the bound of its depth allowed
        }) {
     const PreparedScene p = prepare(test::random_scene(f.seed, f.index));
     EXPECT_EQ(closing(p, Integrator::automatic, f.tolerance).violations, std::vector<std::string>{}) << f.seed << " " << f.index;
   }
 }
 
-// A film in a gap that is all but closed: the explicit method took more than 100 000 steps. It also creeps in the last scene
-// into a contact with memory, which rounding took for 47 000 turns.
+// A film in a nearly closed gap, for which the explicit method took more than 100 000 steps. In the last scene it also creeps
+// into a contact with memory, where rounding gave 47 000 reversals.
 TEST(EveryScene, ThatCreepsInAThickFilmIsClosedInBoundedWork) {
   for (const std::uint64_t index : {844U, 3916U, 4490U}) {
     SCOPED_TRACE(index);
     const PreparedScene p = prepare(test::random_scene(2, index));
     const auto run = [&](Integrator integrator, double tolerance) {
-      const test::CheckedRun c = closing(p, integrator, tolerance);  // it takes no more than 20 000 steps
+      const test::CheckedRun c = closing(p, integrator, tolerance);  // at most 20 000 steps
       EXPECT_EQ(c.violations, std::vector<std::string>{});
       EXPECT_EQ(c.trajectory.status, Status::done) << c.trajectory.message;
       EXPECT_EQ(c.trajectory.work.integrator, Integrator::bdf);
       return c.trajectory;
     };
     const Trajectory t = run(Integrator::automatic, 1e-7), expected = run(Integrator::bdf, 1e-9);
-    EXPECT_LT(t.energy_error, 1e-5 * p.model.bending_energy());  // 5e-7 seen
+    EXPECT_LT(t.energy_error, 1e-5 * p.model.bending_energy());  // observed: 5e-7
     const test::Landing a = test::landing(t), b = test::landing(expected);
     EXPECT_NEAR(a.time, b.time, 1e-6 * b.time);
     EXPECT_NEAR(a.velocity, b.velocity, 1e-6 * b.velocity);
@@ -75,8 +75,8 @@ TEST(EveryScene, ThatCreepsInAThickFilmIsClosedInBoundedWork) {
   }
 }
 
-// Where the fast modes ring for long, or where an implicit method takes steps that are long for a stiff film, the motion is
-// right: the dissipation must be added up as well as that.
+// The motion is accurate although fast modes oscillate for long, or an implicit method takes long steps for a stiff film: the
+// dissipation must be integrated with the same accuracy.
 TEST(EveryScene, KeepsBooksAsGoodAsItsMotion) {
   const auto error = [](std::uint64_t index, Integrator integrator) {
     const PreparedScene p = prepare(test::random_scene(2, index));
@@ -84,12 +84,12 @@ TEST(EveryScene, KeepsBooksAsGoodAsItsMotion) {
         simulate_closing(p.model, p.signals(), {.duration = p.duration, .tolerance = 1e-7, .integrator = integrator});
     return t.energy_error / p.model.bending_energy();
   };
-  EXPECT_LT(error(2160, Integrator::automatic), 4e-4);  // Simpson's rule alone leaves 1.2e-3, with care from 1e-4 on 1.4e-4
-  EXPECT_LT(error(3880, Integrator::automatic), 4e-4);  // 8e-4, 1.0e-4
-  EXPECT_LT(error(1050, Integrator::esdirk), 1e-4);     // quintic through accelerations: 0.47, cubic: 7e-6
+  EXPECT_LT(error(2160, Integrator::automatic), 4e-4);  // Simpson's rule alone leaves 1.2e-3, the refined rule 1.4e-4
+  EXPECT_LT(error(3880, Integrator::automatic), 4e-4);  // likewise 8e-4 and 1.0e-4
+  EXPECT_LT(error(1050, Integrator::esdirk), 1e-4);     // with a quintic through accelerations 0.47, with a cubic 7e-6
 }
 
-// These runs use the default integrator of other scenes, as a study of accuracy runs them.
+// These runs use the default integrator of other scenes, as a study of accuracy does.
 TEST(EveryScene, KeepsTheBooksOfACompressibleFilm) {
   for (const std::uint64_t index : {37U, 42U}) {
     SCOPED_TRACE(index);
@@ -97,7 +97,7 @@ TEST(EveryScene, KeepsTheBooksOfACompressibleFilm) {
     const Trajectory t = simulate_closing(
         p.model, p.signals(), {.duration = p.duration, .tolerance = 1e-3, .integrator = Integrator::lawson, .max_steps = 4000});
     EXPECT_EQ(t.status, Status::done) << t.message;
-    EXPECT_LT(t.energy_error, 1e-2 * p.model.bending_energy());  // 7e-4, 2e-3; with the film of another step 0.26, 0.025
+    EXPECT_LT(t.energy_error, 1e-2 * p.model.bending_energy());  // observed: 7e-4, 2e-3; another step's film: 0.26, 0.025
   }
 }
 
@@ -108,7 +108,7 @@ TEST(EveryScene, LandsAlikeFromTwoIntegrators_slow) {
     if (one.trajectory.status != Status::done || other.trajectory.status != Status::done) return;
     const test::Landing a = test::landing(one.trajectory), b = test::landing(other.trajectory);
     RC_LOG() << p.scene.file.text() << fmt::format("{} s, {} m/s and {} s, {} m/s", a.time, a.velocity, b.time, b.velocity);
-    // Slow first touches and those just above pull-in are less certain than the tolerance.
+    // Slow first touches, and those just above pull-in, have errors above the tolerance.
     const double scale = p.model.device().gap.contact * p.model.basis().angular_frequencies()[0];
     RC_ASSERT(std::abs(a.time - b.time) <= 1e-4 * a.time);
     RC_ASSERT(std::abs(a.velocity - b.velocity) <= 1e-3 * std::max(a.velocity, scale));

@@ -39,7 +39,8 @@ TEST(Turn, AddsUp) {
   }
 }
 
-// Modes at rest at 0 under a force that grows as t^3: q'' = -omega^2 q + a0 + s t^3, by q = particular + free.
+// Modes at rest at 0 under a force that grows as t^3: q'' = -omega^2 q + a0 + s t^3. The solution is a particular one plus a
+// free one.
 struct Forced {
   double omega, a0, s, v0;
   [[nodiscard]] ModalMotion::Sample at(double t) const {
@@ -52,7 +53,7 @@ struct Forced {
   }
 };
 
-// Largest error of the interpolated position over a step of `length`, of five modes seen from one point.
+// Returns the largest error of the interpolated position over a step of `length`, of a point that moves in five modes.
 double worst_error(double length, double growth) {
   const std::vector<double> omega{0.1, 0.5, 1, 1.5, 2}, shape{1, -0.7, 0.5, -0.3, 0.2};
   std::vector<Forced> modes;
@@ -85,7 +86,7 @@ double worst_error(double length, double growth) {
     EXPECT_NEAR(found.velocity, truth.velocity, 1e-2 * growth + 1e-13);
     EXPECT_NEAR(found.acceleration, truth.acceleration, 1e-1 * growth + 1e-13);
   }
-  constexpr double rotations = 1e-14;  // one after the other, against one at once
+  constexpr double rotations = 1e-14;  // rounding of successive rotations compared with a single one
   for (int k = 1; k <= pieces; ++k) {
     const ModalMotion::Sample found = motion.at(length * k / pieces), knot = motion.knot(k);
     EXPECT_NEAR(knot.position, found.position, rotations);

@@ -42,7 +42,7 @@ TEST(BracketedZero, FindsZerosToRounding) {
   EXPECT_NEAR(bracketed_zero(cosine, 1, 2), std::numbers::pi / 2, 1e-15);
   EXPECT_NEAR(bracketed_zero([&](double x) { return -cosine(x); }, 1, 2), std::numbers::pi / 2, 1e-15);
   EXPECT_EQ(bracketed_zero([](double x) { return x - 0.25; }, 0, 1), 0.25);
-  // Steep on one side, flat on the other; a root of odd order.
+  // Functions that are steep on one side and flat on the other, and a root of odd order.
   EXPECT_NEAR(bracketed_zero([](double x) { return std::exp(30 * x) - 2; }, -10, 10), std::log(2.0) / 30, 1e-15);
   EXPECT_NEAR(bracketed_zero([](double x) { return std::pow(x - 1, 3); }, 0, 3), 1, 1e-5);
 }
@@ -67,16 +67,16 @@ TEST(SignChanges, AreFoundInOrderAndToRounding) {
   };
   expect(sign_changes(std::array{1.0}), {});
   expect(sign_changes(std::array{-0.25, 1.0}), {0.25});
-  expect(sign_changes(std::array{0.25, 1.0}), {});                      // outside
-  expect(sign_changes(std::array{0.0, 1.0}), {});                       // root on the edge
-  expect(sign_changes(std::array{0.25, -1.0, 1.0}), {});                // touches zero at 1/2
+  expect(sign_changes(std::array{0.25, 1.0}), {});                      // the root is outside
+  expect(sign_changes(std::array{0.0, 1.0}), {});                       // the root is on the edge
+  expect(sign_changes(std::array{0.25, -1.0, 1.0}), {});                // touches zero at 1/2 without a change of sign
   expect(sign_changes(std::array{0.0625, -0.625, 1.0}), {0.125, 0.5});  // (s - 1/8) (s - 1/2)
   expect(sign_changes(std::array{-0.125, 0.75, -1.5, 1.0}), {0.5});     // (s - 1/2)^3, the slope does not change sign there
   expect(sign_changes(std::array{-0.09375, 0.6875, -1.5, 1.0}), {0.25, 0.5, 0.75});
 }
 
 TEST(Quintic, TurnsWhereItsVelocityChangesSign) {
-  // Cosine over more than a period: seen between knots that are far apart, it turns where a quintic through them does.
+  // A cosine over more than a period between distant knots: it turns where the quintic through the knots does.
   const auto knots = [](double t0, double t1) {
     return Quintic(t0, std::cos(t0), -std::sin(t0), -std::cos(t0), t1, std::cos(t1), -std::sin(t1), -std::cos(t1));
   };

@@ -83,7 +83,7 @@ TEST(Steppers, SayWhatTheLibrarySaysOfAFailure) {
   }
 }
 
-// CVODE alone refuses a step length below 0; ARKODE takes it for its default.
+// CVODE itself refuses a negative step length; ARKODE takes it for its default.
 TEST(Steppers, RefuseWhatTheLibraryRefusesOfTheirSetUp) {
   const OdeSystem system = forced_oscillator(0);
   const double begin[] = {1, 0}, rate = 0;
@@ -105,7 +105,7 @@ TEST(Lawson, KnowsWhenStabilityKeepsItsStepsShort) {
     for (int i = 0; i < 500; ++i) EXPECT_TRUE(stepper->step(1e6));
     return stepper->stiffness();
   };
-  // The pair is stable for decays up to 3.3 of its steps.
+  // The pair is stable up to a decay rate of 3.3 per step.
   EXPECT_NEAR(last_stiffness(1e3), 3.3, 0.7);
   EXPECT_LT(last_stiffness(1e-2), 0.1);
 }

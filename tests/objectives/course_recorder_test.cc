@@ -1,4 +1,4 @@
-// Compares the record of a long closing with the full course.
+// Compares the thinned record of a long closing with the full course.
 #include "objectives/course_recorder.h"
 
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@ namespace {
 constexpr double gap = 2e-6;
 constexpr std::size_t few = 64;
 
-// Falls onto the plane and bounces ever lower: half waves of a sine, knots at their ends and between, then a knot beyond the
-// plane.
+// Falls onto the plane and bounces with decreasing height: half waves of a sine, with knots at their ends and between them,
+// then a knot beyond the plane.
 std::vector<TrajectoryPoint> bounces(int flights, int knots_each) {
   std::vector<TrajectoryPoint> all;
   for (int n = 0; n < flights; ++n) {
@@ -86,13 +86,13 @@ TEST(CourseRecorder, KeepsTheExtremesOfWhatItLeavesOut) {
     EXPECT_EQ(std::ranges::max(kept, {}, column).*column, std::ranges::max(all, {}, column).*column);
     EXPECT_EQ(std::ranges::min(kept, {}, column).*column, std::ranges::min(all, {}, column).*column);
   }
-  // Late and early alike.
+  // Late times have as many points as early ones.
   const auto late = std::ranges::count_if(kept, [&](const TrajectoryPoint& p) { return p.time > all.back().time / 2; });
   EXPECT_NEAR(static_cast<double>(late), 0.5 * static_cast<double>(kept.size()), 0.2 * static_cast<double>(kept.size()));
 }
 
 TEST(CourseRecorder, KeepsTheFirstAndTheLastKnotOfABucket) {
-  constexpr int count = 4096;  // as buckets have a power of two of knots, quarters are ends of some
+  constexpr int count = 4096;  // buckets have a power of two of knots, so that the quarters are at ends of some buckets
   std::vector<TrajectoryPoint> all;
   for (int k = 0; k < count; ++k) {
     all.push_back({.time = static_cast<double>(k),

@@ -1,4 +1,4 @@
-// The one table of figures: it holds every figure once, reads each from its own member, and agrees with what people read.
+// The table of figures: it has every figure once, reads each from its own member, and agrees with the manual.
 #include "objectives/figures.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Every figure has a value of its own.
+// Returns metrics in which every figure has a different value.
 Metrics distinct_metrics() {
   Metrics m;
   double next = 1;
@@ -37,7 +37,7 @@ TEST(Figures, AreTheMembersOfMetricsEachOnce) {
     EXPECT_TRUE(symbols.insert(figure.symbol).second) << figure.symbol;
     EXPECT_EQ(&figure_of(figure.member), &figure) << figure.key << ": another row has the same member";
   }
-  // Does not compile with another number of members.
+  // Does not compile if the number of members changes.
   const auto& [status, t_i, t_p, t_b, n_b, b_h, t_1, v_i, force, impact, hold, steady, least, capacitance, drive, settled,
                resistance, closed, closed_for_good, n_e, pressure, make_charge, break_charge, asked, command, opening, n_o,
                bounce, rest, beyond, back, in_touch, stop, deflection, overshoot, settling, voltage, slew, v_max, closest,
@@ -190,7 +190,7 @@ TEST(RelativeDifference, OfWhatIsSmallIsRelativeToTheLeastSize) {
   EXPECT_EQ(relative_difference(-1, -2, 4), 0.25);
 }
 
-// The rows of the table in docs/figures.md that name a key are the rows of this one.
+// The rows of the table in docs/figures.md with a key are the rows of this table.
 TEST(Figures, AreThoseOfTheManual) {
   std::ifstream stream(std::string(SOFTLAND_SOURCE_DIR) + "/docs/figures.md");
   ASSERT_TRUE(stream);

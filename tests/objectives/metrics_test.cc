@@ -16,8 +16,8 @@ namespace {
 using namespace literals;
 
 constexpr double kGap = 2e-6;
-// Positions and times carry the rounding of 2 um and of the window; every figure that the interpolant holds exactly agrees this
-// well, relative to the largest number that enters it.
+// Positions and times have the rounding of 2 um and of the window. Every figure that the interpolant reproduces exactly agrees
+// within this, relative to the largest number in it.
 constexpr double kRounding = 1e-12;
 
 /// A ball that falls on the contact with constant acceleration and keeps the share e of its speed at every impact.
@@ -29,20 +29,21 @@ struct BouncingBall {
   [[nodiscard]] double impact_speed(int n) const { return std::sqrt(2 * acceleration * first_height) * std::pow(restitution, n); }
   [[nodiscard]] double height(int n) const { return first_height * std::pow(restitution, 2 * n); }
   [[nodiscard]] double first_impact() const { return std::sqrt(2 * first_height / acceleration); }
-  /// Beginning of flight n = 1, 2 ... [s]
+  /// Returns the begin of flight n = 1, 2 ... [s].
   [[nodiscard]] double impact(int n) const {
     double time = first_impact();
     for (int k = 1; k < n; ++k) time += 2 * impact_speed(k) / acceleration;
     return time;
   }
 
-  /// Falls, flies `flights` times, then rests until `end`; knots at impacts and `inside` more in every flight, none at a top.
+  /// Falls, has `flights` rebounds, then rests until `end`. Knots are at impacts, and `inside` further ones in every flight,
+  /// none of them at a top.
   [[nodiscard]] Trajectory trajectory(int flights, double end, int inside = 0) const {
     Trajectory result{.status = Status::done, .contact_gap = kGap};
     result.in_contact_period = 1_us;
     const auto fly = [&](double from, double height_0, double speed_up, double duration) {
       for (int i = 0; i <= inside + 1; ++i) {
-        // Not evenly spaced, so that no knot falls on a top.
+        // Unequal distances, so that no knot is at a top.
         const double t = duration * std::pow(static_cast<double>(i) / (inside + 1), 1.3);
         const double height = i > inside && speed_up > 0 ? 0 : height_0 + speed_up * t - 0.5 * acceleration * t * t;
         result.points.push_back(
@@ -58,7 +59,7 @@ struct BouncingBall {
   }
 };
 
-/// Knots of a smooth function given with two derivatives, at `count` + 1 even times.
+/// Returns knots of a smooth function with two derivatives, at `count` + 1 equally spaced times.
 template <typename Function>
 Trajectory sampled(Function function, double end, int count) {
   Trajectory result{.status = Status::done, .contact_gap = kGap};
@@ -82,7 +83,7 @@ TEST(Metrics, BouncingBallHasTheHeightsOfAGeometricSeries) {
       EXPECT_NEAR(rebound.height, ball.height(n), kRounding * kGap) << "flight " << n;
       EXPECT_NEAR(rebound.begin, ball.impact(n), kRounding * ball.impact(n)) << "flight " << n;
       EXPECT_NEAR(rebound.end, ball.impact(n + 1), kRounding * ball.impact(n)) << "flight " << n;
-      // The top is flat: the time is the root of a velocity with a rounding of 1e-16 of the impact speed, times the flight.
+      // The top is flat: its time is the root of a velocity with a rounding of 1e-16 of the impact speed, times the flight.
       EXPECT_NEAR(rebound.time_of_height, 0.5 * (rebound.begin + rebound.end), kRounding * ball.impact(n)) << "flight " << n;
     }
   }
@@ -150,7 +151,7 @@ TEST(Metrics, FirstTouchAtTheEndOfTheWindowIsNotYetSettled) {
   const BouncingBall ball;
   Trajectory trajectory = ball.trajectory(0, ball.first_impact() + 2_us);
   EXPECT_TRUE(metrics(trajectory).settled);
-  trajectory.points.pop_back();  // now it ends where it touches
+  trajectory.points.pop_back();  // the trajectory now ends at its touch
   const Metrics m = metrics(trajectory);
   EXPECT_EQ(m.status, Status::not_settled) << "the rebound, if any, is still to come";
   EXPECT_FALSE(m.settled);
@@ -162,7 +163,7 @@ TEST(Metrics, FirstTouchAtTheEndOfTheWindowIsNotYetSettled) {
 TEST(Metrics, ReboundUnderWayAtTheEndIsALowerBound) {
   const BouncingBall ball;
   Trajectory trajectory = ball.trajectory(1, 0, 5);
-  // The window ends on the way up, before the top of the first flight.
+  // The window ends before the top of the first flight.
   const double end = ball.first_impact() + 0.3 * ball.impact_speed(1) / ball.acceleration;
   std::erase_if(trajectory.points, [&](const TrajectoryPoint& point) { return point.time > end; });
   ASSERT_GT(kGap - trajectory.points.back().position, 1_nm);
@@ -194,8 +195,8 @@ TEST(Metrics, KnotsOffThePlaneByRoundingAreOnIt) {
 }
 
 TEST(Metrics, DampedOscillatorOnACompliantPlaneMatchesItsClosedForm) {
-  // x = c - A exp(-b t) cos(w t) from rest below the plane, settling c - gap = 2 nm inside it: no knot is on a crossing or at a
-  // top.
+  // x = c - A exp(-b t) cos(w t) starts at rest below the plane and settles c - gap = 2 nm beyond it. No knot is at a crossing
+  // or at a top.
   constexpr double rest = kGap + 2e-9;
   constexpr double b = 2e4, w = 1e6;
   const auto position = [](double t) { return rest - kGap * std::exp(-b * t) * std::cos(w * t); };
@@ -204,14 +205,14 @@ TEST(Metrics, DampedOscillatorOnACompliantPlaneMatchesItsClosedForm) {
     return std::array{position(t), decay * (b * std::cos(w * t) + w * std::sin(w * t)),
                       decay * ((w * w - b * b) * std::cos(w * t) - 2 * b * w * std::sin(w * t))};
   };
-  // 40 knots a period: the quintic's error is (w h)^6 / 46080 of the amplitude, 3e-10.
+  // With 40 knots in a period the error of the quintic is (w h)^6 / 46080 of the amplitude, 3e-10.
   constexpr double interpolation = 1e-9;
   const double end = 60 * 2 * std::numbers::pi / w;
   Trajectory trajectory = sampled(motion, end, 60 * 40 + 1);
   trajectory.in_contact_period = 2 * std::numbers::pi / w;
   const auto found = rebounds(trajectory);
 
-  // Tops: x' = 0 where tan(w t) = -b / w, once a period; above the plane as long as A exp(-b t) cos(w t) > 2 nm there.
+  // Tops are at x' = 0, tan(w t) = -b / w, once in a period; they are above the plane as long as A exp(-b t) cos(w t) > 2 nm.
   const double lag = std::atan(b / w);
   std::size_t count = 0;
   for (int n = 1;; ++n) {
@@ -220,8 +221,8 @@ TEST(Metrics, DampedOscillatorOnACompliantPlaneMatchesItsClosedForm) {
     if (height <= 0 || top > end) break;
     ASSERT_LT(count, found.size());
     EXPECT_NEAR(found[count].height, height, interpolation * kGap) << "rebound " << n;
-    // An error in velocity over the acceleration; the velocity is interpolated one order worse, a factor of 1 / (w h) and a
-    // constant.
+    // The error of the time is that of the velocity over the acceleration. The velocity is interpolated with one order less, a
+    // factor of 1 / (w h) and a constant.
     EXPECT_NEAR(found[count].time_of_height, top, 100 * interpolation / w) << "rebound " << n;
     EXPECT_NEAR(position(found[count].begin), kGap, interpolation * kGap) << "rebound " << n;
     EXPECT_NEAR(position(found[count].end), kGap, interpolation * kGap) << "rebound " << n;
@@ -239,14 +240,15 @@ TEST(Metrics, DampedOscillatorOnACompliantPlaneMatchesItsClosedForm) {
 }
 
 TEST(Metrics, InterpolationOfASineIsOfSixthOrder) {
-  // The top of the rebound of gap (1 - 0.1 sin(w t + 1)) is gap / 10, met between knots whose distance halves.
+  // The top of the rebound of gap (1 - 0.1 sin(w t + 1)) is gap / 10, approximated with knots whose distance is halved.
   constexpr double w = 1e6;
   const auto error = [&](int per_period) {
     const auto motion = [&](double t) {
       const double a = w * t + 1;
       return std::array{kGap * (1 - 0.1 * std::sin(a)), -kGap * 0.1 * w * std::cos(a), kGap * 0.1 * w * w * std::sin(a)};
     };
-    // The top of the second period, a fixed share of a step from the nearest knot: the error's constant stays the same.
+    // The top of the second period is at a fixed share of a step from the nearest knot, so that the constant of the error stays
+    // the same.
     const double h = 2 * std::numbers::pi / w / per_period;
     const double top = (2.5 * std::numbers::pi - 1) / w;
     Trajectory trajectory{.status = Status::done, .contact_gap = kGap};
@@ -260,7 +262,7 @@ TEST(Metrics, InterpolationOfASineIsOfSixthOrder) {
     return std::abs(found.at(0).height - 0.1 * kGap) / (0.1 * kGap);
   };
   const double coarse = error(8), middle = error(16), fine = error(32);
-  // The next term of the error is (w h)^2 smaller than the first: a tenth of an order at eight knots a period.
+  // The next term of the error is smaller by (w h)^2: a tenth of an order with eight knots in a period.
   constexpr double expected_order = 6, order_tolerance = 0.2;
   EXPECT_NEAR(std::log2(coarse / middle), expected_order, order_tolerance);
   EXPECT_NEAR(std::log2(middle / fine), expected_order, order_tolerance);
@@ -268,7 +270,7 @@ TEST(Metrics, InterpolationOfASineIsOfSixthOrder) {
 }
 
 TEST(Metrics, ExcursionInsideOneIntervalIsFound) {
-  // The motion is below the plane at both knots of a step and 5 nm above it in the middle, and the other way round.
+  // The motion is below the plane at both knots of a step and 5 nm above it in the middle, or the other way round.
   for (const double side : {1.0, -1.0}) {
     const auto motion = [&](double t) {
       const double s = t / 1_us;
@@ -315,7 +317,8 @@ TEST(Metrics, GrazingTouchCountsAndNearMissDoesNot) {
 }
 
 TEST(Metrics, MicroBouncesInsideAMacroBounceAreCountedByTheirOwnHeight) {
-  // The tip sinks in after the flight of 500 nm, and rings across the plane with an amplitude that crosses 1 nm.
+  // After the flight of 500 nm the tip settles into the contact, and oscillates across the plane with an amplitude that decreases
+  // through 1 nm.
   const BouncingBall ball;
   Trajectory trajectory = ball.trajectory(1, 0, 4);
   const double begin = trajectory.points.back().time;
@@ -337,7 +340,7 @@ TEST(Metrics, MicroBouncesInsideAMacroBounceAreCountedByTheirOwnHeight) {
   ASSERT_EQ(found.size(), 5U);
   EXPECT_NEAR(found[0].height, 500_nm, kRounding * kGap);
   for (std::size_t n = 1; n < 4; ++n) {
-    // Sixth order at 16 knots a period.
+    // Sixth order with 16 knots in a period.
     EXPECT_NEAR(found[n + 1].height / found[n].height, 0.5, 1e-4) << "ring " << n;
   }
   // 2.5, 1.2, 0.6 and 0.3 nm.

@@ -1,4 +1,4 @@
-// Figures of an opening, of motions that are written down.
+// Figures of an opening, for motions in closed form.
 #include "objectives/opening.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr double omega = 6e4, decay = 4e3, amplitude = 2e-6, open_position = 1e-8;
 
-// open + amplitude exp(-decay t) cos(omega t), with knots at every half radian; in contact until 1 us.
+// Returns open + amplitude exp(-decay t) cos(omega t), with knots at every half radian, in contact until 1 us.
 Trajectory ring_down(double end) {
   Trajectory t{.status = Status::done, .contact_gap = amplitude};
   for (double time = 0; time < end + 0.5 / omega; time += 0.5 / omega) {
@@ -24,7 +24,7 @@ Trajectory ring_down(double end) {
   return t;
 }
 
-// Time of the n-th turn; it grows with n.
+// Returns the time of turning point n.
 double turn(int n) { return (n * std::acos(-1.0) - std::atan(decay / omega)) / omega; }
 double size_at(double time) { return amplitude * std::exp(-decay * time) * std::abs(std::cos(omega * time)); }
 
@@ -36,11 +36,11 @@ TEST(OpeningFigures, OfARingDownAreThoseOfItsFormula) {
   EXPECT_EQ(f.release_time, 1e-6);
   EXPECT_EQ(f.touches, 0);
   EXPECT_NEAR(f.overshoot, size_at(turn(1)), 1e-4 * amplitude);
-  // The first turn after the drives stand is the largest swing from there on.
+  // After the drives have reached their levels, the next turning point is the largest deviation.
   int next = 1;
   while (turn(next) < 100e-6) ++next;
   EXPECT_NEAR(f.residual_vibration, std::max(size_at(turn(next)), size_at(100e-6)), 1e-4 * amplitude);
-  // The last turn outside the band is followed by the crossing of its edge.
+  // The crossing of the band's edge follows the last turning point outside of the band.
   EXPECT_NEAR(size_at(f.settling_time), width, 1e-3 * width);
   int last = 1;
   while (size_at(turn(last + 1)) > width) ++last;

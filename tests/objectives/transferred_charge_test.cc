@@ -1,4 +1,4 @@
-// The charge that a contact passes under a light force. Oracles: closed forms of a constant and of a rising force.
+// The charge that flows through a contact under a small force. Oracles: closed forms for a constant and for a rising force.
 #include "objectives/transferred_charge.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 constexpr double gap = 1e-6, voltage = 5, series = 50, light = 1e-5;
 constexpr SwitchedLoad load{.voltage = voltage, .resistance = series};
 
-// A knot at rest, this deep in the contact.
+// Returns a knot at rest with this depth in the contact.
 TrajectoryPoint knot(double time, double depth, double force) {
   return {.time = time, .position = gap + depth, .velocity = 0, .acceleration = 0, .contact_force = force};
 }
@@ -34,7 +34,7 @@ TEST(TransferredCharge, EndsWhereARisingForceIsSteadyAndBeginsWhereAFallingOneIs
   EXPECT_NEAR(falling.charge(), voltage / series * 1e-6, 1e-20);
 }
 
-// One plastic spot of radius sqrt(F / (pi H)) between metals whose electrons have no path: R = rho / (2 a).
+// One plastic spot of radius sqrt(F / (pi H)) between metals with a negligible mean free path: R = rho / (2 a).
 TEST(TransferredCharge, CountsTheResistanceOfTheContact) {
   constexpr double hardness = 1e9, resistivity = 1e-5, force = 0.5 * light;
   Contact contact{.model = LinearSpring{.stiffness = 5e3}};

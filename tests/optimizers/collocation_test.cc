@@ -1,4 +1,4 @@
-// Optimal control against problems whose answers are known in closed form.
+// Optimal control problems with solutions in closed form.
 #include "optimizers/collocation.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// x'' = -k x + c: a mass that is pushed, on a spring or not.
+// x'' = -k x + c: a mass with a push c, on a spring if k > 0.
 class Mass final : public ControlledSystem {
  public:
   explicit Mass(double spring = 0) : spring_(spring) {}
@@ -35,7 +35,7 @@ class Mass final : public ControlledSystem {
   double spring_;
 };
 
-// x' = v cos c, y' = v sin c, v' = sin c: a bead on a wire of slope c, under a gravity of 1.
+// x' = v cos c, y' = v sin c, v' = sin c: a bead on a wire of inclination c, under unit gravity.
 class Bead final : public ControlledSystem {
  public:
   [[nodiscard]] Index states() const override { return 3; }
@@ -62,7 +62,7 @@ std::vector<double> knots(int n) {
   return all;
 }
 
-// A straight line from one state to another.
+// Returns a straight line from one state to another.
 ControlledCourse line(const VectorXd& begin, const VectorXd& end, double time, double control) {
   ControlledCourse course{.time = time, .knots = {0, 1}, .controls = MatrixXd::Constant(1, 1, control), .points = {0, 1}};
   course.states.resize(begin.size(), 2);
@@ -91,7 +91,7 @@ TEST(Collocation, PushesAMassFromRestToRestByBangAndBang) {
 }
 
 TEST(Collocation, FindsASwitchBetweenItsKnotsByRefiningThem) {
-  // The motion from rest to x = 1, v = 1/2: full push to x_s, then full brake; v_s^2 = 2 x_s and 1/4 = 2 x_s - 2 (1 - x_s).
+  // From rest to x = 1, v = 1/2: full push to x_s, then full brake; v_s^2 = 2 x_s and 1/4 = 2 x_s - 2 (1 - x_s).
   Mass mass;
   const VectorXd end = (VectorXd(2) << 1, 0.5).finished();
   const double x_s = 2.25 / 4, v_s = std::sqrt(2 * x_s), exact = v_s + (v_s - 0.5);
@@ -103,13 +103,13 @@ TEST(Collocation, FindsASwitchBetweenItsKnotsByRefiningThem) {
     course = solve(problem, course);
     ASSERT_TRUE(course.converged) << course.message;
   }
-  EXPECT_GT(coarse, 1e-4);                // the coarse knots are worse, as they must be
-  EXPECT_NEAR(course.time, exact, 2e-5);  // a switch inside an interval costs its square
-  EXPECT_LT(problem.knots.size(), 40U);   // knots stay where nothing changes
+  EXPECT_GT(coarse, 1e-4);                // coarse knots give a visible error
+  EXPECT_NEAR(course.time, exact, 2e-5);  // a switch of the control inside of an interval costs the square of the interval
+  EXPECT_LT(problem.knots.size(), 40U);   // knots are added only where the control changes
 }
 
 TEST(Collocation, KeepsASlewLimit) {
-  // A push that grows at rate J to 1, stays for p, turns at rate J to -1 and stays until the mass is at rest.
+  // The push increases at the rate J to 1, stays for p, changes at the rate J to -1, and stays until the mass is at rest.
   constexpr double jerk = 4, p = 0.3, r = p + 0.5 / jerk;
   double x = 0, v = 0, a = 0;
   const auto go = [&](double rate, double time) {
@@ -170,7 +170,7 @@ TEST(Collocation, FindsTheBrachistochrone) {
 }
 
 TEST(Collocation, EndsBestWhereThatIsAsked) {
-  // A mass on a spring pushed for at most half a period gets twice as far as a constant push holds it.
+  // A push of at most half a period moves a mass on a spring twice as far as its equilibrium under a constant push.
   Mass mass(1);
   ControlProblem problem{.system = &mass,
                          .start = VectorXd::Zero(2),
@@ -186,7 +186,7 @@ TEST(Collocation, EndsBestWhereThatIsAsked) {
 }
 
 TEST(Collocation, KeepsConditionsOnTheWay) {
-  // No faster than 1/2 to x = 1: v = 1/2 from t = 1/2 on, so that T = 1/2 + (1 - 1/8 - 1/8) / (1/2) + 1/2.
+  // With a speed of at most 1/2 to x = 1: v = 1/2 from t = 1/2 on, so that T = 1/2 + (1 - 1/8 - 1/8) / (1/2) + 1/2.
   Mass mass;
   ControlProblem problem = push_to(mass, VectorXd::Unit(2, 0), 50);
   problem.on_the_way = {{.row = VectorXd::Unit(2, 1), .upper = 0.5}};

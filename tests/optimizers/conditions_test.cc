@@ -1,4 +1,4 @@
-// Conditions that methods with a gradient follow, against minima that are known without any of them.
+// Conditions in methods with a gradient, on problems whose minima are known.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,7 +13,8 @@ constexpr std::string_view followers[] = {"slsqp", "mma", "ccsaq", "ipopt", "aut
 
 using Values = std::function<std::vector<double>(std::span<const double>)>;
 
-// Minimises the first of `values` under the others, as a search of closings does: what breaks them costs besides.
+// Minimises the first of `values`, with the others as conditions. Broken conditions also add to the cost, as in a search of
+// closings.
 Problem conditioned(Problem problem, std::size_t count, const Values& values, const Values& gradients) {
   problem.objective = [values](std::span<const double> x) {
     const std::vector<double> all = values(x);
@@ -25,7 +26,7 @@ Problem conditioned(Problem problem, std::size_t count, const Values& values, co
   return problem;
 }
 
-// The round bowl above a line: the nearest point of the line is (0.6, 0.6), at 0.18.
+// A quadratic bowl above a line: the nearest point of the line is (0.6, 0.6), with the value 0.18.
 std::vector<double> above_a_line(std::span<const double> x) { return {landscapes::bowl(x), 1.2 - x[0] - x[1]}; }
 std::vector<double> slopes_above_a_line(std::span<const double> x) { return {2 * (x[0] - 0.3), 2 * (x[1] - 0.3), -1, -1}; }
 
@@ -53,7 +54,7 @@ TEST(Conditions, AreFollowedByDifferencesToo) {
   }
 }
 
-// A curved valley in a disc and on one side of a line: the least value along the edge of the disc is found by going round it.
+// A curved valley in a disc and on one side of a line: the minimum is on the edge of the disc.
 TEST(Conditions, MayBeCurvedAndSeveral) {
   const auto values = [](std::span<const double> x) {
     return std::vector<double>{landscapes::rosenbrock(x), x[0] * x[0] + x[1] * x[1] - 1, x[0] - 0.9};

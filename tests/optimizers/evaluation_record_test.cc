@@ -1,4 +1,4 @@
-// Tests the values that libraries get.
+// Tests the values that optimizer libraries receive.
 #include "optimizers/evaluation_record.h"
 
 #include <atomic>
@@ -17,7 +17,7 @@ namespace {
 
 using landscapes::box;
 
-/// Gives the body a budgeted of a problem over [0, 1]^n, where points and x are the same.
+/// Gives the body a budgeted problem over [0, 1]^n, in which points equal x.
 void with_strand(std::size_t dimension, const std::function<double(std::span<const double>)>& objective,
                  const std::function<void(BudgetedObjective&)>& body, long budget = 1000) {
   const Problem problem = box(dimension, 0, 1, objective);
@@ -27,7 +27,7 @@ void with_strand(std::size_t dimension, const std::function<double(std::span<con
 }
 
 TEST(Answers, RankInfeasiblePointsBelowEverythingSeen) {
-  // x names a value from a list that goes through all sizes; every second point is infeasible.
+  // x selects a value from a list of all magnitudes; every second point is infeasible.
   const std::vector<double> values = {-1e300, -1e13, -5, 0, 1e-9, 1, 3, 1e11, 1e12, 1e13, 1e14, 1e200, 1.7e308};
   const auto objective = [&](std::span<const double> x) {
     const auto k = static_cast<std::size_t>(std::lround(x[0] * 1000));
@@ -39,7 +39,7 @@ TEST(Answers, RankInfeasiblePointsBelowEverythingSeen) {
       const Answer answer = budgeted(std::vector{static_cast<double>(k) / 1000});
       EXPECT_EQ(answer.feasible, k % 2 == 1);
       EXPECT_TRUE(std::isfinite(answer.value * answer.value)) << "libraries square";
-      EXPECT_GT(answer.value, worst) << k;  // holds for finite ones because the list ascends
+      EXPECT_GT(answer.value, worst) << k;  // holds for finite values since the list ascends
       if (answer.feasible) worst = answer.value;
     }
   });
@@ -72,7 +72,7 @@ TEST(Answers, ToKnownPointsAreFree) {
         EXPECT_EQ(budgeted.evaluations(), 1);
         EXPECT_EQ(budgeted(std::vector{-0.0}).value, 0);
         EXPECT_EQ(budgeted(std::vector{0.0}).value, 0);
-        EXPECT_EQ(budgeted(std::vector{-1e-17}).value, 0);  // outside by a rounding error
+        EXPECT_EQ(budgeted(std::vector{-1e-17}).value, 0);  // outside of the bounds by rounding
         EXPECT_EQ(budgeted.evaluations(), 2);
       });
 }
@@ -114,12 +114,12 @@ TEST(Rounds, EndWithTheFirstTaskAtTheTargetEvenWhenALaterOneIsThereSooner) {
   const Problem problem = box(1, 0, 1, [](auto x) { return x[0]; });
   const OptimizerOptions options{.jobs = 3, .target = 0.2};
   EvaluationRecord record(problem, options);
-  // The last task is the first to get there, then the second, then the first.
+  // The last task reaches the goal first, then the second, then the first.
   const auto reach = [&tasks_there](int place, double goal) {
     return [&tasks_there, place, goal](BudgetedObjective& budgeted) {
       budgeted(std::vector{goal + 0.7});
       while (tasks_there < place) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      budgeted(std::vector{goal + 0.6});  // an earlier task goes on
+      budgeted(std::vector{goal + 0.6});  // an earlier task continues
       try {
         budgeted(std::vector{goal});
       } catch (const Cut&) {
@@ -165,7 +165,7 @@ TEST(Gradient, LooksAwayFromInfeasiblePoints) {
 }
 
 TEST(Gradient, OfAnObjectiveOfShortSmoothPiecesIsThatOfThePiece) {
-  // Pieces of a five-thousandth of the box, each set off against the next.
+  // Pieces of a five-thousandth of the box, with jumps between them.
   const auto pieces = [](std::span<const double> x) { return 3 * x[0] + 0.1 * std::fmod(std::floor(5000 * x[0]), 2); };
   with_strand(1, pieces, [](BudgetedObjective& budgeted) {
     for (const double middle : {0.1001, 0.5003, 0.7777}) {

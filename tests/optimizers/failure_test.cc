@@ -1,5 +1,5 @@
-// Tests optimizers on failing objectives: NaN, infinities, exceptions, plateaus, steps. Each case is a failure seen in one of
-// the libraries.
+// Tests optimizers on failing objectives: NaN, infinities, exceptions, plateaus, steps. Each case is a failure that occurred in
+// one of the libraries.
 #include <cmath>
 #include <stdexcept>
 
@@ -20,7 +20,7 @@ struct Counted {
   long calls = 0;
 };
 
-/// Runs on one thread and counts the calls of the objective itself.
+/// Runs on one thread and counts the calls of the objective.
 Counted run(const std::string& optimizer, const std::function<double(std::span<const double>)>& objective,
             std::size_t dimension = 3, long budget = kBudget) {
   Counted counted;
@@ -69,12 +69,12 @@ TEST_P(Failing, AnythingMayBeThrown) {
 }
 
 TEST_P(Failing, AHalfSpaceOfNanHidesNoMinimumBeyondIt) {
-  // The minimum of the feasible half lies on its border, where differences see one side only.
+  // The minimum of the feasible half is on its border, where differences have one side only.
   const OptimizerResult result = run(GetParam(), [](auto x) { return x[0] < 0.4 ? kNaN : bowl(x); }).result;
   ASSERT_FALSE(result.x.empty());
   EXPECT_GE(result.x[0], 0.4);
   EXPECT_EQ(result.value, bowl(result.x));
-  // 0.01 at the border; the coarse global methods come this near with this budget.
+  // 0.01 on the border; the global methods come this close with this budget
   EXPECT_LT(result.value, 0.3);
 }
 
@@ -123,7 +123,7 @@ TEST_P(Failing, TheBudgetIsNeverExceeded) {
 }
 
 TEST(Penalty, IsMetByMethodsThatComparePointsAsWorseThanTheWorst) {
-  // A start in the infeasible half: the simplex must leave it although every finite value it meets is enormous.
+  // The start is in the infeasible half: the simplex must leave it, although all finite values are enormous.
   const auto objective = [](std::span<const double> x) { return x[0] < 0 ? kNaN : 1e14 + 1e13 * bowl(x); };
   Problem problem = box(2, -1, 1, objective);
   problem.starts = {{-0.1, 0.0}};

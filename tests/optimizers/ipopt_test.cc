@@ -1,4 +1,4 @@
-// Tests the peculiarities of Ipopt.
+// Tests the special cases of Ipopt.
 #include <chrono>
 #include <filesystem>
 #include <fstream>

@@ -1,4 +1,4 @@
-// The contract of problem.h.
+// Tests the contract of problem.h.
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -17,7 +17,7 @@ using landscapes::bowl;
 using landscapes::box;
 using namespace std::chrono_literals;
 
-/// A landing, infeasible in places in three ways, and slower to evaluate in one half than in the other.
+/// A landing that is infeasible in some places, in three ways, and whose evaluation takes longer in one half.
 double difficult(std::span<const double> x) {
   if (x[0] < 0.375) {
     for (int i = 0; i < 5; ++i) static_cast<void>(landscapes::landing_4(x));
@@ -65,7 +65,7 @@ TEST_P(Minimize, StopsAtTheTargetWithTheSameResultForAnyNumberOfJobs) {
     const OptimizerResult alone = run(1);
     if (alone.termination == Termination::target_reached) {
       EXPECT_LE(alone.value, target);
-      // Only the last evaluation reaches it.
+      // Only the last improvement reaches the target.
       for (std::size_t k = 0; k + 1 < alone.improvements.size(); ++k) EXPECT_GT(alone.improvements[k].value, target);
     } else {
       EXPECT_GT(alone.value, target);
@@ -92,7 +92,7 @@ TEST_P(Minimize, LooksElsewhereWithAnotherSeed) {
 
 TEST_P(Minimize, StaysWithinTheBoundsExactly) {
   const double lower = 0.1;
-  const double upper = 0.1 + 0.7;  // not representable sums: scaling back rounds
+  const double upper = 0.1 + 0.7;  // sums that have no exact representation: scaling back rounds
   Problem problem = box(3, lower, upper, [&](std::span<const double> x) {
     EXPECT_THAT(x, testing::Each(testing::AllOf(testing::Ge(lower), testing::Le(upper))));
     return -x[0] - x[1] + x[2];
@@ -144,7 +144,7 @@ TEST_P(Minimize, KeepsToTheTimeBudget) {
   EXPECT_EQ(result.message, "time budget of 0.05 s used up after " + std::to_string(result.evaluations) + " evaluations");
   EXPECT_FALSE(result.x.empty());
   EXPECT_GE(taken, 0.05);
-  EXPECT_LT(taken, 2);  // generous: the machine may be busy
+  EXPECT_LT(taken, 2);  // a generous limit for a busy machine
 }
 
 TEST_P(Minimize, EndsWhenTheStopFlagIsSet) {
@@ -173,10 +173,10 @@ TEST_P(Minimize, EndsBeforeTheFirstEvaluationWhereItIsToldTo) {
 
 TEST_P(Minimize, EvaluatesTheStartsFirstAndToTheLastDigit) {
   Problem problem = box(2, 1e-6, 9.7e-5, [](std::span<const double> x) { return x[0] + x[1]; });
-  // Several, because scaling there and back happens to keep the digits of some.
+  // Several starts, since scaling there and back keeps the digits of some.
   for (int k = 1; k <= 10; ++k) problem.starts.push_back({k * 0.91e-5, k * 0.37e-5});
   auto expected = problem.starts;
-  problem.starts.push_back({3.7e-5, 1.0});  // outside: moved to the bound
+  problem.starts.push_back({3.7e-5, 1.0});  // outside of the bounds: moved to the bound
   expected.push_back({3.7e-5, 9.7e-5});
   std::vector<std::vector<double>> points;
   const auto note = [&](const Evaluation& evaluation) { points.push_back(evaluation.x); };
@@ -197,7 +197,7 @@ TEST_P(Minimize, NeverEvaluatesAPointTwice) {
   Problem problem = box(2, -2, 2, objective);
   problem.starts = {{0, 0}, {0, 0}};
   static_cast<void>(minimize(problem, {.optimizer = GetParam(), .max_evaluations = 400}));
-  // `auto` may come upon a point in two searches of a round at once; a scaling that rounds may merge two neighbours.
+  // `auto` may evaluate a point in two searches of a round. Rounding by scaling may merge two neighbours.
   EXPECT_GE(static_cast<long>(seen.size()), calls - 4);
 }
 
@@ -211,7 +211,7 @@ TEST_P(Minimize, ReportsLiveWhatTheResultSays) {
                                        .jobs = jobs,
                                        .on_evaluation = [&](const auto& e) { all.emplace(e.index, e); },
                                        .on_improvement = [&](const auto& e) { improvements.push_back(e); }});
-    EXPECT_EQ(static_cast<long>(all.size()), result.evaluations);  // so the indices are unique
+    EXPECT_EQ(static_cast<long>(all.size()), result.evaluations);  // so all indices differ
     for (const Evaluation& improvement : result.improvements) expect_same(all.at(improvement.index), improvement);
     EXPECT_EQ(improvements.back().value, result.value);
     if (jobs == 1) {

@@ -1,4 +1,4 @@
-// Problems whose fronts are known: the distance of a found front from the true one is what its hypervolume lacks.
+// Problems with known fronts. The distance of a found front from the true one is measured by the missing hypervolume.
 #include "optimizers/nsga2.h"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ ParetoResult solved(const ParetoProblem& problem, long evaluations) {
   return result;
 }
 
-/// Area above the true front f2 = shape(f1) in the square below (1.1, 1.1): no front can exceed it.
+/// Returns the area above the true front f2 = shape(f1) in the square below (1.1, 1.1), which no front can exceed.
 double area_above(double (*shape)(double, double)) {
   constexpr int kSteps = 200'000;
   double area = 0, lowest = 1.1;
@@ -65,8 +65,8 @@ double area_above(double (*shape)(double, double)) {
   return area;
 }
 
-// Fronts of a hundred points and more lack about the mean gap between two of them; twenty thousand evaluations leave less than
-// this of the area.
+// A front of at least a hundred points lacks about the mean distance of two points. After twenty thousand evaluations less than
+// this share of the area is missing.
 constexpr double lacking = 0.006;
 
 TEST(Nsga2, FindsAFrontThatBendsInwards) {
@@ -157,7 +157,7 @@ TEST(Nsga2, FindsTheFrontOnAConstraintOfSrinivas) {
 }
 
 TEST(Nsga2, IsLedByTheViolationToWhatIsFeasible) {
-  // Feasible is a ball that fills 2e-7 of the box, far from where the objectives are smallest.
+  // The feasible set is a ball with 2e-7 of the volume of the box, far from the minima of the objectives.
   const ParetoProblem problem{.variables = unit_box(6), .objectives = 2, .evaluate = [](std::span<const double> x) {
                                 double squares = 0;
                                 for (const double coordinate : x) squares += (coordinate - 0.8) * (coordinate - 0.8);

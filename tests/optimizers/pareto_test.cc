@@ -14,7 +14,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Points with coordinates k / levels, so that many agree in some of them.
+/// Returns points with coordinates k / levels, so that many have equal coordinates.
 std::vector<Objectives> lattice_points(std::size_t count, std::size_t objectives, std::uint64_t seed, double levels) {
   std::vector<Objectives> points(count);
   std::uint64_t draw = 0;
@@ -25,7 +25,7 @@ std::vector<Objectives> lattice_points(std::size_t count, std::size_t objectives
   return points;
 }
 
-/// Finds the front by its definition: every point against every other.
+/// Finds the front by its definition: compares every point with every other.
 std::vector<std::size_t> front_by_definition(const std::vector<Objectives>& points) {
   std::vector<std::size_t> front;
   for (std::size_t k = 0; k < points.size(); ++k) {
@@ -43,7 +43,7 @@ std::vector<std::size_t> front_by_definition(const std::vector<Objectives>& poin
   return front;
 }
 
-/// The cells of the lattice whose lower corner a point covers.
+/// Counts the cells of the lattice whose lower corner is dominated by a point.
 double volume_by_cells(const std::vector<Objectives>& points, std::size_t objectives, int levels) {
   long covered = 0, cells = 1;
   for (std::size_t i = 0; i < objectives; ++i) cells *= levels;
@@ -53,7 +53,7 @@ double volume_by_cells(const std::vector<Objectives>& points, std::size_t object
       corner.push_back(static_cast<double>(rest % levels) / levels);
     covered += std::any_of(points.begin(), points.end(), [&](const Objectives& point) {
       for (std::size_t i = 0; i < objectives; ++i) {
-        if (point[i] > corner[i] + 1e-9) return false;  // lattice points are apart by far more
+        if (point[i] > corner[i] + 1e-9) return false;  // the distance of lattice points is much larger
       }
       return true;
     });
@@ -112,7 +112,7 @@ TEST(Hypervolume, RefusesFourObjectivesAndAReferenceThatIsNotFinite) {
 }
 
 TEST(Knee, IsWhereTheFrontIsFarthestFromTheLineOfItsEnds) {
-  // The hyperbola y = 1 / x from (1/4, 4) to (4, 1/4): by symmetry it bends most at (1, 1), whatever the units.
+  // The hyperbola y = 1 / x from (1/4, 4) to (4, 1/4): by symmetry its knee is at (1, 1), in any units.
   std::vector<Objectives> front;
   for (int k = -20; k <= 20; ++k) front.push_back({1e-6 * std::pow(4, k / 20.0), 5e3 * std::pow(4, -k / 20.0)});
   EXPECT_EQ(pareto_knee(front), 20u);

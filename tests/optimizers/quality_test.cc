@@ -1,5 +1,5 @@
-// Tests how well the optimizers search. Rates were measured over 20 seeds (bench/optimizers prints the table); the thresholds
-// leave room of two or three runs in ten for a change of compiler to fall on other points.
+// Tests the quality of the optimizers. Rates were measured over 20 seeds (bench/optimizers prints the table). The thresholds
+// allow two or three more failures in ten runs, for other compilers.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -13,7 +13,7 @@ namespace {
 
 using landscapes::box;
 
-/// An elongated, turned bowl with its minimum, 0, inside the box.
+/// An elongated, rotated bowl with its minimum 0 inside of the box.
 double turned_bowl(std::span<const double> x) {
   const double u = (x[0] - 0.2) + 0.5 * (x[1] + 0.4);
   const double v = (x[1] + 0.4) - 0.5 * (x[0] - 0.2);
@@ -24,8 +24,8 @@ using Quality = EveryOptimizer;
 INSTANTIATE_TEST_SUITE_P(Optimizers, Quality, testing::ValuesIn(every_name()), case_name);
 
 TEST_P(Quality, ATurnedBowlIsSolved) {
-  // Accuracy of each in 500 evaluations. The evolution strategies and the divider of rectangles are slow near a minimum. The
-  // separable models of mma and ccsaq do not know that the bowl is turned.
+  // Accuracy of each optimizer after 500 evaluations. Evolution strategies and DIRECT converge slowly near a minimum. The
+  // separable models of mma and ccsaq do not fit a rotated bowl.
   const std::map<std::string, double> coarse = {{"isres", 0.1}, {"esch", 0.1}, {"direct-l", 1e-3},
                                                 {"crs2", 1e-4}, {"mma", 1e-3}, {"ccsaq", 1e-3}};
   const auto found = coarse.find(GetParam());
@@ -38,7 +38,7 @@ TEST_P(Quality, ATurnedBowlIsSolved) {
 }
 
 TEST(Auto, SearchesNearItsStartsBeforeItLooksElsewhere) {
-  // A well a fiftieth of the box wide, with walls, in a wide bowl that leads away from it.
+  // A narrow well, a fiftieth of the box wide, with walls, in a wide bowl whose minimum is elsewhere.
   const auto well = [](std::span<const double> x) {
     double square = 0, bowl = 0;
     for (const double v : x) square += std::pow((v - 0.8) / 0.02, 2), bowl += std::pow(v + 0.5, 2);
@@ -54,7 +54,7 @@ TEST(Auto, SearchesNearItsStartsBeforeItLooksElsewhere) {
 }
 
 TEST(Auto, StaysAroundTheBestPointWhereItGoesOn) {
-  // A narrow well full of ripples askew to the variables, in which a method with a gradient ends at the first one.
+  // A narrow well with ripples oblique to the variables: a method with a gradient stops at the first of them.
   constexpr std::size_t variables = 20;
   constexpr double centre = 0.8, wide = 0.1, ripple = 0.02, high = 0.05, askew = 0.7;
   const auto turned = [](std::span<const double> x) {
@@ -150,8 +150,8 @@ int runs_solved(const landscapes::Landscape& landscape, const std::string& optim
 }
 
 TEST(Auto, SolvesTheLandscapesAsOftenAsMeasured_slow) {
-  // Shares of 100 seeds that bench_optimizers found solved. Another rounding (no fused multiply-add, say) sends a search
-  // elsewhere, so a smaller number of runs is a sample of this share: three standard deviations below it is no accident.
+  // Shares of 100 seeds that bench_optimizers solved. Other rounding, such as without fused multiply-add, changes a search, so
+  // that a smaller number of runs is a sample with this share: the threshold is three standard deviations below.
   const std::map<std::string, double> measured = {
       {"rosenbrock-4", 0.96}, {"rosenbrock-5", 0.90}, {"rosenbrock-7", 0.83}, {"ackley-5", 0.99},  {"creases-4", 0.98},
       {"creases-6", 0.64},    {"valleys-4", 0.66},    {"valleys-6", 0.25},    {"landing-4", 0.64}, {"landing-7", 0.59}};
@@ -164,7 +164,7 @@ TEST(Auto, SolvesTheLandscapesAsOftenAsMeasured_slow) {
   }
 }
 
-// The counts of 400 searches over 200 seeds: auto lands in 177, bobyqa from one start after the other in 92.
+// Numbers of 400 searches over 200 seeds: auto lands in 177, bobyqa from one start after the other in 92.
 TEST(Auto, LandsMoreOftenThanItsPolisherAlone_slow) {
   int by_auto = 0, by_bobyqa = 0;
   for (const std::size_t pulses : {2u, 3u}) {
@@ -180,7 +180,7 @@ TEST(CmaEs, PassesOverKinksWhereModelsStop) {
   EXPECT_GE(runs_solved(creases, "cma-es", 1500), 8);
 }
 
-// Rastrigin's function in three variables: of 11 x 11 x 11 minima the least is at 0. Ten seeds each.
+// Rastrigin's function in three variables: of 11 x 11 x 11 minima the least is at 0. Ten seeds for each generation.
 TEST(CmaEs, OfALargerGenerationFindsTheLeastOfManyMinimaMoreOften) {
   int found = 0, found_by_larger = 0;
   for (const double population : {1.0, 8.0}) {
@@ -193,7 +193,7 @@ TEST(CmaEs, OfALargerGenerationFindsTheLeastOfManyMinimaMoreOften) {
                                     return sum;
                                   },
                               .starts = {{3, 3, 3}}};
-      // The budget is that of one search: the rest of it does not suffice for a second one.
+      // The budget is that of one search; the rest does not suffice for a second search.
       const OptimizerResult result = minimize(
           rastrigin,
           {.optimizer = "cma-es", .max_evaluations = population > 1 ? 3000 : 600, .seed = seed, .population = population});

@@ -27,14 +27,15 @@ TEST(SobolPoints, SpreadEvenlyAlongEveryAxisWhateverTheSeed) {
         ASSERT_LT(point[i], 1);
         ++counts[static_cast<std::size_t>(point[i] * kPoints)];
       }
-      // One in each interval; the sequence leaves out its first point, which costs one interval and doubles another.
+      // One point in each interval; the sequence leaves out its first point, so that one interval is empty and another one has
+      // two.
       EXPECT_LE(*std::max_element(counts.begin(), counts.end()), 2);
       EXPECT_LE(std::count(counts.begin(), counts.end(), 0), 1);
     }
   }
 }
 
-// The points of earlier versions are kept, with the dimensions beyond the sequence.
+// The points are those of earlier versions, also for dimensions beyond the sequence.
 TEST(SobolPoints, AreThoseTheyAlwaysWere) {
   const std::vector<std::vector<double>> expected{{0x1.997cacf986ffp-5, 0x1.f620b7a498d1fp-1, 0x1.a3056e0b90b6fp-1},
                                                   {0x1.1997cacf986ffp-1, 0x1.ec416f4931a3ep-2, 0x1.460adc17216dep-2}};

@@ -41,7 +41,7 @@ Trajectory step_closing(const Switch& device, double duration, double tolerance)
   return simulate_closing(device, drives, {.duration = duration, .tolerance = tolerance});
 }
 
-/// Rebounds above `significant` that end inside the window.
+/// Returns the rebounds above `significant` that end inside of the window.
 std::vector<Rebound> complete_rebounds(const Trajectory& trajectory) {
   std::vector<Rebound> all = rebounds(trajectory);
   std::erase_if(all, [](const Rebound& r) { return !(r.height > significant) || !std::isfinite(r.end); });
@@ -77,7 +77,7 @@ TEST(GoldCantilever, ClosesUnderAStepAsTheReferenceDoes) {
 }
 
 TEST(GoldCantilever, LandsOnItsFreeEndWhenContactActsAlongThePad) {
-  // Reference: Runge-Kutta of fixed steps of 2 ns, the law at 1000 midpoints of the bent pad; figures at the free end.
+  // Reference: Runge-Kutta with fixed steps of 2 ns, the law at 1000 midpoints of the bent pad; figures at the free end.
   constexpr double t_i = 33.9426_us, v_i = 86.5422e-3, b_h = 560.756_nm, peak = 8.89426e-6;
   Device d = test::gold_cantilever();
   d.contacts.front().distribution = ContactDistribution::pad;
@@ -101,7 +101,7 @@ TEST(GoldCantilever, MicroBouncesPrecedeTheMacroBounce) {
   const Trajectory trajectory = step_closing(Switch(test::gold_cantilever()), 100_us, fine);
   const std::vector<Rebound> found = complete_rebounds(trajectory);
   EXPECT_EQ(trajectory.touches.size(), 9u);
-  ASSERT_EQ(found.size(), 8u);  // a ninth is under way when the window ends
+  ASSERT_EQ(found.size(), 8u);  // the window ends during a ninth
   struct Reference {
     double height, begin;
   };
@@ -132,9 +132,9 @@ TEST(GoldCantilever, OneModeKnowsNoMicroBounces) {
 }
 
 TEST(GoldCantilever, SettlingIsAPropertyOfACloudOfRuns) {
-  // The closing is chaotic past the first macro-bounce. Over 60 tolerances each of three integrators t_p lies between 266 and
-  // 346 us, half of it below 315 to 320 us, with 37 to 69 rebounds, without a trend. The bounds leave room for other members of
-  // the same cloud, not for another median.
+  // The closing is chaotic after the first macro-bounce. Over 60 tolerances of each of three integrators t_p is between 266 and
+  // 346 us, with medians of 315 to 320 us and 37 to 69 rebounds, without a trend. The bounds allow other members of this cloud,
+  // but not another median.
   const Switch device(test::gold_cantilever());
   std::vector<double> ends;
   for (const double tolerance : {1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9}) {
@@ -157,13 +157,13 @@ TEST(GoldCantilever, AGasDampedSwitchMayTouchAndReopenBetweenDynamicAndStaticPul
   const std::vector<Signal> drives{Signal::constant(14.22)};
   const Trajectory trajectory = simulate_closing(device, drives, {.duration = 3_ms, .tolerance = fine});
   ASSERT_FALSE(trajectory.touches.empty());
-  // Open for good: below the release voltage there is no closed equilibrium.
+  // The switch stays open: below the release voltage there is no closed equilibrium.
   EXPECT_TRUE(std::isfinite(trajectory.touches.back().end));
   EXPECT_LT(trajectory.points.back().position, trajectory.contact_gap - 100_nm);
 }
 
 TEST(GoldCantilever, LandsWithoutReboundOnAShapedPulse) {
-  // Found by an independent search, so soft that another 1e-4 of a level moves t_i by tenths of a microsecond.
+  // From an independent search. The landing is so soft that a change of a level by 1e-4 shifts t_i by tenths of a microsecond.
   constexpr double soft_landing_time = 0.1_us, soft_landing_speed = 1e-3;  // [s], [m/s]
   const Switch device(test::gold_cantilever());
   const std::vector<Signal> drives{

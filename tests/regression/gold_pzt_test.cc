@@ -38,8 +38,9 @@ Metrics closing(const Switch& device, const Signal& piezo, double duration, doub
   return metrics(simulate_closing(device, drives, {.duration = duration, .tolerance = tolerance}));
 }
 
-/// V^2 of the electrode that holds the contact point at deflection s against the beam and a constant piezo voltage; q is the
-/// start of Newton's method and then the shape. Written out here because the library's pull-in keeps all other drives at 0 V.
+/// Returns the V^2 of the electrode that holds the contact point at deflection s against the beam and a constant piezo voltage.
+/// `q` is the start of Newton's method, and then the solution. The library's pull-in is not used, since it keeps the other
+/// drives at 0 V.
 double square_at(const Switch& device, double s, double piezo_volts, Eigen::VectorXd& q, double square) {
   const Eigen::Index n = device.modes();
   const Eigen::VectorXd rest = Eigen::VectorXd::Zero(n), shape = device.basis().contact_shape();
@@ -91,7 +92,8 @@ TEST(GoldPzt, ATenthOfAVoltAgainstTheLayerLowersThePullInVoltage) {
   const auto fold = [&](double piezo_volts) {
     Eigen::VectorXd q = Eigen::VectorXd::Zero(device.modes());
     double best = 0, square = 100;
-    // Steps of 5 nm leave 1e-6 of the voltage at the flat top; a negative voltage bends the beam down before the electrode does.
+    // Steps of 5 nm give the voltage within 1e-6 at the flat maximum; a negative voltage bends the beam down before the
+    // electrode pulls.
     for (double s = 0.6_um; s < 1.9_um; s += 5_nm) {
       square = square_at(device, s, piezo_volts, q, square);
       if (!std::isfinite(square)) {
@@ -122,7 +124,7 @@ TEST(GoldPzt, BounceHeightDependsOnTheNumberOfModes) {
 }
 
 TEST(GoldPzt, LandsWithoutReboundWhenThePiezoHelps) {
-  // Found by an independent search; the landing is so soft that t_i is known to a tenth of a microsecond.
+  // From an independent search. The landing is so soft that t_i has an error of a tenth of a microsecond.
   constexpr double soft_landing_time = 0.1_us, soft_landing_speed = 2e-3;  // [s], [m/s]
   const Switch device(test::gold_pzt_cantilever());
   const Signal piezo = signal(Pulse{.levels = {0.17327_V, 0.60281_V, 0_V}, .times = {19.74662_us, 40.90419_us}, .edge = 5_us});

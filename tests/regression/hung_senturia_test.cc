@@ -2,9 +2,9 @@
 // program. It solves the two-dimensional slip Reynolds equation and the beam by finite differences (19 points along, 6 across;
 // 29 by 9 move its time at 10.25 V by 1.7 %).
 //
-// Nineteen points make that beam too soft: its own static pull-in, by the same differences, is 8.7326 V instead of 8.8629 V, and
-// near pull-in a time is a matter of the distance from it. So the two are compared at the same V/Vsp. The rest, 2 to 3 %, is
-// flow along the beam, which strips leave out, and the coarse grid across it.
+// With nineteen points that beam is too soft: its own static pull-in, by the same differences, is 8.7326 V instead of 8.8629 V.
+// Near pull-in a time depends on the distance from pull-in, so that both are compared at the same V/Vsp. The remaining 2 to 3 %
+// are flow along the beam, which strips leave out, and the coarse grid across it.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -44,7 +44,8 @@ TEST(HungSenturia, PullInTimesInAirAreTheReference) {
 }
 
 TEST(HungSenturia, PullInTimesInThinAirAreTheReference) {
-  // Compressibility and slip decide here: the incompressible strip film is ten times too slow at a hundredth of an atmosphere.
+  // Compressibility and slip are decisive here: the incompressible strip film is ten times too slow at a hundredth of an
+  // atmosphere.
   constexpr double strips_and_grid = 0.04;  // relative
   struct Row {
     double atmospheres, volts, time;

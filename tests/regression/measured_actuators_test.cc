@@ -1,4 +1,4 @@
-// Simulated against measured: gap-closing actuators of Rauf et al. 2022, nothing fitted.
+// Compares simulated with measured gap-closing actuators of Rauf et al. 2022, without fitting.
 #include "tests/support/measured_actuators.h"
 
 #include <gtest/gtest.h>
@@ -11,10 +11,10 @@
 namespace softland {
 namespace {
 
-// Bounds for a lumped model with rigid fingers; results/measured-actuators.md lists every deviation. Short fingers pull in
-// earlier than simulated: their overlap is known to 0.4 um in 15 only, and ends and roots add force.
+// Bounds for a lumped model with rigid fingers; results/measured-actuators.md lists every deviation. Short fingers pull in at
+// lower voltages than simulated: their overlap of 15 um has an error of 0.4 um, and their ends and roots add force.
 constexpr double voltage_error = 0.10;  // relative
-constexpr double shortest = 38e-6;      // [m] overlap from which the voltages are held to it
+constexpr double shortest = 38e-6;      // least overlap for which the voltages are compared [m]
 constexpr double time_error = 0.10;     // relative error from one and a half times the pull-in voltage on
 constexpr double well_above = 1.5;
 
@@ -29,7 +29,7 @@ TEST(GapClosingActuators, PullInWhereMeasured) {
 }
 
 TEST(GapClosingActuators, LetGoWhereMeasured) {
-  // The stop holds the fingers 1 um apart; half a micrometre of etch more or less is a quarter of this voltage.
+  // The stop keeps a gap of 1 um between the fingers; a change of the etch by half a micrometre is a quarter of this voltage.
   for (const test::MeasuredPullIn& m : test::measured_pull_in) {
     EXPECT_NEAR(release_voltage(Switch(test::gap_closing_actuator(m.overlap)), 0), m.pull_out, 0.25 * m.pull_out) << m.overlap;
   }

@@ -1,4 +1,4 @@
-// The two nano-switches: what their scenes do, and what published numbers allow to be checked.
+// The two nano-switches: their scenes, as far as published numbers allow a comparison.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -69,7 +69,7 @@ TEST(NemCasimir, HangsFreeAndClosesWhenTheForceGrowsByAQuarter) {
   EXPECT_EQ(fold.kind, StaticKind::fold);
   const DynamicPullIn dynamic = dynamic_pull_in(model, 0, fold);
   ASSERT_EQ(dynamic.status, Status::done);
-  // A step from rest overshoots, so it needs less than the fold; both lie between the nominal force and a quarter more.
+  // A step from rest overshoots, so that it needs less than the fold; both are between the nominal force and a quarter more.
   EXPECT_GT(dynamic.voltage, 0.02);
   EXPECT_LT(dynamic.voltage, fold.voltage);
   EXPECT_LT(fold.voltage, 0.22);
@@ -81,7 +81,7 @@ TEST(NemCasimir, HangsFreeAndClosesWhenTheForceGrowsByAQuarter) {
   ASSERT_EQ(t.status, Status::done) << t.message;
   EXPECT_FALSE(t.touches.empty());
   EXPECT_GT(metrics(t, {.significant_rebound = 1e-10}).bounce_count, 0);
-  // The closed switch stays closed when the force falls back.
+  // The closed switch stays closed if the force returns to its nominal value.
   EXPECT_TRUE(closed_equilibrium(model, std::vector<double>{0.0}).has_value());
 }
 

@@ -1,4 +1,4 @@
-// scenes/purdue-nickel.toml against its energy in closed form and against the published example's own way of stepping.
+// scenes/purdue-nickel.toml against the closed form of its energy, and against the integration scheme of the published example.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ Trajectory closing(const Device& device) {
 TEST(PurdueNickel, HasThePublishedFrequencyAndPullInVoltage) {
   Device d = test::nickel_plate();
   EXPECT_NEAR(Switch(d).basis().angular_frequencies()[0], 2 * pi * 50.037e3, 2e-5 * 2 * pi * 50.037e3);
-  d.electrodes[0].end = 48_um;  // the electrode of its pull-in voltage, which is not that of its equation of motion
+  d.electrodes[0].end = 48_um;  // the example's electrode for pull-in; its equation of motion has another one
   EXPECT_NEAR(static_pull_in(Switch(d), 0).voltage, 148.32, 5e-5 * 148.32);
 }
 
@@ -40,8 +40,8 @@ TEST(PurdueNickel, TouchesWithTheSpeedOfItsEnergy) {
 }
 
 TEST(PurdueNickel, ThePublishedTimeAndSpeedAreThoseAtTheEndOfTheStepThatPasses) {
-  // Runge and Kutta's method in steps of 5 ns, stopped after the first step beyond the dielectric: 2.805 us and 5.999 m/s. The
-  // plate gains 0.19 m/s in the 3.4 ns by which that is late.
+  // The classical Runge-Kutta method in steps of 5 ns, stopped after the first step beyond the dielectric: 2.805 us and 5.999
+  // m/s. The plate gains 0.19 m/s in the 3.4 ns after touch.
   const Device d = test::nickel_plate();
   const auto acceleration = [&](double x) {
     const double field = level / (d.gap.electrode - x);
@@ -63,13 +63,13 @@ TEST(PurdueNickel, ThePublishedTimeAndSpeedAreThoseAtTheEndOfTheStepThatPasses) 
   const Touch touch = closing(d).touches.at(0);
   EXPECT_GT(touch.begin, time - h);
   EXPECT_LT(touch.begin, time);
-  // Back from there by the late part of the step.
+  // Extrapolate back to touch.
   const double late = time - touch.begin;
   EXPECT_NEAR(x - v * late + acceleration(d.gap.contact) * late * late / 2, d.gap.contact, 1e-3 * d.gap.contact);
 }
 
 TEST(PurdueNickel, UnderItsFamilysGasIsThePublishedRun) {
-  // The example as published: the compact fit of Guo & Alexeenko, forward Euler steps of 1 ns: 6.155 us, 1.243 m/s as printed.
+  // The published example: the compact fit of Guo & Alexeenko, forward Euler steps of 1 ns; printed are 6.155 us and 1.243 m/s.
   Device d = test::nickel_plate();
   d.gas = GuoAlexeenkoGas{.film = {.mean_free_path = 65.45_nm}};
   const Touch touch = closing(d).touches.at(0);

@@ -1,4 +1,4 @@
-// Points sorted into classes.
+// Sorts points into classes.
 #include "sampling/classes.h"
 
 #include <gtest/gtest.h>
@@ -25,12 +25,12 @@ std::vector<SpacePoint> normal_points(std::size_t count) {
 
 struct Published {
   std::vector<double> centres;  // centres above 0
-  double mean_square;           // distance
+  double mean_square;           // mean square distance to the centre
 };
 
 TEST(Classes, OfANormalQuantityAreThoseOfMax_long) {
   const std::vector<SpacePoint> points = normal_points(4000);
-  // The mean square is flat about its minimum, and the iteration ends where no point changes its class any more.
+  // The mean square is flat around its minimum, and the iteration ends when no point changes its class.
   constexpr double of_a_centre = 0.02, of_the_mean_square = 5e-3;
   // J. Max, IRE Trans. Inf. Theory 6 (1960) 7, table I.
   for (const Published& published : {Published{{0.4528, 1.510}, 0.1175}, Published{{0.2451, 0.7560, 1.344, 2.152}, 0.03454}}) {

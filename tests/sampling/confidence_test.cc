@@ -19,7 +19,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int repetitions = 1000;
 constexpr double confidence = 0.9;
 
-// Four standard deviations of the share of so many repetitions that have probability 0.9.
+// Four standard deviations of the share of repetitions that cover the value, at the nominal confidence.
 const double four_deviations = 4 * std::sqrt(confidence * (1 - confidence) / repetitions);
 
 // A skewed distribution, so that nothing relies on symmetry: exponential with mean 1.
@@ -66,7 +66,7 @@ TEST(WilsonInterval, StaysInsideTheUnitInterval) {
 }
 
 TEST(WilsonInterval, CoversTheYieldAsOftenAsItSays) {
-  // The coverage at n = 200 is the sum of the binomial probabilities of the counts whose interval holds the yield.
+  // The coverage at n = 200 is the sum of the binomial probabilities of the counts whose interval contains the yield.
   for (const auto& [yield, expected] : {std::pair{0.35, 0.9121}, {0.8, 0.9076}}) {
     const double share = coverage([truth = yield](int repetition) {
       std::size_t successes = 0;
@@ -93,7 +93,7 @@ TEST(QuantileInterval, HasNoBoundWhereTheSampleIsTooSmall) {
   const std::vector<double> sample{1, 2, 3, 4, 5};  // P(B = 0) = 1 / 32 for the median, more than 0.025
   EXPECT_EQ(quantile_interval(sample, 0.5).low, -infinity);
   EXPECT_EQ(quantile_interval(sample, 0.5).high, infinity);
-  // 0.99 needs n with 0.99^n <= 0.025: 368 of 367.02.
+  // The 0.99 quantile needs n with 0.99^n <= 0.025: n >= 367.02, so 368.
   EXPECT_EQ(quantile_interval(exponential_sample(0, 367), 0.99).high, infinity);
   EXPECT_LT(quantile_interval(exponential_sample(0, 368), 0.99).high, infinity);
 }
@@ -124,7 +124,7 @@ TEST(BootstrapInterval, CoversAMeanNearlyAsOftenAsItSays_long) {
                               {.confidence = confidence, .repetitions = 300, .seed = static_cast<std::uint64_t>(repetition)})
         .holds(1);
   });
-  // The interval misses a few thousandths at n = 100 for a skewed distribution (Efron & Tibshirani, section 13.7).
+  // At n = 100 the interval misses a few thousandths for a skewed distribution (Efron & Tibshirani, section 13.7).
   EXPECT_NEAR(share, confidence, four_deviations + 0.01);
 }
 
@@ -132,7 +132,7 @@ TEST(BootstrapInterval, IsThatOfTheNormalApproximationForAMean) {
   const std::vector<double> sample = exponential_sample(1, 2000);
   const Interval interval = bootstrap_interval(sample, sample_mean, {.confidence = 0.95, .repetitions = 4000});
   const double half = 1.959964 * sample_standard_deviation(sample) / std::sqrt(2000.0), mean = sample_mean(sample);
-  // Share of the half width: an outer quantile of 4000 is known to 4 %; skewness adds 2 %.
+  // Relative to the half width: an outer quantile of 4000 has an error of 4 %; skewness adds 2 %.
   constexpr double of_4000_repetitions = 0.1;
   EXPECT_NEAR(interval.low, mean - half, of_4000_repetitions * half);
   EXPECT_NEAR(interval.high, mean + half, of_4000_repetitions * half);

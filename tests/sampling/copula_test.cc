@@ -66,7 +66,7 @@ TEST(GaussianCopula, LeavesEachVariableUniform) {
     double distance = 0;
     for (std::size_t i = 0; i < count; ++i)
       distance = std::max(distance, std::abs(column[i] - (static_cast<double>(i) + 0.5) / count));
-    EXPECT_LT(distance, 1.95 / std::sqrt(static_cast<double>(count)));  // Kolmogorov's statistic exceeds it once in 1000
+    EXPECT_LT(distance, 1.95 / std::sqrt(static_cast<double>(count)));  // Kolmogorov's statistic exceeds it once in 1000 cases
   }
 }
 

@@ -18,7 +18,7 @@ struct Case {
   Distribution distribution;
 };
 
-// Each kind whole, and with either or both ends cut off.
+// Returns each kind without truncation, and truncated at either or both ends.
 std::vector<Case> all_cases() {
   const std::vector<std::pair<std::string, Distribution::Parameters>> kinds{
       {"normal", Normal{.mean = 2, .standard_deviation = 0.5}},
@@ -50,7 +50,7 @@ TEST(Distribution, CdfOfTheQuantileIsTheProbability) {
 }
 
 TEST(Distribution, TruncationIsConditioning) {
-  // P(X <= x | low <= X <= high), of the cdf of the whole.
+  // P(X <= x | low <= X <= high), from the cdf without truncation.
   const Distribution::Parameters parameters = Lognormal{.mean = 2, .standard_deviation = 1.5};
   const Distribution whole(parameters), cut(parameters, {.low = 1.2, .high = 2.9});
   const double kept = whole.cdf(2.9) - whole.cdf(1.2);
@@ -61,7 +61,7 @@ TEST(Distribution, TruncationIsConditioning) {
   EXPECT_EQ(cut.support().high, 2.9);
 }
 
-// The independent way: equal weights on the quantiles in the middles of equal intervals of probability.
+// An independent method: equal weights on the quantiles in the middles of equal intervals of probability.
 TEST(Distribution, MomentsAreThoseOfItsQuantiles_long) {
   constexpr int points = 200'000;
   for (const Case& c : all_cases()) {
@@ -72,7 +72,7 @@ TEST(Distribution, MomentsAreThoseOfItsQuantiles_long) {
       squares += x * x;
     }
     const double mean = sum / points, deviation = std::sqrt(squares / points - mean * mean);
-    // The part beyond the outermost of so many points adds a few times 1 / points of the variance to the tail of a lognormal.
+    // The part beyond the outermost points adds a few times 1 / points of the variance to the tail of a lognormal.
     const double tolerance = c.name.starts_with("lognormal") ? 2e-4 : 2e-5;
     EXPECT_TRUE(std::abs(c.distribution.mean() - (mean + 2)) <= tolerance)
         << c.name << ": " << c.distribution.mean() << " " << mean + 2;
@@ -107,12 +107,12 @@ TEST(Distribution, MomentsAreTheClosedForms) {
   EXPECT_NEAR(pair.standard_deviation(), 2 / std::sqrt(12.0), rounding);
 }
 
-// The whole lognormal, of which the mean and deviation are given, against the quadrature that a truncated one uses.
+// Compares the given mean and deviation of a lognormal with the quadrature for a truncated one.
 TEST(Distribution, ATruncationThatKeepsNearlyAllKeepsTheMoments) {
   for (const double deviation : {0.1, 1.0, 10.0}) {
     const Distribution lognormal(Lognormal{.mean = 1, .standard_deviation = deviation}, {.low = 1e-5});
     ASSERT_LT(lognormal.cdf(2e-5), 2e-4);
-    EXPECT_NEAR(lognormal.mean(), 1, 1e-4);  // the part that is cut off
+    EXPECT_NEAR(lognormal.mean(), 1, 1e-4);  // the truncated part
     EXPECT_NEAR(lognormal.standard_deviation(), deviation, 1e-4 * deviation);
   }
 }
@@ -127,7 +127,7 @@ TEST(Distribution, EmpiricalQuantilesAreLinearBetweenOrderStatistics) {
   EXPECT_EQ(d.cdf(1.5), 0.125);
   EXPECT_EQ(d.cdf(8), 1);
   EXPECT_EQ(d.cdf(0.9), 0);
-  // A truncation to a value that occurs twice keeps all of its probability.
+  // A truncation at a value that occurs twice keeps its whole probability.
   const Distribution upper(Empirical{.values = {4, 1, 2, 2, 8}}, {.low = 2});
   EXPECT_NEAR(upper.cdf(2), 0.25 / 0.75, 1e-15);
   EXPECT_NEAR(upper.mean(), (2 + 3 + 6) / 3.0, 1e-14);
@@ -143,7 +143,7 @@ TEST(Distribution, NeverLeavesItsSupport) {
 }
 
 TEST(Distribution, NeverLeavesItsSupportByRounding) {
-  // The probability is below 1 by less than half a rounding: the quantile of 1 would be infinite.
+  // The probability is below 1 by less than half a rounding: the quantile at 1 would be infinite.
   EXPECT_LT(Distribution(Normal{.mean = 0, .standard_deviation = 1}, {.low = 1}).quantile(1 - 0x1p-53), 9);
   for (int i = 1; i < 100; ++i) {
     const double low = 0.1 + 0.006 * i;

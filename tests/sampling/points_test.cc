@@ -29,8 +29,8 @@ std::vector<Point> all_of(const SamplePoints& points) {
 
 std::size_t cell(double u, std::size_t cells) { return static_cast<std::size_t>(u * static_cast<double>(cells)); }
 
-// A (0, m, 2)-net in base 2: each elementary interval of area 2^-m, whatever its sides, holds one point. Blocks of a sequence
-// that begin at a multiple of their length are nets too.
+// A (0, m, 2)-net in base 2: each elementary interval of area 2^-m, of any side lengths, contains one point. Blocks of a
+// sequence that begin at a multiple of their length are nets as well.
 TEST(SobolPoints, AreANetInTheFirstTwoDimensions) {
   constexpr std::size_t m = 8, count = 1u << m;
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
@@ -60,7 +60,8 @@ TEST(SobolPoints, HaveOnePerIntervalInEachOfAHundredDimensions) {
   }
 }
 
-// Nested scrambling keeps how many leading bits two points have in common: with those of Boost, which are not scrambled.
+// Nested scrambling keeps the number of leading bits that two points have in common, so that it equals that of Boost's points,
+// which are not scrambled.
 TEST(SobolPoints, AreAScrambledSequenceOfJoeAndKuo) {
   constexpr std::size_t dimensions = 40, count = 200;
   const SamplePoints points(PointSet::sobol, dimensions, 9, Stream::spread, count);
@@ -75,7 +76,7 @@ TEST(SobolPoints, AreAScrambledSequenceOfJoeAndKuo) {
   const auto common = [](std::uint64_t a, std::uint64_t b) { return a == b ? 64 : __builtin_clzll(a ^ b); };
   const auto bits_of = [](double u) { return static_cast<std::uint64_t>(u * 0x1p52) << 12; };
   const Point first = point_of(points, 0);
-  for (std::uint64_t k = 1; k < 128; ++k) {  // those below have a Gray code below the count too
+  for (std::uint64_t k = 1; k < 128; ++k) {  // smaller numbers have a Gray code below the count as well
     const Point u = point_of(points, k);
     for (std::size_t i = 0; i < dimensions; ++i) {
       ASSERT_EQ(common(bits_of(u[i]), bits_of(first[i])), common(plain[k][i], plain[0][i])) << k << " " << i;
@@ -89,7 +90,7 @@ double smooth(const Point& u) {
   return product;  // the mean is 1
 }
 
-// Root mean square over seeds of the error of a mean.
+// Returns the root mean square error of a mean over seeds.
 double error_of_mean(PointSet kind, std::uint64_t size) {
   constexpr int seeds = 20;
   double squares = 0;
@@ -103,21 +104,21 @@ double error_of_mean(PointSet kind, std::uint64_t size) {
 
 TEST(SobolPoints, IntegrateASmoothFunctionFasterThanTheirNumber) {
   const double order = std::log2(error_of_mean(PointSet::sobol, 256) / error_of_mean(PointSet::sobol, 4096)) / 4;
-  EXPECT_GT(order, 1.2);  // 3/2 but for a power of the logarithm; Monte Carlo has 1/2, an unscrambled sequence 1
+  EXPECT_GT(order, 1.2);  // 3/2 except for a power of the logarithm; Monte Carlo has 1/2, an unscrambled sequence 1
 }
 
 TEST(MonteCarloPoints, IntegrateAsTheRootOfTheirNumber) {
   const double order = std::log2(error_of_mean(PointSet::monte_carlo, 256) / error_of_mean(PointSet::monte_carlo, 4096)) / 4;
-  EXPECT_NEAR(order, 0.5, 0.25);  // 20 seeds know each error to 16 %: 0.08 of the order; three of these
+  EXPECT_NEAR(order, 0.5, 0.25);  // 20 seeds give each error to 16 %, and the order to 0.08; allow three of these
 }
 
-// M. Stein, Technometrics 29 (1987) 143: what is left of the variance of a mean is that of the interactions.
+// M. Stein, Technometrics 29 (1987) 143: the remaining variance of a mean is that of the interactions.
 TEST(LatinHypercube, LeavesTheErrorOfTheInteractions) {
   constexpr std::uint64_t size = 512;
   const double e = std::exp(1.0), of_factor = ((e * e - 1) / 2 - (e - 1) * (e - 1)) / 4;
   const double of_interactions = std::pow(1 + of_factor, 4) - 1 - 4 * of_factor;
   const double expected = std::sqrt(of_interactions / static_cast<double>(size));
-  EXPECT_NEAR(error_of_mean(PointSet::latin_hypercube, size), expected, 0.5 * expected);  // 20 seeds know it to 16 %
+  EXPECT_NEAR(error_of_mean(PointSet::latin_hypercube, size), expected, 0.5 * expected);  // 20 seeds give it to 16 %
 }
 
 TEST(LatinHypercube, HasOnePointInEachStratumOfEachDimension) {
@@ -132,7 +133,7 @@ TEST(LatinHypercube, HasOnePointInEachStratumOfEachDimension) {
   }
 }
 
-// All 24 permutations of four strata, about equally often.
+// All 24 permutations of four strata occur about equally often.
 TEST(LatinHypercube, PermutesTheStrataAtRandom) {
   constexpr int seeds = 24'000;
   std::map<std::vector<std::size_t>, int> counts;
@@ -172,7 +173,7 @@ class EveryPointSet : public testing::TestWithParam<PointSet> {};
 INSTANTIATE_TEST_SUITE_P(, EveryPointSet, testing::Values(PointSet::sobol, PointSet::latin_hypercube, PointSet::monte_carlo),
                          [](const auto& set) { return std::string(name_of(point_sets, set.param)); });
 
-// A seed that someone has written down must go on to mean the same switches.
+// A recorded seed must keep its meaning.
 TEST_P(EveryPointSet, GivesThePointsItAlwaysGave) {
   const std::map<PointSet, Point> kept{
       {PointSet::sobol, {0x1.ec8745d03bec7p-1, 0x1.8ac7caea8ac8dp-1, 0x1.a381369e8604cp-3}},
@@ -189,7 +190,7 @@ TEST_P(EveryPointSet, GivesAPointWhateverWasAskedBefore) {
 }
 
 TEST_P(EveryPointSet, HasTheSamePointsInALargerSet) {
-  if (GetParam() == PointSet::latin_hypercube) return;  // its strata are those of its size
+  if (GetParam() == PointSet::latin_hypercube) return;  // its strata depend on its size
   const SamplePoints small(GetParam(), 5, 6, Stream::spread, 100),
       large(GetParam(), 5, 6, Stream::spread, SamplePoints::largest_size);
   for (std::uint64_t k = 0; k < 100; ++k) EXPECT_EQ(point_of(small, k), point_of(large, k));
@@ -216,7 +217,7 @@ TEST_P(EveryPointSet, HasUniformCoordinatesOverTheSeeds) {
   constexpr int seeds = 20'000;
   std::array<int, 8> counts{};
   for (int seed = 0; seed < seeds; ++seed) {
-    // The last dimension of a point that is not the first.
+    // The last dimension of a point other than the first.
     ++counts[cell(point_of(SamplePoints(GetParam(), 3, static_cast<std::uint64_t>(seed), Stream::spread, 10), 7)[2], 8)];
   }
   double chi_squared = 0;

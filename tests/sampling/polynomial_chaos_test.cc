@@ -79,7 +79,7 @@ TEST(PolynomialChaos, KnowsTheMomentsAndIndicesOfAPolynomial_long) {
   EXPECT_NEAR(chaos.total(2), 3 / variance, rounding);
 }
 
-// Twelve variables, 455 terms of degree 3: more than there are figures.
+// Twelve variables have 455 terms of degree 3, more than there are figures.
 TEST(PolynomialChaos, FindsTheFewTermsThatMatterAmongMoreThanThereAreFigures) {
   const Eigen::MatrixXd points = sobol_points(12, 150);
   const auto f = [](const std::vector<double>& u) {
@@ -94,8 +94,9 @@ TEST(PolynomialChaos, FindsTheFewTermsThatMatterAmongMoreThanThereAreFigures) {
 TEST(PolynomialChaos, ApproachesTheIndicesOfIshigami_long) {
   const Eigen::MatrixXd points = sobol_points(3, 400);
   const PolynomialChaos chaos(std::vector<Germ>(3, Germ::uniform), points, figures_at(points, Ishigami::at), 12);
-  constexpr double truncated = 1e-5;  // twice the largest error of an index with 200 to 800 figures: what degree 12 leaves out
-  EXPECT_GT(chaos.q2(), 1 - 1e-7);    // and in the mean square
+  constexpr double truncated =
+      1e-5;  // twice the largest error of an index with 200 to 800 figures, from the terms beyond degree 12
+  EXPECT_GT(chaos.q2(), 1 - 1e-7);  // and of the mean square
   EXPECT_NEAR(chaos.mean(), Ishigami::mean, truncated * Ishigami::mean);
   EXPECT_NEAR(chaos.variance(), Ishigami::variance, truncated * Ishigami::variance);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -104,7 +105,7 @@ TEST(PolynomialChaos, ApproachesTheIndicesOfIshigami_long) {
   }
 }
 
-// The error that q2 states is the one at points that the fit has not seen.
+// The error that q2 states is that at points which the fit did not use.
 TEST(PolynomialChaos, KnowsItsErrorElsewhere_long) {
   const auto noisy = [](const std::vector<double>& u) {
     const double noise = standard_normal(std::fmod(1e6 * (u[0] + std::sqrt(2.0) * u[1]), 1.0) * 0.999 + 5e-4);
@@ -126,11 +127,11 @@ TEST(PolynomialChaos, KnowsItsErrorElsewhere_long) {
     stated += (1 - chaos.q2()) / seeds;
     found += squares / variance / seeds;
   }
-  // Ten samples of 100 know a variance to 5 %; the choice of the degree and of the number of terms flatters by 15 % here.
+  // Ten samples of 100 give a variance to 5 %; the choice of degree and number of terms biases it by 15 % here.
   EXPECT_NEAR(stated / found, 1, 0.3);
 }
 
-// The largest of 20 samples of noise were 0.27, and 9 terms; by leaving out one figure at a time they were 0.6 and 29.
+// Observed with 20 samples of noise: at most 0.27 and 9 terms; with leave-one-out they were 0.6 and 29.
 TEST(PolynomialChaos, OfNoiseIsNearlyTheMeanAndSaysSo) {
   const Eigen::MatrixXd points = sobol_points(3, 60);
   std::vector<double> noise;
@@ -164,7 +165,7 @@ TEST(PolynomialChaos, TakesNoMoreTermsThanTheFiguresBear) {
   const Eigen::MatrixXd line = sobol_points(1, 20);
   const auto steep = [](const std::vector<double>& u) { return std::pow(2 * u[0], 12); };
   EXPECT_LE(PolynomialChaos({Germ::uniform}, line, figures_at(line, steep), 12).terms(), 10u);
-  // There are 165 terms of degree 3 in eight variables, and 495 of degree 4: more than ten times the figures.
+  // Eight variables have 165 terms of degree 3, and 495 of degree 4: more than ten times the figures.
   const Eigen::MatrixXd points = sobol_points(8, 20);
   const auto fifth = [](const std::vector<double>& u) {
     const double x = 2 * u[0] - 1;

@@ -57,7 +57,7 @@ TEST(SobolDesign, OfMoreRowsBeginsWithThatOfFewer) {
 }
 
 TEST(SobolIndices, AreThoseOfIshigami_long) {
-  // Twice the largest error of 20 seeds, 2.4e-3. With Monte Carlo points it is 0.03, which would not do.
+  // Twice the largest error of 20 seeds, 2.4e-3. With Monte Carlo points it is 0.03.
   constexpr double tolerance = 5e-3;
   const SobolEstimate made = sobol_indices(3, figures_of(SobolDesign(PointSet::sobol, 3, 1, 1u << 14), Ishigami::at), quick);
   ASSERT_TRUE(made.indices);
@@ -84,7 +84,7 @@ TEST(SobolIndices, AreThoseOfTheGFunction) {
   }
 }
 
-// The last variable changes nothing: its total index is zero exactly.
+// The last variable has no effect: its total index is exactly zero.
 TEST(SobolIndices, OfAVariableWithoutEffectIsNotDistinguishableFromZero) {
   const SobolDesign design(PointSet::monte_carlo, 3, 1, 500);
   const auto figures = figures_of(design, [](const auto& u) { return 5 + u[0] + 0.01 * u[1]; });
@@ -97,8 +97,8 @@ TEST(SobolIndices, OfAVariableWithoutEffectIsNotDistinguishableFromZero) {
   EXPECT_TRUE(made.indices->total[1].above_zero);
 }
 
-// The interval holds an index as often as it says, within four standard deviations of the share of 300 repetitions; and it is
-// wrong in a tenth of them, not in none.
+// The intervals cover the index with the stated probability, within four standard deviations of the share of 300 repetitions.
+// They miss it in a tenth of the cases.
 TEST(SobolIndices, HaveIntervalsThatCoverAsOftenAsTheySay_long) {
   constexpr int repetitions = 300;
   const GFunction g{.a = {0.5, 1, 3}};
@@ -148,7 +148,7 @@ TEST(SobolIndices, AreRefusedWhereMoreThanOneInAHundredFailed) {
 }
 
 TEST(SobolIndices, OfAConstantAreNotKnown) {
-  for (std::size_t rows = 2; rows < 20; ++rows) {  // for some of these the mean rounds to another value
+  for (std::size_t rows = 2; rows < 20; ++rows) {  // for some of these the mean is rounded
     const SobolEstimate made = sobol_indices(2, std::vector<double>(4 * rows, 1.0 / 7), quick);
     ASSERT_TRUE(made.indices);
     EXPECT_NEAR(made.indices->mean, 1.0 / 7, 1e-15);
@@ -158,7 +158,7 @@ TEST(SobolIndices, OfAConstantAreNotKnown) {
   }
 }
 
-// One row drawn twice has none.
+// A repetition of a single row has no variance.
 TEST(SobolIndices, HaveNoIntervalWhereARepetitionHasNoVariance) {
   const SobolEstimate made = sobol_indices(1, std::vector<double>{0, 0, 0, 1, 1, 1});
   ASSERT_TRUE(made.indices);

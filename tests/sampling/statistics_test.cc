@@ -27,7 +27,7 @@ TEST(SampleFigures, OfFewValuesAreNotKnown) {
   EXPECT_EQ(sample_mean(std::vector<double>{3}), 3);
   EXPECT_TRUE(std::isnan(sample_standard_deviation(std::vector<double>{3})));
   EXPECT_TRUE(std::isnan(sample_skewness(std::vector<double>{3, 4})));
-  // Equal values, whose mean may round to another one.
+  // Equal values, whose mean may be rounded.
   for (std::size_t n = 3; n < 20; ++n) EXPECT_TRUE(std::isnan(sample_skewness(std::vector<double>(n, 0.1)))) << n;
 }
 
@@ -37,9 +37,9 @@ TEST(SampleFigures, AreInfiniteWhereASwitchFailed) {
   EXPECT_EQ(sample_standard_deviation(sample), infinity);
   EXPECT_TRUE(std::isnan(sample_skewness(sample)));
   EXPECT_EQ(sample_quantile(sample, 0.25), 2);
-  EXPECT_EQ(sample_quantile(sample, 0.5), 3);          // its own order statistic alone
-  EXPECT_EQ(sample_quantile(sample, 0.51), infinity);  // lies between 3 and infinity
-  EXPECT_EQ(sample_quantile(sample, 0.9), infinity);   // lies between two infinite ones
+  EXPECT_EQ(sample_quantile(sample, 0.5), 3);          // a single order statistic
+  EXPECT_EQ(sample_quantile(sample, 0.51), infinity);  // between 3 and infinity
+  EXPECT_EQ(sample_quantile(sample, 0.9), infinity);   // between two infinite values
   EXPECT_EQ(sample_quantile(sample, 1), infinity);
   EXPECT_EQ(conditional_value_at_risk(sample, 0.5), infinity);
 }
@@ -78,7 +78,7 @@ TEST(ConditionalValueAtRisk, IsTheClosedFormOfANormal) {
   for (int i = 0; i < n; ++i) sample.push_back(quantile(normal, (i + 0.5) / n));
   for (const double alpha : {0.0, 0.5, 0.9, 0.99}) {
     const double expected = alpha == 0 ? 3 : 3 + 4 * pdf(normal, quantile(normal, alpha)) / (1 - alpha);
-    // Equal weights on quantiles miss the outermost tail: about 1 / (n (1 - alpha)) of its few standard deviations.
+    // Equal weights on quantiles miss the outermost tail: about 1 / (n (1 - alpha)) of a few standard deviations.
     EXPECT_NEAR(conditional_value_at_risk(sample, alpha), expected, 10 / (n * (1 - alpha))) << alpha;
   }
 }
@@ -105,7 +105,7 @@ TEST(Histogram, CountsEveryValueOnce) {
   EXPECT_EQ(made.high, 1);
   EXPECT_EQ(made.infinite, 2u);
   EXPECT_EQ(std::accumulate(made.counts.begin(), made.counts.end(), std::size_t{0}), 902u);
-  // The interquartile range is 1/2: 902^(1/3) = 9.7 bins, rounded up. Each holds its share, as the values are spread evenly.
+  // The interquartile range is 1/2: 902^(1/3) = 9.7 bins, rounded up. The values are evenly spread, and so are the counts.
   ASSERT_EQ(made.counts.size(), 10u);
   for (const std::size_t count : made.counts) EXPECT_NEAR(static_cast<double>(count), 90.2, 3);
 }

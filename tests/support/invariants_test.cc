@@ -22,7 +22,7 @@ TEST(MissedTouch, IsFoundInEitherRunAsLongAsTheyAgree) {
   };
   const Trajectory one = run(1e-8), tighter = run(1e-10);
   EXPECT_EQ(missed_touch(one, tighter), "");
-  constexpr std::size_t agree = 6;  // touches
+  constexpr std::size_t agree = 6;  // number of touches
   ASSERT_GT(one.touches.size(), agree);
   for (std::size_t i = 0; i < agree; ++i) {
     Trajectory without = one;
@@ -37,7 +37,7 @@ TEST(MissedTouch, IsFoundInEitherRunAsLongAsTheyAgree) {
 }
 
 TEST(MissedTouch, IsNoneWhereRunsPartLittleByLittle) {
-  const PreparedScene p = prepare(random_scene(2, 2368));  // lands softly and rattles two hundred times
+  const PreparedScene p = prepare(random_scene(2, 2368));  // a soft landing with two hundred touches in the dent
   const auto run = [&](double tolerance) {
     return simulate_closing(p.model, p.signals(), {.duration = p.duration, .tolerance = tolerance});
   };

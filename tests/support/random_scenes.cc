@@ -21,7 +21,7 @@
 namespace softland::test {
 namespace {
 
-/// The random numbers of one draw of one scene.
+/// The random numbers of one attempt at a scene.
 class Dice {
  public:
   Dice(std::uint64_t seed, std::uint64_t index, std::uint64_t draw)
@@ -29,7 +29,7 @@ class Dice {
 
   double between(double low, double high) { return low + (high - low) * random_uniform(key_, Stream::scene, count_++); }
   double log_between(double low, double high) { return low * std::pow(high / low, between(0, 1)); }
-  double about() { return log_between(1 / 1.3, 1.3); }  ///< a factor within 30 %
+  double about() { return log_between(1 / 1.3, 1.3); }  ///< returns a factor within 30 %
   bool chance(double probability) { return between(0, 1) < probability; }
   int whole(int low, int high) { return low + static_cast<int>(between(0, high - low + 1)); }
   template <class List>
@@ -50,7 +50,7 @@ void put_span(SceneFile& file, const std::string& path, double begin, double end
   file.set(fmt::format("{}=[\"{:.6g} m\", \"{:.6g} m\"]", path, begin, end));
 }
 
-/// Multiplies a quantity that the scene has.
+/// Multiplies a quantity, if the scene has it.
 void multiply(SceneFile& file, const std::string& section, const std::string& key, double factor) {
   const nlohmann::json scene = file.json();
   const auto found = scene.find(section);
@@ -61,7 +61,7 @@ void multiply(SceneFile& file, const std::string& section, const std::string& ke
   put(file, section + "." + key, value * factor, text.substr(digits + 1));
 }
 
-/// The device so far, whatever is left to be put into the scene.
+/// Returns the device so far; later steps add the rest of the scene.
 Device device_of(const SceneFile& file) { return read_scene(file).device; }
 
 bool has_width(const SceneFile& file) { return file.json()["structure"].contains("width"); }
@@ -73,7 +73,7 @@ void vary_structure(SceneFile& file, Dice& dice) {
   }
   const Device d = device_of(file);
   if (d.structure.is_rigid()) {
-    // Gas, fringing fields and asperities need these.
+    // Gas, fringing fields and asperities need these keys.
     const double area = d.structure.length * d.structure.width;
     if (!has_width(file)) put(file, "structure.width", std::sqrt(area), "m");
     if (!(d.structure.thickness > 0)) put(file, "structure.thickness", 0.03 * std::sqrt(area), "m");
@@ -150,8 +150,8 @@ void vary_dispersion(SceneFile& file, Dice& dice) {
   if (dice.chance(0.5)) put(file, "dispersion.equilibrium_distance", 0.3e-9 * dice.about(), "m");
 }
 
-/// Summits on the pad of device `d` under which the contact carries the force that bends the beam by the contact gap at a
-/// hundredth to a tenth of their height.
+/// Puts summits on the pad of device `d`. At a hundredth to a tenth of their height the contact carries the force that bends
+/// the beam by the contact gap.
 void put_summits(SceneFile& file, Dice& dice, const Device& d, const std::string& model, double force) {
   const double height = d.gap.contact * dice.log_between(0.005, 0.05);
   const double radius = height * dice.log_between(0.5, 5);
@@ -174,7 +174,7 @@ void put_summits(SceneFile& file, Dice& dice, const Device& d, const std::string
   } else {
     put(file, "contact.asperity_height", height, "m");
   }
-  if (model == "adhesive") {  // the pull-off force over that force
+  if (model == "adhesive") {  // pull-off force over the force that bends the beam
     const double pull = 2 * pi * radius * density * one.pad_length * d.structure.width * carries / height;
     put(file, "contact.adhesion_energy", dice.log_between(0.01, 0.8) * force / pull, "N/m");
   }
@@ -184,7 +184,7 @@ void put_summits(SceneFile& file, Dice& dice, const Device& d, const std::string
   }
 }
 
-/// Contact laws that get numbers of the device's own size. Others get those of their example, more or less.
+/// Contact laws whose numbers are scaled to the device. Other laws have those of their example, varied.
 constexpr std::array<std::string_view, 8> sized_contacts{"linear",   "asperity-uniform",  "asperity-gaussian",
                                                          "adhesive", "hysteretic",        "elastic-plastic",
                                                          "rigid",    "adhesive-repulsive"};
@@ -247,13 +247,13 @@ void vary_contact(SceneFile& file, Dice& dice) {
   }
 }
 
-/// The free end of three cantilevers in ten rises or sinks by up to a third of the contact gap.
+/// In three cantilevers of ten the free end rises or sinks by up to a third of the contact gap.
 void vary_rest_shape(SceneFile& file, Dice dice) {
   const Device d = device_of(file);
   if (d.structure.find<Cantilever>() == nullptr || d.touches_along_pad() || !dice.chance(0.3)) return;
   const double curvature = dice.between(-0.6, 0.6) * d.gap.contact / (d.structure.length * d.structure.length);
   const double end = curvature * d.structure.length * d.structure.length / 2;
-  if (dice.chance(0.3))  // the same as a table
+  if (dice.chance(0.3))  // the same shape as a table
     return file.set(
         fmt::format(R"(structure.rest_shape={{positions=["0 m", "40 %", "tip"], heights=["0 m", "{:.6g} m", "{:.6g} m"]}})",
                     0.16 * end, end));
@@ -323,15 +323,15 @@ Waveform waveform(Dice& dice, double level, double period) {
   }
 }
 
-/// Levels lie from 0.8 to twice the static pull-in, less on an electrode that pulls away from the contact; the piezo bends the
-/// beam by up to a third of the gap.
+/// Levels are 0.8 to 2 times the static pull-in voltage, and lower on an electrode that pulls away from the contact. The piezo
+/// bends the beam by up to a third of the gap.
 void put_waveforms(SceneFile& file, Dice& dice) {
   file.erase("waveform");
   file.erase("driver");
   const Scene scene = read_scene(file);
   const Switch model(scene.device);
   const double period = 2 * pi / model.basis().angular_frequencies()[0];
-  double volts = 0;  // voltage at which the electrodes before pull in
+  double volts = 0;  // static pull-in voltage of the last electrode that pulls in
   for (std::size_t k = 0; k < model.drives(); ++k) {
     const DriveKind kind = model.drive_kind(k);
     if (kind == DriveKind::piezo) {
@@ -346,7 +346,7 @@ void put_waveforms(SceneFile& file, Dice& dice) {
       if (volts > 0) continue;
       const StaticPullIn found = static_pull_in(model, k);
       require(found.status == Status::done, "no pull-in");
-      const double more = (1 + found.voltage) * dice.log_between(0.8, 2) - 1;  // than the force itself
+      const double more = (1 + found.voltage) * dice.log_between(0.8, 2) - 1;  // in addition to the force itself
       file.set_waveform(std::string(dispersion_drive), more > 0 ? waveform(dice, more, period) : Step{.level = more});
     } else {
       const bool closes = pulls_in(scene.device, k);
@@ -371,7 +371,7 @@ SceneFile random_scene(std::uint64_t seed, std::uint64_t index) {
       Dice dice(seed, index, static_cast<std::uint64_t>(draw));
       SceneFile file = SceneFile::load(fmt::format("{}/{}.toml", SOFTLAND_SCENES, family));
       put(file, "title", fmt::format("Random scene {} of seed {}, from {}", index, seed, family));
-      file.erase("waveform");  // written anew below; until then its units would ask for limits
+      file.erase("waveform");  // written again below; its units would require limits
       file.erase("driver");
       vary_structure(file, dice);
       vary_gaps(file, dice);
@@ -383,7 +383,7 @@ SceneFile random_scene(std::uint64_t seed, std::uint64_t index) {
       vary_rest_shape(file, Dice(seed, index, most_draws + 1 + static_cast<std::uint64_t>(draw)));
       put_waveforms(file, dice);
       const bool stands_open = prepare(file).model.rest().has_value();
-      if (stands_open || dice.chance(0.1)) return file;  // a few scenes that collapse at rest are enough
+      if (stands_open || dice.chance(0.1)) return file;  // a few scenes that collapse at rest suffice
     } catch (const InvalidInput&) {
     }
   }
@@ -394,7 +394,7 @@ std::optional<SceneFile> random_film_scene(std::uint64_t seed, std::uint64_t ind
   SceneFile file = random_scene(seed, index);
   const Device d = device_of(file);
   if (d.has_contact() && std::holds_alternative<RigidStop>(d.contacts.front().model)) return std::nullopt;
-  Dice dice(seed, index, most_draws);  // a draw that the scene itself does not use
+  Dice dice(seed, index, most_draws);  // random numbers that the scene itself does not use
   file.erase("gas");
   put(file, "gas.model", "reynolds");
   put_state(file, dice);

@@ -1,4 +1,5 @@
-// Compares what `softland report` makes of a study's JSON, for every one in the list: a new study needs no test of its own.
+// Compares the output of `softland report` from a study's JSON with that of the study, for every study in the list: a new study
+// needs no test of its own.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +30,7 @@ value = "10.5 kHz"
 error = "0.5 %"
 )";
 
-// Small studies; one that is not named runs with its defaults.
+// Options of small studies; a study without an entry has its defaults.
 Told told_of(const std::string& study) {
   static const std::string measured = testing::TempDir() + "softland_shown_again_bench.toml";
   std::ofstream(measured) << bench;
@@ -45,7 +46,7 @@ Told told_of(const std::string& study) {
   return found == all.end() ? Told{} : found->second;
 }
 
-// A scene with few modes; the one of `calibrate` has a waveform of its own, for the plain step is no recipe.
+// Returns a scene with few modes. The one for `calibrate` has another waveform, since the plain step is no recipe.
 SceneFile scene_of(const std::string& study) {
   SceneFile scene = SceneFile::load(gold);
   for (const char* change : {"simulate.accuracy=1e-3", "structure.modes=1", "simulate.duration=100 us"}) scene.set(change);
@@ -73,7 +74,7 @@ Outcome outcome_of(const Study& study, const SceneFile& scene) {
 
 class EveryStudy : public testing::TestWithParam<const Study*> {};
 
-// The JSON that the study leaves in a folder, else that of --json, as a file holds it.
+// Returns the JSON that the study leaves in a folder, or that of --json, as a file would have it.
 json left_by(const Outcome& outcome) {
   for (const Outcome::File& file : outcome.files) {
     if (file.name.ends_with(".json")) return json::parse(file.text());
@@ -81,8 +82,8 @@ json left_by(const Outcome& outcome) {
   return json::parse(outcome.json.dump());
 }
 
-// Files that are not made again are scenes and tables, which the JSON does not hold, the page of all devices,
-// and the sketch of the scene that check makes.
+// Compares files. Not made again are scenes and tables, which the JSON does not contain, the page of all devices, and the
+// sketch of the scene by check.
 void expect_same_files(const Outcome& again, const Outcome& found) {
   std::map<std::string, std::string> made;
   for (const Outcome::File& file : again.files) made[file.name] = file.text();
@@ -97,7 +98,7 @@ void expect_same_files(const Outcome& again, const Outcome& found) {
   }
 }
 
-// Why the JSON is refused; empty where it is shown.
+// Returns the reason why the JSON is refused; empty if it is shown.
 std::string refusal(const Study& study, const json& record) {
   try {
     for (const Outcome::File& file : study.shown_again(record).files) (void)file.text();
@@ -107,7 +108,7 @@ std::string refusal(const Study& study, const json& record) {
   return {};
 }
 
-// A key that is missing is named. One of another type is, too, or it does not matter: nothing else happens.
+// A missing key is named in the message. A key of another type is named as well, or has no effect.
 void expect_refused_where_damaged(const Study& study, const json& whole) {
   EXPECT_EQ(refusal(study, whole), "");
   EXPECT_NE(refusal(study, json::object()), "");
@@ -117,13 +118,13 @@ void expect_refused_where_damaged(const Study& study, const json& whole) {
   for (const auto& [key, value] : whole.items()) {
     json damaged = whole;
     damaged.erase(key);
-    if (key.starts_with("scene")) continue;  // a page shows no scene then
+    if (key.starts_with("scene")) continue;  // without it a page shows no scene
     EXPECT_NE(refusal(study, damaged), "") << "without " << key;
   }
   const json flat = whole.flatten();
   std::set<std::string> seen;
   for (const auto& [key, value] : flat.items()) {
-    // Members of the same name in members of the same name stand for one another.
+    // Members with the same name in members with the same name are tested once.
     const std::size_t last = key.rfind('/'), before = last == 0 ? 0 : key.rfind('/', last - 1);
     if (!seen.insert(key.substr(before)).second) continue;
     for (const json& other : {json(), json("x"), json(1e308)}) {
@@ -148,7 +149,7 @@ TEST_P(EveryStudy, IsShownAgainFromItsJsonAndFromNoOther_long) {
   expect_refused_where_damaged(study, printed);
 }
 
-// Those that leave a record of their own; tests/apps/shown_again_test.cc has the others.
+// Returns the studies with a record of their own; tests/apps/shown_again_test.cc has the others.
 std::vector<const Study*> every_study() {
   std::vector<const Study*> all;
   for (const Study& study : all_studies()) {

@@ -1,4 +1,5 @@
-// A user's program against the installed libraries: when does the switch of a scene first touch, and where is a parabola lowest?
+// A user's program with the installed libraries: the time of the first touch of a scene's switch, and the minimum of a
+// parabola.
 #include <softland/optimizers/problem.h>
 #include <softland/studies/closing/simulate.h>
 

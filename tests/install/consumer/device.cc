@@ -1,5 +1,5 @@
-// Uses all that softland/softland.h lists: a simulated device, closed by the waveforms of its scene, and how often its contact
-// is seen to close.
+// Uses everything that softland/softland.h lists: a simulated device, closed by the waveforms of its scene, and the number of
+// times that its contact is seen to close.
 #include <softland/softland.h>
 
 #include <cstdio>
