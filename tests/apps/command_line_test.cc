@@ -801,7 +801,7 @@ std::string sampled_gold() {
 }
 
 // The samples are on the generator's own grid. Read back under the same driver they give the same closing.
-TEST(Export, HoldsTheSamplesThatASourceIsTold_optimized) {
+TEST(Export, HoldsTheCommandedSamples_optimized) {
   const Workplace here;
   write(here.path() / "sampled.toml", sampled_gold());
   const Outcome told = here.run({"export", "sampled.toml"});
@@ -999,7 +999,7 @@ TEST(Scenes, AreTakenFromResults_optimized) {
 }
 
 // A pin is renamed if its name has another meaning in the model, in SPICE or in Verilog-A, and a message says so.
-TEST(Export, NamesPinsOfCircuitsThatAreNoOthers) {
+TEST(Export, RenamesPinsWithTheNameOfSomethingElse) {
   const Workplace here;
   const std::string gold = shipped("mem-gold.toml");
   const auto exported = [&](const std::string& drive, const char* format) {

@@ -116,7 +116,7 @@ TEST_F(FitVerb, OfSeveralDevicesLeavesASpreadThatOtherVerbsRead) {
   EXPECT_EQ(json::parse(read(here.path() / "out/fit.json"))["population"]["variables"].size(), 2U);
 }
 // Data that no device of the spread has, and data that contradict each other.
-TEST_F(FitVerb, DoesNotBelieveWhatCannotBe) {
+TEST_F(FitVerb, DoubtsImpossibleData) {
   const auto doubted = [&](const std::string& data) {
     write(here.path() / "bench.toml", data);
     const Outcome o = fit({"--quiet"});

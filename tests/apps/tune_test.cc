@@ -47,7 +47,7 @@ class DeviceVerb : public testing::Test {
   Workplace here;
 };
 
-TEST_F(DeviceVerb, AnswersEveryShotByWhatALabSees) {
+TEST_F(DeviceVerb, AnswersEveryShotWithTheRecordOfALaboratory) {
   const Outcome o = told(shot(1) + "\n" + shot(2) + "{\"done\":true}\n" + shot(3));
   EXPECT_EQ(o.status, 0) << o.err;
   EXPECT_EQ(o.err, "") << "nothing of the device is told";

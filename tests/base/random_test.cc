@@ -24,7 +24,7 @@ TEST(SplitMix64, GivesThePublishedNumbers) {
 }
 
 // The numbers are those of earlier versions, so that a recorded seed keeps its meaning.
-TEST(Random, GivesTheNumbersItAlwaysGave) {
+TEST(Random, GivesTheNumbersOfEarlierVersions) {
   constexpr std::uint64_t largest = std::numeric_limits<std::uint64_t>::max();
   EXPECT_EQ(random_bits(1, Stream::library_seed, 0), 0xca32e53bf572740bu);
   EXPECT_EQ(random_bits(1, Stream::sobol_shift, 6), 0x2c8b9eb39db1b2bdu);

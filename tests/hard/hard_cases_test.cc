@@ -269,7 +269,7 @@ TEST(HardCases, AreEitherRightOrRefusedAtEveryTolerance) {
 
 // The rates of the stiff film have its error times its stiffness: their effect on the energy audit must not make a good run
 // fail.
-TEST(HardCases, ACompressibleFilmKeepsItsBooksAtEveryTolerance) {
+TEST(HardCases, ACompressibleFilmHasAnEnergyBalanceAtEveryTolerance) {
   Device d = test::gold_cantilever();
   d.gas = ReynoldsGas{.film = {.viscosity = 1.86e-5_Pa_s}};
   const Switch device(d);

@@ -77,7 +77,7 @@ TEST(EveryScene, ThatCreepsInAThickFilmIsClosedInBoundedWork) {
 
 // The motion is accurate although fast modes oscillate for long, or an implicit method takes long steps for a stiff film: the
 // dissipation must be integrated with the same accuracy.
-TEST(EveryScene, KeepsBooksAsGoodAsItsMotion) {
+TEST(EveryScene, HasAnEnergyBalanceAsAccurateAsItsMotion) {
   const auto error = [](std::uint64_t index, Integrator integrator) {
     const PreparedScene p = prepare(test::random_scene(2, index));
     const Trajectory t =
@@ -90,7 +90,7 @@ TEST(EveryScene, KeepsBooksAsGoodAsItsMotion) {
 }
 
 // These runs use the default integrator of other scenes, as a study of accuracy does.
-TEST(EveryScene, KeepsTheBooksOfACompressibleFilm) {
+TEST(EveryScene, HasAnEnergyBalanceWithACompressibleFilm) {
   for (const std::uint64_t index : {37U, 42U}) {
     SCOPED_TRACE(index);
     const PreparedScene p = prepare(test::random_film_scene(2, index).value());

@@ -64,7 +64,7 @@ void expect_share(double value, double kept, double relative, const std::string&
 
 // Values of an independent program with 168 and 336 finite elements. Twenty symmetric modes cannot describe the corner of the
 // shear force at the edge of the contact, and differ by up to 0.8 % in capacitance and 1.3 % in force.
-TEST(Landing, ABridgeClosesAsElementsSay) {
+TEST(Landing, ABridgeClosesAsFiniteElementsDo) {
   const Switch model = fine(capacitive_bridge(), 40);
   expect_share(model.basis().angular_frequencies()[0] / (2 * pi), 164430.31735, 1e-6, "first frequency");
   const StaticPullIn fold = static_pull_in(model, 0);
@@ -92,7 +92,7 @@ TEST(Landing, ABridgeClosesAsElementsSay) {
 }
 
 // Expected values have as many symmetric modes; half of the modes here are antisymmetric.
-TEST(Landing, TouchesAndReleasesAsOtherModesSay) {
+TEST(Landing, TouchesAndReleasesAsOtherModesDo) {
   struct Kept {
     int modes;
     double touch_voltage, time, velocity;

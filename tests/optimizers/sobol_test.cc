@@ -36,7 +36,7 @@ TEST(SobolPoints, SpreadEvenlyAlongEveryAxisWhateverTheSeed) {
 }
 
 // The points are those of earlier versions, also for dimensions beyond the sequence.
-TEST(SobolPoints, AreThoseTheyAlwaysWere) {
+TEST(SobolPoints, AreThoseOfEarlierVersions) {
   const std::vector<std::vector<double>> expected{{0x1.997cacf986ffp-5, 0x1.f620b7a498d1fp-1, 0x1.a3056e0b90b6fp-1},
                                                   {0x1.1997cacf986ffp-1, 0x1.ec416f4931a3ep-2, 0x1.460adc17216dep-2}};
   EXPECT_EQ(sobol_points(3, 3, 5, 2), expected);

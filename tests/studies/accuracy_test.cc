@@ -83,7 +83,7 @@ TEST(Accuracy, ErrorsFallWithTheTolerance) {
 }
 
 // Integrators that are not restarted at make and break of contact converge to the same figures with a different amount of work.
-TEST(Accuracy, ShowsWhatRestartingAtTheContactIsWorth) {
+TEST(Accuracy, ComparesRunsWithoutARestartAtTheContact) {
   constexpr double close = 1e-4;
   const AccuracyStudy& study = study_of_first_bounces();
   for (const AccuracyRow& row : study.through) {
@@ -127,7 +127,7 @@ TEST(Accuracy, TheReferenceIsBetterThanEveryRow) {
   }
 }
 
-TEST(Accuracy, RecommendsTheQuickestThatItsOwnTableBearsOut) {
+TEST(Accuracy, RecommendsTheQuickestSettingWithinEachAccuracy) {
   const AccuracyStudy& study = study_of_first_bounces();
   ASSERT_EQ(study.recommendations.size(), 3U);
   for (const Recommendation& r : study.recommendations) {
@@ -145,7 +145,7 @@ TEST(Accuracy, RecommendsTheQuickestThatItsOwnTableBearsOut) {
   }
 }
 
-TEST(Accuracy, CutsWhatIsSlowAndListsIt) {
+TEST(Accuracy, StopsSlowSettingsAndListsThem) {
   AccuracyOptions options = few_settings();
   options.most_seconds = 0;  // the first reading of the clock stops the run
   const AccuracyStudy slow = study_accuracy(first_bounces(), options);
@@ -169,7 +169,7 @@ TEST(Accuracy, CutsWhatIsSlowAndListsIt) {
   EXPECT_TRUE(none.rows.empty());
 }
 
-TEST(Accuracy, SaysHowFarItIsAndCanBeStopped) {
+TEST(Accuracy, ReportsItsProgressAndCanBeStopped) {
   std::atomic<bool> stop{false};
   AccuracyOptions options = few_settings();
   std::size_t last = 0, all = 0;
@@ -186,7 +186,7 @@ TEST(Accuracy, SaysHowFarItIsAndCanBeStopped) {
   EXPECT_EQ(study.rows.back().missing, "interrupted");
 }
 
-TEST(Accuracy, OfAPlateKnowsNoOtherModesAndWithoutContactNoRebounds) {
+TEST(Accuracy, OfAPlateHasNoOtherModesAndWithoutContactNoRebounds) {
   const AccuracyStudy study = study_accuracy(prepare(scene("purdue-nickel.toml")), few_settings());
   EXPECT_EQ(study.status, Status::done);
   EXPECT_TRUE(study.modes.empty());
@@ -230,7 +230,7 @@ TEST(Accuracy, WithoutATouchHasNothingToStudy) {
 }
 
 // Just above the lowest step that closes, the closing time depends on the last digits of the voltage.
-TEST(Accuracy, CallsIllConditionedWhatImperceptibleChangesMove) {
+TEST(Accuracy, CallsFiguresIllConditionedThatImperceptibleChangesMove) {
   const auto at = [](double volts) {
     return prepare(gold({fmt::format("waveform.main.level={:.17g} V", volts), "simulate.duration=250 us"}));
   };

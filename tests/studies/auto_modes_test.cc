@@ -21,7 +21,7 @@ double rebound(const char* modes) {
   return simulate(prepare_and_choose(gold_with_modes(modes)), false).metrics.major_bounce_height;
 }
 
-TEST(AutoModes, AreNotTakenInByModesThatAgreeByChance) {
+TEST(AutoModes, AreNotMisledByModesThatAgreeByChance) {
   // Three to five modes agree with each other, and are wrong by a tenth.
   const double converged = rebound("14");
   EXPECT_NEAR(rebound("3"), rebound("4"), auto_modes_tolerance * rebound("4"));

@@ -41,7 +41,7 @@ TEST(BangBang, OfAPlateSwitchesWhereTheWorkBendsTheSpringToTheContact) {
   EXPECT_NEAR(*found, d - 1 / (1 / d + k * c * c / strength), 1e-12 * d);
 }
 
-TEST(BangBang, HasNoneWhereTheDriveDoesNotReachTheContactOrTheSwitchFallsByItself) {
+TEST(BangBang, HasNoSolutionWhereTheDriveDoesNotReachTheContactOrTheSwitchClosesByItself) {
   const Potential spring = [](double x) { return x * x / 2; };
   EXPECT_FALSE(bang_bang([](double x) { return x * x / 2 - 0.4 * x; }, spring, 1, 0, 1)) << "too weak";
   EXPECT_FALSE(bang_bang([](double x) { return -x; }, [](double x) { return -0.1 * x; }, 1, 0, 1)) << "falls";

@@ -65,7 +65,7 @@ TEST_F(Beliefs, LikelihoodIsThatOfItsFormula) {
   EXPECT_NEAR(Likelihood(scene_, shots).of(std::vector{closing}), expected, rounding * std::abs(expected));
 }
 
-TEST_F(Beliefs, ATouchThatIsMissingWeighsMuch) {
+TEST_F(Beliefs, AMissingTouchIsVeryUnlikely) {
   const ImaginedClosing open{.followed = true};
   const std::vector<LearnedShot> touched{{.waveforms = step(1), .record = {.closing_time = 30e-6}}},
       none{{.waveforms = step(1), .record = {}}};
@@ -86,7 +86,7 @@ TEST_F(Beliefs, ALouderImpactIsAFasterOne) {
             likelihood.of(std::vector{closing(0.1), closing(0.01)}) + 10);
 }
 
-TEST_F(Beliefs, ADeviceIsFoundBackFromItsRecords_optimized) {
+TEST_F(Beliefs, ADeviceIsRecoveredFromItsRecords_optimized) {
   VectorXd z = VectorXd::Zero(scene_.size());
   z[0] = 1.3, z[1] = -0.8, z[2] = 0.6;
   const std::vector<LearnedShot> shots = records_of(z);
@@ -117,7 +117,7 @@ TEST_F(Beliefs, ADeviceIsFoundBackFromItsRecords_optimized) {
 }
 
 // Records with a delay of 1 us are explained by the delay of the trigger, and not by another device.
-TEST_F(Beliefs, ALateTriggerIsLearnedAsOne_optimized) {
+TEST_F(Beliefs, ALateTriggerIsLearnedAsADelay_optimized) {
   constexpr double late = 1e-6;
   VectorXd z = VectorXd::Zero(scene_.size());
   z[scene_.size() - 1] = late / scene_.delay_deviation();
@@ -213,7 +213,7 @@ TEST_F(Misfits, RecordsThatNoDeviceHasAreBeyondTheBound_optimized) {
 
 // The misfit of a fixed ratio is chi-square distributed with one degree of freedom on devices with the ratio of the scene, and
 // the square of the deviation on others.
-TEST_F(Misfits, ARatioOfTheGapsIsOffByWhatItsRecordsTell_optimized) {
+TEST_F(Misfits, AFixedRatioOfTheGapsHasTheExpectedMisfit_optimized) {
   const auto& all = scene_.nominal().scene.spread.variables;
   const Eigen::Index ratio = std::ranges::find(all, "gap.contact", &SpreadVariable::name) - all.begin();
   VectorXd wide = VectorXd::Zero(scene_.size());

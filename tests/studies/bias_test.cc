@@ -37,7 +37,7 @@ TEST(Standing, IsTheHoldLevelWhereThatIsGivenInVolts) {
               ElementsAre(0, 0));
 }
 
-TEST(Standing, IsNoneOfAnyShippedScene) {
+TEST(Standing, IsEmptyForEveryShippedScene) {
   for (const std::string& name : shipped_scenes()) {
     const Scene read = read_scene(scene(name.c_str()));
     for (std::size_t k = 0; k < read.device.electrodes.size(); ++k)
@@ -131,7 +131,7 @@ TEST(Bias, CountsForDevicesMeasuredByIt) {
   EXPECT_LT(meter.exact(Switch(stronger, p.quadrature)).volts, 0.999);
 }
 
-TEST(Bias, IsPartOfWhatIsRemembered) {
+TEST(Bias, IsPartOfTheKeyOfRememberedVoltages) {
   PullInMemory memory;
   const auto voltage = [&](const SceneFile& file) {
     return prepare(file, false, {}, memory.finder(file)).pull_in.at("main").statically.voltage;

@@ -129,7 +129,7 @@ double true_pull_in(const Device& device) {
   return (4 * Differences(device, 200).pull_in() - Differences(device, 100).pull_in()) / 3;
 }
 
-TEST(ByModes, OfABridgeBentByManyThicknessesLeadToFiniteDifferences) {
+TEST(ByModes, OfAStronglyBentBridgeConvergeToFiniteDifferences) {
   constexpr double resolved = 4e-3;  // relative error of forty modes at a gap of 33 thicknesses
   for (const int gap : {3, 10, 33}) {
     const PreparedScene p = prepare(bridge(gap, "4"));
@@ -243,7 +243,7 @@ bool expect_told(const SceneFile& file) {
   return any && !all;
 }
 
-TEST(ByModes, OfEveryVerdictAgreeOrAreTold_optimized) {
+TEST(ByModes, OfEveryVerdictAgreeOrAreReported_optimized) {
   for (const std::string& name : shipped_scenes()) EXPECT_FALSE(expect_told(scene(name.c_str()))) << name;
   const PreparedScene four = prepare(held_in_the_middle(50, 4));
   const ByModes through =
@@ -257,7 +257,7 @@ TEST(ByModes, OfEveryVerdictAgreeOrAreTold_optimized) {
 
 // The damping is so large that no step overshoots. At 264 V the switch stays open with 4 modes, whose pull-in voltage is 271.3
 // V. The converged one is 256.5 V.
-TEST(ByModes, OfASwitchThatOnlyFewKeepOpenAreTold) {
+TEST(ByModes, OfASwitchThatOnlyFewModesKeepOpenAreReported) {
   SceneFile file = bridge(10, "4");
   file.set("gas={ model = \"linear\", quality_factor = 0.2 }");
   file.set("simulate.accuracy=1e-3");
@@ -273,7 +273,7 @@ TEST(ByModes, OfASwitchThatOnlyFewKeepOpenAreTold) {
 
 // An aluminium bridge that lands on nitride. The expected capacitances are those of 336 finite elements; 40 modes agree with
 // them within 0.8 %.
-TEST(ByModes, OfTheCapacitanceOfALandingAreTold) {
+TEST(ByModes, OfTheCapacitanceOfALandingAreReported) {
   SceneFile file =
       scene("new/capacitive-bridge.toml",
             {"structure.plate_strain=false", "structure.damping_ratio=0", "simulate.duration=10 us",
@@ -310,7 +310,7 @@ TEST(ByModes, CountTheModesThatHoldAValue) {
   EXPECT_EQ(modes_needed({.values = {{4, 1.0}, {8, 1.0}}}), std::nullopt) << "converges to nothing";
 }
 
-TEST(ByModes, LeaveAutomaticModesNoClosedStateThatIsNotJudged_optimized) {
+TEST(ByModes, MakeAutomaticModesJudgeEveryClosedState_optimized) {
   SceneFile file = held_in_the_middle(50, 1);
   const PreparedScene one = prepare(file);
   const ByModes through =

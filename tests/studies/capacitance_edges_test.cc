@@ -77,7 +77,7 @@ TEST(CapacitanceEdges, FallWhileThePlateBouncesBeyondTheThreshold) {
 }
 
 // The message has both capacitances. The one of the open switch is eps0 A / h.
-TEST(CapacitanceEdges, AThresholdThatTellsNothingIsRefused) {
+TEST(CapacitanceEdges, AThresholdOutsideOfTheTwoCapacitancesIsRefused) {
   const PreparedScene nominal = prepare(plate());
   const double rise = capacitance_rise(nominal, capacitance_at(2e-6));
   EXPECT_NEAR(rise / (capacitance_at(rest - contact) - capacitance_at(rest)), 1, 0.01) << "the contact gives way a little";
@@ -92,7 +92,7 @@ TEST(CapacitanceEdges, AThresholdThatTellsNothingIsRefused) {
 }
 
 // The belief simulates the same values of a device that a practice device reports.
-TEST(CapacitanceEdges, ABeliefImaginesWhatThePracticeDeviceShows) {
+TEST(CapacitanceEdges, ABeliefPredictsTheRecordOfThePracticeDevice) {
   LaboratoryErrors laboratory{.edge_error = 0, .unseen = 0, .gain_error = 0, .shot_error = 0, .trigger_delay = 0};
   laboratory.capacitance = capacitance_at(1.3e-6);
   SceneFile file = plate();

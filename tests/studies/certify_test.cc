@@ -56,7 +56,7 @@ std::pair<int, int> coverage(const PreparedScene& p, const Closing& c) {
 }
 
 // Includes scenes in which simulate() has to tighten its run to reach the accuracy.
-TEST(Certify, LeavesTheFiguresThemselvesAsTheyAre) {
+TEST(Certify, DoesNotChangeTheFigures) {
   int tightened = 0;
   const auto expect_same = [&](const PreparedScene& p) {
     const Closing plain = simulate(p, true), certified = certify(p);
@@ -193,7 +193,7 @@ TEST(Certify, CoversTheErrorOfTheVoltagesThatDrivesAreWrittenIn_optimized) {
   EXPECT_NEAR(certify(prepare_and_choose(file)).errors[&Metrics::impact_velocity], all, 0.5 * all);
 }
 
-TEST(Simulate, TakesNoQuietEndForRestWhereTheHoldLevelsDoNotKeepTheSwitchClosed) {
+TEST(Simulate, DoesNotTakeAQuietEndForRestWhereTheHoldLevelsDoNotKeepTheSwitchClosed) {
   const auto closing = [](std::string_view duration) {
     SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/tests/studies/soft_contact.toml");
     file.set(fmt::format("simulate.duration={}", duration));

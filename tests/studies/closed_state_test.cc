@@ -270,7 +270,7 @@ TEST(ClosedState, OfADeviceIsFoundFromThatOfTheNominalOne) {
   }
 }
 
-TEST(ClosedState, IsFoundByTheWalkWhereNewtonsMethodEndsNowhere) {
+TEST(ClosedState, IsFoundByContinuationWhereNewtonsMethodFails) {
   for (const SceneFile& file : {gold(), bridge({level(40)})}) {
     const PreparedScene p = prepare(file);
     const std::vector<double> volts = hold_levels(p.signals());
@@ -305,7 +305,7 @@ TEST(ClosedState, OfEveryShippedSceneIsStableBelowWhereItIsPulledThrough_optimiz
   }
 }
 
-TEST(OpenState, ThatIsUnstableIsNotRestedOnInSilence) {
+TEST(OpenState, ThatIsUnstableIsWarnedOf) {
   for (const double volts : {8.0, 17.5}) {
     const SceneFile file = SceneFile::parse(fmt::format(R"(
 [structure]

@@ -78,7 +78,7 @@ TEST(Cloud, PerturbsTheDrivesByWhatWasAsked) {
   }
 }
 
-TEST(Spread, IsOverTheValuesThatThereAre) {
+TEST(Spread, IsOverTheFiniteValues) {
   const Spread all = spread({3, Metrics::unset, 1, 10, 2});
   EXPECT_EQ(all.low, 1);
   EXPECT_EQ(all.median, 2.5);

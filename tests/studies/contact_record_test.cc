@@ -40,7 +40,7 @@ TEST(ContactRecords, OnlyAClosingThatIsKnownToStayClosedIsFreeOfBounces) {
   EXPECT_FALSE(is_bounce_free({.edges = {{microsecond, true}}, .error = "no trigger"}));
 }
 
-TEST(ContactRecords, WhatIsNoRecordIsRefusedWithItsKey) {
+TEST(ContactRecords, AnInvalidRecordIsRefusedWithItsKey) {
   EXPECT_THAT(record_fault(with_edges({{1, false}})), HasSubstr("edges_s"));
   EXPECT_THAT(record_fault(with_edges({{1, true}, {2, true}})), HasSubstr("alternate"));
   EXPECT_THAT(record_fault(with_edges({{2, true}, {1, false}})), HasSubstr("in order"));

@@ -152,7 +152,7 @@ TEST(Cost, OfWhatNeverTouchesIsTenAndThePartOfTheGapItLeft) {
   for (const Target target : every_target) EXPECT_NEAR(cost(target, open, scale(), options), 10.25, 1e-12) << to_string(target);
 }
 
-TEST(Shares, OfWhatIsNotKnownAreNotKnownWhateverTheStepIs) {
+TEST(Shares, OfAnUnknownFigureAreUnknownWhateverTheStepIs) {
   constexpr double unknown = Metrics::unset;
   for (const double of_step : {0.5, 0.0, unknown}) EXPECT_TRUE(std::isnan(Shares::ratio(unknown, of_step))) << of_step;
   EXPECT_EQ(Shares::ratio(3, 2), 1.5);

@@ -91,7 +91,7 @@ TEST(Cycling, IsElectricallyClosedWhileItIsInTouch) {
   }
 }
 
-TEST(Cycling, IsClosedThroughoutWhereItsDrivesNeverLetGo) {
+TEST(Cycling, IsClosedThroughoutWhereItsDrivesNeverRelease) {
   const PreparedScene p = prepare(plate("simulate.duration = \"40 us\"\n"));
   const CycleWaveforms held{.name = "held",
                             .closing = {Signal::piecewise_linear({{0, 0}, {1e-7, 45}})},

@@ -424,7 +424,7 @@ TEST(Derivatives, ForwardAreThoseBackward_optimized) {
 }
 
 // The reference closing is chaotic in the whole window: imperceptible changes decide its permanent contact time.
-TEST(Derivatives, TellWhatIsIllConditioned_optimized) {
+TEST(Derivatives, NameIllConditionedFigures_optimized) {
   const PreparedScene p = prepare(gold());
   const Derivatives found = derivatives(p, own_drive(p));
   EXPECT_TRUE(found.grazes());

@@ -303,7 +303,7 @@ TEST(SourceKeys, AreThoseOfTheWaveformThatTheyMake) {
 }
 
 // A distribution varies the key: a factor multiplies the scene's value, a value replaces it.
-TEST(SourceKeys, AreWhatVaries) {
+TEST(SourceKeys, AreVariedByADistribution) {
   for (const std::string& samples : {std::string(), std::string("driver.main.sample_rate=\"20 MHz\"")}) {
     SCOPED_TRACE(samples);
     const auto scene = [&](const std::vector<std::string>& more) {

@@ -36,7 +36,7 @@ TEST(Evaluator, RowsHaveTheBitsOfTheDevicesOfASpread) {
   }
 }
 
-TEST(Evaluator, ARowThatCannotBeIsNaNAndSaysWhy) {
+TEST(Evaluator, AnImpossibleRowIsNaNWithTheReason) {
   const Evaluator evaluator(gold(), {"gap.contact"}, {first_contact});
   const std::vector<double> rows{2e-6, 5e-6};  // in the second row the contact lies beyond the electrode
   std::vector<double> figures(2);

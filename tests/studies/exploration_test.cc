@@ -103,7 +103,7 @@ TEST(Exploration, FindsThePullInOfASwitchOnceAndOfEveryOtherOne_optimized) {
   }
 }
 
-TEST(PullInMemory, TellsScenesOfOneSwitchFromThoseOfAnother) {
+TEST(PullInMemory, DistinguishesScenesOfDifferentSwitches) {
   // Asks the finder with another switch than that of the scene: the result shows whether it was computed or remembered.
   const PreparedScene ours = prepare(short_gold());
   SceneFile deep = short_gold();
@@ -211,7 +211,7 @@ TEST(Exploration, IsTheSameOnAnyNumberOfThreadsInAnyOrder_optimized) {
   for (std::size_t k = 0; k < one.size(); ++k) expect_same(one[k].figures, two[k].figures);
 }
 
-TEST(Exploration, RecordsWhatCannotBeAsAStatus) {
+TEST(Exploration, RecordsAnImpossibleSceneAsAStatus) {
   Exploration e = exploration(request("simulate", {"structure.length=230 um,250 um", "gap.contact=2 um,4 um"}));
   const PointRow short_beam = row_of(e, 0), deep_gap = row_of(e, 3), good = row_of(e, 2);
   EXPECT_EQ(short_beam.status, infeasible);

@@ -189,7 +189,7 @@ TEST(Fit, OfARecordThatLeavesTheSceneEndsBefore_optimized) {
   EXPECT_FALSE(whole.doubts.empty());
 }
 
-TEST(TraceWindows, GrowTogetherAndStopApart) {
+TEST(TraceWindows, GrowTogetherAndStopSeparately) {
   Bench bench{.name = "bench.toml", .measurements = {}, .changes = {}};
   for (int k = 0; k < 3; ++k) {
     BenchMeasurement trace{.quantity = "velocity"};
@@ -230,7 +230,7 @@ TEST(Fit, IsTheSameForAnyNumberOfThreads) {
   }
   for (std::size_t i = 0; i < one.costs.size(); ++i) EXPECT_EQ(one.costs[i], two.costs[i]);
 }
-TEST(Fit, SaysWhatTheDataCannotTellApart) {
+TEST(Fit, SaysWhichUnknownsTheDataCannotSeparate) {
   SKIP_WITHOUT_CERES();
   // Closing times alone determine one combination of the unknowns.
   std::vector<Measured> times{all_kinds[4], all_kinds[5]};
@@ -415,7 +415,7 @@ TEST(Fit, OfManyDevicesFindsTheSpreadThatTheyCameFrom) {
   EXPECT_NEAR(written.variables[0].distribution.standard_deviation(), all.deviation[0] / all.mean[0], 1e-5);
   EXPECT_NEAR(written.correlation(0, 2), all.correlation(0, 1), 1e-4);
 }
-TEST(Fit, RefusesWhatNoDeviceHas) {
+TEST(Fit, RefusesUnknownsThatNoDeviceHas) {
   const Bench bench = bench_of({all_kinds[0]}, {});
   EXPECT_NE(refusal([&] { (void)fit(plate(), bench, {.unknowns = {"structure.stifness"}}); }).find("unknown structure.stifness"),
             std::string::npos);

@@ -60,7 +60,7 @@ double cost_of(const ForDevicesResult& found, std::string_view row) {
   return at->judged.figures[&Metrics::largest_impact_velocity].quantiles[2].value;
 }
 
-TEST(ForDevices, IsSofterThanThePlainStepAndTheDrawing_optimized) {
+TEST(ForDevices, IsSofterThanThePlainStepAndTheNominalDesign_optimized) {
   Asked memory;
   const ForDevicesResult found = searched(quick_gold(), race_closings / 4, 1, 2, &memory);
   ASSERT_TRUE(found.best.best_scene);
@@ -99,7 +99,7 @@ TEST(ForDevices, IsSofterThanThePlainStepAndTheDrawing_optimized) {
 }
 
 // A piezo that moves the switch slowly lands all devices, and the pull-in voltage has no influence on it.
-TEST(ForDevices, AreNotToBeMeasuredWhereThatWinsNothing_optimized) {
+TEST(ForDevices, AreNotMeasuredWhereThatHasNoValue_optimized) {
   const SceneFile file = gold_pzt({"structure.modes=2", "simulate.accuracy=1e-3"});
   const ForDevicesResult found =
       optimize_for_devices(file, {.actuator = Actuator::pzt, .family = "bspline:16", .max_evaluations = 100, .jobs = 2},
@@ -122,7 +122,7 @@ TEST(ForDevices, HasTheSameBitsWithAnyJobs_slow) {
   EXPECT_EQ(one.findings.closings, two.findings.closings);
 }
 
-TEST(ForDevices, RanksTheDrawingsCandidatesAgainWhereThereIsNoRace_optimized) {
+TEST(ForDevices, RanksTheNominalCandidatesAgainWithoutARace_optimized) {
   const ForDevicesResult found = searched(quick_gold(), 100);
   ASSERT_TRUE(found.chosen);
   EXPECT_EQ(found.chosen->measure, "drawing");
@@ -169,7 +169,7 @@ TEST(ForDevices, AssumesASpreadWhereTheSceneHasNone_optimized) {
   EXPECT_FALSE(found.best.best_scene->scene.file.written("spread")) << "the scene stays what it was";
 }
 
-TEST(ForDevices, AreNeverGivenWhatIsWorseThanThePlainStep_optimized) {
+TEST(ForDevices, NeverGetAWaveformThatIsWorseThanThePlainStep_optimized) {
   // In this family the step can only rise more slowly.
   const ForDevicesResult found = optimize_for_devices(quick_gold(), {.family = "step", .max_evaluations = 100, .jobs = 2},
                                                       {.verdict = 200, .families = "step", .closings = 100});
@@ -178,7 +178,7 @@ TEST(ForDevices, AreNeverGivenWhatIsWorseThanThePlainStep_optimized) {
   EXPECT_EQ(found.best.plain_step_wins, !found.findings.worse_in.empty());
 }
 
-TEST(ForDevices, LooksAtDevicesBeforeTheDrawingIsSearchedFor_optimized) {
+TEST(ForDevices, ClosesDevicesBeforeTheNominalSearch_optimized) {
   for (const int jobs : {1, 2}) {
     std::atomic<long> evaluations = 0, before_first = -1;
     std::vector<double> costs;
@@ -202,7 +202,7 @@ TEST(ForDevices, LooksAtDevicesBeforeTheDrawingIsSearchedFor_optimized) {
   }
 }
 
-TEST(ForDevices, KeepsWhatLedWhenItIsAskedToStop_optimized) {
+TEST(ForDevices, KeepsTheBestSoFarWhenItIsAskedToStop_optimized) {
   std::atomic<bool> stop = false;
   std::string leading;
   const ForDevicesResult found =
@@ -219,7 +219,7 @@ TEST(ForDevices, KeepsWhatLedWhenItIsAskedToStop_optimized) {
   EXPECT_LT(found.best.best_cost, found.best.baseline_cost);
 }
 
-TEST(ForDevices, KeepsTheDrawingWhenItIsAskedToStopBeforeAnyDeviceWasLookedAt_optimized) {
+TEST(ForDevices, KeepsTheNominalWinnerWhenItIsStoppedBeforeAnyDevice_optimized) {
   std::atomic<bool> stop = false;
   const ForDevicesResult found =
       optimize_for_devices(quick_gold(),

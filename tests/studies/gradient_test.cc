@@ -251,7 +251,7 @@ TEST(Gradient, OfConditionsIsThatOfTheirFigures) {
   }
   EXPECT_GT(compared, 30);
 }
-TEST(Gradient, IsRefusedOfConditionsWithoutOne) {
+TEST(Gradient, IsRefusedForConditionsWithoutDerivatives) {
   const auto refusal = [](const char* condition) {
     const SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold.toml");
     return search_setting(file, Target::bounce, Actuator::electrostatic, "pulse", {},

@@ -46,7 +46,7 @@ TEST(Measurements, AreOfEveryFigureAndEveryPairTheBestFirst_optimized) {
   EXPECT_FALSE(study().interrupted);
 }
 
-TEST(Measurements, OfVoltageAndFrequencyLandWhatNothingKnownDoesNot) {
+TEST(Measurements, OfVoltageAndFrequencyLandDevicesThatFixedVoltagesDoNot) {
   const double nothing = of(study().references, "nothing").score;
   EXPECT_LT(of(study().references, "the best factors themselves").score, 0.5 * nothing);
   EXPECT_LT(of(study().predictions, "Vdp and frequency").score, 0.7 * nothing);
@@ -54,7 +54,7 @@ TEST(Measurements, OfVoltageAndFrequencyLandWhatNothingKnownDoesNot) {
 }
 
 // The best factors of voltages follow from one figure by a straight line, which is fitted to the other half of the devices.
-TEST(Measurements, TellByAFitToTheOtherHalf_optimized) {
+TEST(Measurements, PredictByAFitToTheOtherHalf_optimized) {
   for (std::size_t f = 0; f < study().figures.size(); ++f) {
     const MeasurableFigure& figure = study().figures[f];
     const std::size_t devices = study().devices;
@@ -92,7 +92,7 @@ TEST(Measurements, AreTheSameBitsWhateverTheNumberOfJobs_optimized) {
   }
 }
 
-TEST(Measurements, WithErrorsTellLess_optimized) {
+TEST(Measurements, WithErrorsHaveLessValue_optimized) {
   IdentificationOptions options = quick();
   options.pull_in_error = 0.05;
   const IdentificationStudy erring = identify(recipe(), options);
@@ -144,7 +144,7 @@ TEST(Measurements, AssumeASpreadWhereTheSceneHasNone) {
   EXPECT_EQ(found.devices, study().devices);
 }
 
-TEST(Measurements, RefuseWhatHasNoLandingToPin_optimized) {
+TEST(Measurements, RefuseAWaveformWithoutALanding_optimized) {
   const auto refused = [](const SceneFile& file) { return refusal([&] { static_cast<void>(identify(file, quick())); }); };
   EXPECT_NE(refused(gold_at_17_volts()).find("the plain step"), std::string::npos);
   EXPECT_NE(refused(without(recipe(), "contact")).find("[contact]"), std::string::npos);

@@ -75,7 +75,7 @@ std::vector<std::string> with(std::vector<std::string> keys, std::initializer_li
 }
 constexpr auto at_rest = {Measurable::pull_in, Measurable::release};
 
-TEST(Instruments, ReadWhatTheModelSays) {
+TEST(Instruments, ReadTheFunctionsOfTheModel) {
   const PreparedScene p = prepared(gold(), {"structure.thickness"});
   DeviceReader reader(p);
   ASSERT_TRUE(reader.move_to({1}));

@@ -40,7 +40,7 @@ double bang_bang(const Structure& s, const Gap& gap, double volts, double v) {
   return pulled + (std::asin(gap.contact / amplitude) - std::asin(x_s / amplitude)) / omega;
 }
 
-TEST(LeastTime, OfAnUndampedPlateIsThatOfBangAndBang) {
+TEST(LeastTime, OfAnUndampedPlateIsThatOfABangBangDrive) {
   const PreparedScene p = prepare_and_choose(spring_plate(), true);
   for (const double v : {1e-3, 0.05}) {
     const LeastTime found = least_time(p, {.impact_velocity = v});
@@ -331,7 +331,7 @@ TEST(Limit, LandsTheGoldCantileverByACatchThatBeginsLater_slow) {
   EXPECT_LE(found.landing->closing.metrics.initial_contact_time, 31.1e-6);
 }
 
-TEST(Limit, DoesNotBelieveALandingThatARicherBeamUndoes_slow) {
+TEST(Limit, RejectsALandingThatMoreModesUndo_slow) {
   // Jumps of the piezo excite modes beyond the four of the scene.
   const Limit found = limit(gold_pzt(), {.actuator = Actuator::both, .curves = false});
   ASSERT_TRUE(found.landing.has_value());

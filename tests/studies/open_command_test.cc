@@ -93,7 +93,7 @@ simulate.duration = "400 us"
   EXPECT_GT(c.errors[&Metrics::opening_time], 0);
 }
 
-TEST(OpenCommand, TellsHowAClosedPlateLetsGoInClosedForm) {
+TEST(OpenCommand, OfAClosedPlateHasTheFiguresOfTheClosedForm) {
   const PreparedScene p = prepare(plate(R"(
 waveform.main = { family = "step", before = "40 V", before_state = "closed", level = "0 V" }
 simulate.duration = "40 us"
@@ -156,7 +156,7 @@ std::optional<double> commanded(std::string_view waveform, StartState start = St
   return found ? std::optional(found->time) : std::nullopt;
 }
 
-TEST(OpenCommand, IsTheBeginOfTheLastFallAndNoDip) {
+TEST(OpenCommand, IsTheBeginOfTheLastFallAndNotOfADip) {
   // The plate releases below 26 V.
   EXPECT_EQ(commanded("waveform.main = { family = \"step\", level = \"40 V\" }"), std::nullopt);
   EXPECT_EQ(commanded("waveform.main = { family = \"step\", level = \"10 V\" }"), std::nullopt) << "it never held";
@@ -176,7 +176,7 @@ TEST(OpenCommand, IsTheBeginOfTheLastFallAndNoDip) {
   EXPECT_EQ(commanded(table(R"(times = ["0 s", "40 us", "50 us", "61 us"], voltages = ["40 V", "30 V", "30 V", "0 V"])")), 50e-6);
 }
 
-TEST(OpenCommand, KnowsWhatAFilterOrASineMakesOfAFall) {
+TEST(OpenCommand, IsTheBeginOfAFallAfterAFilterOrOfASine) {
   // The output of a filter begins to fall when its source is switched.
   EXPECT_NEAR(commanded(R"(waveform.main = { family = "pulse", levels = ["40 V", "0 V"], times = ["50 us"] }
 driver.main = { max_voltage = "60 V", bandwidth = "100 kHz" })")

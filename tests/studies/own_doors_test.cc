@@ -149,7 +149,7 @@ TEST(OwnObjective, ThatDoesNotAskForALandingIsAllThatCounts) {
     EXPECT_TRUE(std::isfinite(known));
 }
 
-TEST(OwnObjective, ThatIsNegativeIsRefusedAndWhatIsNotKnownIsInfeasible) {
+TEST(OwnObjective, ThatIsNegativeIsRefusedAndAnUnknownOneIsInfeasible) {
   SearchSetting own =
       search_setting(quick_gold(), by([](const Metrics&, const Metrics&) { return 1.0; }), Actuator::electrostatic, "pulse", {});
   const std::vector<double> x = own.space.starts().front();
@@ -161,7 +161,7 @@ TEST(OwnObjective, ThatIsNegativeIsRefusedAndWhatIsNotKnownIsInfeasible) {
   EXPECT_EQ(refusal([] { (void)Aim(std::shared_ptr<const OwnObjective>()); }), "an own objective must not be null");
 }
 
-TEST(OwnObjective, ThatThrowsEndsNoSearchAndIsToldOf) {
+TEST(OwnObjective, ThatThrowsEndsNoSearchAndIsReported) {
   const OptimizeResult found = optimize(quick_gold(), {.target = by([](const Metrics& m, const Metrics& step) -> double {
                                                          if (m.impact_velocity != step.impact_velocity)
                                                            throw std::domain_error("no such");

@@ -55,7 +55,7 @@ TEST(PracticeDevice, DependsOnItsSeedAndTheNumberOfTheShotAlone) {
 }
 
 // A practice device is unknown to searches and beliefs: it has no number in common with devices of an ensemble.
-TEST(PracticeDevice, IsNoneOfAnyEnsemble) {
+TEST(PracticeDevice, SharesNoNumberWithAnEnsemble) {
   constexpr std::size_t many = 2000;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const PracticeDevice device(gold_at_17_volts(), {.seed = seed});
@@ -158,7 +158,7 @@ TEST(PracticeDevice, FollowsAnotherModelWhereItIsAskedTo) {
   EXPECT_GT(touch().initial_contact_time, own.initial_contact_time);
 }
 
-TEST(PracticeDevice, TellsAClosingThatNeverComesByNoEdge) {
+TEST(PracticeDevice, HasNoEdgeInTheRecordIfItDoesNotClose) {
   const PracticeDevice device(gold_at_17_volts());
   const ContactRecord record = device.close(1, {Step{.level = 1}}, window).record;
   EXPECT_EQ(record.error, "");
@@ -166,7 +166,7 @@ TEST(PracticeDevice, TellsAClosingThatNeverComesByNoEdge) {
   EXPECT_FALSE(first_touch(record).has_value());
 }
 
-TEST(PracticeDevice, RefusesWhatNoLabWouldDo) {
+TEST(PracticeDevice, RefusesShotsThatNoLaboratoryWouldFire) {
   const PracticeDevice device(gold_at_17_volts());
   EXPECT_THAT(refusal([&] { (void)device.close(1, {Step{.level = 26}}, window); }),
               testing::AllOf(HasSubstr("drives.main"), HasSubstr("25")));

@@ -209,7 +209,7 @@ TEST(Prepare, ChoosesAWindowThatShowsASlowClosing) {
   EXPECT_NEAR(p.duration, 4 * first, 1e-3 * first);  // found at a tolerance of 1e-4
 }
 
-TEST(Prepare, RefusesWhatNoComputerWouldSeeTheEndOf) {
+TEST(Prepare, RefusesWindowsAndWaveformsThatCannotBeComputed) {
   const auto with = [](const std::vector<std::string>& more) {
     SceneFile file = gold({R"(waveform.main={family="harmonic", base="15 V", amplitude="1 V", frequency="1 kHz"})"});
     for (const std::string& option : more) file.set(option);

@@ -112,7 +112,7 @@ TEST_F(Race, EndsWhenItIsAskedTo) {
   EXPECT_TRUE(run({.out_of_time = [] { return true; }}).racers.empty());
 }
 
-TEST_F(Race, OfTooFewClosingsIsNone) {
+TEST_F(Race, WithTooFewClosingsIsNotRun) {
   const RaceResult none = race(settings_, cost_, aims_, {.closings = 1000});
   EXPECT_TRUE(none.racers.empty());
   EXPECT_EQ(none.closings, 0);

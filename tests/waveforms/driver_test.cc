@@ -260,7 +260,7 @@ TEST(Driver, GivesWhatItIsToldBeforeItBegins) {
 }
 
 // The converter samples the commanded voltage. Gain, offset and delay act after the converter and before the filters.
-TEST(Driver, ErrsAfterItsConverterAndBeforeItsFilters) {
+TEST(Driver, AppliesItsErrorsAfterItsConverterAndBeforeItsFilters) {
   const Signal told = signal(Step{.level = 40_V, .rise_time = 10_us});
   DriverModel model = of_time_constant(tau);
   model.sample_rate = 1e6;
@@ -342,7 +342,7 @@ TEST(Driver, SamplesItsOwnSamplesToTheSameBits) {
 }
 
 // After rounding, the samples of the steepest permitted ramp are steeper by a step of the converter.
-TEST(Driver, PermitsTheSamplesOfWhatItPermits) {
+TEST(Driver, PermitsTheSamplesOfAPermittedSignal) {
   const DriverLimits slow{.min_voltage = -10, .max_voltage = 50, .max_slew = 20e6};
   const DriverModel coarse{.sample_rate = 25e6, .bits = 8};
   const Signal told = signal(Step{.level = 37_V, .rise_time = 37 / 20e6});

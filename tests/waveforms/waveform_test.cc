@@ -35,7 +35,7 @@ TEST(Waveform, PassesOnWhatItsFamilyRefuses) {
 }
 
 // Rises and first edges begin at the level before; all other waveforms jump from it.
-TEST(Waveform, BeginsAtWhatItHasStoodAt) {
+TEST(Waveform, BeginsAtTheVoltageBefore) {
   constexpr double before = -7, rounding = 1e-14;
   const std::vector<Waveform> rising{
       Step{.level = 3, .rise_time = 1},
