@@ -5,9 +5,9 @@
 // - initial contact time, impact velocity, and the highest rebound within one period of the first mode after first touch;
 // - the static and dynamic pull-in voltages that the scene uses;
 // - the static pull-in, release and collapse voltages, which are compared at twice and four times as many modes (by_modes.h).
-// These larger numbers of modes must also agree about the stability of the closed state. A beam that is clamped at both ends is
-// compared with six further modes, since every second mode is antisymmetric. Three are few for no other beam: on the reference
-// closing three to five modes agree within 2 % in the rebound height, and the sixth changes it by half.
+// These larger numbers of modes must also agree about the stability of the closed state. Fewer than three further modes do not
+// suffice: on the reference closing three to five modes agree within 2 % in the rebound height, but the sixth changes it by
+// half. A beam that is clamped at both ends is compared with six further modes, since every second mode is antisymmetric.
 //
 // The change of a figure is relative to its own size, but at least to a hundredth of its scale in a closing (contact gap,
 // contact gap times first angular frequency).

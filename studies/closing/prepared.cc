@@ -86,7 +86,7 @@ std::string begins_elsewhere(const DriveWaveforms& waveforms, const std::map<std
     const double own = found == before.end() ? 0 : found->second, due = here != nullptr ? here->value_before() : 0;
     if (own != due)
       return fmt::format(
-          "the drive '{}' stands at {} before its waveform, and at {} in the scene: both have to begin at one rest", drive,
+          "the drive '{}' stands at {} before its waveform, and at {} in the scene: both must be the same", drive,
           engineering(own, "V"), engineering(due, "V"));
   }
   return {};

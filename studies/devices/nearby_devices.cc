@@ -127,7 +127,7 @@ DeviceChanges NearbyDevices::changes(const Switch& model, std::vector<std::strin
         why_none[i] = other_pieces;
       }
     } catch (const InvalidInput& error) {
-      why_none[i] = fmt::format("there is no device beside the nominal one: {}", error.what());
+      why_none[i] = fmt::format("a device next to the nominal one is impossible: {}", error.what());
     }
     if (!why_none[i].empty()) neighbours[i].reset();
   }
