@@ -35,7 +35,7 @@ TEST(Pace, IsOverWhenNothingRemains) {
   EXPECT_DOUBLE_EQ((Pace{.computed = 10, .reused = 5, .earlier = 5, .seconds = 1}).seconds_left(), 0);
 }
 
-TEST(WorkPace, TellsTheTimeThatIsLeftOfWhatIsDoneNow) {
+TEST(WorkPace, EstimatesTheRemainingTimeFromTheCurrentTask) {
   WorkPace pace;
   pace.note("dynamic pull-in voltage", 0.9, 4);
   pace.note("closing", 0, 6);

@@ -141,7 +141,7 @@ TEST_F(Search, FindsTheSameBitsWithTwoJobs_optimized) {
   EXPECT_TRUE(one == two) << json::diff(one, two).dump().substr(0, 2000);
 }
 
-TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereThatTakesLittle_slow) {
+TEST_F(Search, ReportsItsDistanceFromTheLeastTimeWhereThatIsQuick_slow) {
   const auto tells = [&](std::vector<std::string> more, const std::string& scene = "two-electrodes.toml") {
     more.insert(more.begin(), {"optimize", (fs::path(SOFTLAND_SOURCE_DIR) / "scenes" / scene).string(), "--quiet", "--robust",
                                "none", "--waveform", "pulse", "--json", "told.json", "--out", "told"});
@@ -162,7 +162,7 @@ TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereThatTakesLittle_slow) {
   EXPECT_FALSE(modes("5")) << "stiff";
 }
 
-TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereAsked_optimized) {
+TEST_F(Search, ReportsItsDistanceFromTheLeastTimeWhereAsked_optimized) {
   const std::string scene = (fs::path(SOFTLAND_SOURCE_DIR) / "scenes/two-electrodes.toml").string();
   const Outcome o = here->run(
       {"optimize", scene, "--quiet", "--robust", "none", "--budget", "200", "--limit", "--json", "limit.json", "--out", "near"});
@@ -212,7 +212,7 @@ TEST_F(Search, TakesAFamilyThatSuitsTheDrivesWhereNoneIsNamed_slow) {
   EXPECT_EQ(family(with({"--calibrate", "Vdp"})), "catch");
 }
 
-TEST_F(Search, TellsWhatEachOfItsFamiliesCameTo) {
+TEST_F(Search, ReportsTheResultOfEachFamily) {
   const Outcome o = search(*here, "several", {"--waveform", "pulse+staircase:2"}, "60");
   const json found = json::parse(read(here->path() / "several/result.json"));
   ASSERT_EQ(found.at("families").size(), 2U);
@@ -437,7 +437,7 @@ std::vector<std::string> for_devices(const std::string& out, std::vector<std::st
   return all;
 }
 
-TEST(SearchForDevices, LeavesTheDrawingAndWhatDevicesGet_optimized) {
+TEST(SearchForDevices, LeavesTheNominalDesignAndTheWaveformForDevices_optimized) {
   const Workplace here;
   write(here.path() / "gold.toml", shipped("mem-gold.toml"));
   const Outcome o = here.run(words("optimize", for_devices("out")));

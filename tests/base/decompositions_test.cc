@@ -27,7 +27,7 @@ TEST(Decompositions, OfASymmetricMatrixGiveItBack) {
   EXPECT_TRUE((factor * factor.transpose()).isApprox(definite, rounding));
 }
 
-TEST(Decompositions, SolveWhatTheyAreGiven) {
+TEST(Decompositions, SolveLinearSystems) {
   MatrixXd unsymmetric = definite;
   unsymmetric(0, 2) = -3;
   EXPECT_TRUE((unsymmetric * solve_linear(unsymmetric, right)).isApprox(right, rounding));
@@ -36,7 +36,7 @@ TEST(Decompositions, SolveWhatTheyAreGiven) {
   EXPECT_TRUE((definite * *solved).isApprox(right, rounding));
 }
 
-TEST(Decompositions, FitWhatCannotBeMet) {
+TEST(Decompositions, FitAnOverdeterminedSystemByLeastSquares) {
   EXPECT_TRUE((definite * solve_semidefinite(definite, right)).isApprox(right, rounding));
   MatrixXd tall(5, 2);
   tall << 1, 0, 1, 1, 1, 2, 1, 3, 1, 5;

@@ -153,7 +153,7 @@ TEST(Spread, RefusesValuesThatTheKeyCannotHave) {
   EXPECT_NE(spread.variables[0].keys[0].refusal(-1e-6), "");
 }
 
-TEST(Spread, CorrelatesWhatItIsToldTo) {
+TEST(Spread, CorrelatesTheNamedVariables) {
   const DeviceSpread spread = spread_of(R"(
 "structure.thickness" = { distribution = "normal", cov = "2 %" }
 gaps = { keys = ["gap.electrode", "gap.contact"], distribution = "normal", cov = "2 %" }

@@ -189,7 +189,7 @@ TEST(Ticks, OfAnyEndsAreFewAndBetweenThem) {
   EXPECT_EQ(ticks({.scale = Scale::linear, .low = -1.7e308, .high = 1.7e308}, 8).size(), 7u);
 }
 
-TEST(AxisOfAPicture, PutsEveryNumberOnThePaper) {
+TEST(AxisOfAPicture, GivesAFinitePixelForEveryNumber) {
   for (const Scale scale : {Scale::linear, Scale::logarithmic}) {
     for (const auto& [low, high] : strange_ends) {
       const Axis axis{.scale = scale, .low = low, .high = high, .pixel_low = 100, .pixel_high = 20};

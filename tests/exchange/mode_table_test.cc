@@ -168,7 +168,7 @@ TEST(ModeTable, RefusesWithTheRule) {
   EXPECT_THAT(edited("uff", "    11\n", "    11 \n         1\n"), HasSubstr("beam.txt:")) << "a record too many";
 }
 
-TEST(ModeTable, SaysWhichModesOfAFileAreNotThere) {
+TEST(ModeTable, SaysWhichModesAreMissingInAFile) {
   const ModeSample& sample = sample_named("frd");
   const ModeTable other_step =
       parse_mode_table(replaced(sample.content, "    2    1MODAL", "    0    1     "), "beam.txt", sample.keys);

@@ -166,7 +166,7 @@ TEST(Recording, PreamblesOfOtherModelsAreUnderstood) {
   EXPECT_EQ(centre.times, (std::vector<double>{-2e-6, -1e-6, 0}));
 }
 
-TEST(Recording, OthersThatAreReadByTheirStructure) {
+TEST(Recording, FormatsThatAreReadByTheirStructure) {
   const Recording generator = read(
       "RIGOL:DG8:CSV DATA FILE\nTYPE:Arb\nAMP:10.0000 Vpp\nPERIOD:4.00E-6 "
       "S\nDOTS:4\nMODE:Normal\n\nx,y[V]\n,5.0000\n,2.5000\n,0.0000\n,-5.0000\n");

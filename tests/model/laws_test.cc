@@ -674,7 +674,7 @@ TEST(ContactLaw, PushesEverMoreUnlessItIsAdhesive) {
   }
 }
 
-TEST(ContactLaw, KnowsHowFarItHolds) {
+TEST(ContactLaw, KnowsItsLargestInterference) {
   EXPECT_TRUE(std::isinf(largest_interference(LinearSpring::example())));
   EXPECT_TRUE(std::isinf(largest_interference(HystereticSpring::example())));
   EXPECT_TRUE(std::isinf(largest_interference(RigidStop::example())));
@@ -684,7 +684,7 @@ TEST(ContactLaw, KnowsHowFarItHolds) {
   EXPECT_DOUBLE_EQ(largest_interference(GaussianAsperities::example()), 4 * 30_nm);
 }
 
-TEST(ContactLaw, LinearIsASpring) {
+TEST(ContactLaw, LinearLawIsASpring) {
   const ContactLaw law = law_of(LinearSpring::example());
   EXPECT_DOUBLE_EQ(contact_force(law, 2_nm), 1e4 * 2e-9);
   EXPECT_DOUBLE_EQ(contact_energy(law, 2_nm), 1e4 * 4e-18 / 2);
@@ -905,7 +905,7 @@ TEST(ContactMemory, DeeperDentsHaveTakenMore) {
   }
 }
 
-TEST(Hysteretic, ReturnsTheShareOfTheWorkThatTheStiffnessesSay) {
+TEST(Hysteretic, ReturnsTheShareOfTheWorkThatFollowsFromTheStiffnesses) {
   const ContactLaw law = law_of(hysteretic);
   for (const double deepest : interferences) {
     EXPECT_NEAR(dent(law, deepest).lost / contact_energy(law, deepest), 1 - 1e4 / 2.5e4, 1e-12);
@@ -1022,7 +1022,7 @@ double returned_by_flattened_summit(double u) {
   return (u - residual) / (exponent + 1);
 }
 
-TEST(ElasticPlastic, GivesBackMoreThanAFlattenedSummitByWhatTheDocumentationSays) {
+TEST(ElasticPlastic, ReturnsMoreEnergyThanAFlattenedSummitAsDocumented) {
   const double w = yield(Plasticity::kogut_etsion).first, critical = ke_asperity(w, radius, hardness, modulus);
   // The sharp summit unloads along Hertz's curve from the load p: 0.4 p p^(2/3).
   const auto sharp = [](double load) { return 0.4 * std::pow(load, 2.0 / 3); };

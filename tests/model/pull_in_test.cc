@@ -176,13 +176,13 @@ TEST(DynamicPullIn, LiesBetweenTheUndampedOneAndTheStaticOne) {
   EXPECT_GT(without, 0.85 * statically);
 }
 
-TEST(DynamicPullIn, PassesOnWhatStaticPullInSaid) {
+TEST(DynamicPullIn, PassesOnTheStatusOfStaticPullIn) {
   const DynamicPullIn found = dynamic_pull_in(gold(), 0, {.status = Status::numerical_failure});
   EXPECT_EQ(found.status, Status::numerical_failure);
   EXPECT_TRUE(std::isnan(found.voltage));
 }
 
-TEST(DynamicPullIn, TellsProgressThatNeverRunsBack) {
+TEST(DynamicPullIn, ReportsProgressThatNeverDecreases) {
   // A switch in a viscous film creeps, an undamped one closes at the first trial: tests brackets of both kinds.
   for (const double viscosity : {0.0, 1.86e-5, 1e-2}) {
     Device device = test::gold_cantilever();

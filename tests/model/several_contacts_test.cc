@@ -135,7 +135,7 @@ TEST(SeveralContacts, FirstReboundsAndDepthsAgreeWithAnIndependentProgram) {
 }
 
 // A connection that needs all contacts has the largest of their separations; one that needs any contact has the smallest.
-TEST(SeveralContacts, TheConnectionIsAsFarAsTheFurthestOrTheNearestContact) {
+TEST(SeveralContacts, TheSeparationIsTheLargestOrTheSmallestOfTheContacts) {
   const std::vector<Contact> apart{spring("tip", 247.5_um, 2_um, 2000), spring("inner", 175_um, 1.1_um, 2000)},
       dimples{spring("high", 247.5_um, 2_um, 1000), spring("low", 242.5_um, 1.97_um, 1000)};
   for (const auto& [contacts, needs] :
@@ -191,7 +191,7 @@ TEST(SeveralContacts, CountIsTheNumberOfEqualContacts) {
 }
 
 // A released plate moves through its rest position to the back stop, in closed form.
-TEST(SeveralContacts, ABackStopCatchesAPlateThatIsLetGo) {
+TEST(SeveralContacts, ABackStopCatchesAReleasedPlate) {
   Device device{
       .structure = {.length = 100_um, .width = 100_um, .kind = Plate{.mass = 1e-10, .stiffness = 10}},
       .gap = {.electrode = 4_um, .contact = 3_um},

@@ -91,7 +91,7 @@ TYPED_TEST(KindOfStructure, IsDrawnWithItsOwnModes) {
   EXPECT_GT(drawn.shapes.cwiseAbs().maxCoeff(), 0);
 }
 
-TEST(Structure, FindsTheKindInForceAndWhatItDerivesFrom) {
+TEST(Structure, FindsTheChosenKindAndItsBase) {
   Structure s{.kind = Bridge{{.density = 2330}}};
   ASSERT_NE(s.find<Beam>(), nullptr);
   EXPECT_EQ(s.find<Beam>()->density, 2330);

@@ -80,7 +80,7 @@ ControlProblem push_to(Mass& mass, const VectorXd& end, int intervals) {
           .knots = knots(intervals)};
 }
 
-TEST(Collocation, PushesAMassFromRestToRestByBangAndBang) {
+TEST(Collocation, PushesAMassFromRestToRestByABangBangControl) {
   Mass mass;
   const VectorXd end = VectorXd::Unit(2, 0);
   const ControlledCourse course = solve(push_to(mass, end, 8), line(VectorXd::Zero(2), end, 3, 0));
@@ -197,7 +197,7 @@ TEST(Collocation, KeepsConditionsOnTheWay) {
   EXPECT_LE(course.states.row(1).maxCoeff(), 0.5 + 1e-6);
 }
 
-TEST(Collocation, SaysThatWhatIsAskedCannotBe) {
+TEST(Collocation, ReportsAnImpossibleProblem) {
   Mass mass;
   ControlProblem problem = push_to(mass, VectorXd::Unit(2, 0), 8);
   problem.longest = 1;

@@ -45,7 +45,7 @@ TEST(Answers, RankInfeasiblePointsBelowEverythingSeen) {
   });
 }
 
-TEST(Answers, InTheDarkArePenaltiesAboveAnyValueToCome) {
+TEST(Answers, BeforeAnyFeasiblePointArePenaltiesAboveAnyLaterValue) {
   with_strand(
       1, [](auto x) { return x[0] < 0.5 ? kNaN : std::numeric_limits<double>::max(); },
       [](BudgetedObjective& budgeted) {
@@ -153,7 +153,7 @@ TEST(Gradient, OfAParabolaIsExactInsideAndAtTheBounds) {
   });
 }
 
-TEST(Gradient, LooksAwayFromInfeasiblePoints) {
+TEST(Gradient, TakesDifferencesAwayFromInfeasiblePoints) {
   const auto line = [](std::span<const double> x) { return x[0] < 0.5 ? kNaN : 2 * x[0]; };
   with_strand(1, line, [](BudgetedObjective& budgeted) {
     std::vector<double> gradient(1);

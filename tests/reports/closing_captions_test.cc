@@ -204,7 +204,7 @@ TEST(Captions, OfASearchNameTheWinner) {
                   .ends_with("In 300 evaluations the cost stayed at 2; the winner is number 1 of them."));
 }
 
-TEST(Goal, IsOfTheFiguresThatTheTargetIsAbout) {
+TEST(Goal, ComparesTheFiguresOfTheTarget) {
   json result = sample_optimize_result(few_rows);
   EXPECT_EQ(goal_text(read_closing(result), figure_of(&Metrics::bounce_count)), "0");
   EXPECT_EQ(goal_text(read_closing(result), figure_of(&Metrics::settled)), "yes");
@@ -224,7 +224,7 @@ TEST(Captions, OfASingleRunSpeakOfTheSwitch) {
             "Force of the contact on the beam. It peaks at 290 µN. Closed and at rest, the contact carries 2.10 µN.");
 }
 
-TEST(Change, KnowsBetterFromWorse) {
+TEST(Change, DistinguishesBetterFromWorse) {
   EXPECT_EQ(change(374, 44.5, true, Kind::time).words, "8.4 times shorter");
   EXPECT_EQ(change(374, 44.5, true, Kind::time).verdict, Verdict::better);
   EXPECT_EQ(change(1, 2, true).words, "2.0 times higher");

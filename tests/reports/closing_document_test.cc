@@ -187,7 +187,7 @@ TEST(HtmlReport, OfASingleRunHasNoBaselineAndNoSearch) {
     EXPECT_THAT(page, Not(HasSubstr(words)));
 }
 
-TEST(HtmlReport, BearsAnyPartMissingNullOrOfAnotherType) {
+TEST(HtmlReport, AcceptsAnyPartMissingNullOrOfAnotherType) {
   const json whole = test::sample_optimize_result(300);
   for (const auto& [key, value] : whole.items()) {
     for (const json& stand_in : {json(), json("text"), json(3.5), json::array(), json::object(), json{{1, 2}, "x", nullptr}}) {
@@ -229,7 +229,7 @@ TEST(HtmlReport, OfARunWithoutContactRepeatsNoFourTimes) {
   EXPECT_THAT(page_html(closing_document(read_closing(result))), Not(HasSubstr("<div class=\"key\">")));
 }
 
-TEST(HtmlReport, BearsTextThatIsNotUtf8) {
+TEST(HtmlReport, AcceptsTextThatIsNotUtf8) {
   json result = test::sample_optimize_result(300);
   result["title"] = "\xff\xfe";
   result["best"]["waveforms"]["\xff"] = {{0, 1}};

@@ -50,7 +50,7 @@ std::string read_aloud(const std::string& page) {
   return text;
 }
 
-TEST(EveryReport, SaysNoMoreThanIsKnown) {
+TEST(EveryReport, PrintsReadableNumbers) {
   for (json result : {sample_optimize_result(few_rows), softland::test::sample_simulate_result(few_rows)}) {
     EXPECT_EQ(absurd_number(terminal_text(closing_document(read_closing(result)))), "");
     // Figures of a landing so soft that its residuals are rounding errors, and errors from a run of the same kind.
@@ -88,7 +88,7 @@ std::string misshapen(const std::string& report) {
   return std::regex_search(text, found, none) || std::regex_search(text, found, long_number) ? found.str() : std::string();
 }
 
-TEST(EveryReport, DrawsAndPrintsWhatNoSwitchHas_slow) {
+TEST(EveryReport, DrawsAndPrintsAbsurdNumbers_slow) {
   for (json whole : {sample_optimize_result(60), softland::test::sample_simulate_result(60)}) {
     whole["scene"]["structure"] = {{"kind", "cantilever"}, {"length", "250 um"}};
     whole["scene"]["gap"] = {{"electrode", "3.5 um"}, {"contact", "2 um"}};
@@ -121,7 +121,7 @@ TEST(TextReport, ConfirmsOnlyAWinnerThatLandsSoftly) {
   EXPECT_THAT(terminal_text(closing_document(read_closing(result))), Not(HasSubstr("Simulated again")));
 }
 
-TEST(TextReport, PassesOverWhatIsNotThere) {
+TEST(TextReport, LeavesOutMissingParts) {
   for (const char* text : {"{}", R"({"kind": "optimize"})", R"({"kind": "simulate", "warnings": [1, "so"], "checks": 2})"})
     EXPECT_NO_THROW((void)terminal_text(closing_document(read_closing(json::parse(text))))) << text;
 }

@@ -103,7 +103,7 @@ TEST(TuningReport, IsTheSameFromItsJson) {
   EXPECT_THROW((void)read_tuning(other), InvalidInput);
 }
 
-TEST(TuningReport, SaysWhatASlowApproachIsBeside) {
+TEST(TuningReport, ComparesASlowApproachWithThePlainStep) {
   TuningReport report = tuned_sample();
   EXPECT_EQ(json_of(report)["approach"], "catch");
   EXPECT_THAT(terminal_text(tuning_document(report)), testing::Not(testing::HasSubstr("bounces until")));
@@ -157,7 +157,7 @@ TEST(TuningReport, LandsWhereTheLastClosingWasOfTheWaveformKept) {
   EXPECT_TRUE(report.lands()) << "a shot without a record is no closing";
 }
 
-TEST(TuningReport, BringsNothingIntoItsPageButText) {
+TEST(TuningReport, PutsOnlyTextIntoItsPage) {
   const std::string page = page_html(tuning_document(tuned_sample()));
   for (const char* tag : {"<b>", "<i>", "<u>", "<s>"}) EXPECT_THAT(page, Not(HasSubstr(tag)));
   for (const char* part :

@@ -60,7 +60,7 @@ void expect_refused(const fs::path& file, const std::string& reason) {
   EXPECT_EQ(regular ? content_of(file) : "", before);
 }
 
-TEST_F(Place, OfAnythingButAStoreIsRefused) {
+TEST_F(Place, OfAFileThatIsNotAStoreIsRefused) {
   expect_refused(write("empty", ""), "is empty (0 bytes)");
   expect_refused(write("text", "title = \"a scene\"\n"), "is not a store of softland");
   expect_refused(write("long text", std::string(5000, 'x')), "is not a store of softland");
@@ -378,7 +378,7 @@ TEST_F(Place, WithTheJournalOfOneThatDiedIsPutInOrder) {
   EXPECT_THAT(names_in(path("copy")), ElementsAre("study.sqlite"));
 }
 
-TEST_F(Place, OnAFullDiskLosesNoRowThatItTold) {
+TEST_F(Place, OnAFullDiskLosesNoAcceptedRow) {
   // A limit on the file size simulates a full disk, in a separate process.
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);
@@ -429,7 +429,7 @@ std::string said_while_writing(StudyStore& store, std::int64_t from, std::int64_
   return "nothing";
 }
 
-TEST_F(Place, ThatIsTakenFromUnderAWriterLosesNoRow) {
+TEST_F(Place, ThatIsRemovedOrReplacedDuringWritingLosesNoRow) {
   const auto replaced_by_another = [this] {
     fs::remove(file);
     fs::remove(file.string() + "-wal");
@@ -495,7 +495,7 @@ TEST_F(Place, WhoseFolderIsTakenIsRescuedElsewhere) {
   EXPECT_EQ(rows_in(path("study.sqlite.rescued")).size(), 100u);
 }
 
-TEST_F(Place, HeldByAnotherProgramIsToldToBeSo) {
+TEST_F(Place, HeldByAnotherProgramIsReported) {
   make_store(file, 10);
   sqlite3* other = nullptr;
   ASSERT_EQ(sqlite3_open(file.c_str(), &other), SQLITE_OK);

@@ -112,7 +112,7 @@ TEST(SearchRequest, GivesItsBudgetToEveryKindOfSearch) {
   EXPECT_EQ(planned_of({.budget = "1 s"}, file).for_devices->closings, race_closings / 4);
 }
 
-TEST(SearchRequest, SharesItsConditionsBetweenDrawingAndDevices) {
+TEST(SearchRequest, SharesItsConditionsBetweenNominalDesignAndDevices) {
   const SceneFile file = scene("mem-gold.toml");
   const PlannedSearch raced = planned_of({.constrain = {"impact_velocity < 50 mm/s", "largest_impact_velocity < 60 mm/s"}}, file);
   EXPECT_EQ(raced.for_devices->conditions.size(), 2U);

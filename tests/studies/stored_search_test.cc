@@ -72,7 +72,7 @@ TEST_F(StoredSearches, GoOnWithoutSimulatingAnythingTwice) {
   EXPECT_EQ(run(fresh).best().best_scene->scene.file.text(), whole);
 }
 
-TEST_F(StoredSearches, HaveTheWordsAndTheSceneOfWhatTheyGoOnWith) {
+TEST_F(StoredSearches, HaveTheRequestAndTheSceneOfTheContinuedSearch) {
   std::int64_t first = 0;
   static_cast<void>(found(asked("60"), first));
   std::optional<KnownSearch> known;
@@ -83,7 +83,7 @@ TEST_F(StoredSearches, HaveTheWordsAndTheSceneOfWhatTheyGoOnWith) {
   EXPECT_EQ(search.scene.text(), quick().text());
 }
 
-TEST_F(StoredSearches, SayWhatTheyDifferIn) {
+TEST_F(StoredSearches, NameTheirDifferences) {
   std::int64_t first = 0;
   static_cast<void>(found(asked("40"), first));
   const auto refusal = [&](const AskedSearch& other) {

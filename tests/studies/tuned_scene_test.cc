@@ -151,7 +151,7 @@ TEST(TunedScenes, UnitsFollowThePullInVoltageAndThePeriod) {
   EXPECT_NEAR(of("driver.main.gain").first.volts, 1 / 1.005, second_order);
 }
 
-TEST(TunedScenes, ALevelThatIsSafePullsNoneOfAThousandThrough) {
+TEST(TunedScenes, AtASafeLevelNoneOfAThousandDevicesCollapses) {
   const TunedScene scene(gold({"structure.modes=2", "contact.effective_modulus=1 GPa"}), {.vectors = Vectors::none}, {});
   const double safe = scene.safe_level(VectorXd::Zero(scene.size()), Eigen::MatrixXd::Identity(scene.size(), scene.size()));
   const double known = scene.safe_level(VectorXd::Zero(scene.size()), Eigen::MatrixXd::Zero(scene.size(), scene.size()));

@@ -108,7 +108,7 @@ TEST(Tuners, OfShotsThatAreRepeatedTheLastIsKept_optimized) {
   EXPECT_EQ(tuner.kept().number, tuner.next().number - 1);
 }
 
-TEST(Tuners, ARecordThatIsNoneTeachesNothing_optimized) {
+TEST(Tuners, ARecordWithAnErrorLeavesTheBeliefUnchanged_optimized) {
   Tuner tuner(gold_with_two_modes(), cheap());
   const std::vector<std::uint64_t> first = bits(tuner.next());
   EXPECT_THROW(tuner.learn({.closing_time = -1}), InvalidInput);
@@ -133,7 +133,7 @@ TEST(Tuners, AClosingNarrowsTheBelief_optimized) {
   EXPECT_LT(find("gaps").deviation, 0.9 * find("gaps").prior_deviation);
 }
 
-TEST(Tuners, NoLevelPullsMoreThanOneDeviceInAThousandThrough_optimized) {
+TEST(Tuners, AtNoLevelMoreThanOneDeviceInAThousandCollapses_optimized) {
   const SceneFile file = gold({"structure.modes=2", "contact.effective_modulus=0.01 GPa", "driver.main.max_voltage=60 V"});
   const TunedScene scene(file, cheap(), {});
   const double safe =
@@ -153,7 +153,7 @@ TEST(Tuners, OptionsOutOfRangeAreRefused) {
 }
 
 // A rare device may also explain one such touch: two records are needed.
-TEST(Tuners, ADeviceUnlikeTheSceneIsCalledSo_optimized) {
+TEST(Tuners, ADeviceThatDoesNotMatchTheModelIsReported_optimized) {
   constexpr int closings = 2;
   const Tuner fresh(gold_with_two_modes(), cheap());
   const auto tuned = [&](const PracticeModel& model) {
@@ -171,7 +171,7 @@ TEST(Tuners, ADeviceUnlikeTheSceneIsCalledSo_optimized) {
 }
 
 // A device of the spread is not rejected, wherever it is in the spread, and however many peaks its records leave in the belief.
-TEST(Tuners, RightDevicesInTheTailOfTheSpreadAreNotCalledWrong_optimized) {
+TEST(Tuners, DevicesInTheTailOfTheSpreadAreNotRejected_optimized) {
   const Tuner fresh(gold_with_two_modes(), cheap());
   SceneFile alike = gold_with_two_modes();
   for (const char* cov : {"spread.\"structure.thickness\".cov=\"0.01 %\"", "spread.\"structure.youngs_modulus\".cov=\"0.01 %\"",
@@ -292,7 +292,7 @@ TEST(Tuners, ASwitchThatAPiezoCanCarryIsLandedSlowlyFromTheFirstShotOn_optimized
   }
 }
 
-TEST(Tuners, AnEarlyTouchThatIsAskedForIsFlownTo_optimized) {
+TEST(Tuners, ARequestedEarlyTouchIsReached_optimized) {
   TunerOptions options = by_piezo();
   options.actuator = Actuator::both;
   EXPECT_EQ(Tuner(gold_pzt_with_two_modes(), options).approach(), Approach::quasi_static);

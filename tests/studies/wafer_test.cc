@@ -35,7 +35,7 @@ TEST(Wafer, OfNothingIsTheSpread) {
   EXPECT_LT((believed_of_wafer(idle, size).next.covariance - standard.covariance).norm(), 1e-12) << "it was told nothing";
 }
 
-TEST(Wafer, OfDevicesThatAreAlikeForetellsTheNext) {
+TEST(Wafer, OfSimilarDevicesPredictsTheNext) {
   const std::vector<TunedBelief> alike(12, known(1.5));
   const WaferBelief wafer = believed_of_wafer(alike, size);
   EXPECT_GT(wafer.share, 0.9);
@@ -45,7 +45,7 @@ TEST(Wafer, OfDevicesThatAreAlikeForetellsTheNext) {
   EXPECT_NEAR(wafer.next.mean[1], 0, 1e-12);
 }
 
-TEST(Wafer, OfDevicesThatDifferAsTheSpreadForetellsLittle) {
+TEST(Wafer, OfDevicesThatDifferAsTheSpreadPredictsLittle) {
   std::vector<TunedBelief> apart;
   for (std::uint64_t k = 0; k < 40; ++k) apart.push_back(known(random_normal(5, Stream::practice_device, k)));
   const WaferBelief wafer = believed_of_wafer(apart, size);
@@ -54,7 +54,7 @@ TEST(Wafer, OfDevicesThatDifferAsTheSpreadForetellsLittle) {
 }
 
 // With a given rho and one measurement the next device is at rho times the measured value.
-TEST(Wafer, OfOneDeviceIsBelievedAsFarAsWafersAreAlike) {
+TEST(Wafer, OfOneDeviceCountsByTheShareOfTheWafer) {
   const std::vector<TunedBelief> one{known(1)};
   const WaferBelief wafer = believed_of_wafer(one, size);
   // The mean of 1 - 0.03^(2 s) over s from 0 to 1; the trapezoidal rule of the grid agrees with it except at the ends.
@@ -72,7 +72,7 @@ TEST(Wafer, DoesNotCountAPriorTwice) {
   EXPECT_NEAR(believed_of_wafer(both, size).share, believed_of_wafer(apart, size).share, 1e-3);
 }
 
-TEST(Wafer, RefusesWhatIsNoBeliefOfTheScene) {
+TEST(Wafer, RefusesInvalidBeliefs) {
   EXPECT_THROW(static_cast<void>(believed_of_wafer(std::vector(1, known(1)), size + 1)), InvalidInput);
   TunedBelief flat = known(1);
   flat.posterior.covariance(1, 1) = 0;

@@ -98,7 +98,7 @@ TEST(Wear, HasThePressureOfTheHighestSummitByHertz) {
   EXPECT_LE(c.errors[figure_of(&Metrics::pressure)], 1e-4 * c.metrics.pressure);
 }
 
-TEST(Wear, IsToldOfScenesThatAskForItAlone) {
+TEST(Wear, IsReportedOnlyForScenesThatRequestIt) {
   const Closing with = simulate(prepare(plate()), false);
   const PreparedScene p = prepare(SceneFile::parse(R"(
 structure = { kind = "plate", mass = "1e-10 kg", stiffness = "10 N/m", area = "1e-8 m^2", damping_ratio = 0.05 }
@@ -115,7 +115,7 @@ waveform.main = { family = "step", level = "45 V" }
 }
 
 // Every cycle has its own charges and pressure; the first cycle has those of a run of one cycle.
-TEST(Wear, IsToldOfEveryCycle) {
+TEST(Wear, IsReportedForEveryCycle) {
   const PreparedScene p = prepare(plate());
   const CycleWaveforms ramps{.name = "ramps",
                              .closing = {Signal::piecewise_linear({{0, 0}, {1e-7, 45}})},

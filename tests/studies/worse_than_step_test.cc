@@ -53,7 +53,7 @@ TEST(WorseThanStep, NamesTheFiguresInWhichADriveIsWorse) {
   EXPECT_THAT(worse(outcomes(0.05, 100e-9, 2e-6)), ElementsAre("peak_contact_force_N"));
 }
 
-TEST(WorseThanStep, DoesNotMindWhatMayBeChance) {
+TEST(WorseThanStep, AcceptsDifferencesThatMayBeChance) {
   // One device in twenty is slightly faster, the others are slower: the quantile is above that of the step, but its interval is
   // not.
   std::vector<DeviceOutcome> drive = step;

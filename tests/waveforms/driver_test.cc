@@ -55,7 +55,7 @@ double integrated(const Signal& input, double time_constant, double time) {
   return output;
 }
 
-TEST(Driver, OfNoModelGivesWhatItIsTold) {
+TEST(Driver, OfNoModelAppliesTheCommandedVoltage) {
   const Signal told = signal(Pulse{.levels = {40_V, 0_V}, .times = {20_us}, .edge = 1_us});
   EXPECT_EQ(driven(told, {}, limits, 1).pieces(), told.pieces());
   EXPECT_TRUE(driven(Signal(), {.sample_rate = 1e6, .bits = 3}, limits, 1).is_zero()) << "told nothing it gives nothing";
@@ -243,7 +243,7 @@ TEST(Driver, SamplesASineThatNeverEndsUpToTheEnd) {
                        {"takes 1000000000000 samples", "it may take 10000000"});
 }
 
-TEST(Driver, GivesWhatItIsToldBeforeItBegins) {
+TEST(Driver, AppliesTheCommandedVoltageBeforeItBegins) {
   const Signal stands = signal(Step{.level = 20_V}, 20_V), rises = signal(Step{.level = 40_V}, 20_V);
   const DriverModel sampled{.sample_rate = 1e6}, filtered = of_time_constant(tau), charging{.source_resistance = 1, .load = tau};
   const DriverModel all{.sample_rate = 1e6, .bits = 12, .bandwidth = filtered.bandwidth, .source_resistance = 1, .load = tau};
