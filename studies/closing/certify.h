@@ -21,7 +21,7 @@ namespace softland {
 /// The rebound at which the runs of a cloud diverge. Until then all runs have the same rebounds.
 struct GrazingRebound {
   int number = 0;              ///< number of the rebound among all rebounds of the first run, counted from 1
-  double time = 0;             ///< begin of the rebound [s]
+  double time = 0;             ///< beginning of the rebound [s]
   double height = 0;           ///< [m]
   double impact_velocity = 0;  ///< impact velocity of the touch before the rebound [m/s]
   bool at_threshold =

@@ -95,8 +95,8 @@ class Holding {
   std::vector<double> last_, lost_;
 };
 
-// Returns the begin of the fall that brings an electrode to its level just before `time`, or the jump if it jumps at `time`;
-// `time` if it does not fall.
+// Returns the beginning of the fall that brings an electrode to its level just before `time`, or the jump if it jumps at
+// `time`; `time` if it does not fall.
 double begin_of_fall(const Switch& model, std::size_t electrode, const Signal& signal, double time) {
   if (signal.voltage_before(time) != signal.voltage(time)) return time;
   const std::vector<SignalPiece>& pieces = signal.pieces();

@@ -15,12 +15,11 @@ struct OpenCommand {
   std::vector<Signal> held;  ///< the drives until the command, and constant at their levels just before it from then on
 };
 
-/// Finds the command to open that these drives give, one per drive of the switch. It is the begin of their last fall to levels
-/// under which no closed state is stable and the open state is. The levels up to the end of the waveforms count. A switch that
-/// starts closed is commanded to open by the first such fall.
-/// A fall is the time in which the voltages of the electrodes that cause it only approach 0 V. A downward jump is a fall that
-/// begins at the jump. There is no command if the hold levels keep the switch closed or collapse it, and if the drives never
-/// held it.
+/// Finds the command to open that these drives give, one per drive of the switch. It is the beginning of their last fall to
+/// levels under which no closed state is stable and the open state is. The levels up to the end of the waveforms count. A
+/// switch that starts closed is commanded to open by the first such fall. A fall is the time in which the voltages of the
+/// electrodes that cause it only approach 0 V. A downward jump is a fall that begins at the jump. There is no command if the
+/// hold levels keep the switch closed or collapse it, and if the drives never held it.
 [[nodiscard]] std::optional<OpenCommand> open_command(const Switch& model, const std::vector<Signal>& signals, StartState start);
 
 /// Finds the command of these drives of a scene: simulate.open_at if the scene has it. The command may come after the window.

@@ -37,9 +37,9 @@ struct ShownMotion {
 /// Largest number of instants, and largest product of the numbers of modes and instants.
 inline constexpr std::size_t most_instants = 2000, most_amplitudes = 24'000;
 
-/// Runs the closing once more to record its modes. The kept instants are the first and the last one, the begin, the end and the
-/// extreme of touches and of the highest rebounds, and between them those that linear interpolation misses by the most. None if
-/// the run did not come to its end.
+/// Runs the closing once more to record its modes. The kept instants are the first and the last one, the beginning, the end and
+/// the extreme of touches and of the highest rebounds, and between them those that linear interpolation misses by the most.
+/// None if the run did not come to its end.
 [[nodiscard]] std::optional<ShownMotion> shown_motion(const PreparedScene& prepared, const Closing& closing);
 
 }  // namespace softland

@@ -127,7 +127,7 @@ struct Cycling {
   bool interrupted = false;
 };
 
-/// Completes the waveforms: a missing one goes at once to the begin of the opening, or to 0 V.
+/// Completes the waveforms: a missing one goes at once to the beginning of the opening, or to 0 V.
 void complete(CycleWaveforms& waveforms, const PreparedScene& given);
 /// Returns the plain cycle. Every drive goes at once, as fast as its driver permits, to the last level of the closing, and on
 /// command to the last level of the opening.

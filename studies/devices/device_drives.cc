@@ -61,9 +61,9 @@ struct DeviceDrives::Driven {
   std::vector<Waveform> waveforms;
   std::vector<Signal> signals;  // commanded voltages
   std::vector<SourceErrors> errors;
-  double origin = 0;  // begin of the clock [s]
+  double origin = 0;  // beginning of the clock [s]
 
-  // Returns the commanded signal with jitter, and its begin on the clock of the waveform [s].
+  // Returns the commanded signal with jitter, and its beginning on the clock of the waveform [s].
   [[nodiscard]] std::pair<Signal, double> jittered(std::size_t k) const {
     const SourceErrors jitter{.edges = errors[k].edges};
     const double begin = std::min(0.0, first_edge(signals[k], jitter));

@@ -17,11 +17,11 @@ namespace softland {
 /// The progress of an exploration.
 struct Explored {
   std::int64_t points = 0;  ///< number of points of the part
-  std::int64_t known = 0;   ///< number of points in the store at the begin
+  std::int64_t known = 0;   ///< number of points in the store at the beginning
   std::int64_t computed = 0;
   std::int64_t reused = 0;     ///< number of rows taken over from earlier plans
   std::int64_t earlier = 0;    ///< number of rows of earlier plans: at most as many can be reused
-  double seconds = 0;          ///< time since the begin [s]
+  double seconds = 0;          ///< time since the beginning [s]
   double computing = 0;        ///< time since the first new point was begun [s]
   double waited_on_store = 0;  ///< total time for which threads waited for the store [s]
 

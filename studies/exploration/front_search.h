@@ -23,7 +23,7 @@ inline constexpr std::string_view usual_front_sample = "nsga2:2000";
 struct FrontFound {
   std::int64_t points = 0;    ///< number of points of the plan
   std::int64_t asked = 0;     ///< number of points that the search has requested
-  std::int64_t known = 0;     ///< number of points in the store at the begin
+  std::int64_t known = 0;     ///< number of points in the store at the beginning
   std::int64_t computed = 0;  ///< number of computed points
   Termination termination = Termination::interrupted;
 };

@@ -61,21 +61,21 @@ struct ImaginedDevice {
 /// A closing as an instrument without errors records it.
 template <class Openings>
 struct SeenClosing {
-  double touch = std::numeric_limits<double>::quiet_NaN();  ///< first closing of the contact after the begin of the drives [s]
+  double touch = std::numeric_limits<double>::quiet_NaN();  ///< first closing of the contact after the drives begin [s]
   /// Impact velocity at that time [m/s]. From the capacitance it is the rate of the capacitance over its rise, times the
   /// contact gap.
   double speed = std::numeric_limits<double>::quiet_NaN();
-  Openings openings = {};  ///< openings, in time after the begin of the drives [s]
+  Openings openings = {};  ///< openings, in time after the drives begin [s]
 };
 
 /// A simulated closing of a device of a belief, without errors of measurement.
 struct ImaginedClosing {
-  bool followed = false;                                    ///< true if simulated to the end of its window
-  double touch = std::numeric_limits<double>::quiet_NaN();  ///< first touch after the begin of the drives [s]; NaN without touch
-  double speed = std::numeric_limits<double>::quiet_NaN();  ///< impact velocity of the first touch [m/s]
+  bool followed = false;                                      ///< true if simulated to the end of its window
+  double touch = std::numeric_limits<double>::quiet_NaN();    ///< first touch after the drives begin [s]; NaN without touch
+  double speed = std::numeric_limits<double>::quiet_NaN();    ///< impact velocity of the first touch [m/s]
   double fastest = std::numeric_limits<double>::quiet_NaN();  ///< largest impact velocity of all touches [m/s]
   double highest = 0;                                         ///< highest rebound [m]
-  std::vector<ContactOpening> openings = {};                  ///< openings, in time after the begin of the drives [s]
+  std::vector<ContactOpening> openings = {};                  ///< openings, in time after the drives begin [s]
   double delay = 0;                                           ///< delay of its record behind the drives [s]
   /// The closing as its capacitance shows it; none if the instrument records the contact.
   std::optional<SeenClosing<std::vector<ContactOpening>>> by_capacitance = {};

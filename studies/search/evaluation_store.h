@@ -45,7 +45,7 @@ class EvaluationStore : public EvaluationMemory {
   StudyStore store_;
   std::int64_t points_;
   mutable std::mutex mutex_;
-  std::map<ContentKey, EvaluationValues> known_;  // evaluations of this plan that the store held at the begin
+  std::map<ContentKey, EvaluationValues> known_;  // evaluations of this plan that the store held at the beginning
   std::int64_t next_ = 0, computed_ = 0, recalled_ = 0;
   std::exception_ptr failure_;
 };

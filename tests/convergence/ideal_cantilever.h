@@ -15,7 +15,7 @@ struct IdealCantilever {
   int modes = 4;
   Fringing fringing = Fringing::none;
   double gap_over_width = 0.1;
-  double electrode_begin = 0;      ///< begin of the electrode over the length
+  double electrode_begin = 0;      ///< beginning of the electrode over the length
   double electrode_end = 1;        ///< end of the electrode over the length
   double contact_over_gap = 0.97;  ///< tip deflection over the gap at which a run counts as closed
 };

@@ -29,7 +29,7 @@ struct BouncingBall {
   [[nodiscard]] double impact_speed(int n) const { return std::sqrt(2 * acceleration * first_height) * std::pow(restitution, n); }
   [[nodiscard]] double height(int n) const { return first_height * std::pow(restitution, 2 * n); }
   [[nodiscard]] double first_impact() const { return std::sqrt(2 * first_height / acceleration); }
-  /// Returns the begin of flight n = 1, 2 ... [s].
+  /// Returns the beginning of flight n = 1, 2 ... [s].
   [[nodiscard]] double impact(int n) const {
     double time = first_impact();
     for (int k = 1; k < n; ++k) time += 2 * impact_speed(k) / acceleration;

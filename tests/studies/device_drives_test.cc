@@ -44,7 +44,7 @@ std::vector<DeviceOutcome> closings(const PreparedScene& nominal, const Ensemble
                    {.duration = nominal.duration, .jobs = jobs, .vectors = Vectors::none})[0];
 }
 
-constexpr double figures_of_bits = 1e-9;  // relative change of the figures of a closing by another begin of the clock
+constexpr double figures_of_bits = 1e-9;  // relative change of the figures of a closing by another beginning of the clock
 
 TEST(DeviceDrives, AGainMultipliesTheLevels) {
   const PreparedScene nominal = prepare(gold_at_17_volts({throw_and_catch, normal("gain", "2 %")}));
@@ -146,7 +146,7 @@ TEST(DeviceDrives, JitterOfEdgesIsAsWideAsItIsSaid) {
   std::vector<double> throwing, catching;
   for (std::size_t k = 0; k < ensemble.size(); ++k) {
     const Signal own = drives.signals(waveforms, {}, ensemble.values(k)).front();
-    // Begins of the edges to 20, 5 and 17 V; each ramp moves as a whole.
+    // Beginnings of the edges to 20, 5 and 17 V; each ramp moves as a whole.
     std::vector<double> begins;
     for (const SignalPiece& piece : own.pieces()) {
       if (piece.slope != 0) begins.push_back(piece.begin);

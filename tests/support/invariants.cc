@@ -25,7 +25,7 @@ class Energy {
 
   void step(double t, const double* q, const double* v) {
     if (t > time_) {
-      // First the jumps at the begin of the step, at that deflection; then the changes along the step.
+      // First the jumps at the beginning of the step, at that deflection; then the changes along the step.
       change([&](std::size_t k) { return drives_[k].voltage(time_); }, potentials_);
       std::vector<double> after(drives_.size());
       look(q, after);

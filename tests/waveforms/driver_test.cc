@@ -332,7 +332,7 @@ TEST(Driver, SamplesItsOwnSamplesToTheSameBits) {
         ASSERT_LT(row, again.voltage.size());
         EXPECT_GE(code, 0);
         EXPECT_LE(code, most);
-        // The level before the begin is not rounded.
+        // The level before the beginning is not rounded.
         const bool stands = again.voltage[row] == 0 && (row == 0 || again.voltage[row - 1] == 0);
         EXPECT_NEAR(limits.min_voltage + step * static_cast<double>(code), again.voltage[row], stands ? step / 2 : 1e-12);
       }

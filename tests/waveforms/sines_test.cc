@@ -32,7 +32,7 @@ TEST(Sines, FollowTheirFormula) {
   }
 }
 
-// Values by rotation from the first sine, at any time from the begin of a piece on.
+// Values by rotation from the first sine, at any time from the beginning of a piece on.
 TEST(Sines, OfASeriesAreTheSumOfItsTerms) {
   Sines sines{.base = 30_V, .rise_time = 20_us, .start = 6_us, .duration = 50_us};
   double size = 30;
