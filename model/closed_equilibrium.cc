@@ -1,0 +1,210 @@
+#include <algorithm>
+#include <boost/math/tools/minima.hpp>
+#include <cmath>
+#include <optional>
+
+#include "integrators/roots.h"
+#include "model/equilibrium_branch.h"
+#include "model/pull_in.h"
+
+namespace softland {
+
+using namespace statics;
+
+namespace {
+
+// Returns the stiffness of the static forces by the modes: symmetric up to rounding, since contact and fields have potentials.
+Eigen::MatrixXd stiffness_at(const Switch& model, const Eigen::VectorXd& q, std::span<const double> volts,
+                             const ContactState& contact) {
+  const Eigen::Index n = model.modes();
+  const Eigen::VectorXd still = Eigen::VectorXd::Zero(n);
+  Eigen::MatrixXd by_q(n, n), by_v(n, n), force(n, 1);
+  Switch::Workspace work = model.workspace();
+  model.accelerations(q.data(), still.data(), volts, contact, work, force.data());  // sets the field
+  model.jacobian(q.data(), still.data(), volts, contact, work, by_q, by_v);
+  return -(by_q + by_q.transpose()) / 2;
+}
+
+double smallest_closed_eigenvalue(const Switch& model, const Eigen::VectorXd& q, std::span<const double> volts) {
+  const bool is_rigid = model.rigid_contact() != nullptr;
+  Eigen::MatrixXd stiffness = stiffness_at(model, q, volts, !is_rigid);
+  if (is_rigid) {
+    if (model.modes() == 1) return std::numeric_limits<double>::infinity();
+    const Eigen::MatrixXd free = orthogonal_complement(model.basis().contact_shape());
+    stiffness = (free.transpose() * stiffness * free).eval();
+  }
+  return symmetric_eigen(stiffness).values[0];
+}
+
+}  // namespace
+
+Eigen::VectorXd static_force(const Switch& model, const Eigen::VectorXd& q, std::span<const double> volts) {
+  const Eigen::VectorXd still = Eigen::VectorXd::Zero(model.modes());
+  Eigen::VectorXd force(model.modes());
+  Switch::Workspace work = model.workspace();
+  model.accelerations(q.data(), still.data(), volts, false, work, force.data());
+  return force;
+}
+
+double open_tangent_eigenvalue(const Switch& model, const Eigen::VectorXd& q, std::span<const double> volts) {
+  return symmetric_eigen(stiffness_at(model, q, volts, false)).values[0];
+}
+
+bool judges_stability(const Switch& model) { return model.modes() > 1 || !model.device().structure.has_far_clamp(); }
+
+bool keeps_closed(const Switch& model, const std::optional<ClosedEquilibrium>& closed) {
+  return closed && (closed->smallest_eigenvalue > 0 || !judges_stability(model));
+}
+
+namespace {
+
+ClosedEquilibrium closed_at(const Switch& model, const Eigen::VectorXd& q, double contact_force, std::span<const double> volts) {
+  Switch::Workspace work = model.workspace();
+  return {.q = q,
+          .contact_force = contact_force,
+          .potential = model.potential(q.data(), volts, true, work),
+          .smallest_eigenvalue = smallest_closed_eigenvalue(model, q, volts)};
+}
+
+// Returns the depths between which f first rises to zero from below. Just before a beam collapses onto the electrode f does so
+// between two steps, and falls again.
+template <class F>
+std::optional<Steps> first_enough(F&& f, double depth, double step) {
+  auto turn = walk(f, depth, step, [](double value, double here) { return here >= 0 || here < value; });
+  if (!turn || f(turn->next) >= 0) return turn;
+  const auto [at, value] =
+      boost::math::tools::brent_find_minima([&](double x) { return -f(x * step); }, turn->before / step, turn->next / step, 40);
+  if (-value >= 0) return Steps{.before = turn->before, .last = turn->before, .next = at * step};
+  return walk(f, turn->next, step, [](double, double here) { return here >= 0; });
+}
+
+double static_push(const Switch& model, const Eigen::VectorXd& q) {
+  const Eigen::VectorXd still = Eigen::VectorXd::Zero(model.modes());
+  return model.contact_push(q.data(), still.data(), true);
+}
+
+// Finds how a beam rests on the face of a dielectric: on its first spot, or with most of its length. Newton's method descends
+// the potential from `q`, downhill along every eigenvector. A step shortens no gap of the field by more than a share, so that
+// it does not jump over the maximum of the potential before a soft face.
+std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<const double> volts, Eigen::VectorXd q) {
+  constexpr int most_steps = 1000;
+  constexpr double longest = 0.05, shortest = 1e-9;           // steps, in shares of the gaps of the field
+  constexpr double least_gap = 0.25;                          // share of the depth of the dielectric
+  constexpr double rounding = 1e-12;                          // share of the bending energy
+  constexpr double least_stiffness = 1e-9, at_saddle = 1e-2;  // shares of the stiffness of a mode, and of the longest step
+  Statics statics(model);
+  Switch::Workspace work = model.workspace();
+  const Eigen::VectorXd still = Eigen::VectorXd::Zero(model.modes());
+  const Eigen::VectorXd compliance = model.basis().angular_frequencies().cwiseInverse();
+  const double depth = model.device().dielectric_depth();
+  // A contact at a point exerts no force when the beam does not touch it.
+  const auto contact_at = [&](const Eigen::VectorXd& at) -> ContactState {
+    return model.has_spread_contact() || model.contact_deflection(at.data()) > model.contact_gap() - model.contact_reach();
+  };
+  Eigen::VectorXd force(model.modes());
+  double radius = longest, energy = model.potential(q.data(), volts, contact_at(q), work);
+  for (int k = 0; k < most_steps && radius > shortest; ++k) {
+    const SymmetricEigen along =
+        symmetric_eigen(compliance.asDiagonal() * stiffness_at(model, q, volts, contact_at(q)) * compliance.asDiagonal());
+    model.accelerations(q.data(), still.data(), volts, contact_at(q), work, force.data());
+    const auto reach_of = [&](const Eigen::VectorXd& step) {
+      const Eigen::ArrayXd gaps = (work.field.gap + depth).max(least_gap * depth);
+      return ((model.quadrature().shapes() * step).array() / gaps).abs().maxCoeff();
+    };
+    const Eigen::VectorXd parts = (along.vectors.transpose() * force.cwiseProduct(compliance))
+                                      .cwiseQuotient(along.values.cwiseAbs().cwiseMax(least_stiffness));
+    Eigen::VectorXd step = (along.vectors * parts).cwiseProduct(compliance);
+    double reach = reach_of(step);
+    if (along.values[0] < 0 && reach < at_saddle * radius) {  // no force indicates the direction of descent
+      step = along.vectors.col(0).cwiseProduct(compliance);
+      step *= radius / reach_of(step);
+      reach = radius;
+    } else if (reach > radius) {
+      step *= radius / reach;
+    }
+    const Eigen::VectorXd beyond = q + step;
+    const double next = model.potential(beyond.data(), volts, contact_at(beyond), work);
+    if (!(next < energy)) {
+      radius = std::min(radius, reach) / 4;
+      continue;
+    }
+    q = beyond;
+    const double gained = energy - next;
+    energy = next;
+    if (reach < radius && gained < rounding * model.bending_energy() && along.values[0] > 0) break;
+    radius = std::min(2 * radius, longest);
+  }
+  if (!contact_at(q).active) return std::nullopt;
+  // Newton's method may oscillate about a point of the quadrature at which the edge of the touching part lies.
+  if (const auto found = statics.closed(volts, q)) q = *found;
+  const double push = static_push(model, q);
+  if (!(push > 0)) return std::nullopt;
+  const ClosedEquilibrium found = closed_at(model, q, push, volts);
+  return found.smallest_eigenvalue > 0 ? std::optional(found) : std::nullopt;
+}
+
+// The search begins where a force holds the beam at the plane of its first contact. It begins on the face when another contact
+// closes the switch and the beam moves from the face to that contact.
+std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<const double> volts) {
+  const Eigen::VectorXd squares = model.basis().angular_frequencies().cwiseAbs2();
+  const auto held_at = [&](std::size_t c) {
+    const Eigen::VectorXd pushed = model.contact_shape(c).cwiseQuotient(squares);
+    return Eigen::VectorXd(pushed * (model.contact_gap(c) / model.contact_shape(c).dot(pushed)));
+  };
+  const std::size_t face = *model.device().face_contact();
+  std::optional<ClosedEquilibrium> found = closed_on_face(model, volts, held_at(0));
+  return found || face == 0 ? found : closed_on_face(model, volts, held_at(face));
+}
+
+}  // namespace
+
+std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::span<const double> volts) {
+  if (!model.has_contact()) return std::nullopt;
+  if (model.device().lands_along_face()) return closed_on_face(model, volts);
+  Statics statics(model);
+  const double plane = model.contact_gap(), step = model.penetration_scale() / 16;
+  if (model.rigid_contact() != nullptr) {
+    const auto held = statics.pinned(volts, plane);
+    if (!held || !(held->unknown > 0)) return std::nullopt;
+    return closed_at(model, held->q, held->unknown, volts);
+  }
+  // Returns the force of the contact at a depth, less the force with which the beam presses on it.
+  const auto excess = [&](double depth) {
+    const auto held = statics.pinned(volts, plane + depth);
+    if (!held) return no_equilibrium;
+    return (model.has_spread_contact() ? 0 : contact_force(model.contact(), depth)) - held->unknown;
+  };
+  // The beam must overcome the contact force where the beam presses hardest; the equilibrium lies deeper, where both are equal
+  // again.
+  const auto hardest = first_minimum(excess, step);
+  if (!hardest || !(hardest->value < 0)) return std::nullopt;
+  const std::optional<Steps> over = first_enough(excess, hardest->depth, step);
+  if (!over) return std::nullopt;
+  const double depth = bracketed_zero(excess, over->last, over->next);
+  const auto held = statics.pinned(volts, plane + depth);
+  if (!held) return std::nullopt;
+  return closed_at(model, held->q, static_push(model, held->q), volts);
+}
+
+std::optional<ClosedEquilibrium> statics::closed_by_newton(const Switch& model, std::span<const double> volts,
+                                                           const ClosedEquilibrium& near) {
+  Statics statics(model);
+  const double plane = model.contact_gap();
+  std::optional<ClosedEquilibrium> found;
+  if (model.rigid_contact() != nullptr) {
+    const auto held = statics.pinned(volts, plane, {.q = near.q, .unknown = near.contact_force});
+    if (held) found = closed_at(model, held->q, held->unknown, volts);
+  } else if (const auto q = statics.closed(volts, near.q); q && model.contact_deflection(q->data()) > plane) {
+    found = closed_at(model, *q, static_push(model, *q), volts);
+  }
+  const bool is_one = found && found->contact_force > 0 && keeps_closed(model, found);
+  return is_one ? found : std::nullopt;
+}
+
+std::optional<ClosedEquilibrium> closed_equilibrium_near(const Switch& model, std::span<const double> volts,
+                                                         const ClosedEquilibrium& near) {
+  std::optional<ClosedEquilibrium> found = closed_by_newton(model, volts, near);
+  return found ? found : closed_equilibrium(model, volts);
+}
+
+}  // namespace softland
