@@ -10,10 +10,11 @@
 // each with a random error of its time. An opening shorter than the resolution of the instrument is not recorded, nor is a
 // touch whose edges are swapped by the errors. If the instrument records the capacitance, the contact counts as closed while
 // the capacitance is above a threshold.
-// The device differs from the scene as [spread] says, or the assumed spread (config/assumed_spread.h), and further by its
+//
 // The device differs from the scene as [spread], or the assumed spread (config/assumed_spread.h), describes. Its model may
 // differ as well, which a belief based on the scene cannot know. Its random numbers have their own streams, which no ensemble
 // uses.
+#pragma once
 
 #include <cstdint>
 #include <string>
