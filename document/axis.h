@@ -30,8 +30,8 @@ struct Axis {
 /// of them. The position is in the middle where both ends are equal.
 [[nodiscard]] double part_between(double low, double high, double value);
 
-/// Returns about `wanted` round numbers between the ends of the axis, or its decades; the ends themselves where no round number
-/// lies between them that differs from both. An axis without ends has none.
+/// Returns about `wanted` round numbers between the ends of the axis, or its decades. Returns the ends themselves if they
+/// are too close for round numbers between them, and nothing if they are not finite and ascending.
 [[nodiscard]] std::vector<double> ticks(const Axis& axis, int wanted);
 
 }  // namespace softland::internal

@@ -165,18 +165,18 @@ std::string reproduce(const MadeAgain& made) {
   add("seed ", made.seed ? fmt::format("{}", *made.seed) : "");
   add("integrator tolerance ", std::isfinite(made.tolerance) ? plain_number(made.tolerance, 6) : "");
   if (commands.empty() && with.empty()) return {};
-  return fmt::format("<section id=\"reproduce\"><h2>Reproduce it</h2>\n<p>{}</p>\n<pre><code>{}</code></pre>\n{}</section>\n",
-                     with.empty() ? "" : escaped(with) + ":", escaped(shortened(commands)),
-                     made.made_with.empty()
-                         ? ""
-                         : "<p>Made with " + escaped(made.made_with) +
-                               ". The same bits are to be expected of the same program on the same kind of processor; "
-                               "elsewhere rounding differs, and a search may end elsewhere.</p>\n");
+  return fmt::format(
+      "<section id=\"reproduce\"><h2>How to reproduce this result</h2>\n<p>{}</p>\n<pre><code>{}</code></pre>\n{}</section>\n",
+      with.empty() ? "" : escaped(with) + ":", escaped(shortened(commands)),
+      made.made_with.empty() ? ""
+                             : "<p>Made with " + escaped(made.made_with) +
+                                   ". The same program on the same kind of processor gives the same bits. Elsewhere rounding "
+                                   "differs, and a search may find another result.</p>\n");
 }
 
 std::string scene_of(const MadeAgain& made) {
   if (made.scene.empty()) return {};
-  return "<section id=\"scene\"><h2>The switch</h2>\n<details><summary>Resolved scene</summary>\n<pre><code>" +
+  return "<section id=\"scene\"><h2>Scene</h2>\n<details><summary>Resolved scene</summary>\n<pre><code>" +
          escaped(shortened(made.scene)) + "</code></pre></details></section>\n";
 }
 

@@ -90,7 +90,8 @@ Picture picture(const AccuracyStudy& study) {
 
   Chart work = logarithmic_chart("work-precision", "Largest relative error of " + figures, time, "s", 380);
   work.caption =
-      "One curve per integrator; the dots of a curve are tolerances, a factor of ten apart. The lower left is where to be.";
+      "There is one curve per integrator; its dots are tolerances, a factor of ten apart. Settings at the lower left are both "
+      "fast and accurate.";
   for (std::size_t i = 0; i < all_integrators.size(); ++i) {
     add_curve(drawn, work, std::string(to_string(all_integrators[i])), pens[i % pens.size()],
               work_precision(study, study.rows, all_integrators[i]));
@@ -106,12 +107,12 @@ Picture picture(const AccuracyStudy& study) {
 
   // The curves compare the integrator that simulate takes with the one that loses its history at every restart.
   Chart contact = logarithmic_chart(
-      "contact", "Restarted at make and break of contact, or not: largest relative error of " + figures, time, "s", 260);
+      "contact", "With and without a restart at make and break of contact: largest relative error of " + figures, time, "s", 260);
   contact.caption = restart_text(study);
   std::size_t pen = 0;
   for (const Integrator integrator : {own, Integrator::bdf}) {
     for (const auto* rows : {&study.rows, &study.through}) {
-      const char* how = rows == &study.through ? ", not restarted" : "";
+      const char* how = rows == &study.through ? ", no restart" : "";
       add_curve(drawn, contact, std::string(to_string(integrator)) + how, pens[pen++], work_precision(study, *rows, integrator));
     }
   }
@@ -119,7 +120,7 @@ Picture picture(const AccuracyStudy& study) {
 
   Chart points = logarithmic_chart("quadrature", fmt::format("Quadrature: {} at its tightest tolerance", to_string(own)),
                                    "Quadrature points per length", "", 260);
-  points.caption = "What too few points leave, however tight the tolerance.";
+  points.caption = "Error of too few quadrature points, at the tightest tolerance.";
   for (std::size_t i = 0; i < studied_figures.size(); ++i) {
     if (!study.conditioned[i] || !own_points(study)) continue;
     Points errors;
@@ -164,7 +165,7 @@ std::vector<const AccuracyRow*> all_of(const std::vector<AccuracyRow>& rows) {
 }
 
 ReportSection recommendations_section(const AccuracyStudy& study) {
-  ReportSection section{.id = "recommendations", .heading = "Quickest settings", .parts = {}};
+  ReportSection section{.id = "recommendations", .heading = "Fastest settings", .parts = {}};
   if (symbols(study, true).empty()) {
     section.parts.emplace_back(Paragraph{recommendations(study).front()});
     return section;
@@ -175,7 +176,7 @@ ReportSection recommendations_section(const AccuracyStudy& study) {
   for (const Recommendation& r : study.recommendations) {
     TableRow& cells = table.rows.emplace_back(TableRow{internal::scientific(r.accuracy)});
     if (!r.row) {
-      cells.emplace_back("nothing that was tried");
+      cells.emplace_back("no setting that was tried");
       continue;
     }
     const AccuracyRow& row = study.rows[*r.row];
@@ -185,13 +186,12 @@ ReportSection recommendations_section(const AccuracyStudy& study) {
     cells.emplace_back(internal::quantity(row.seconds, "s", 2));
   }
   const std::string ill = symbols(study, false);
-  section.parts = {
-      std::move(table),
-      Paragraph{
-          .text = fmt::format("The quickest setting with which {} are that accurate, there and at every tighter tolerance "
-                              "tried.{}",
-                              symbols(study, true), ill.empty() ? "" : " Left out, because ill-conditioned here: " + ill + "."),
-          .is_note = true}};
+  section.parts = {std::move(table),
+                   Paragraph{.text = fmt::format("Each row has the fastest setting with which {} are that accurate, at its "
+                                                 "tolerance and at every tighter one that was tried.{}",
+                                                 symbols(study, true),
+                                                 ill.empty() ? "" : " Ill-conditioned figures are left out: " + ill + "."),
+                             .is_note = true}};
   return section;
 }
 
@@ -213,13 +213,13 @@ ReportSection settings_section(const AccuracyStudy& study) {
                                            internal::scientific(quadrature.front()->tolerance));
   ReportSection section{
       .id = "settings",
-      .heading = "Every setting that was tried",
-      .parts = {Paragraph{fmt::format("Relative errors of the delivered figures against a reference: {}, {}: {}. In brackets "
-                                      "what a second reference differs by. Times are medians of processor time.",
+      .heading = "All settings that were tried",
+      .parts = {Paragraph{fmt::format("The errors are relative to a reference run ({}, {}): {}. The difference of a second "
+                                      "reference is in brackets. Times are medians of processor time.",
                                       setting_text(study.reference), modes_text(study.reference), fmt::join(values, ", "))},
                 Paragraph{study.message.empty() ? "" : "The reference: " + study.message + "."},
                 SubHeading{"Integrator and tolerance" + (points.empty() ? "" : ", with " + points)}, by_integrator(own),
-                SubHeading{"The same without a restart at make and break of contact"}, Paragraph{restart_text(study)}}};
+                SubHeading{"Without a restart at make and break of contact"}, Paragraph{restart_text(study)}}};
   if (!study.through.empty()) section.parts.emplace_back(by_integrator(all_of(study.through)));
   section.parts.emplace_back(SubHeading{"Quadrature, with " + tightest});
   if (points.empty()) {
@@ -230,7 +230,8 @@ ReportSection settings_section(const AccuracyStudy& study) {
     }));
   }
   if (study.modes.empty()) return section;
-  section.parts.emplace_back(SubHeading{fmt::format("Another number of modes, with {}: another model, not an error", tightest)});
+  section.parts.emplace_back(
+      SubHeading{fmt::format("Other numbers of modes, with {}: they are other models, not errors", tightest)});
   section.parts.emplace_back(errors_table({"Modes"}, all_of(study.modes),
                                           [](const AccuracyRow& row) { return TableRow{fmt::format("{}", row.modes)}; }));
   return section;
@@ -252,12 +253,13 @@ ReportSection cloud_section(const AccuracyStudy& study) {
   }
   add(figure_of(&Metrics::permanent_contact_time), study.permanent_contact_time, ill_conditioned(study.permanent_contact_time));
   add(figure_of(&Metrics::bounce_count), study.bounce_count, ill_conditioned(study.bounce_count));
-  return {.id = "cloud",
-          .heading = "What no setting can tell",
-          .parts = {std::move(table),
-                    Paragraph{.text = "Runs whose drives differ by one part in 1e9 to 1e7, which nobody could notice. Permanent "
-                                      "contact time and bounce count are properties of such a cloud, not of one run.",
-                              .is_note = true}}};
+  return {
+      .id = "cloud",
+      .heading = "Ill-conditioned figures",
+      .parts = {std::move(table),
+                Paragraph{.text = "The drives of these runs differ by one part in 1e9 to 1e7, less than any source can resolve. "
+                                  "Settling time and bounce count are statistics of many such runs, not properties of one run.",
+                          .is_note = true}}};
 }
 
 std::vector<KeyNumber> reference_keys(const AccuracyStudy& study) {
@@ -269,7 +271,7 @@ std::vector<KeyNumber> reference_keys(const AccuracyStudy& study) {
                     .value = internal::quantity(value, f.unit, 4),
                     .change = !std::isfinite(value)   ? ""
                               : !study.conditioned[i] ? "ill-conditioned"
-                                                      : "known to " + error_cell(study.resolution[i])});
+                                                      : "known within " + error_cell(study.resolution[i])});
   }
   return keys;
 }
@@ -291,7 +293,7 @@ std::pair<std::string, std::string> headline(const AccuracyRecord& record) {
       *std::min_element(study.recommendations.begin(), study.recommendations.end(), [&](const auto& a, const auto& b) {
         return std::abs(std::log(a.accuracy) - asked) < std::abs(std::log(b.accuracy) - asked);
       });
-  if (!r.row) return {fmt::format("Nothing that was tried has {} within {}.", figures, internal::scientific(r.accuracy)), ""};
+  if (!r.row) return {fmt::format("No setting that was tried has {} within {}.", figures, internal::scientific(r.accuracy)), ""};
   const AccuracyRow& row = study.rows[*r.row];
   return {fmt::format("A closing with {} within {} takes {}", figures, internal::scientific(r.accuracy),
                       internal::quantity(row.seconds, "s", 2)),
@@ -305,7 +307,7 @@ Document document_of(const AccuracyRecord& record) {
   Document document{.title = title_of(record.origin), .origin = "accuracy", .made = made_again(record.origin)};
   if (study.rows.empty()) {
     document.headline = study.status == Status::no_contact
-                            ? "The switch does not touch within its window: there are no figures to be accurate in."
+                            ? "The switch does not touch within the window, so there are no figures to compare."
                             : fmt::format("There is no reference to compare with: {}",
                                           study.message.empty() ? std::string(to_string(study.status)) : study.message);
     return document;
@@ -314,7 +316,7 @@ Document document_of(const AccuracyRecord& record) {
   document.keys = reference_keys(study);
   document.draw = [&study] { return picture(study); };
   document.sections = {recommendations_section(study),
-                       {.id = "charts", .heading = "What accuracy costs", .parts = {internal::all_charts()}},
+                       {.id = "charts", .heading = "Accuracy against computing time", .parts = {internal::all_charts()}},
                        settings_section(study),
                        cloud_section(study)};
   return document;
@@ -323,11 +325,12 @@ Document document_of(const AccuracyRecord& record) {
 std::string svg_of(const AccuracyRecord& record) {
   const AccuracyStudy& study = record.found;
   const std::string title = title_of(record.origin);
-  std::string words = "Dots are tolerances, a factor of ten apart. Quickest within";
+  std::string words = "Dots are tolerances, a factor of ten apart. Fastest setting within";
   for (const Recommendation& r : study.recommendations)
     words += fmt::format(" {}: {}{}", internal::scientific(r.accuracy), recommended(study, r),
                          &r == &study.recommendations.back() ? "." : ";");
-  return svg_page(title.empty() ? "What accuracy costs" : title + ": what accuracy costs", words, picture(study));
+  return svg_page(title.empty() ? "Accuracy against computing time" : title + ": accuracy against computing time", words,
+                  picture(study));
 }
 
 }  // namespace softland

@@ -17,7 +17,8 @@ struct AccuracyRecord {
 
 [[nodiscard]] nlohmann::json json_of(const AccuracyRecord& record);
 [[nodiscard]] AccuracyRecord read_accuracy(const nlohmann::json& from);
-/// Returns recommendations, diagrams, tables and clouds; for a study without rows the reason why it has none.
+/// Returns recommendations, diagrams, tables, and the ill-conditioned figures over many runs. A study without rows gives the
+/// reason why it has none.
 [[nodiscard]] Document document_of(const AccuracyRecord& record);
 /// Draws error against time, one curve per integrator; the same with and without a restart at the contact; and error against
 /// quadrature points, one curve per figure.

@@ -40,16 +40,15 @@ std::string setting_text(const AccuracyRow& row) {
 std::string modes_text(const AccuracyRow& row) { return fmt::format("{} mode{}", row.modes, row.modes == 1 ? "" : "s"); }
 
 std::string recommended(const AccuracyStudy& study, const Recommendation& r) {
-  if (!r.row) return "nothing that was tried";
+  if (!r.row) return "no setting that was tried";
   const AccuracyRow& row = study.rows[*r.row];
   return fmt::format("{}: {}", setting_text(row), quantity(row.seconds, "s", 2));
 }
 
 std::string restart_text(const AccuracyStudy& study) {
-  return study.through.empty()
-             ? fmt::format("Nothing was tried without a restart at the contact: {}.", study.why_always_restarted)
-             : "No restart: the integrator steps over make and break of contact as over a force that sets in; simulate starts it "
-               "anew there.";
+  return study.through.empty() ? fmt::format("There is no run without a restart at the contact: {}.", study.why_always_restarted)
+                               : "Without a restart the integrator steps across make and break of contact as across any change "
+                                 "of force; simulate restarts it there.";
 }
 
 std::vector<std::string> recommendations(const AccuracyStudy& study) {

@@ -12,7 +12,7 @@ namespace softland::internal {
 
 /// This sentence replaces the table of quadratures in a plate's report.
 inline constexpr const char* no_quadrature =
-    "A rigid plate has the same gap everywhere: the number of quadrature points does not matter, and none were tried.";
+    "A rigid plate has the same gap everywhere: the number of quadrature points does not matter, and none was tried.";
 
 [[nodiscard]] std::string error_cell(double error);
 [[nodiscard]] std::string four_digits(double value, std::string_view unit);

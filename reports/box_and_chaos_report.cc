@@ -8,6 +8,7 @@
 
 #include "document/quantity.h"
 #include "reports/robustness_report.h"
+#include "reports/robustness_words.h"
 
 namespace softland::internal {
 namespace {
@@ -24,7 +25,7 @@ std::string figure_text(double value, std::string_view key) {
   return std::isinf(value) ? "∞" : quantity(value, figure_of(key).unit);
 }
 
-// Prefer q2 on unseen devices: devices of the training set are predicted too well.
+// Prefer q2 on unseen devices: the error on devices of the training set is too small.
 double missed(const FigureChaos& chaos) { return 1 - (std::isfinite(chaos.q2_unseen) ? chaos.q2_unseen : chaos.q2); }
 
 // A prediction that misses all of the variance or more is no better than the mean.
@@ -32,7 +33,7 @@ std::string missed_share(double share) { return share >= 1 ? "all" : percent(std
 std::string missed_text(double q2) { return std::isfinite(q2) ? missed_share(1 - q2) : "—"; }
 
 ReportTable compared(const OtherWays& ways, const DriveRecord& drive) {
-  ReportTable table{.head = {"Other ways, under " + drive.name}, .rows = {}};
+  ReportTable table{.head = {"Cross-checks, under " + shown_drive(drive.name)}, .rows = {}};
   for (const RangeRecord& r : ways.ranges) table.head.emplace_back(figure_of(r.key).symbol);
   const auto add = [&](TableCell name, auto&& cell) {
     TableRow& row = table.rows.emplace_back(TableRow{std::move(name)});
@@ -45,7 +46,7 @@ ReportTable compared(const OtherWays& ways, const DriveRecord& drive) {
       [&](const RangeRecord& r, const FigureChaos&) { return figure_text(sampled(drive, r.key).standard_deviation, r.key); });
   add(part("polynomial chaos"),
       [](const RangeRecord&, const FigureChaos& c) { return figure_text(c.standard_deviation, c.key); });
-  add("95 % of devices below: sampled",
+  add("95th percentile: sampled",
       [&](const RangeRecord& r, const FigureChaos&) { return figure_text(sampled(drive, r.key).quantiles[2].value, r.key); });
   add(part("polynomial chaos"), [](const RangeRecord&, const FigureChaos& c) { return figure_text(c.quantile_95, c.key); });
   add("Worst in the box: found by search",
@@ -54,20 +55,20 @@ ReportTable compared(const OtherWays& ways, const DriveRecord& drive) {
   add("Best in the box: found by search",
       [](const RangeRecord& r, const FigureChaos&) { return figure_text(r.least.figure, r.key); });
   add(part("sampled"), [](const RangeRecord& r, const FigureChaos&) { return figure_text(r.of_sample.low, r.key); });
-  add("Variance that chaos misses: cross-validated", [](const RangeRecord&, const FigureChaos& c) { return missed_text(c.q2); });
-  add(part("of devices it was not made of"), [](const RangeRecord&, const FigureChaos& c) { return missed_text(c.q2_unseen); });
+  add("Unexplained variance: cross-validated", [](const RangeRecord&, const FigureChaos& c) { return missed_text(c.q2); });
+  add(part("on devices not used in the fit"), [](const RangeRecord&, const FigureChaos& c) { return missed_text(c.q2_unseen); });
   return table;
 }
 
 std::string box_words(const OtherWays& ways, std::size_t devices) {
   return fmt::format(
-      "The box: every quantity within ± {:.2f} standard deviations of the normal number beneath it, which holds {:.0f} % of all "
-      "devices, and {} of the {} sampled. So its worst is not below what {:.0f} % of the devices stay below. Worst and best are "
-      "what searches found in {} closings: no proof, the true range is at least as wide.",
+      "The box holds every quantity within ± {:.2f} standard deviations of its underlying normal variable. It covers {:.0f} % of "
+      "all devices, and {} of the {} sampled ones. Its worst value is therefore at least the {:.0f}th percentile of the devices. "
+      "Worst and best values were found by searches with {} closings; the true range is at least as wide.",
       ways.half_width, 100 * ways.share, ways.sampled_inside, devices, 100 * ways.share, ways.closings);
 }
 
-/// Says how far chaos can be trusted.
+/// Says which figures polynomial chaos describes well.
 std::string chaos_words(const OtherWays& ways) {
   std::vector<std::string> good, bad, none;
   for (const FigureChaos& c : ways.chaos) {
@@ -80,22 +81,24 @@ std::string chaos_words(const OtherWays& ways) {
       bad.push_back(fmt::format("{} ({} of the variance)", name, missed_share(missed(c))));
     }
   }
-  std::string words = fmt::format("Polynomial chaos is made of the first {} devices of the sample, without a further closing.",
+  std::string words = fmt::format("Polynomial chaos is fitted to the first {} devices of the sample, without a further closing.",
                                   ways.chaos.front().taught + ways.left_out);
   if (ways.left_out > 0) {
     words +=
-        fmt::format(" {} of them do not close; mean, deviation and quantile of chaos go on to such devices as if they closed.",
+        fmt::format(" {} of them do not close; its mean, standard deviation and percentile treat such devices as if they closed.",
                     ways.left_out);
   }
-  if (!good.empty()) words += fmt::format(" It predicts {}{}.", in_words(good), ways.left_out > 0 ? " of those that close" : "");
+  if (!good.empty())
+    words += fmt::format(" It predicts {}{} well.", in_words(good), ways.left_out > 0 ? " of those that close" : "");
   if (!bad.empty()) {
     words += fmt::format(
-        " It fails for {}: where a small change of a quantity adds or takes away a touch, a figure jumps, and no sum of "
-        "polynomials follows. There the sample is to be believed.",
+        " It fails for {}: a figure jumps where a small change of a quantity adds or removes a touch, and polynomials cannot "
+        "follow. Trust the sample there.",
         in_words(bad));
   }
   if (!none.empty())
-    words += fmt::format(" It says nothing of {}: too few of these devices have it, or all the same.", in_words(none));
+    words += fmt::format(" It cannot describe {}: too few of these devices have the figure, or all have the same value.",
+                         in_words(none));
   return words;
 }
 
@@ -133,7 +136,7 @@ std::string value_text(const RobustnessRecord::Varied& variable, double value) {
 
 ReportSection other_ways_section(const RobustnessRecord& record) {
   const OtherWays& ways = *record.other_ways;
-  ReportSection section{.id = "ways", .heading = "Other ways to the same answer", .parts = {}};
+  ReportSection section{.id = "ways", .heading = "Cross-checks: worst case and polynomial chaos", .parts = {}};
   if (ways.ranges.empty()) return section;
   ReportTable figures = compared(ways, record.drives.back()), devices{.head = {"In the box", "Found"}, .rows = {}};
   for (const RobustnessRecord::Varied& v : record.spread) devices.head.emplace_back(v.name);

@@ -1,5 +1,5 @@
-// The other ways to the figures of a spread (studies/devices/box_and_chaos.h) stand beside those of the sample: a part of the
-// report of `softland robustness`.
+// Section of the report of `softland robustness` that compares the sampled figures with a search for worst cases and with
+// polynomial chaos (studies/devices/box_and_chaos.h).
 #pragma once
 
 #include "reports/robustness_report.h"

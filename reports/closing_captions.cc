@@ -32,7 +32,7 @@ std::string range_words(const Points& waveform, const DriveScale& scale, bool bo
     return fmt::format("{} at {}", both ? "stay" : "stays", quantity(demand.lowest, scale.unit));
   const std::string slew = scale.unit.empty()        ? ""
                            : std::isinf(demand.slew) ? ", with a jump"
-                                                     : ", at most " + quantity(demand.slew, "V/s");
+                                                     : ", with a slew rate of at most " + quantity(demand.slew, "V/s");
   return fmt::format("{} between {} and {}{}", both ? "run" : "runs", quantity_beside(demand.lowest, demand.highest, scale.unit),
                      quantity_beside(demand.highest, demand.lowest, scale.unit), slew);
 }
@@ -44,17 +44,18 @@ std::array<double, 3> badness(const ConfirmationRecord& check) {
           (*check.figures)[&Metrics::impact_velocity]};
 }
 
-std::string touch_speed_of(const ConfirmationRecord& check) {
+std::string impact_velocity_of(const ConfirmationRecord& check) {
   return quantity((*check.figures)[&Metrics::impact_velocity], "m/s");
 }
 
-// Returns "it rebounds by up to 2.16 nm and touches at 32.5 mm/s".
+// Returns "it rebounds by up to 2.16 nm after an impact velocity of 32.5 mm/s".
 std::string course_of(const ConfirmationRecord& check) {
   if (!check.figures || !touches(*check.figures)) return "it does not close";
   const double height = rebound_height(*check.figures);
-  return (height > 0 && !is_clean_run(check) ? fmt::format("it rebounds by up to {} and touches at ", quantity(height, "m"))
-                                             : "it touches at ") +
-         touch_speed_of(check);
+  return (height > 0 && !is_clean_run(check)
+              ? fmt::format("it rebounds by up to {} after an impact velocity of ", quantity(height, "m"))
+              : "its impact velocity is ") +
+         impact_velocity_of(check);
 }
 
 // Returns "a tolerance of 1e-9 and with 6, 8 and 10 modes".
@@ -74,7 +75,7 @@ std::string names_of(const std::vector<ConfirmationRecord>& numerics) {
   return tolerance + (modes.empty() ? "" : (tolerance.empty() ? "" : " and with ") + modes + " modes");
 }
 
-// Says so where a landing depends on the number of modes of its scene.
+// Warns of a landing that depends on the number of modes in its scene.
 std::string of_modes(const ClosingRecord& result) {
   if (!result.best.figures || !is_clean(*result.best.figures)) return {};
   std::vector<ConfirmationRecord> modes;
@@ -82,21 +83,22 @@ std::string of_modes(const ClosingRecord& result) {
                        [](const ConfirmationRecord& check) { return check.name.starts_with("modes "); });
   if (std::ranges::all_of(modes, is_clean_run)) return {};
   const ConfirmationRecord& worst = *worst_check(modes);
-  return fmt::format(" This landing belongs to the modes that the scene keeps: with {} of them {}.",
+  return fmt::format(" This result holds for the number of modes in the scene only: with {} modes {}.",
                      worst.name.substr(worst.name.find(' ') + 1), course_of(worst));
 }
 
-// Says so for a search over devices in which some of them fail under any waveform.
+// Names the share of devices that fail whatever the waveform, in a search under process variation.
 std::string of_devices_that_fail(const ClosingRecord& result) {
   const std::optional<RobustFindings>& robust = result.search->robust;
   if (!robust || !(robust->failing > 0)) return {};
   std::string words = fmt::format(
-      " {} of the fresh devices end open, are not kept closed by their hold levels, or are outside the model; they count as "
-      "worst.",
+      " {} of the new devices stay open, are not kept closed by their hold voltages, or are outside the model; they count as the "
+      "worst devices.",
       percent(robust->failing));
   if (!robust->is_told)
-    words += fmt::format(" That is all that {} looks at, so that it tells no waveform from another: nothing is gained.",
-                         robust->measure);
+    words +=
+        fmt::format(" The statistic {} depends on these devices alone and cannot rank waveforms: the search has gained nothing.",
+                    robust->measure);
   return words;
 }
 
@@ -104,11 +106,12 @@ std::string laws_caption(const std::vector<ConfirmationRecord>& laws) {
   std::string names;
   for (const ConfirmationRecord& law : laws) names += (names.empty() ? "" : ", ") + law.name.substr(law.name.find(' ') + 1);
   if (std::ranges::all_of(laws, is_clean_run))
-    return fmt::format(" So it does under other gas laws that hold here ({}), at {} at most.", names,
-                       touch_speed_of(*worst_check(laws)));
+    return fmt::format(
+        " It also closes bounce-free under the other gas laws that are valid here ({}), with an impact velocity of at most {}.",
+        names, impact_velocity_of(*worst_check(laws)));
   const ConfirmationRecord& worst = *worst_check(laws);
-  return fmt::format(" Under other gas laws that hold here ({}) this waveform may not land: {} ({}).", names, course_of(worst),
-                     worst.name.substr(worst.name.find(' ') + 1));
+  return fmt::format(" Under the other gas laws that are valid here ({}) this waveform may bounce: {} ({}).", names,
+                     course_of(worst), worst.name.substr(worst.name.find(' ') + 1));
 }
 
 }  // namespace
@@ -159,29 +162,31 @@ Headline headline(const ClosingRecord& result) {
   const std::string rest =
       !leaves ? ""
       : result.closed_state->smallest_eigenvalue > 0
-          ? " Whether it stays closed depends on the number of modes: with more of them than the scene keeps it "
-            "is pulled through the contact."
-          : " It does not stay closed: the hold levels pull it through the contact in the end.";
+          ? " Whether it stays closed depends on the number of modes: with more modes than the scene has, the beam collapses "
+            "onto the electrode."
+          : " It does not stay closed: under the hold voltages the beam collapses onto the electrode in the end.";
   if (!result.search) {
     if (result.status == "interrupted") return {"The simulation was interrupted.", ""};
     return {capitalised(closing_clause({.subject = "the switch"}, result.best, window)) + "." + rest, ""};
   }
   if (result.status == "collapsed_at_rest")
-    return {"The switch has no stable open state to begin in under what its drives stand at before t = 0.", ""};
+    return {"The switch has no stable open equilibrium to start from at the voltages before t = 0.", ""};
   Headline line;
   if (result.status == "interrupted") line.main = "The search was interrupted; this is its best so far. ";
   const bool ended = result.status != "interrupted";
   const SearchRecord& search = *result.search;
   if (ended && search.plain_step_wins == true) {
     return {
-        "The plain step does not bounce, and no waveform was found that is better and not harder than it. best.toml is the plain "
-        "step.",
+        "The plain step does not bounce, and no waveform was found that is better without a harder impact. best.toml is the "
+        "plain step.",
         capitalised(closing_clause({.subject = step_subject, .object = "the switch"}, result.baseline(), window)) + "." + rest};
   }
   if (ended && search.goal_met == false) line.main = "The goal was not met. ";
   if (ended && search.harder_than_step > 0)
-    line.main += fmt::format("The best waveform is harder than the plain step, by {} in touch speed, force or energy. ",
-                             percent(search.harder_than_step));
+    line.main += fmt::format(
+        "The best waveform hits the contact harder than the plain step: by {} in impact velocity, contact force or impact "
+        "energy. ",
+        percent(search.harder_than_step));
   line.main += result.best.figures
                    ? capitalised(closing_clause({.subject = own_subject, .object = "the switch"}, result.best, window))
                    : "No feasible waveform was found";
@@ -192,17 +197,17 @@ Headline headline(const ClosingRecord& result) {
 }
 
 std::string gap_caption(const ClosingRecord& result) {
-  std::string what = "Distance of the contact point to the contact plane (positive: open)";
+  std::string what = "Distance of the contact point from the contact plane (positive: open)";
   if (bounces(result.best) || bounces(result.baseline()))
     what += fmt::format("; dots mark rebounds above {}", quantity(result.scene.significant_rebound, "m", 1));
   what += ".";
-  const std::string own = landing_clause(result.search ? own_subject : "the switch", result.best);
-  const std::string found = joined(result.search ? landing_clause(step_subject, result.baseline()) : "", own);
+  const std::string own = landing_clause(result.search ? own_switch : "the switch", result.best);
+  const std::string found = joined(result.search ? landing_clause(step_switch, result.baseline()) : "", own);
   return found.empty() ? what : what + " " + found;
 }
 
 std::string contact_caption(const ClosingRecord& result) {
-  std::string words = "Filled while the contact point touches.";
+  std::string words = "The bars are filled while the contact point touches.";
   const auto holds_several = [](const RunRecord& run) {
     const auto several = [](const std::vector<ClosedStretch>& all) {
       return std::ranges::any_of(all, [](const ClosedStretch& one) { return one.touches > 1; });
@@ -211,11 +216,11 @@ std::string contact_caption(const ClosingRecord& result) {
            std::ranges::any_of(run.curve.closed_contacts, [&](const auto& one) { return several(one.second); });
   };
   if (holds_several(result.best) || holds_several(result.baseline()))
-    words += " A pale stretch holds several touches, between which the contact opens for too short a time to be told.";
+    words += " A pale bar stands for several touches; the openings between them are too short to be drawn.";
   const JsonReader metrics(JsonReader(result.origin.scene).at("metrics"));
   for (const char* rule : {"closed_force", "closed_resistance", "closed_after"}) {
     if (metrics.at(rule).is_null()) continue;
-    words += fmt::format(" The connection counts as electrically closed by metrics.{}, which this does not show.", rule);
+    words += fmt::format(" They do not show when the connection is electrically closed, which metrics.{} decides.", rule);
     break;
   }
   return words;
@@ -226,13 +231,13 @@ std::string landing_caption(const ClosingRecord& result) {
     if (!run.figures || !touches(*run.figures)) return {};
     const double height = rebound_height(*run.figures);
     const std::string speed = quantity((*run.figures)[&Metrics::impact_velocity], "m/s");
-    if (ends_at_touch(*run.figures)) return fmt::format("{} reaches the plane with {}", subject, speed);
-    const std::string after = height > 0 ? "rises " + quantity(height, "m") + " above it again" : "does not rise above it again";
-    return fmt::format("{} reaches the plane with {} and {}", subject, speed, after);
+    if (ends_at_touch(*run.figures)) return fmt::format("{} reaches the plane at {}", subject, speed);
+    const std::string after = height > 0 ? "rebounds by up to " + quantity(height, "m") : "does not rebound";
+    return fmt::format("{} reaches the plane at {} and {}", subject, speed, after);
   };
-  const std::string found = result.search ? joined(reach(step_subject, result.baseline()), reach(own_subject, result.best))
+  const std::string found = result.search ? joined(reach(step_switch, result.baseline()), reach(own_switch, result.best))
                                           : joined(reach("the switch", result.best), "");
-  return "The same gap in a narrow band around the contact plane; below it the contact is pressed." +
+  return "The same gap, enlarged around the contact plane; below the plane the contact is compressed." +
          (found.empty() ? "" : " " + found);
 }
 
@@ -241,11 +246,11 @@ std::string velocity_caption(const ClosingRecord& result) {
   const double step = figure_of_run(result.baseline(), &Metrics::impact_velocity);
   const std::string what = "Velocity of the contact point, positive towards the contact.";
   if (!result.search || !std::isfinite(step)) {
-    return std::isfinite(own) ? fmt::format("{} It lands at {}.", what, quantity(own, "m/s")) : what;
+    return std::isfinite(own) ? fmt::format("{} The impact velocity is {}.", what, quantity(own, "m/s")) : what;
   }
-  if (!std::isfinite(own)) return fmt::format("{} The plain step lands at {}.", what, quantity(step, "m/s"));
-  return fmt::format("{} The plain step lands at {}, softland's waveform at {}{}.", what, quantity(step, "m/s"),
-                     quantity(own, "m/s"), in_brackets(change(step, own, true)));
+  if (!std::isfinite(own)) return fmt::format("{} The impact velocity under the plain step is {}.", what, quantity(step, "m/s"));
+  return fmt::format("{} The impact velocity is {} under the plain step and {} under softland's waveform{}.", what,
+                     quantity(step, "m/s"), quantity(own, "m/s"), in_brackets(change(step, own, true)));
 }
 
 std::string force_caption(const ClosingRecord& result) {
@@ -254,10 +259,10 @@ std::string force_caption(const ClosingRecord& result) {
   const double hold = figure_of_run(result.best, &Metrics::hold_force);
   std::string words = "Force of the contact on the beam.";
   if (result.search && std::isfinite(step) && std::isfinite(own)) {
-    words += fmt::format(" The plain step peaks at {}, softland's waveform at {}{}.", quantity(step, "N"), quantity(own, "N"),
-                         in_brackets(change(step, own, true)));
+    words += fmt::format(" Its peak is {} under the plain step and {} under softland's waveform{}.", quantity(step, "N"),
+                         quantity(own, "N"), in_brackets(change(step, own, true)));
   } else if (std::isfinite(own)) {
-    words += fmt::format(" It peaks at {}.", quantity(own, "N"));
+    words += fmt::format(" Its peak is {}.", quantity(own, "N"));
   }
   if (std::isfinite(hold)) words += fmt::format(" Closed and at rest, the contact carries {}.", quantity(hold, "N"));
   return words;
@@ -271,9 +276,10 @@ std::string waveform_caption(const ClosingRecord& result, const std::string& dri
   const std::string driver =
       !std::isfinite(limits.highest) || scale.unit.empty()
           ? ""
-          : fmt::format(" The driver gives {} to {}{}.", given_quantity(std::isfinite(limits.lowest) ? limits.lowest : 0, "V"),
+          : fmt::format(" The driver can supply {} to {}{}.",
+                        given_quantity(std::isfinite(limits.lowest) ? limits.lowest : 0, "V"),
                         given_quantity(limits.highest, "V"),
-                        std::isfinite(limits.slew) ? ", at most " + given_quantity(limits.slew, "V/s") : "");
+                        std::isfinite(limits.slew) ? " with a slew rate of at most " + given_quantity(limits.slew, "V/s") : "");
   const std::string own = range_words(shape, scale, equal);
   if (equal && !own.empty()) return fmt::format("{} of the drive “{}”. Both waveforms {}.{}", scale.name, drive, own, driver);
   const std::string step = range_words(waveform(result.baseline(), drive), scale, equal);
@@ -284,7 +290,8 @@ std::string waveform_caption(const ClosingRecord& result, const std::string& dri
 }
 
 std::string search_caption(const ClosingRecord& result, const SearchRecord& search) {
-  const std::string name = search.course.value_name.empty() ? "cost" : search.course.value_name;
+  const std::string whole_name = search.course.value_name.empty() ? "cost" : search.course.value_name;
+  const std::string name = whole_name.substr(0, whole_name.find(','));  // "cost, on the nominal device" is too long here
   const double own = result.best.cost;
   double first = std::numeric_limits<double>::quiet_NaN();
   double last = first;
@@ -299,7 +306,7 @@ std::string search_caption(const ClosingRecord& result, const SearchRecord& sear
   }
   std::string words = capitalised(name) + " of every waveform tried (dots) and of the best so far (line)";
   const double step = search.baseline.cost;
-  words += std::isfinite(step) ? fmt::format("; the plain step's is {}.", plain_number(step)) : ".";
+  words += std::isfinite(step) ? fmt::format("; that of the plain step is {}.", plain_number(step)) : ".";
   if (!std::isfinite(first)) return words;
   words += std::isfinite(search.evaluations) ? fmt::format(" In {} evaluations the {}", whole(search.evaluations), name)
                                              : " The " + name;
@@ -307,7 +314,7 @@ std::string search_caption(const ClosingRecord& result, const SearchRecord& sear
                                       in_brackets(change(first, last, true)))
                         : " stayed at " + plain_number(first);
   const double number = evaluations_until(evaluation_indices(search.course), found_at);
-  return words + fmt::format("; the winner is number {} of them.", whole(number));
+  return words + fmt::format("; the chosen waveform is number {}.", whole(number));
 }
 
 bool checks_agree(const ClosingRecord& result) {
@@ -321,14 +328,16 @@ std::string checks_caption(const SearchRecord& search) {
   for (const ConfirmationRecord& check : search.checks) (check.is_of_gas() ? laws : numerics).push_back(check);
   if (numerics.empty()) return {};
   const auto clean = static_cast<std::size_t>(std::ranges::count_if(numerics, is_clean_run));
-  std::string words = fmt::format("Simulated again with {}, ", names_of(numerics));
   const ConfirmationRecord& worst = *worst_check(numerics);
-  if (clean == numerics.size()) {
-    words += fmt::format("it closes without a rebound, at {} at most.", touch_speed_of(worst));
-  } else {
-    words += fmt::format("it closes without a rebound in {} of {} ways; at worst {} ({}).", clean, numerics.size(),
-                         course_of(worst), worst.name);
-  }
+  std::string words =
+      clean == numerics.size()
+          ? fmt::format(
+                "Confirmed: simulated again with {}, the switch closes bounce-free, with an impact velocity of at most {}.",
+                names_of(numerics), impact_velocity_of(worst))
+          : fmt::format(
+                "Not confirmed: simulated again with {}, the switch is not bounce-free in {} {} re-runs; at worst {} ({}).",
+                names_of(numerics), clean == 0 ? "all" : fmt::format("{} of", numerics.size() - clean), numerics.size(),
+                course_of(worst), worst.name);
   if (!laws.empty()) words += laws_caption(laws);
   return words;
 }
@@ -337,7 +346,7 @@ std::string families_caption(const SearchRecord& search) {
   std::string words;
   for (const SearchedFamilyResult& one : search.families)
     words += fmt::format("{}{} {}", words.empty() ? "" : ", ", one.family,
-                         std::isfinite(one.cost) ? plain_number(one.cost) : std::string("no landing"));
+                         std::isfinite(one.cost) ? plain_number(one.cost) : std::string("does not close"));
   return words;
 }
 
@@ -345,16 +354,16 @@ std::string robust_caption(const ClosingRecord& result) {
   if (!result.search || !result.search->robust) return {};
   const RobustFindings& r = *result.search->robust;
   const auto whole = [](double value) { return std::isfinite(value) ? fmt::format("{:.0f}", value) : std::string("?"); };
-  std::string words =
-      fmt::format("Searched over {} devices of the spread, {} closings, by {}.", whole(r.devices), whole(r.closings), r.measure);
+  std::string words = fmt::format("The search used {} devices of the process variation and {} closings; its statistic was {}.",
+                                  whole(r.devices), whole(r.closings), r.measure);
   const double own = result.best.cost, step = result.baseline().cost;
   if (std::isfinite(r.fresh_devices) && std::isfinite(own)) {
-    words += fmt::format(" Cost {} on {} fresh devices (plain step {})", plain_number(own), whole(r.fresh_devices),
+    words += fmt::format(" The cost is {} on {} new devices (plain step {})", plain_number(own), whole(r.fresh_devices),
                          plain_number(step));
     const double optimism = own / r.cost_on_searched - 1;
     if (std::isfinite(optimism)) {
-      words += fmt::format(", {} on those that it was searched on: {} {}", plain_number(r.cost_on_searched),
-                           percent(std::abs(optimism)), optimism >= 0 ? "too good" : "too bad");
+      words += fmt::format(" and {} on those of the search: {} too {}", plain_number(r.cost_on_searched),
+                           percent(std::abs(optimism)), optimism >= 0 ? "low" : "high");
     }
     words += ".";
   }
@@ -362,9 +371,9 @@ std::string robust_caption(const ClosingRecord& result) {
     const auto& [low, high] = c.share.interval;
     return fmt::format("{} ({} to {})", percent(c.share.value), plain_number(100 * low), plain_number(100 * high));
   };
-  if (r.yield) words += fmt::format(" {} of the fresh devices have {}.", share(*r.yield), r.yield->text);
+  if (r.yield) words += fmt::format(" {} of the new devices have {}.", share(*r.yield), r.yield->text);
   for (const FulfilledCondition& c : r.conditions) {
-    words += fmt::format(" The condition {} {}: {} of the fresh devices fulfil it.", c.text, c.holds ? "holds" : "does not hold",
+    words += fmt::format(" The condition {} {}: {} of the new devices fulfil it.", c.text, c.holds ? "holds" : "does not hold",
                          share(c));
   }
   return words;
@@ -375,8 +384,8 @@ std::string limit_words(const ClosingRecord& result) {
   const std::optional<TouchLimit> limit = result.search ? result.search->limit : std::nullopt;
   if (!limit || !std::isfinite(limit->least_time) || !std::isfinite(touch)) return {};
   return fmt::format(
-      "Touches in {} times the least time that any waveform of these drives takes, with the modes of the scene, to touch no "
-      "faster than {} ({}).",
+      "The first touch takes {} times as long as the least time of any waveform of these drives, with the modes of the scene and "
+      "an impact velocity of at most {} ({}).",
       plain_number(touch / limit->least_time, 4), quantity(limit->impact_velocity, "m/s"), quantity(limit->least_time, "s", 4));
 }
 

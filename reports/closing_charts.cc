@@ -244,7 +244,7 @@ class TimeCharts {
     add_series(drawn, "/" + drive, "level");
     const DriveLimits limits = drive_limits(result_, drive);
     for (const auto& [name, level] :
-         {std::pair{"most the driver gives", limits.highest}, {"least the driver gives", limits.lowest}}) {
+         {std::pair{"upper limit of the driver", limits.highest}, {"lower limit of the driver", limits.lowest}}) {
       if (!std::isfinite(drawable(level)) || drawable(level) == 0) continue;  // the axis shows 0
       const std::string table = fmt::format("driver/{}/{}", drive, level > limits.lowest ? "most" : "least");
       add_columns(out_.tables[table], "time_s", "level", {{0, level}, {window_, level}});
@@ -274,7 +274,7 @@ class TimeCharts {
 
   void add_resistance() {
     Chart resistance = over_time("resistance", "Contact resistance",
-                                 "Resistance of the contacts that make the connection. An open one has none.");
+                                 "Resistance of the contacts that make the connection. An open connection has no value.");
     resistance.y_label = "Resistance";
     resistance.y_unit = "ohm";
     resistance.scale = Scale::logarithmic;

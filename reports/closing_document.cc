@@ -198,10 +198,11 @@ std::string search_charts(const Picture& drawn) {
 }
 
 ReportSection search_section(const ClosingRecord& result) {
-  ReportSection section{.id = "search", .heading = "The search", .parts = {Drawing{search_charts}}};
+  ReportSection section{.id = "search", .heading = "Progress of the search", .parts = {Drawing{search_charts}}};
   const std::string words = result.search ? families_caption(*result.search) : std::string();
   if (!words.empty())
-    section.parts.emplace_back(Paragraph{fmt::format("Families searched, with the least cost of each: {}.", words)});
+    section.parts.emplace_back(
+        Paragraph{fmt::format("Waveform families that were searched, with the lowest cost of each: {}.", words)});
   return section;
 }
 
@@ -209,12 +210,12 @@ ReportSection search_section(const ClosingRecord& result) {
 std::string drawn_switch(const ClosingRecord& result) {
   const std::string drawing = sketch(result.scene);
   if (drawing.empty()) return {};
-  return drawing + "<p class=\"below\">From the side: to scale along the beam, heights exaggerated.</p>\n";
+  return drawing + "<p class=\"below\">Side view, to scale along the beam; heights are exaggerated.</p>\n";
 }
 
 ReportSection checks_section(const ClosingRecord& result) {
-  ReportSection section{.id = "checks", .heading = "Confirmations", .parts = {}};
-  // A winner that bounces has nothing to confirm.
+  ReportSection section{.id = "checks", .heading = "Confirmation by re-runs", .parts = {}};
+  // The terminal leaves out the re-runs of a winner that bounces: there is nothing to confirm.
   if (figure_of_run(result.best, &Metrics::bounce_count) != 0) section.shown = ShownIn::page;
   if (!result.search || result.search->checks.empty()) return section;
   ReportTable table{.head = {"Simulated with"}, .rows = {}};
@@ -226,7 +227,7 @@ ReportSection checks_section(const ClosingRecord& result) {
       row.emplace_back(figure_text(one, value, Metrics::unset, figure_of_run(result.baseline(), one.member)));
     }
   };
-  add("as searched", result.best.figures);
+  add("the settings of the search", result.best.figures);
   for (const ConfirmationRecord& check : result.search->checks) add(check.name, check.figures);
   section.parts = {Paragraph{checks_caption(*result.search)}, drawing_of(table_html(table))};
   return section;
@@ -278,7 +279,7 @@ TableCell searched_cell(const ClosingRecord& result, const std::string& paramete
 
 /// Lists the parameters in the order in which they act.
 ReportSection parameters_section(const ClosingRecord& result) {
-  ReportSection section{.id = "parameters", .heading = "The waveform found", .parts = {}, .shown = ShownIn::page};
+  ReportSection section{.id = "parameters", .heading = "Parameters of the waveform", .parts = {}, .shown = ShownIn::page};
   if (!result.search || result.search->parameters.empty()) return section;
   struct Row {
     std::string key, drive, name;
@@ -300,7 +301,7 @@ ReportSection parameters_section(const ClosingRecord& result) {
   for (const Row& row : rows) {
     if (row.drive != drive) drawings += parameter_drawing(result, drive = row.drive);
   }
-  ReportTable table{.head = {"Parameter", "Value", "Searched"}, .rows = {}};
+  ReportTable table{.head = {"Parameter", "Value", "Search range"}, .rows = {}};
   for (const Row& row : rows) {
     if (table.rows.size() == most_lines) break;
     constexpr int digits = 5;
@@ -329,13 +330,13 @@ ReportSection facts(const ClosingRecord& result) {
     fact("Waveform", search.waveform);
     fact("Optimizer", search.optimizer);
     fact("Evaluations", std::isfinite(search.evaluations) ? whole(search.evaluations) : "");
-    fact("Ended by", search.termination);
+    fact("Stopped by", search.termination);
   }
   if (result.pull_in.size() == 1) {  // several do not fit here
     const PullInOfElectrode& voltages = result.pull_in.begin()->second;
     const std::string shift = voltages.static_by_modes ? shift_words(*voltages.static_by_modes) : "";
-    fact("Static pull-in",
-         measured(voltages.static_pull_in, "V", 5) + (shift.empty() ? shift : fmt::format(" (more modes move it by {})", shift)));
+    fact("Static pull-in", measured(voltages.static_pull_in, "V", 5) +
+                               (shift.empty() ? shift : fmt::format(" (more modes change it by {})", shift)));
     fact("Dynamic pull-in", measured(voltages.dynamic_pull_in, "V", 5));
   }
   std::string modes;
@@ -346,8 +347,8 @@ ReportSection facts(const ClosingRecord& result) {
   }
   fact("Natural frequencies", modes);
   if (result.work) {
-    fact("Steps of the shown run", fmt::format("{}", result.work->steps));
-    fact("Its computing time", measured(result.work->wall, "s", 3));
+    fact("Time steps of this run", fmt::format("{}", result.work->steps));
+    fact("Computing time of this run", measured(result.work->wall, "s", 3));
   }
   if (!out.empty()) out = "<dl class=\"facts\">\n" + out + "</dl>\n";
   return {.id = "facts", .heading = "About this result", .parts = {drawing_of(out)}};
@@ -385,9 +386,9 @@ Document closing_document(const ClosingRecord& result) {
   document.sections.push_back({.id = "sketch", .heading = "The switch at rest", .parts = {Drawing{[&result](const Picture&) {
                                                                                   return drawn_switch(result);
                                                                                 }}}});
-  document.sections.push_back({.id = "charts", .heading = "The closing", .parts = {Drawing{[&result](const Picture& drawn) {
-                                                                           return closing_charts(result, drawn);
-                                                                         }}}});
+  document.sections.push_back({.id = "charts", .heading = "Closing transient", .parts = {Drawing{[&result](const Picture& drawn) {
+                                                                                 return closing_charts(result, drawn);
+                                                                               }}}});
   for (ReportSection& section : std::array{figures_section(result), checks_section(result), search_section(result)}) {
     if (devices != nullptr) section.shown = ShownIn::page;
     document.sections.push_back(std::move(section));

@@ -63,8 +63,8 @@ void figure_errors(A& a, FigureValues& errors) {
 [[nodiscard]] std::vector<IllConditioned> read_certified(const nlohmann::json& figures);
 [[nodiscard]] inline std::string integrator_name(Integrator integrator) { return std::string(to_string(integrator)); }
 [[nodiscard]] Integrator read_integrator(const nlohmann::json& name);
-/// Write an eigenvalue, and voltages of electrodes with their converged value, by the number of modes; null where there are no
-/// more modes.
+/// Write an eigenvalue, or the voltages of electrodes and their converged values, by the number of modes. JSON is null if the
+/// structure has no more modes than the scene.
 [[nodiscard]] nlohmann::json eigenvalues_json(const std::optional<ByModes>& found);
 [[nodiscard]] nlohmann::json voltages_json(const std::map<std::string, ByModes>& of_electrodes);
 [[nodiscard]] std::map<std::string, ByModes> read_voltages(const nlohmann::json& of_electrodes);

@@ -17,9 +17,14 @@ constexpr double few_rebounds = 5;
 
 std::string times_word(double count) { return count == 1 ? "once" : whole(count) + " times"; }
 
-std::string closes(const Actor& actor, const std::string& when) {
-  return actor.object.empty() ? fmt::format("{} closes {}", actor.subject, when)
-                              : fmt::format("{} closes {} {}", actor.subject, actor.object, when);
+std::string closes(const Actor& actor, const std::string& how) {
+  return actor.object.empty() ? fmt::format("{} closes {}", actor.subject, how)
+                              : fmt::format("{} closes {} {}", actor.subject, actor.object, how);
+}
+
+/// Returns the words for the moving switch: "the switch", or "with the plain step it" for a waveform that moves it.
+std::string moving(const Actor& actor) {
+  return actor.object.empty() ? actor.subject : fmt::format("with {} {}", actor.subject, actor.object);
 }
 
 bool doubtful(const FigureValues& figures, double error, double limit) {
@@ -40,7 +45,9 @@ std::string settling(const FigureValues& figures, const FigureValues& errors) {
 }
 
 std::string first_touch(const FigureValues& figures) { return quantity(figures[&Metrics::initial_contact_time], "s"); }
-std::string impact_speed(const FigureValues& figures) { return quantity(figures[&Metrics::impact_velocity], "m/s"); }
+std::string impact(const FigureValues& figures) {
+  return "an impact velocity of " + quantity(figures[&Metrics::impact_velocity], "m/s");
+}
 
 /// Returns the smallest distance to the contact plane [m] of a run that never touched; NaN without its curve.
 double closest(const CurveRecord& curve) {
@@ -83,19 +90,19 @@ namespace {
 
 std::string open_clause(const Actor& actor, const FigureValues& figures) {
   const double settling = figures[&Metrics::open_settling_time];
-  return fmt::format(
-      "{} stays open, as its drives ask it to, deflected by {}{}", actor.subject,
-      quantity(figures[&Metrics::static_deflection], "m"),
-      std::isfinite(settling) ? ", and settles after " + quantity(settling, "s") : ", and has not settled when the window ends");
+  return fmt::format("{} stays open, as commanded, with a static deflection of {}{}", moving(actor),
+                     quantity(figures[&Metrics::static_deflection], "m"),
+                     std::isfinite(settling) ? ", and comes to rest after " + quantity(settling, "s")
+                                             : ", and has not come to rest when the window ends");
 }
 
 // A run that began closed has no landing, only an opening.
 std::string opening_clause(const Actor& actor, const FigureValues& figures, const std::string& end) {
   const double settling = figures[&Metrics::open_settling_time];
   if (!std::isfinite(settling))
-    return fmt::format("{} begins closed, and is not open and at rest when the window ends{}", actor.subject,
+    return fmt::format("{} begins closed and has not come to rest in its open position when the window ends{}", moving(actor),
                        end.empty() ? "" : " at " + end);
-  return fmt::format("{} begins closed, opens, and is at rest from {} on, deflected by {}", actor.subject,
+  return fmt::format("{} begins closed, opens and is at rest from {} on, with a static deflection of {}", moving(actor),
                      quantity(settling, "s"), quantity(figures[&Metrics::static_deflection], "m"));
 }
 
@@ -103,24 +110,23 @@ std::string opening_clause(const Actor& actor, const FigureValues& figures, cons
 std::string opening_on_command(const FigureValues& figures) {
   const double command = figures[&Metrics::open_command], opening = figures[&Metrics::opening_time];
   if (!std::isfinite(command)) return {};
-  const std::string at = "the command at " + quantity(command, "s");
-  if (!std::isfinite(opening)) return "; it does not open on " + at;
+  const std::string at = "the command to open at " + quantity(command, "s");
+  if (!std::isfinite(opening)) return "; it does not open after " + at;
   std::string words = fmt::format("; it opens {} after {}", quantity(opening, "s"), at);
   const auto bounces = static_cast<int>(figures[&Metrics::release_bounces]);
-  if (bounces > 0) words += fmt::format(" and {} {}", bounces, bounces > 1 ? "bounces" : "bounce");
+  if (bounces > 0) words += fmt::format(", with {} {}", bounces, bounces > 1 ? "bounces" : "bounce");
   const double rest = figures[&Metrics::release_settling_time];
-  return words + (std::isfinite(rest) ? fmt::format(", and is at rest {} after it", quantity(rest, "s"))
+  return words + (std::isfinite(rest) ? fmt::format(", and is at rest {} after the command", quantity(rest, "s"))
                                       : ", and has not come to rest when the window ends");
 }
 
 std::string landing_words(const Actor& actor, const RunRecord& run, const FigureValues& figures, const std::string& end) {
   const double height = rebound_height(figures);
   if (is_clean(figures)) {
-    std::string words = closes(actor, "at " + first_touch(figures)) + " with no rebound";
-    if (height > 0) words += " above " + quantity(height, "m");
-    return words;
+    const std::string words = closes(actor, "bounce-free at " + first_touch(figures));
+    return height > 0 ? words + " (highest rebound " + quantity(height, "m") + ")" : words;
   }
-  std::string words = fmt::format("{} first touches at {}", actor.subject, first_touch(figures));
+  std::string words = fmt::format("{} first touches at {}", moving(actor), first_touch(figures));
   if (figures[&Metrics::bounce_count] > 0) {
     words += ", then " + bounces(figures, run.errors);
     if (height > 0) words += " up to " + quantity(height, "m");
@@ -130,22 +136,22 @@ std::string landing_words(const Actor& actor, const RunRecord& run, const Figure
   if (settles(figures)) return words + " and settles after " + settling(figures, run.errors);
   if (std::isfinite(figures[&Metrics::open_command])) return words + " and has not settled when it is commanded to open";
   return words + " and has not settled when the window ends" + (end.empty() ? "" : " at " + end) +
-         " (what follows is not counted)";
+         " (later bounces are not counted)";
 }
 
 }  // namespace
 
 std::string closing_clause(const Actor& actor, const RunRecord& run, double window) {
   if (run.status == "collapsed_at_rest")
-    return actor.subject +
-           " has no stable equilibrium to begin in under what its drives stand at before t = 0 (an open one, unless before_state "
-           "says otherwise)";
+    return moving(actor) +
+           " has no stable equilibrium to start from at the voltages before t = 0 (an open one, unless before_state asks for a "
+           "closed one)";
   if (run.status == "collapsed_onto_electrode") {
     const bool through = !run.figures || touches(*run.figures);
-    return actor.subject + (through ? " is pulled through the contact onto the electrode"
-                                    : " is pulled onto an electrode before it touches its contact");
+    return moving(actor) + (through ? " collapses onto the electrode, past its contact"
+                                    : " collapses onto an electrode before it touches its contact");
   }
-  if (run.status == "numerical_failure") return actor.subject + " could not be simulated to the end";
+  if (run.status == "numerical_failure") return moving(actor) + " could not be simulated to the end";
   if (!run.figures) return "there are no figures for " + actor.subject;
   const FigureValues& figures = *run.figures;
   const std::string end = std::isfinite(window) ? quantity(window, "s") : std::string();
@@ -156,12 +162,13 @@ std::string closing_clause(const Actor& actor, const RunRecord& run, double wind
                        end.empty() ? "" : " within " + end);
   }
   if (touches_in_part(run)) {
-    return fmt::format("{} first touches at {} with {}; the connection is never closed{}", actor.subject, first_touch(figures),
-                       impact_speed(figures), end.empty() ? "" : " within " + end);
+    return fmt::format("{} first touches at {} with {}; the contacts that make the connection are never closed together{}",
+                       moving(actor), first_touch(figures), impact(figures), end.empty() ? "" : " within " + end);
   }
   if (ends_at_touch(figures)) {
-    return fmt::format("{} reaches the contact plane at {} with {}; without a [contact] section the run ends there",
-                       actor.subject, first_touch(figures), impact_speed(figures));
+    return fmt::format(
+        "{} reaches the contact plane at {} with {}; the run ends there, because the scene has no [contact] section",
+        moving(actor), first_touch(figures), impact(figures));
   }
   return landing_words(actor, run, figures, end) + opening_on_command(figures);
 }
@@ -170,22 +177,24 @@ std::string landing_clause(const std::string& subject, const RunRecord& run) {
   if (!run.figures) return {};
   const FigureValues& figures = *run.figures;
   if (!touches(figures)) {
-    const double least = closest(run.curve);
-    return subject + " never touches" + (std::isfinite(least) ? " (no nearer than " + quantity(least, "m") + ")" : "");
+    const double least = closest(run.curve), open = figures[&Metrics::open_settling_time];
+    if (began_closed(run) || least <= 0)
+      return subject + " begins closed" +
+             (std::isfinite(open) ? " and is open and at rest from " + quantity(open, "s") + " on" : "");
+    return subject + " never touches" + (std::isfinite(least) ? ": the smallest gap is " + quantity(least, "m") : "");
   }
-  if (touches_in_part(run))
-    return fmt::format("{} touches with {}, and never closes the connection", subject, impact_speed(figures));
+  if (touches_in_part(run)) return fmt::format("{} touches with {} but never closes the connection", subject, impact(figures));
   if (ends_at_touch(figures))
-    return fmt::format("{} first touches at {} with {}", subject, first_touch(figures), impact_speed(figures));
+    return fmt::format("{} first touches at {} with {}", subject, first_touch(figures), impact(figures));
   const double height = rebound_height(figures);
   if (is_clean(figures)) {
-    const std::string above = height > 0 ? fmt::format(" but for rebounds of {} at most", quantity(height, "m")) : "";
-    return fmt::format("{} lands at {} with {} and stays closed{}", subject, first_touch(figures), impact_speed(figures), above);
+    const std::string above = height > 0 ? fmt::format(" but for rebounds of at most {}", quantity(height, "m")) : "";
+    return fmt::format("{} lands at {} with {} and stays closed{}", subject, first_touch(figures), impact(figures), above);
   }
   std::string words = subject + " ";
   words += figures[&Metrics::bounce_count] > 0 ? bounces(figures, run.errors) : "rebounds";
   if (height > 0) words += fmt::format(", up to {}", quantity(height, "m"));
-  return words + (settles(figures) ? ", until " + settling(figures, run.errors) : ", and is still open when the window ends");
+  return words + (settles(figures) ? ", until " + settling(figures, run.errors) : ", and has not settled when the window ends");
 }
 
 std::string capitalised(std::string words) {

@@ -11,11 +11,11 @@ namespace softland::internal {
 
 [[nodiscard]] bool touches(const FigureValues& figures);
 [[nodiscard]] bool settles(const FigureValues& figures);
-/// True for a run that touched and of which nothing more is known: the scene has no contact, or the run stopped.
+/// Tells whether a run touched but nothing later is known: the scene has no contact, or the run stopped.
 [[nodiscard]] bool ends_at_touch(const FigureValues& figures);
 /// True when one contact of several has touched, but those that make the connection were never closed together.
 [[nodiscard]] bool touches_in_part(const RunRecord& run);
-/// Tells whether a run began closed: it came to its end, and no touch is its own.
+/// Tells whether a run began closed: it came to its end without a first touch.
 [[nodiscard]] bool began_closed(const RunRecord& run);
 /// True for a run that touched and settled without a significant rebound.
 [[nodiscard]] bool is_clean(const FigureValues& figures);
@@ -24,18 +24,21 @@ namespace softland::internal {
 /// Returns a figure of a run; NaN where there is no run.
 [[nodiscard]] double figure_of_run(const RunRecord& run, Figure::Member member);
 
-/// The subject and the object of a clause: "Softland's waveform" closes "the switch"; "the plain step" closes "it".
+/// The subject and the object of a clause: "softland's waveform" closes "the switch"; "the plain step" closes "it".
 struct Actor {
   std::string subject;
   std::string object = {};  ///< object of the clause; empty: the subject is the switch itself
 };
 /// Says how a run closes, as a clause without full stop; `window` is the simulated time [s].
 [[nodiscard]] std::string closing_clause(const Actor& actor, const RunRecord& run, double window);
-/// Says how a run lands and what follows, as a clause; empty where the run is not there.
+/// Says how a run lands and what follows, as a clause about `subject`, such as "with the plain step the switch"; empty without a
+/// run.
 [[nodiscard]] std::string landing_clause(const std::string& subject, const RunRecord& run);
 
 inline constexpr const char* own_subject = "softland's waveform";
 inline constexpr const char* step_subject = "the plain step";
+inline constexpr const char* own_switch = "with softland's waveform the switch";
+inline constexpr const char* step_switch = "with the plain step the switch";
 
 /// Returns the words with a capital letter at the beginning.
 [[nodiscard]] std::string capitalised(std::string words);

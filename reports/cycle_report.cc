@@ -86,13 +86,14 @@ std::string comparison(const CycleRecord& r) {
   const auto words = [&](const CycleRecord::Drive& drive) {
     const bool sticks = std::ranges::any_of(drive.cycles, [](const auto& c) { return !std::isfinite(c.metrics.opening_time); });
     const bool misses = std::ranges::any_of(drive.cycles, [](const auto& c) { return !c.metrics.touched(); });
-    if (drive.cycles.empty()) return std::string("cannot be followed");
+    if (drive.cycles.empty()) return std::string("could not be simulated");
     if (misses || sticks) return fmt::format("does not {} in every cycle", misses ? "close" : "open");
     const double height = hardest(drive, &Metrics::major_bounce_height);
-    return fmt::format("touches at up to {} and {}", quantity(hardest(drive, &Metrics::largest_impact_velocity), "m/s"),
+    return fmt::format("has impact velocities of up to {} and {}",
+                       quantity(hardest(drive, &Metrics::largest_impact_velocity), "m/s"),
                        height > 0 ? "rebounds by up to " + quantity(height, "m") : std::string("does not rebound"));
   };
-  return fmt::format("At {} the switch {} with these waveforms; switched plainly, it {}.", quantity(r.rate, "Hz"),
+  return fmt::format("At {} the switch {} with these waveforms; with plain steps it {}.", quantity(r.rate, "Hz"),
                      words(r.drives.back()), words(r.drives.front()));
 }
 
@@ -100,16 +101,17 @@ std::string finding(const CycleRecord& r) {
   if (r.drives.empty()) return "No rate was tried.";
   const CycleRecord::Drive &plain = r.drives.front(), &found = found_of(r);
   if (found.steady_rates.empty() && found.other_rates.empty()) {
-    if (!std::isfinite(r.rate)) return "The switch does not close and come back to rest: there is no rate to scan.";
+    if (!std::isfinite(r.rate)) return "The switch does not close and return to rest, so no rate can be scanned.";
     if (r.drives.size() > 1) return comparison(r);
     const bool sticks = std::ranges::any_of(found.cycles, [](const auto& c) { return !std::isfinite(c.metrics.opening_time); });
-    return fmt::format("Cycles at {}{}.", quantity(r.rate, "Hz"), sticks ? "; the switch is closed when a cycle ends" : "");
+    return fmt::format("The switch is cycled at {}{}.", quantity(r.rate, "Hz"),
+                       sticks ? "; it does not open in every cycle" : "");
   }
   const auto at = [](double rate) {
-    return std::isfinite(rate) ? "at up to " + quantity(rate, "Hz") : std::string("at no rate of the scan");
+    return std::isfinite(rate) ? "at rates of up to " + quantity(rate, "Hz") : std::string("at no rate of the scan");
   };
-  if (r.drives.size() == 1) return fmt::format("Switched plainly, every cycle lands like the first {}.", at(plain.largest));
-  return fmt::format("With these waveforms every cycle lands like the first {}; switched plainly, {}.", at(found.largest),
+  if (r.drives.size() == 1) return fmt::format("With plain steps every cycle closes like the first one {}.", at(plain.largest));
+  return fmt::format("With these waveforms every cycle closes like the first one {}; with plain steps, {}.", at(found.largest),
                      at(plain.largest));
 }
 
@@ -118,9 +120,11 @@ std::string name_words(const CycleRecord& r, const CycleRecord::Drive& drive) {
 }
 
 ReportTable rates_table(const CycleRecord& r) {
-  ReportTable table{.head = {""}, .rows = {{"largest steady rate"}, {"steady again"}}};
+  ReportTable table{.head = {""}, .rows = {{"largest steady rate"}, {"steady again at"}}};
   const bool has_devices = std::ranges::any_of(r.drives, [](const CycleRecord::Drive& d) { return d.devices.has_value(); });
-  if (has_devices) table.rows.insert(table.rows.end(), {{"of 95 % of the devices"}, {"of half of the devices"}});
+  if (has_devices)
+    table.rows.insert(table.rows.end(),
+                      {{"largest steady rate of 95 % of the devices"}, {"largest steady rate of half of the devices"}});
   const bool has_rate = has_devices && std::isfinite(r.rate);
   if (has_rate) table.rows.push_back({fmt::format("devices steady at {}", quantity(r.rate, "Hz"))});
   for (const CycleRecord::Drive& d : r.drives) {
@@ -145,13 +149,13 @@ ReportTable cycles_table(const CycleRecord::Drive& drive, const std::string& nam
     Figure::Member member;
   };
   const std::array rows{Row{"first contact", &Metrics::initial_contact_time},
-                        Row{"largest impact speed", &Metrics::largest_impact_velocity},
+                        Row{"largest impact velocity", &Metrics::largest_impact_velocity},
                         Row{"rebounds", &Metrics::bounce_count},
                         Row{"highest rebound", &Metrics::major_bounce_height},
                         Row{"opening time", &Metrics::opening_time},
                         Row{"bounces on opening", &Metrics::release_bounces},
-                        Row{"least gap after opening", &Metrics::least_gap_open},
-                        Row{"time in touch", &Metrics::closed_time},
+                        Row{"smallest gap after opening", &Metrics::least_gap_open},
+                        Row{"time in contact", &Metrics::closed_time},
                         Row{"impact energy", &Metrics::impact_energy},
                         Row{"contact pressure over hardness", &Metrics::pressure},
                         Row{"charge at make", &Metrics::make_charge},
@@ -175,7 +179,7 @@ ReportTable cycles_table(const CycleRecord::Drive& drive, const std::string& nam
     }
     table.rows.push_back(std::move(cells));
   }
-  TableRow on_times{"electrically closed"};
+  TableRow on_times{"time electrically closed"};
   for (const std::size_t n : shown) on_times.push_back(quantity(drive.cycles[n].on_time, "s"));
   table.rows.push_back(std::move(on_times));
   return table;
@@ -320,10 +324,10 @@ internal::Picture picture_of(const CycleRecord& r) {
     return one;
   };
   Chart gap = chart("gap", "Gap", "Gap", "m", 320), bars = chart("contact", "Contact: closed and open", "", "", 0);
-  gap.caption = "Distance of the contact point to the contact plane (positive: open).";
+  gap.caption = "Distance of the contact point from the contact plane (positive: open).";
   gap.zero_line = true;
   gap.zero_label = "contact plane";
-  bars.caption = "Filled while the contact point touches.";
+  bars.caption = "The bars are filled while the contact point touches.";
   bars.is_of_bars = true;
   std::map<std::string, Chart> drives;
   for (const CycleRecord::Drive& d : r.drives) {
@@ -413,8 +417,8 @@ std::vector<KeyNumber> keys_of(const CycleRecord& r) {
     return quantity(most, unit);
   };
   if (found.cycles.empty()) return keys;
-  keys.push_back({.name = "Cycles at", .value = quantity(r.rate, "Hz")});
-  add("Largest impact speed", largest(plain, &Metrics::largest_impact_velocity, "m/s"),
+  keys.push_back({.name = "Rate of the cycles", .value = quantity(r.rate, "Hz")});
+  add("Largest impact velocity", largest(plain, &Metrics::largest_impact_velocity, "m/s"),
       largest(found, &Metrics::largest_impact_velocity, "m/s"));
   add("Highest rebound", largest(plain, &Metrics::major_bounce_height, "m"), largest(found, &Metrics::major_bounce_height, "m"));
   return keys;
@@ -433,9 +437,8 @@ Document document_of(const CycleRecord& r) {
                     .made = made_again(r.origin, r.seed)};
   if (r.search && std::isfinite(r.search->cost)) {
     document.headline_rest = fmt::format(
-        " The cost of the worst of the first cycles is {:.4f} instead of {:.4f}, after {} evaluations of pairs (target {}, "
-        "closing by "
-        "the family {}).",
+        " The worst of the first cycles has a cost of {:.4f} (plain steps {:.4f}), after {} evaluations of waveform pairs "
+        "(target {}, closing waveform of the family {}).",
         r.search->cost, r.search->plain_cost, r.search->evaluations, r.search->target, r.search->family);
   }
   if (!r.curves.empty()) {
@@ -443,12 +446,12 @@ Document document_of(const CycleRecord& r) {
     document.sections.push_back({.id = "charts", .heading = "The cycles", .parts = {Drawing{cycle_charts}}});
   }
   ReportSection rates{.id = "rates", .heading = "Rates", .parts = {rates_table(r)}};
-  rates.parts.emplace_back(
-      Paragraph{.text = fmt::format(
-                    "A rate is steady where {} cycles close and open, and land within 5 % as fast and as high as the first one. "
-                    "The largest is that below which every rate was steady, in steps of 5 %, at a duty of {}\u00a0%.",
-                    r.cycles, internal::plain_number(100 * r.duty, 3)),
-                .is_note = true});
+  rates.parts.emplace_back(Paragraph{
+      .text = fmt::format(
+          "A rate is steady if {} cycles close and open, with an impact velocity and a rebound within 5 % of those of the first "
+          "cycle. All rates up to the largest steady rate are steady, in steps of 5 %, at a duty cycle of {}\u00a0%.",
+          r.cycles, internal::plain_number(100 * r.duty, 3)),
+      .is_note = true});
   rates.parts.emplace_back(Drawing{[&r](const internal::Picture&) { return drawn_rates(r); }});
   const bool has_scan =
       std::ranges::any_of(r.drives, [](const auto& d) { return !d.steady_rates.empty() || !d.other_rates.empty(); });

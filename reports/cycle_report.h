@@ -18,10 +18,10 @@
 namespace softland {
 
 struct CycleRecord {
-  /// Rates of varied devices: quantiles, and the share that is steady at the reported rate.
+  /// Largest steady rates under process variation, and the share of devices that is steady at the reported rate.
   struct Devices {
     std::uint64_t count = 0;
-    double at_5 = Metrics::unset, at_50 = Metrics::unset, at_95 = Metrics::unset;  ///< [Hz]
+    double at_5 = Metrics::unset, at_50 = Metrics::unset, at_95 = Metrics::unset;  ///< percentiles [Hz]
     double steady = Metrics::unset;
   };
   struct Course {
@@ -34,9 +34,9 @@ struct CycleRecord {
   };
   struct Drive {
     std::string name;
-    double largest = Metrics::unset;                ///< [Hz]
-    std::vector<std::array<double, 2>> windows;     ///< [Hz]
-    std::vector<double> steady_rates, other_rates;  ///< rates that the scan tried [Hz]
+    double largest = Metrics::unset;                ///< largest steady rate [Hz]
+    std::vector<std::array<double, 2>> windows;     ///< ranges above it that are steady again [Hz]
+    std::vector<double> steady_rates, other_rates;  ///< rates of the scan that were steady, and the others [Hz]
     std::optional<Devices> devices;
     std::optional<std::string> status, message;  ///< end of the run at the rate
     std::vector<Cycle> cycles;

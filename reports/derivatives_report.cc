@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "document/quantity.h"
+#include "reports/robustness_words.h"
 
 namespace softland::internal {
 namespace {
@@ -52,24 +53,24 @@ std::string deviation_cell(const Derived::Of& figure) {
 // Explains the meaning and the limits of a derivative.
 std::string meaning_of(const Derived& derivatives) {
   std::string words = fmt::format(
-      "Exact derivatives at the nominal device under {}: per cent of the figure for one per cent of the quantity, and its change "
-      "for one standard deviation. To first order these add up to the spread; a rebound that comes or goes is no small change, "
-      "and where the two spreads differ the sample is to be believed.",
-      derivatives.drive);
+      "Exact derivatives at the nominal design under {}. A cell has the change of the figure in per cent for one per cent of the "
+      "quantity, and the change for one standard deviation. To first order the squares of these changes add up to the variance. "
+      "A rebound that appears or disappears is not a small change: trust the sample where the two standard deviations differ.",
+      shown_drive(derivatives.drive));
   std::vector<std::string> apart;
   for (const Derived::Of& figure : derivatives.figures) {
     if (!figure.by.empty() && !figure.agrees) apart.emplace_back(figure_of(figure.key).symbol);
   }
   if (!apart.empty()) {
-    words +=
-        fmt::format(" Those of {} are not shown: their spread is off by more than a factor of {:g} from that of the devices.",
-                    fmt::join(apart, ", "), most_apart);
+    words += fmt::format(
+        " The derivatives of {} are not shown: their standard deviation differs from that of the devices by more than a factor "
+        "of {:g}.",
+        fmt::join(apart, ", "), most_apart);
   }
   if (derivatives.grazes) {
     words += fmt::format(
-        " Grazing: the slowest crossing of the contact plane has {} of the speed of the first touch, so that a touch nearly "
-        "comes "
-        "or goes, and figures after the first touch keep these derivatives for much smaller changes only.",
+        " Grazing: the slowest crossing of the contact plane has {} of the impact velocity, so a touch nearly appears or "
+        "disappears. The derivatives of figures after the first touch hold for much smaller changes only.",
         percent(derivatives.grazing));
   }
   for (const auto& [name, variable] : derivatives.variables) {
@@ -106,7 +107,7 @@ Derived record_of(const Derivatives& derivatives, const DriveRobustness& drive) 
 }
 
 ReportSection derivatives_section(const Derived& derivatives, const RobustnessRecord::Drive& drive) {
-  ReportSection section{.id = "derivatives", .heading = "To first order", .parts = {}};
+  ReportSection section{.id = "derivatives", .heading = "First-order sensitivities", .parts = {}};
   if (derivatives.variables.empty()) return section;
   if (derivatives.figures.empty()) {
     section.parts = {Paragraph{why_no_derivatives(derivatives)}};
@@ -115,7 +116,7 @@ ReportSection derivatives_section(const Derived& derivatives, const RobustnessRe
   ReportTable table{.head = {derivatives.grazes ? "To first order (grazing)" : "To first order", "Nominal"}, .rows = {}};
   table.head.front().html = "Figure";
   for (const auto& [name, variable] : derivatives.variables) table.head.emplace_back(name);
-  table.head.insert(table.head.end(), {"Standard deviation", "of the devices"});
+  table.head.insert(table.head.end(), {"Standard deviation", "that of the devices"});
   for (const Derived::Of& figure : derivatives.figures) {
     const Figure& of = figure_of(figure.key);
     TableRow& row = table.rows.emplace_back(TableRow{of.name, quantity(figure.nominal, of.unit)});

@@ -56,7 +56,8 @@ Picture internal::gaps_picture(const DevicesFindings& d) {
     drawn.tables[id] = courses_table(courses, gaps);
     Chart chart{.id = id,
                 .title = title,
-                .caption = fmt::format("Gap of the contact on {} devices: median, and band of 5 to 95 %.", gaps.size()),
+                .caption = fmt::format("Gap of the contact on {} devices: median, and band from the 5th to the 95th percentile.",
+                                       gaps.size()),
                 .x_column = "time",
                 .x_label = "Time",
                 .x_unit = "s",

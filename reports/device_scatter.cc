@@ -111,9 +111,9 @@ std::string scatter_html(const RobustnessReport& report) {
   }
   if (pictures.empty()) return {};
   return fmt::format(
-      "<p>Devices under {}, a dot each for the first {}; the line joins medians of neighbours.</p>\n"
+      "<p>Each dot is a device under {} (the first {} are shown); the line joins medians of neighbouring devices.</p>\n"
       "<div class=\"multiples\">\n{}</div>\n",
-      escaped(drive.name), std::min(most_dots, report.found.devices), pictures);
+      escaped(shown_drive(drive.name)), std::min(most_dots, report.found.devices), pictures);
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ constexpr std::array columns{Column{key_of(&Metrics::largest_impact_velocity), "
                              Column{key_of(&Metrics::major_bounce_height), "highest rebound", "rebound", true},
                              Column{key_of(&Metrics::peak_contact_force), "peak force", "peak force"},
                              Column{key_of(&Metrics::steady_force_time), "steady force from", "steady from"},
-                             Column{key_of(&Metrics::permanent_contact_time), "permanent contact", "", false, ShownIn::page},
+                             Column{key_of(&Metrics::permanent_contact_time), "settling time", "", false, ShownIn::page},
                              Column{key_of(&Metrics::initial_contact_time), "first contact", "first contact"}};
 
 constexpr std::string_view steady_key = key_of(&Metrics::steady_force_time);
@@ -88,18 +88,19 @@ std::string yields_cell(const DevicesFindings::Row& row) {
   return cell + " %";
 }
 
-// A table calls a row by its choice and the file that holds it.
+// Returns the name of a row in tables: the choice and the file that holds its waveform.
 std::string shown_name(const DevicesFindings& d, const DevicesFindings::Row& row) {
   if (row.name == for_the_drawing) return "nominal design: drawing.toml";
   for (const DevicesFindings::Choice& one : d.choices) {
     if (one.row() == row.name) return fmt::format("{}: {}", one.name, one.file);
   }
-  return row.name == for_the_devices ? "best.toml" : row.name;
+  const bool is_calibrated = std::isfinite(row.pull_in_error) || std::isfinite(row.time_error);
+  return row.name == for_the_devices ? "best.toml" : is_calibrated ? "per-device calibration: " + row.name : row.name;
 }
 
 constexpr double least_share = 0.0005;  // smaller shares of devices are left out
 
-// Tells whether the table of these rows says how many devices stay open, and how many collapse.
+// Tells whether any of these rows has such a share that its table shows it.
 bool any_of(const std::vector<DevicesFindings::Row>& rows, double DevicesFindings::Row::*share) {
   return std::ranges::any_of(rows, [&](const DevicesFindings::Row& row) { return row.*share > least_share; });
 }
@@ -111,23 +112,24 @@ TableCell headed(std::string_view on_terminal, std::string_view on_page) {
   return cell;
 }
 
-// Draws the choices beside the plain step: impact velocity over the time from which the force is steady.
+// Draws the choices and the plain step: impact velocity against the time from which the contact force is steady.
 std::string choices_picture(const DevicesFindings& d) {
   if (d.choices.size() < 2) return {};
   CurveTables tables;
   CurveTable& table = tables["choices"];
-  Chart chart{
-      .id = "choices",
-      .title = "Time against softness",
-      .caption = "The 95th percentile of the impact velocity over that of the time from which the contact force is steady.",
-      .x_column = "steady",
-      .x_label = "Steady force from, 95 % of devices",
-      .x_unit = "s",
-      .y_label = "Impact velocity, 95 %",
-      .y_unit = "m/s",
-      .scale = Scale::logarithmic,
-      .height = 260,
-      .series = {{.table = "choices", .column = "speed", .label = "", .role = Role::best}}};
+  Chart chart{.id = "choices",
+              .title = "Impact velocity against time",
+              .caption =
+                  "Both axes are 95th percentiles over the devices: the impact velocity against the time from which the contact "
+                  "force is steady.",
+              .x_column = "steady",
+              .x_label = "Steady force from, 95th percentile",
+              .x_unit = "s",
+              .y_label = "Impact velocity, 95th percentile",
+              .y_unit = "m/s",
+              .scale = Scale::logarithmic,
+              .height = 260,
+              .series = {{.table = "choices", .column = "speed", .label = "", .role = Role::best}}};
   double last = 0, softest = std::numeric_limits<double>::infinity(), hardest = 0;
   const auto point = [&](const std::string& name, Role role, bool is_choice) {
     const DevicesFindings::Row* row = d.row(name);
@@ -151,7 +153,7 @@ std::string choices_picture(const DevicesFindings& d) {
       bound["steady"].push_back(time), bound["speed"].push_back(path.touch_places / (time - path.rise));
     }
     chart.series.push_back(
-        {.table = "bound", .column = "speed", .label = "touch places over the time left", .role = Role::limit});
+        {.table = "bound", .column = "speed", .label = "bound: touch positions crossed at constant speed", .role = Role::limit});
     softest = std::min(softest, bound["speed"].back());
   }
   point(plain_step_row, Role::baseline, false);
@@ -173,28 +175,29 @@ std::string error_curve(const DevicesFindings& d) {
     table["speed"].push_back(known.impact_speed);
   }
   const std::array ends{table["error"].front(), table["error"].back()};
-  Chart share{
-      .id = "share-by-error",
-      .title = "Without a rebound, by the error of Vdp",
-      .caption =
-          "Devices that land without a rebound where Vdp is measured on each with this error, by the waveform that lands most.",
-      .x_column = "error",
-      .x_label = "Error of Vdp",
-      .x_unit = "%",
-      .y_label = "Devices",
-      .y_unit = "%",
-      .x_scale = Scale::logarithmic,
-      .x_home = ends,
-      .x_whole = ends,
-      .y_home = std::array{0.0, 100.0},
-      .height = 200,
-      .series = {{.table = "by-error", .column = "share", .label = "", .role = Role::best}}};
+  Chart share{.id = "share-by-error",
+              .title = "Bounce-free devices against the error of Vdp",
+              .caption =
+                  "Share of the devices that close bounce-free if Vdp of each is measured with this error, under the waveform "
+                  "with the largest share.",
+              .x_column = "error",
+              .x_label = "Error of Vdp",
+              .x_unit = "%",
+              .y_label = "Devices",
+              .y_unit = "%",
+              .x_scale = Scale::logarithmic,
+              .x_home = ends,
+              .x_whole = ends,
+              .y_home = std::array{0.0, 100.0},
+              .height = 200,
+              .series = {{.table = "by-error", .column = "share", .label = "", .role = Role::best}}};
   Chart speed = share;
   speed.id = "speed-by-error";
-  speed.title = "Impact speed, by the error of Vdp";
+  speed.title = "Impact velocity against the error of Vdp";
   speed.caption =
-      "95 % of the devices touch at no more than this where Vdp is measured on each with this error, by the softest waveform.";
-  speed.y_label = "Impact speed";
+      "95th percentile of the impact velocity if Vdp of each device is measured with this error, under the waveform with the "
+      "lowest value.";
+  speed.y_label = "Impact velocity";
   speed.y_unit = "m/s";
   speed.y_home.reset();
   speed.series.front().column = "speed";
@@ -207,28 +210,30 @@ std::string internal::drawing_words(const DevicesFindings& d) {
   const double closed = d.drawing[&Metrics::permanent_contact_time], height = d.drawing[&Metrics::major_bounce_height];
   if (d.drawing_goal_met && std::isfinite(closed)) {
     const DevicesFindings::Row* row = d.row(for_the_drawing);
-    const std::string on_devices = row == nullptr ? "" : fmt::format(" (95 % of the devices: {})", speed_of(*row));
-    return fmt::format("drawing.toml closes the nominal design alone without a rebound, at {}{}.", quantity(closed, "s"),
-                       on_devices);
+    const std::string on_devices =
+        row == nullptr ? "" : fmt::format(" (95th percentile of the impact velocity on the devices: {})", speed_of(*row));
+    return fmt::format("drawing.toml, searched for the nominal design alone, closes it bounce-free at {}{}.",
+                       quantity(closed, "s"), on_devices);
   }
-  if (!std::isfinite(height)) return "No waveform was found that closes the nominal design for good: drawing.toml.";
-  return fmt::format("The nominal design alone rebounds by up to {}: drawing.toml.", quantity(height, "m"));
+  if (!std::isfinite(height))
+    return "No waveform was found that keeps the nominal design closed; drawing.toml is the best of them.";
+  return fmt::format("drawing.toml, searched for the nominal design alone, makes it rebound by up to {}.", quantity(height, "m"));
 }
 
 std::string internal::devices_headline(const ClosingRecord& result) {
   const DevicesFindings& d = *result.devices();
   const DevicesFindings::Row *step = d.row(plain_step_row), *own = d.row(for_the_devices);
   if (step == nullptr || own == nullptr) return {};
-  const std::string assumed = d.spread_assumed ? " (assumed, the scene has no [spread]: " + d.spread + ")" : "";
+  const std::string assumed = d.spread_assumed ? " (assumed, because the scene has no [spread]: " + d.spread + ")" : "";
   if (!d.better_than_plain_step) {
     std::string figures;
     for (const std::string& key : d.worse_in) figures += (figures.empty() ? "" : " and ") + figure_name(key);
     return fmt::format(
-        "{}Over the process variation{}, no waveform that was found is as good as the plain step: the best is worse in its {}. "
+        "{}Under process variation{}, no waveform that was found is as good as the plain step: the best one is worse in its {}. "
         "best.toml is the plain step.",
         d.goal_met == true ? "The plain step does not bounce on 95 % of the devices. " : "", assumed, figures);
   }
-  const std::string lands = own->bounce_free >= half ? fmt::format("{} close without a rebound (plain step {}), and 95 % touch",
+  const std::string lands = own->bounce_free >= half ? fmt::format("{} close bounce-free (plain step {}), and 95 % touch",
                                                                    percent(own->bounce_free), percent(step->bounce_free))
                                                      : std::string("95 % touch");
   std::string words = fmt::format("Of {:.0f} simulated devices{}, {} at no more than {} instead of {}", d.count, assumed, lands,
@@ -262,12 +267,12 @@ ReportTable devices_table(const DevicesFindings& d, const std::vector<std::pair<
   std::ranges::copy_if(columns, std::back_inserter(shown),
                        [&](const Column& c) { return c.shown == ShownIn::everywhere || c.shown == where; });
   for (const Column& c : shown) table.head.push_back(headed(c.short_heading, c.heading));
-  table.head.push_back(headed("≤ 1 / 10 / 100 nm", "devices ≤ 1 / 10 / 100 nm"));
+  table.head.push_back(headed("≤ 1 / 10 / 100 nm", "share of devices with rebounds ≤ 1 / 10 / 100 nm"));
   const bool stay_open = any_of(d.rows, &DevicesFindings::Row::open),
              pulled_in = any_of(d.rows, &DevicesFindings::Row::collapsed);
-  if (stay_open && pulled_in) table.head.push_back(headed("open / pulled in", "stay open / collapse onto the electrode"));
+  if (stay_open && pulled_in) table.head.push_back(headed("open / collapsed", "stay open / collapse onto the electrode"));
   if (stay_open && !pulled_in) table.head.emplace_back("stay open");
-  if (pulled_in && !stay_open) table.head.push_back(headed("pulled in", "collapse onto the electrode"));
+  if (pulled_in && !stay_open) table.head.push_back(headed("collapsed", "collapse onto the electrode"));
   for (const auto& [name, row] : rows) {
     TableRow& line = table.rows.emplace_back(TableRow{name});
     const char* const style = row->name == for_the_devices ? "own" : "";
@@ -320,33 +325,37 @@ std::string path_words(const DevicesFindings& d) {
       "The {} carries {} of the devices to their contact through stable equilibria within {} (the nominal design "
       "touches at {}).",
       drive, percent(path.share), quantity(path.limit, "V"), quantity(path.reaches, "V"));
-  if (path.share < 1) words += " The electrode closes the others, as fast as the 99th percentile says.";
-  if (drive == "piezo") words += " Creep and hysteresis of the piezo are not in the model.";
+  if (path.share < 1) words += " The electrode pulls in the others, at a higher impact velocity (see the 99th percentile).";
+  if (drive == "piezo") words += " The model has no creep and no hysteresis of the piezo.";
   return words;
 }
 
 std::string delay_words(const DevicesFindings& d) {
   if (!std::isfinite(d.step_delay)) return {};
   return fmt::format(
-      "The plain step of the electrode comes at {}, when the piezo has made the contact; --hold-step fixed leaves "
-      "it at t = 0.",
+      "The plain step of the electrode is delayed to {}, when the piezo has closed the contact; --hold-step fixed keeps it at t "
+      "= 0.",
       quantity(d.step_delay, "s"));
 }
 
-// Says how much measuring every device would win.
+// Tells how much per-device calibration would improve.
 std::string measuring_words(const DevicesFindings& d) {
   const DevicesFindings::Row *own = d.row(for_the_devices), *measured = d.row(d.measured);
   const bool were_judged =
       std::ranges::any_of(d.rows, [](const DevicesFindings::Row& row) { return std::isfinite(row.pull_in_error); });
   if (measured == nullptr && were_judged)
-    return fmt::format("Neither Vdp measured to 1 % nor a closing time measured to 50 ns on each device makes {}.",
-                       own != nullptr && own->bounce_free >= half ? "more of them close without a rebound" : "them touch softer");
+    return fmt::format(
+        "Per-device calibration does not help: neither Vdp measured to 1 % nor a closing time measured to 50 ns on each device "
+        "gives {}.",
+        own != nullptr && own->bounce_free >= half ? "more bounce-free devices" : "lower impact velocities");
   if (own == nullptr || measured == nullptr || d.next_command.empty()) return {};
   const char* const what = std::isfinite(measured->time_error) ? "one closing time measured to 50 ns" : "Vdp measured to 1 %";
   const bool lands_more = measured->bounce_free >= half && measured->bounce_free > own->bounce_free;
   return lands_more
-             ? fmt::format("With {} on each, {} close without a rebound: calibrated.toml.", what, percent(measured->bounce_free))
-             : fmt::format("With {} on each, 95 % touch at no more than {}: calibrated.toml.", what, speed_of(*measured));
+             ? fmt::format("With per-device calibration ({}), {} of the devices close bounce-free: calibrated.toml.", what,
+                           percent(measured->bounce_free))
+             : fmt::format("With per-device calibration ({}), the 95th percentile of the impact velocity is {}: calibrated.toml.",
+                           what, speed_of(*measured));
 }
 
 }  // namespace
@@ -374,11 +383,12 @@ ReportSection internal::devices_section(const DevicesFindings& d) {
     if (!words.empty()) note(words);
   }
   if (!d.measure.empty())
-    note(fmt::format("best.toml is a {} waveform, searched by {}; {:.0f} closings in all. Devices: {}.{}", d.waveform,
-                     d.measure == "drawing" ? "the nominal search" : d.measure, d.closings, d.spread,
-                     d.spread_assumed ? " The scene has no [spread]: this one is assumed." : ""));
+    note(fmt::format(
+        "best.toml is a {} waveform. The search minimized {} and took {:.0f} closings in all. Process variation: {}.{}",
+        d.waveform, d.measure == "drawing" ? "the cost of the nominal design" : d.measure, d.closings, d.spread,
+        d.spread_assumed ? " It is assumed, because the scene has no [spread]." : ""));
   if (d.missed_by > 0)
-    note(fmt::format("95 % of the devices rebound by up to {}, {} more than counts as a rebound.",
+    note(fmt::format("The 95th percentile of the highest rebound is {}, {} above the height from which rebounds count.",
                      cell_of(columns[1].key, value_in(d.row(for_the_devices)->at_95, columns[1].key)),
                      quantity(d.missed_by, "m")));
   section.parts.emplace_back(Drawing{[&d](const Picture&) { return error_curve(d); }});
@@ -387,12 +397,11 @@ ReportSection internal::devices_section(const DevicesFindings& d) {
     note(fmt::format("The condition {} {}: {} of the devices fulfil it.", c.text, c.holds ? "holds" : "does not hold",
                      percent(c.share.value)));
   if (!d.next_command.empty()) {
-    section.parts.emplace_back(SubHeading{d.measured.empty() ? "For a source" : "For a device that was measured"});
+    section.parts.emplace_back(SubHeading{d.measured.empty() ? "Export for the voltage source" : "Export for a measured device"});
     section.parts.emplace_back(ReportList{{d.next_command}});
   }
   section.parts.emplace_back(
-      drawing_of("<p class=\"below\">More: <a href=\"robustness.html\">how the devices do</a>, device by device and figure by "
-                 "figure.</p>\n"));
+      drawing_of("<p class=\"below\"><a href=\"robustness.html\">robustness.html</a> has all figures of the devices.</p>\n"));
   return section;
 }
 

@@ -88,8 +88,10 @@ std::string spread_of_laws(const Effects& effects) {
     words += fmt::format("{}{} {}", words.empty() ? "" : ", ", f.symbol,
                          std::isfinite(spread) ? internal::percent(spread) : "unknown");
   }
-  return words.empty() ? "The gas laws cannot be compared: the switch does not close in the scene's own."
-                       : "The gas laws differ on this scene, largest less smallest over the scene's own, by: " + words + ".";
+  return words.empty()
+             ? "The gas laws cannot be compared: the switch does not close under that of the scene."
+             : "Relative range of the figures over the gas laws (largest minus smallest value, over that of the scene): " +
+                   words + ".";
 }
 
 // Writes a line per closing that was not followed to the end of the window.
@@ -98,8 +100,8 @@ std::vector<std::string> bounds_of(const Effects& effects) {
   const auto tell = [&](const std::string& closing, const Metrics& figures, const std::optional<double>& end) {
     if (!end) return;
     const std::string closes =
-        std::isfinite(figures.initial_contact_time) ? "its figures are those up to then" : "it does not close until then";
-    lines.push_back(fmt::format("{} is followed for {} only, since it costs far more than the scene's own closing: {}.", closing,
+        std::isfinite(figures.initial_contact_time) ? "its figures are those of that time" : "it does not close in that time";
+    lines.push_back(fmt::format("{} is simulated for {} only, because it costs far more than that of the scene: {}.", closing,
                                 internal::quantity(*end, "s"), closes));
   };
   for (const EffectAblation& o : effects.omissions) tell(fmt::format("The closing without {}", o.what.effect), o.metrics, o.end);
@@ -189,27 +191,28 @@ EffectsRecord read_effects(const json& from) { return internal::whole_record<Eff
 std::string text_of(const EffectsRecord& record) {
   const Effects& effects = record.found;
   const Effect& own = effects.own("gas");
-  Document document{.doubt = effects.interrupted ? "Interrupted: what follows is not all." : ""};
+  Document document{.doubt = effects.interrupted ? "Interrupted: the results are incomplete." : ""};
   if (!std::isfinite(own.metrics.initial_contact_time)) {
     ClosingRecord closing{.status = std::string(to_string(own.metrics.status))};
     closing.best = {.status = closing.status, .figures = FigureValues(own.metrics)};
     closing.best.curve.time = {effects.window};
     document.headline = internal::headline(closing).main;
-    document.headline_rest = " So there are no figures to compare; below stand the size and the cost of each effect.";
+    document.headline_rest = " There are no figures to compare; the table has the size and the cost of each effect.";
   }
   ReportSection left_out{.id = "left-out", .heading = "Each effect left out", .parts = {}};
   if (effects.omissions.empty())
-    left_out.parts.emplace_back(Paragraph{"Nothing is left out: the scene describes no effect that it could do without."});
+    left_out.parts.emplace_back(Paragraph{"Nothing is left out: the scene has no effect that can be left out."});
   left_out.parts.emplace_back(omissions_table(effects));
   left_out.parts.emplace_back(
-      Paragraph{"How the figures change when one effect is left out, under the same voltages, and what a right-hand side then "
-                "costs. simulate.effects = \"auto\" leaves out what changes them by less than simulate.effects_tolerance."});
+      Paragraph{"The columns have the change of the figures when one effect is left out under the same voltages; rhs is the time "
+                "of one right-hand side without it. simulate.effects = \"auto\" leaves out the effects that change the figures "
+                "by less than simulate.effects_tolerance."});
   ReportSection laws{.id = "laws",
                      .heading = "Other gas laws",
                      .parts = {laws_table(effects),
-                               Paragraph{"* the scene's own. c is the damping per length and Kn the Knudsen number at the gap of "
-                                         "the closed tip; every other column is of the whole closing, its change is relative to "
-                                         "the scene's own."},
+                               Paragraph{"* is the gas law of the scene. c is the damping per length and Kn the Knudsen number, "
+                                         "both at the gap of the closed tip. The other columns are figures of the whole closing, "
+                                         "with their change relative to the law of the scene."},
                                Paragraph{spread_of_laws(effects)}}};
   for (const std::string& line : bounds_of(effects)) laws.parts.emplace_back(Paragraph{line});
   for (const std::string& line : warnings_of(effects)) laws.parts.emplace_back(Paragraph{line});

@@ -84,9 +84,9 @@ std::pair<std::string, std::string> headline_of(const ExplorationReport& report)
       std::count_if(report.points.begin(), report.points.end(), [](const auto& p) { return has_figures(p.status); });
   return {fmt::format("{} over {}", counted(static_cast<std::int64_t>(report.points.size()), "point", "points"),
                       varying_names(report)),
-          fmt::format(": {} with figures{}.", finished,
+          fmt::format(": {} have figures{}.", finished,
                       report.planned > static_cast<std::int64_t>(report.points.size())
-                          ? fmt::format(", {} of the plan's {} still to come",
+                          ? fmt::format(", {} of the {} planned ones are still to come",
                                         report.planned - static_cast<std::int64_t>(report.points.size()), report.planned)
                           : "")};
 }
@@ -100,7 +100,7 @@ void add_range_key(std::vector<KeyNumber>& keys, const ExplorationReport& report
     high = std::max(high, point.values[c]);
   }
   if (!(low <= high)) return;
-  keys.push_back({.name = report.columns[c].name + ", least",
+  keys.push_back({.name = report.columns[c].name + ", smallest",
                   .value = explored_text(report.columns[c], low, 3),
                   .change = "up to " + explored_text(report.columns[c], high, 3)});
 }
@@ -114,11 +114,11 @@ std::vector<KeyNumber> keys_of(const ExplorationReport& report, const ExploredFr
        .change = report.planned > 0 ? fmt::format("of {} in the plan", report.planned) : ""},
       {.name = "With figures",
        .value = fmt::format("{}", finished),
-       .change = fmt::format("{} ended otherwise", static_cast<std::int64_t>(report.points.size()) - finished)}};
+       .change = fmt::format("{} have none", static_cast<std::int64_t>(report.points.size()) - finished)}};
   add_range_key(keys, report);
   if (!front.members.empty())
     keys.push_back(
-        {.name = "On the front",
+        {.name = "On the Pareto front",
          .value = fmt::format("{}", front.members.size()),
          .change = std::isfinite(front.share) ? fmt::format("hypervolume {} of its box", internal::percent(front.share)) : ""});
   return keys;
@@ -140,7 +140,7 @@ std::string still_map(const ExplorationReport& report, const internal::ExploredG
 
 ReportSection outcome_section(const ExplorationReport& report) {
   constexpr std::size_t most_reasons = 5;
-  ReportTable table{.head = {"Ended", "Points", {"Reasons", "words"}}, .rows = {}};
+  ReportTable table{.head = {"Status", "Points", {"Reasons", "words"}}, .rows = {}};
   for (const auto& [status, outcome] : outcomes_of(report)) {
     std::vector<std::pair<std::string, std::int64_t>> ranked(outcome.reasons.begin(), outcome.reasons.end());
     std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
@@ -151,14 +151,14 @@ ReportSection outcome_section(const ExplorationReport& report) {
     if (ranked.size() > most_reasons) reasons += fmt::format("; {} more", ranked.size() - most_reasons);
     table.rows.push_back({with_blanks(status), fmt::format("{}", outcome.points), {reasons, "missing"}});
   }
-  return {.id = "outcomes", .heading = "How the points ended", .parts = {std::move(table)}};
+  return {.id = "outcomes", .heading = "Status of the points", .parts = {std::move(table)}};
 }
 
 std::string front_words(const ExplorationReport& report, const ExploredFront& front) {
   std::vector<std::string> names;
   for (const ExploredAim& aim : report.aims) names.push_back(aim_name(report, aim));
   std::string words =
-      fmt::format("{} that no other one beats in all of {}",
+      fmt::format("{} that no other point improves in all of {}",
                   counted(static_cast<std::int64_t>(front.members.size()), "point", "points"), fmt::join(names, ", "));
   if (std::isfinite(front.hypervolume)) {
     std::vector<std::string> reference;
@@ -196,20 +196,20 @@ ReportTable front_table(const ExplorationReport& report, const ExploredFront& fr
 }
 
 ReportSection front_section(const ExplorationReport& report, const ExploredFront& front) {
-  ReportSection section{.id = "front", .heading = "The front", .parts = {}};
+  ReportSection section{.id = "front", .heading = "Pareto front", .parts = {}};
   if (report.aims.empty()) return section;
   if (front.members.empty()) {
-    section.parts = {Paragraph{"No point settles and has all of the figures of the front."}};
+    section.parts = {Paragraph{"No point settles and has all the figures of the Pareto front."}};
     return section;
   }
   const std::size_t stride = (front.members.size() + most_front_rows - 1) / most_front_rows;
   section.parts = {
-      Paragraph{"Front: " + front_words(report, front)},
-      drawing_of("<p>Move over the picture, or focus it and press ← →, to see a point; grey dots are the other points.</p>\n"),
+      Paragraph{"Pareto front: " + front_words(report, front)},
+      drawing_of("<p>To read a point, move over the picture, or focus it and press ← →. Grey dots are the other points.</p>\n"),
       drawn(),
       front_table(report, front, stride),
-      Paragraph{.text = front.knee ? "* the knee, where the front bends most" : "", .is_note = true},
-      Paragraph{.text = stride > 1 ? fmt::format("One in {} of the front is shown.", stride) : "", .is_note = true}};
+      Paragraph{.text = front.knee ? "* is the knee, where the front bends most." : "", .is_note = true},
+      Paragraph{.text = stride > 1 ? fmt::format("One in {} points of the front is shown.", stride) : "", .is_note = true}};
   return section;
 }
 
@@ -284,25 +284,22 @@ Document exploration_document(const ExplorationReport& report) {
   };
   if (grid)
     add("map", "Map",
-        "Hatched: the figure does not exist there, for the reason in the legend. Move over the map, or focus it and press ← → ↑ "
-        "↓, to read a point." +
+        "The figure does not exist in hatched cells, for the reason in the legend. To read a point, move over the map, or focus "
+        "it and press ← → ↑ ↓." +
             thinning,
         still_map(report, *grid));
   document.sections.push_back(front_section(report, front));
-  add("parallel", "All columns at once",
-      "Every line is a point. Drag along an axis to keep what is within, click it to let go; with the keys: ← → choose an axis, "
-      "↑ "
-      "↓ move its limits, + − widen and narrow them, Delete takes them away. The limits hold for every picture of this page." +
+  add("parallel", "Parallel coordinates",
+      "Every line is a point. Drag along an axis to set limits, click it to remove them. With the keys, ← → choose an axis, ↑ ↓ "
+      "move its limits, + − widen and narrow them, and Delete removes them. The limits hold for every picture of this page." +
           (grid ? std::string() : thinning));
-  add("matrix", "Every pair", "Columns and colour are those chosen above.");
-  add("effects", "What each variable does",
-      "Median of the figure over all points at a value of the variable, whatever the others are; the bands hold 50 and 90\u00a0% "
-      "of "
-      "the points.");
+  add("matrix", "Scatter matrix", "Columns and colour are those chosen above.");
+  add("effects", "Effect of each variable",
+      "Median of the figure over all points with the same value of the variable; the bands hold 50 and 90\u00a0% of the points.");
   document.sections.push_back(outcome_section(report));
-  ReportSection plan{.id = "plan", .heading = "The plan", .parts = {}, .shown = ShownIn::page};
+  ReportSection plan{.id = "plan", .heading = "Plan of the exploration", .parts = {}, .shown = ShownIn::page};
   if (!report.plan.empty())
-    plan.parts.emplace_back(drawing_of("<details><summary>As a file</summary>\n<pre><code>" +
+    plan.parts.emplace_back(drawing_of("<details><summary>Plan file</summary>\n<pre><code>" +
                                        internal::escaped(internal::shortened(report.plan)) + "</code></pre></details>\n"));
   if (!report.made_with.empty())
     plan.parts.emplace_back(Paragraph{.text = "Computed by " + report.made_with + ".", .is_note = true});

@@ -156,12 +156,12 @@ Choice chosen_points(const ExplorationReport& report, const std::optional<Explor
       const double part = static_cast<double>(most) / static_cast<double>(count);
       for (std::size_t k = 0; k < count; ++k)
         kept[k] = static_cast<char>(random_uniform(0, Stream::scene, static_cast<std::uint64_t>(report.points[k].number)) < part);
-      how = "chosen at random, each with the same chance";
+      how = "chosen at random, each with the same probability";
     }
     for (const std::size_t k : front.members) kept[k] = 1;
     const auto drawn = std::count(kept.begin(), kept.end(), 1);
     const bool has_front = !front.members.empty();
-    choice.words = fmt::format("Drawn are {} of {} points: {}{}. Counts{} are of all points.", drawn, count, how,
+    choice.words = fmt::format("{} of {} points are drawn: {}{}. Counts{} include all points.", drawn, count, how,
                                has_front ? ", and the front" : "", has_front ? ", effects and the front" : " and effects");
   }
   for (std::size_t k = 0; k < count; ++k) {

@@ -51,7 +51,7 @@ std::string error_text(const Figure& figure, double value, double error) {
 
 std::string missing_reason(const RunRecord& run, const Figure& figure) {
   if (!run.figures || std::isfinite((*run.figures)[figure])) return {};
-  if (!touches(*run.figures)) return run.status == "open" ? "open" : began_closed(run) ? "an opening" : "no contact";
+  if (!touches(*run.figures)) return run.status == "open" ? "open" : began_closed(run) ? "begins closed" : "no contact";
   if (ends_at_touch(*run.figures)) return "not known";
   return figure.conditioning == Conditioning::last_rebound && !settles(*run.figures) ? "not settled" : "";
 }
@@ -72,23 +72,23 @@ std::string error_heading(const ClosingRecord& result) { return result.certifica
 std::string certificate_caption(const ClosingRecord& result) {
   if (!result.certificate) {
     return figure_of_run(result.best, &Metrics::bounce_count) > 0
-               ? "The settling time and the number of rebounds have no error here: past the first large rebound a closing is "
-                 "chaotic. softland simulate --certify gives their range."
+               ? "The settling time and the number of rebounds have no error estimate: after the first large rebound the motion "
+                 "is chaotic. softland simulate --certify gives their range."
                : "";
   }
   if (result.certificate->ill_conditioned.empty())
     return "Certified: no figure is ill-conditioned, and the estimated errors cover tolerance, quadrature and pull-in voltages.";
   std::string words = fmt::format(
-      "Certified: the figures with a median and a range are ill-conditioned, properties of a cloud of {} runs whose drives "
+      "Certified: the figures with a median and a range are ill-conditioned. Their statistics are those of {} runs whose drives "
       "differ by one part in 1e9 to 1e7.",
       result.certificate->runs);
   const std::optional<GrazingRebound>& grazing = result.certificate->grazing;
   if (!grazing) return words;
-  words += fmt::format(" The runs part at rebound {} ({}, {} high)", grazing->number, quantity(grazing->time, "s", 4),
+  words += fmt::format(" The runs diverge at rebound {} ({}, {} high)", grazing->number, quantity(grazing->time, "s", 4),
                        quantity(grazing->height, "m"));
   return words + (grazing->at_threshold
-                      ? ", near the height from which rebounds count."
-                      : fmt::format(", after the gentlest touch until then, {}.", quantity(grazing->impact_velocity, "m/s")));
+                      ? ", close to the height from which rebounds count."
+                      : fmt::format(", after the slowest impact until then ({}).", quantity(grazing->impact_velocity, "m/s")));
 }
 
 std::string goal_text(const ClosingRecord& result, const Figure& figure) {

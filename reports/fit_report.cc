@@ -91,10 +91,10 @@ std::string weak_words(const Fit& fit, const WeakDirection& weak) {
   std::vector<std::string> names;
   for (const std::size_t i : weak.unknowns) names.push_back(fit.unknowns[i].name);
   if (names.size() == 1)
-    return fmt::format("The data say less of {} than was known before: {} changes {} together by {} of their errors.",
-                       names.front(), direction, data, seen);
-  return fmt::format("The data cannot tell {} apart: {} together change {} by {} of their errors.", fmt::join(names, " and "),
-                     direction, data, seen);
+    return fmt::format("The data tell less about {} than its prior: {} changes {} together by {} sigma.", names.front(),
+                       direction, data, seen);
+  return fmt::format("The data cannot separate {}: {} together change {} by {} sigma.", fmt::join(names, " and "), direction,
+                     data, seen);
 }
 
 std::size_t freedom(const Fit& fit) {
@@ -105,44 +105,44 @@ std::vector<std::string> fit_words(const Fit& fit) {
   std::vector<std::string> all;
   if (!fit.found) {
     all.emplace_back(
-        "At none of the starts do all devices have what was measured on them: one may not close at a level at which it was "
-        "measured to. Is the scene that of the device, and every measurement under the right quantity and unit?");
+        "At no start do all simulated devices have the measured figures: one may stay open at a voltage at which the device "
+        "closed. Check that the scene describes the device, and the quantity and the unit of every measurement.");
     return all;
   }
   const auto free = static_cast<double>(freedom(fit));
   constexpr double beyond = 4;  // limit in standard deviations of chi squared
   if (free > 0 && fit.chi_squared() > free + beyond * std::sqrt(2 * free))
     all.push_back(fmt::format(
-        "The scene does not describe the data within their errors: the squares of {} residuals sum up to {} where {} are "
-        "expected. The intervals are too narrow then: an effect is missing in the scene, or the errors are too small.",
+        "The device does not match the model within the errors of the data: chi squared of {} residuals is {}, and {} is "
+        "expected. The intervals are then too narrow. An effect is missing in the scene, or the stated errors are too small.",
         fit.residuals.size(), plain_number(fit.chi_squared(), 3), freedom(fit)));
   for (const FittedTrace& trace : fit.traces) {
     if (trace.until < trace.recorded)
-      all.push_back(fmt::format(
-          "The {} counts up to {} of {}: the scene does not describe what comes after, or the least change of the device changes "
-          "it. A key `until` of the measurement says where to end.",
-          row_of(trace.what).words, quantity(trace.until, "s", 3), quantity(trace.recorded, "s", 3)));
+      all.push_back(
+          fmt::format("The {} is used up to {} of {}: the scene does not describe the rest, or the rest is too sensitive to the "
+                      "device. The key `until` of the measurement sets another end.",
+                      row_of(trace.what).words, quantity(trace.until, "s", 3), quantity(trace.recorded, "s", 3)));
   }
   std::vector<std::string> outliers;
   for (const FitResidual& r : fit.residuals) {
     if (std::abs(r.normalized()) > unlikely)
-      outliers.push_back(fmt::format("{} ({} errors)", what_text(r), plain_number(r.normalized(), 2)));
+      outliers.push_back(fmt::format("{} ({} sigma)", what_text(r), plain_number(r.normalized(), 2)));
   }
   constexpr std::size_t most = 6;
   if (!outliers.empty()) {
     const std::string rest = outliers.size() > most ? fmt::format(" and {} more", outliers.size() - most) : "";
     outliers.resize(std::min(most, outliers.size()));
-    all.push_back(fmt::format("Off by more than {} errors: {}{}.{}", unlikely, fmt::join(outliers, ", "), rest,
+    all.push_back(fmt::format("Residuals above {} sigma: {}{}.{}", unlikely, fmt::join(outliers, ", "), rest,
                               fit.loss == Loss::none ? "" : " The robust loss gives them less weight."));
   }
   for (const WeakDirection& weak : fit.estimate.weak) all.push_back(weak_words(fit, weak));
   if (!fit.next.empty() && fit.next.front().reduction > 0.01) {
     const NextMeasurement& best = fit.next.front();
-    all.push_back(fmt::format("What would tell most: the {} to {}, by which the standard errors fall by {}.", best.name,
+    all.push_back(fmt::format("The best next measurement is the {} to {}, which reduces the standard errors by {}.", best.name,
                               quantity(best.error, row_of(best.what).unit, 2), internal::percent(best.reduction)));
   }
   all.push_back(fit.starts == 1
-                    ? "One search, from the scene as it was."
+                    ? "There was one search, from the values of the scene."
                     : fmt::format("{} of {} searches converged, to {}.", fit.converged, fit.starts,
                                   fit.minima == 1 ? "the same minimum" : fmt::format("{} distinct minima", fit.minima)));
   return all;
@@ -155,20 +155,19 @@ FitRecord::Matrix rows_of(const Eigen::MatrixXd& matrix) {
 }
 
 std::string fit_headline(const FitRecord& fit) {
-  if (!fit.is_found()) return "No device like the scene could be read as it was measured.";
+  if (!fit.is_found()) return "No device like the scene has all the measured figures.";
   const auto n = static_cast<double>(fit.residuals.size());
   if (!fit.doubts.empty())
     return fmt::format(
-        "This fit is not to be believed: {}. Is every measurement under the right quantity and unit, and the scene "
-        "that of the device?",
+        "Do not trust this fit: {}. Check the quantity and the unit of every measurement, and that the scene describes the "
+        "device.",
         fmt::join(fit.doubts, "; "));
-  return fmt::format(
-      "The fitted scene is off the data by {} of their errors, the scene as it was by {} (root of the mean square).",
-      plain_number(std::sqrt(fit.chi_squared / n), 3), plain_number(std::sqrt(fit.chi_squared_before / n), 3));
+  return fmt::format("The RMS residual of the fitted scene is {} sigma ({} before the fit).",
+                     plain_number(std::sqrt(fit.chi_squared / n), 3), plain_number(std::sqrt(fit.chi_squared_before / n), 3));
 }
 
 ReportSection values_section(const FitRecord& fit) {
-  ReportTable table{.head = {"Unknown", "Scene", "Fitted", "± 1 σ", "95 %", "Known before"}, .rows = {}};
+  ReportTable table{.head = {"Unknown", "Scene", "Fitted", "± 1 σ", "95 %", "Prior"}, .rows = {}};
   for (const FittedUnknown& u : fit.unknowns)
     table.rows.push_back({label_of(u),
                           nominal_text(u),
@@ -176,7 +175,7 @@ ReportSection values_section(const FitRecord& fit) {
                           fitted_error_text(u),
                           fitted_interval_text(u),
                           fitted_prior_text(u)});
-  ReportSection section{.id = "values", .heading = "What was fitted", .parts = {}};
+  ReportSection section{.id = "values", .heading = "Fitted quantities", .parts = {}};
   if (fit.is_found()) section.parts.emplace_back(std::move(table));
   for (const std::string& sentence : fit.words) section.parts.emplace_back(Paragraph{.text = sentence, .is_note = true});
   return section;
@@ -195,7 +194,7 @@ ReportTable correlation_table(const FitRecord& fit) {
 
 ReportTable next_table(const FitRecord& fit) {
   constexpr std::size_t most = 8;
-  ReportTable table{.head = {"Measurement", "To", "Standard errors fall by"}, .rows = {}};
+  ReportTable table{.head = {"Measurement", "Error", "Reduction of the standard errors"}, .rows = {}};
   for (const NextMeasurement& one : fit.next) {
     if (table.rows.size() == most) break;
     table.rows.push_back({one.name, quantity(one.error, row_of(one.what).unit, 2), {internal::percent(one.reduction), "own"}});
@@ -205,7 +204,7 @@ ReportTable next_table(const FitRecord& fit) {
 
 ReportSection data_section(const FitRecord& fit) {
   constexpr std::size_t most = 60;
-  ReportTable table{.head = {"Measured", "Value", "Error", "Scene", "Fitted", "Off, in errors"}, .rows = {}};
+  ReportTable table{.head = {"Measured", "Value", "Error", "Scene", "Fitted", "Residual (sigma)"}, .rows = {}};
   for (const FitResidual& r : fit.residuals) {
     if (table.rows.size() == most) break;
     const std::string_view unit = row_of(r.what).unit;
@@ -216,11 +215,14 @@ ReportSection data_section(const FitRecord& fit) {
                           {quantity(r.after, unit, 5), "own"},
                           internal::with_true_minus(fmt::format("{:.2f}", r.normalized()))});
   }
-  ReportSection section{
-      .id = "data", .heading = "Measured, before and after", .parts = {std::move(table)}, .shown = ShownIn::page};
+  ReportSection section{.id = "data",
+                        .heading = "Measurements, and the scene before and after the fit",
+                        .parts = {std::move(table)},
+                        .shown = ShownIn::page};
   if (fit.residuals.size() > most)
     section.parts.emplace_back(
-        Paragraph{.text = fmt::format("The first {} of {}; fit.json has all.", most, fit.residuals.size()), .is_note = true});
+        Paragraph{.text = fmt::format("The first {} of {} measurements are shown; fit.json has all.", most, fit.residuals.size()),
+                  .is_note = true});
   return section;
 }
 
@@ -232,18 +234,18 @@ void add_residual_chart(const FitRecord& fit, internal::Picture& drawn) {
     table["after"].push_back(fit.residuals[i].normalized());
     largest = std::max(largest, std::abs(fit.residuals[i].normalized()));
   }
-  internal::Chart chart{
-      .id = "residuals",
-      .title = "Residuals of the fitted scene",
-      .caption =
-          "Fitted minus measured, in errors of the measurement. Of a scene that describes the device 95 % are between −2 and 2.",
-      .x_column = "number",
-      .x_label = "Number of the datum",
-      .x_unit = "",
-      .y_label = "Residual",
-      .y_unit = "",
-      .zero_line = true,
-      .height = 240};
+  internal::Chart chart{.id = "residuals",
+                        .title = "Residuals of the fitted scene",
+                        .caption =
+                            "Fitted minus measured value, in standard errors of the measurement (sigma). If the scene describes "
+                            "the device, 95 % of the residuals are between −2 and 2.",
+                        .x_column = "number",
+                        .x_label = "Number of the measurement",
+                        .x_unit = "",
+                        .y_label = "Residual",
+                        .y_unit = "",
+                        .zero_line = true,
+                        .height = 240};
   chart.x_home = chart.x_whole = {0, static_cast<double>(fit.residuals.size()) + 1};
   chart.y_home = {-1.1 * largest, 1.1 * largest};
   chart.series.push_back({.table = "residuals", .column = "after", .label = "", .role = internal::Role::measured});
@@ -295,7 +297,7 @@ void add_courses(const FitRecord& fit, internal::Picture& drawn) {
       }
     }
     if (high > low) chart.y_home = widened(low, high);
-    chart.series = {{.table = name, .column = "before", .label = "scene as it was", .role = internal::Role::baseline},
+    chart.series = {{.table = name, .column = "before", .label = "before the fit", .role = internal::Role::baseline},
                     {.table = name, .column = "after", .label = "fitted", .role = internal::Role::best},
                     {.table = name, .column = "measured", .label = "measured", .role = internal::Role::measured}};
     drawn.charts.push_back(std::move(chart));
@@ -311,9 +313,9 @@ internal::Picture picture_of(const FitRecord& fit) {
 
 std::vector<KeyNumber> keys_of(const FitRecord& fit) {
   const auto n = static_cast<double>(fit.residuals.size());
-  return {{.name = "Off the data by",
-           .value = fmt::format("{} errors", plain_number(std::sqrt(fit.chi_squared / n), 3)),
-           .change = fmt::format("the scene as it was: {}", plain_number(std::sqrt(fit.chi_squared_before / n), 3))},
+  return {{.name = "RMS residual",
+           .value = fmt::format("{} sigma", plain_number(std::sqrt(fit.chi_squared / n), 3)),
+           .change = fmt::format("before the fit: {}", plain_number(std::sqrt(fit.chi_squared_before / n), 3))},
           {.name = "Unknowns",
            .value = fmt::format("{}", fit.unknowns.size()),
            .change = fmt::format("from {} data", fit.residuals.size())},
@@ -479,15 +481,15 @@ Document document_of(const FitRecord& fit) {
   constexpr std::size_t most = 12;  // largest number of unknowns whose correlations can be read
   if (fit.unknowns.size() >= 2 && fit.correlation.size() == fit.unknowns.size() && fit.unknowns.size() <= most)
     document.sections.push_back({.id = "correlation",
-                                 .heading = "Correlations of their errors",
+                                 .heading = "Correlations of the errors",
                                  .parts = {correlation_table(fit)},
                                  .shown = ShownIn::page});
   if (!fit.next.empty())
     document.sections.push_back(
         {.id = "next",
          .heading = "What to measure next",
-         .parts = {next_table(fit), Paragraph{.text = "The root of the mean square of all standard errors, each over what was "
-                                                      "known before, where this is measured as well, on every device.",
+         .parts = {next_table(fit), Paragraph{.text = "The reduction is that of the RMS of all standard errors, each relative to "
+                                                      "its prior, if the measurement is added on every device.",
                                               .is_note = true}},
          .shown = ShownIn::page});
   if (fit.is_found()) {

@@ -65,7 +65,8 @@ std::string amplifier_words(const Drive& drive, double factor) {
   if (factor == 1 && drive.amplifier.value_or(1) == 1) return {};
   const bool is_other = drive.amplifier && *drive.amplifier != factor;
   return fmt::format(
-      "amplifier of drive '{}': volts of the file are those at the switch over {}{}", drive.name, plain_number(factor, 6),
+      "amplifier of drive '{}': voltages in the file are those at the switch divided by {}{}", drive.name,
+      plain_number(factor, 6),
       is_other ? fmt::format(", not over the {} of [driver.{}]", plain_number(*drive.amplifier, 6), drive.name) : "");
 }
 
@@ -118,13 +119,14 @@ std::string generator_text(const GeneratorFormat& format, const PreparedScene& p
 std::vector<std::string> sampled_words(const PreparedScene& sampled, const PreparedScene* drawn, const std::string& drive,
                                        const Watch& watch) {
   const Closing as_sampled = simulate(sampled, false, watch);
-  std::vector<std::string> all{fmt::format("as sampled, {}, on the nominal design: {}", words(sampled.drives.at(drive).source),
-                                           clause(sampled, as_sampled))};
+  std::vector<std::string> all{fmt::format("as sampled ({}), the nominal design behaves as follows: {}",
+                                           words(sampled.drives.at(drive).source), clause(sampled, as_sampled))};
   if (drawn == nullptr) return all;
   const Closing as_drawn = simulate(*drawn, false, watch);
   if (is_worse(as_sampled.metrics, as_drawn.metrics))
-    all.push_back(fmt::format("warning: as drawn, {}: a higher rate or more bits keep that, or a search under this [driver]",
-                              clause(*drawn, as_drawn)));
+    all.push_back(
+        fmt::format("warning: without sampling, {}. To keep that, use a higher rate, more bits, or a search with this [driver]",
+                    clause(*drawn, as_drawn)));
   return all;
 }
 

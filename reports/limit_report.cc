@@ -33,7 +33,7 @@ std::string drives_of(Actuator actuator) {
     case Actuator::both:
       break;
   }
-  return "electrodes and piezo";
+  return "the electrodes and the piezo";
 }
 
 std::string why_not(const LeastTime& least) {
@@ -66,15 +66,15 @@ std::string model_of(const LimitRecord& limit) {
 
 // Describes the motion after the touch of a landing.
 std::string words_after(const LimitRecord::Landing& landing) {
-  if (landing.bounce_free) return "no rebound, confirmed";
+  if (landing.bounce_free) return "bounce-free, confirmed";
   const Metrics& own = landing.metrics;
   std::string words =
-      own.major_bounce_height > 0 ? fmt::format("rebounds up to {}", quantity(own.major_bounce_height, "m")) : "no rebound";
+      own.major_bounce_height > 0 ? fmt::format("rebounds by up to {}", quantity(own.major_bounce_height, "m")) : "bounce-free";
   std::string others;
   for (const LimitRecord::Check& c : landing.checks) {
     if (c.metrics.bounce_count == 0 && c.metrics.status == Status::done) continue;
-    const std::string course =
-        c.metrics.bounce_count > 0 ? "up to " + quantity(c.metrics.major_bounce_height, "m") : std::string("it is not settled");
+    const std::string course = c.metrics.bounce_count > 0 ? "it rebounds by up to " + quantity(c.metrics.major_bounce_height, "m")
+                                                          : std::string("it does not settle");
     others += fmt::format("{} {} {}", others.empty() ? ", but with" : ",", c.name, course);
   }
   words += others;
@@ -83,18 +83,18 @@ std::string words_after(const LimitRecord::Landing& landing) {
 
 std::string words_of_catch(const LimitRecord::Landing& landing) {
   const double pulled = landing.catch_time - landing.catch_delay;
-  if (!(pulled > 0)) return "landing";
-  std::string words = fmt::format("landing, then a catch of {}", quantity(pulled, "s"));
-  if (landing.catch_delay > 0) words += fmt::format(" after {}", quantity(landing.catch_delay, "s"));
+  if (!(pulled > 0)) return "soft landing";
+  std::string words = fmt::format("soft landing with a pulse of {}", quantity(pulled, "s"));
+  words += landing.catch_delay > 0 ? fmt::format(", {} after the touch", quantity(landing.catch_delay, "s")) : " at the touch";
   return words;
 }
 
 ReportTable touches_table(const LimitRecord& limit) {
-  ReportTable table{.head = {"", "first touch", "speed", {"", "words"}}, .rows = {}};
+  ReportTable table{.head = {"", "first touch", "impact velocity", {"", "words"}}, .rows = {}};
   table.rows = {
       {"plain step", quantity(limit.step.initial_contact_time, "s", 4), quantity(limit.step.impact_velocity, "m/s")},
-      least_row(fmt::format("least time of a touch at {} or less", quantity(limit.impact_velocity, "m/s")), limit.touch),
-      least_row("least time with every mode at rest", limit.rest)};
+      least_row(fmt::format("least time, impact velocity at most {}", quantity(limit.impact_velocity, "m/s")), limit.touch),
+      least_row("least time, every mode at rest", limit.rest)};
   if (limit.landing) {
     const Metrics& m = limit.landing->metrics;
     table.rows.push_back({words_of_catch(*limit.landing), quantity(m.initial_contact_time, "s", 4),
@@ -127,17 +127,15 @@ internal::Chart curve(const std::string& table, const std::string& title, const 
   return chart;
 }
 
-// Says how softly one slow waveform can land all devices.
+// States the lowest impact velocity of one slow waveform for all devices.
 std::string quasi_static_words(const LimitRecord& limit) {
   if (!limit.quasi_static || !std::isfinite(limit.quasi_static->speed)) return {};
   const auto& [name, touch_places, steady, speed] = *limit.quasi_static;
   const std::string drive = name == piezo_drive ? "piezo" : "electrode " + name;
   return fmt::format(
-      "The {} can carry the devices of [spread] to their contact slowly, through stable equilibria. The places where 90 % of "
-      "them "
-      "touch lie {} apart on its way. A waveform that passes them evenly, and is steady as soon as the plain step, at {}, "
-      "touches "
-      "at {} or more.",
+      "The {} can move the devices of [spread] to their contact slowly, through stable equilibria. The positions at which 90 % "
+      "of them touch extend over {}. A waveform that crosses this range at constant speed, and is steady as soon as the plain "
+      "step (at {}), has an impact velocity of at least {}.",
       drive, quantity(touch_places, "m"), quantity(steady, "s"), quantity(speed, "m/s"));
 }
 
@@ -260,23 +258,25 @@ std::string text_of(const LimitRecord& limit) {
   if (!limit.hold_warning.empty()) section.parts.emplace_back(Paragraph{"warning: " + limit.hold_warning});  // before all figures
   section.parts.emplace_back(touches_table(limit));
   if (!limit.over_velocity.empty())
-    section.parts.emplace_back(
-        list_table("touch at or below", limit.over_velocity, [](const LeastTime& l) { return quantity(l.permitted, "m/s"); }));
+    section.parts.emplace_back(list_table("impact velocity up to", limit.over_velocity,
+                                          [](const LeastTime& l) { return quantity(l.permitted, "m/s"); }));
   if (!limit.over_peak.empty())
     section.parts.emplace_back(
-        list_table("volts up to", limit.over_peak, [](const LeastTime& l) { return quantity(l.peak, "V", 4); }));
+        list_table("voltage up to", limit.over_peak, [](const LeastTime& l) { return quantity(l.peak, "V", 4); }));
   const std::string model = model_of(limit);
   if (limit.touch.status == Status::done || limit.rest.status == Status::done)
-    section.parts.emplace_back(Paragraph{
-        "No waveform of these drives touches earlier at that speed" + (model.empty() ? "" : " in this model of " + model) +
-        ", as far as Ipopt can tell: the optimum is a local one, found from the quickest single swing" +
-        std::string(!limit.has_start ? "" : " or from the waveform of --start") +
-        (model.empty() ? "." : ". A beam has more modes, by which a waveform can gain.") +
-        " A beam whose modes still ring may bounce after a soft touch: the landing was simulated."});
+    section.parts.emplace_back(
+        Paragraph{"Ipopt found no waveform of these drives that touches earlier at that impact velocity" +
+                  (model.empty() ? "" : " in this model of " + model) +
+                  ". The optimum is a local one: the search began with the fastest single swing" +
+                  std::string(!limit.has_start ? "" : " or with the waveform of --start") +
+                  (model.empty() ? "." : ". A beam has more modes, which may allow a faster waveform.") +
+                  " A beam whose modes still vibrate may bounce after a soft touch, so the landing was simulated."});
   if (const std::string words = quasi_static_words(limit); !words.empty()) section.parts.emplace_back(Paragraph{words});
-  return terminal_text({.headline = fmt::format("How quickly {} can close the switch{}", drives_of(limit.actuator), peak),
-                        .doubt = limit.status == "interrupted" ? "Interrupted: what follows is not all." : "",
-                        .sections = {std::move(section)}});
+  return terminal_text(
+      {.headline = fmt::format("Least times in which {} can close the switch{}", drives_of(limit.actuator), peak),
+       .doubt = limit.status == "interrupted" ? "Interrupted: the results are incomplete." : "",
+       .sections = {std::move(section)}});
 }
 
 std::string svg_of(const LimitRecord& limit) {
@@ -288,16 +288,16 @@ std::string svg_of(const LimitRecord& limit) {
     drawn.charts.push_back(curve("peak", "Least time against the peak voltage", "largest voltage", "V", drawn.tables.at("peak")));
   }
   if (drawn.tables.contains("speed")) {
-    drawn.charts.push_back(curve("speed", "Least time against the permitted speed of the touch", "impact speed at most", "m/s",
+    drawn.charts.push_back(curve("speed", "Least time against the permitted impact velocity", "permitted impact velocity", "m/s",
                                  drawn.tables.at("speed")));
     drawn.charts.back().x_scale = internal::Scale::logarithmic;
   }
   const bool found = limit.touch.status == Status::done;
   const std::string model = model_of(limit);
-  const std::string headline =
-      found ? fmt::format("No waveform touches before {} at {} or less{}", quantity(limit.touch.time, "s", 4),
-                          quantity(limit.impact_velocity, "m/s"), model.empty() ? "" : fmt::format(", with {}", model))
-            : "The least time was not found: " + why_not(limit.touch);
+  const std::string headline = found ? fmt::format("No waveform touches before {} at an impact velocity of at most {}{}",
+                                                   quantity(limit.touch.time, "s", 4), quantity(limit.impact_velocity, "m/s"),
+                                                   model.empty() ? "" : fmt::format(", with {}", model))
+                                     : "The least time was not found: " + why_not(limit.touch);
   return svg_page(headline, title_of(limit.origin), drawn, 1);
 }
 

@@ -53,8 +53,8 @@ struct LimitRecord {
 [[nodiscard]] nlohmann::json json_of(const LimitRecord& record);
 [[nodiscard]] LimitRecord read_limit(const nlohmann::json& from);
 [[nodiscard]] std::string text_of(const LimitRecord& record);
-/// Draws the landing's gap and waveforms, and the least time against the peak voltage and against the permitted speed, as far
-/// as they were found.
+/// Draws the gap and the waveforms of the landing, and the least time against the peak voltage and against the permitted impact
+/// velocity, as far as they were found.
 [[nodiscard]] std::string svg_of(const LimitRecord& record);
 
 }  // namespace softland

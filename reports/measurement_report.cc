@@ -46,15 +46,15 @@ TableRow row(const MeasurementsRecord::Row& row, bool drives_piezo) {
 }
 
 ReportTable predictions_table(const char* name, const std::vector<MeasurementsRecord::Row>& predictions, bool drives_piezo) {
-  ReportTable table{.head = {name, "volts off", "time off"}, .rows = {}};
-  if (drives_piezo) table.head.emplace_back("piezo off");
-  table.head.insert(table.head.end(), {"without a rebound", "v_max, 95 % below", "B_H, 95 % below"});
+  ReportTable table{.head = {name, "voltage error", "time error"}, .rows = {}};
+  if (drives_piezo) table.head.emplace_back("piezo error");
+  table.head.insert(table.head.end(), {"bounce-free", "v_max, 95th percentile", "B_H, 95th percentile"});
   for (const MeasurementsRecord::Row& p : predictions) table.rows.push_back(row(p, drives_piezo));
   return table;
 }
 
 ReportTable figures_table(const MeasurementsRecord& record) {
-  ReportTable table{.head = {"Figure", "nominal", "varies by", "error", "devices"}, .rows = {}};
+  ReportTable table{.head = {"Measured figure", "nominal", "variation", "measurement error", "devices"}, .rows = {}};
   for (const MeasurementsRecord::Figure& f : record.figures)
     table.rows.push_back({f.name, quantity(f.nominal, f.unit), percent(f.variation), f.error > 0 ? percent(f.error) : "exact",
                           std::to_string(f.devices)});
@@ -132,7 +132,7 @@ MeasurementsRecord read_measurements(const json& from) { return internal::whole_
 
 std::string text_of(const MeasurementsRecord& study, std::size_t most) {
   using Row = MeasurementsRecord::Row;
-  // Tells whether a pair is worth its second figure.
+  // Tells whether a pair of measurements does better than each of its two figures alone.
   const auto is_better_than_its_figures = [&](const Row& p) {
     return std::ranges::all_of(p.measured, [&](const std::string& figure) {
       return std::ranges::all_of(study.predictions, [&](const Row& single) {
@@ -146,23 +146,24 @@ std::string text_of(const MeasurementsRecord& study, std::size_t most) {
   }
   const std::size_t left_out = study.predictions.size() - shown.size();
   const std::string others =
-      left_out > 0 ? fmt::format(" Left out are pairs that do no better than one of their figures: {}.", left_out) : "";
+      left_out > 0 ? fmt::format(" Pairs that do no better than one of their figures are left out: {}.", left_out) : "";
   return terminal_text(
-      {.headline =
-           fmt::format("{}{} devices of the spread. For each the factors of volts and of time were searched under which the "
-                       "recipe lands it most softly; then they were told from what is measured, by a fit to the other "
-                       "half of the devices, and the devices closed with what was told.",
-                       study.spread_assumed ? std::string(assumed_words) + " " : "", study.devices),
-       .doubt = study.interrupted ? "Interrupted: not all is judged." : "",
-       .sections = {{.id = "measured",
-                     .heading = "What measuring tells",
-                     .parts = {figures_table(study), predictions_table("Measured, the best first", shown, study.drives_piezo),
-                               predictions_table("To compare with", study.references, study.drives_piezo),
-                               Paragraph{fmt::format(
-                                   "Volts and times are off the best factors by this root mean square. In brackets: 95 % "
-                                   "confidence. Ranked by the 95 % quantile of the score of `bounce`, half the largest "
-                                   "touch speed and half the highest rebound over those of the plain step. Seed {}.{}",
-                                   study.seed, others)}}}}});
+      {.headline = fmt::format(
+           "{}{} devices under process variation. The waveform of the scene is scaled for each device by a factor of voltage and "
+           "one of time. The best factors of each device were searched. They were then predicted from the measurements, by a fit "
+           "to the other half of the devices, and the devices closed with the predicted factors.",
+           study.spread_assumed ? std::string(assumed_words) + " " : "", study.devices),
+       .doubt = study.interrupted ? "Interrupted: not all measurements are judged." : "",
+       .sections = {
+           {.id = "measured",
+            .heading = "Value of the measurements",
+            .parts = {figures_table(study), predictions_table("Measured (best first)", shown, study.drives_piezo),
+                      predictions_table("For comparison", study.references, study.drives_piezo),
+                      Paragraph{fmt::format(
+                          "The errors of voltage and time are root mean squares against the best factors. In brackets: 95 % "
+                          "confidence. The ranking is by the 95th percentile of the score of `bounce`: half the largest impact "
+                          "velocity plus half the highest rebound, both relative to the plain step. Seed {}.{}",
+                          study.seed, others)}}}}});
 }
 
 }  // namespace softland

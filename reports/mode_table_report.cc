@@ -82,7 +82,7 @@ void draw_taken(internal::Picture& drawn, const ModeTable& table, const ModeFoun
   chart.title = fmt::format("mode_{}: {}", column + 1, chart.title);
   chart.y_label = exponent == 0 ? std::string("Mode (1/√kg)") : fmt::format("Mode (1e{}/√kg)", exponent);
   chart.y_unit = "";
-  chart.series.push_back({.table = id, .column = "y", .label = "as a closing takes it", .role = internal::Role::best});
+  chart.series.push_back({.table = id, .column = "y", .label = "as simulated", .role = internal::Role::best});
   chart.series.push_back({.table = places, .column = "y", .label = "in the file", .role = internal::Role::measured});
   drawn.charts.push_back(std::move(chart));
 }
@@ -180,7 +180,7 @@ std::string text_of(const ModesRecord& record) {
     modes.parts.emplace_back(std::move(table));
     return terminal_text({.sections = {std::move(modes)}, .warnings = record.warnings});
   }
-  ReportTable table{.head = {"mode", "frequency", {"taken as", "words"}, {"what it is", "words"}}, .rows = {}};
+  ReportTable table{.head = {"mode", "frequency", {"used as", "words"}, {"kind", "words"}}, .rows = {}};
   for (const ModesRecord::Mode& mode : record.file->modes) {
     const bool has_share = record.file->nodes > 0 && mode.kind != ModeFound{.kind = ModeKind::unused}.name();
     table.rows.push_back({fmt::format("{}", mode.number), quantity(mode.frequency, "Hz", table_digits),

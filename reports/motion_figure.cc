@@ -247,7 +247,7 @@ std::vector<std::pair<double, std::string>> told_instants(const CurveRecord& cur
   if (highest != curve.rebounds.end()) all.emplace_back(highest->time_of_height, "highest rebound");
   const double end = curve.motion->time.back();
   if (end > all.back().first)
-    all.emplace_back(end, closes && std::isnan(curve.closed->back().end) ? "held at the end" : "at the end");
+    all.emplace_back(end, closes && std::isnan(curve.closed->back().end) ? "closed at the end" : "at the end");
   return all;
 }
 
@@ -312,8 +312,9 @@ std::string motion_figure(const ClosingRecord& result) {
   for (auto run = runs.rbegin(); run != runs.rend(); ++run) moving += fmt::format("<g class=\"{}\"></g>\n", run->role);
   for (const ShownRun& run : runs) data["runs"].push_back(run_json(run, view));
   const std::string caption = fmt::format(
-      "The switch from the side: to scale along it, heights exaggerated {} times, its thickness not to scale.{}",
-      plain_number(view.exaggeration(), 2), view.has_detail() ? " Beside it the first contact is enlarged further." : "");
+      "Side view of the switch, to scale along its length. Heights are exaggerated {} times; the thickness is not to scale.{}",
+      plain_number(view.exaggeration(), 2),
+      view.has_detail() ? " The picture beside it enlarges the first contact further." : "");
   const std::string of_script = fmt::format("{} The time is that of the slider and of the cursor in the charts.",
                                             runs.size() > 1 ? " The dashed outline is the plain step." : "");
   return fmt::format(

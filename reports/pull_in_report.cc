@@ -80,7 +80,7 @@ std::string kind_words(const std::string& kind) {
 
 std::string shift_clause(const std::optional<VoltagesByModes>& found, ByModes VoltagesByModes::*voltage) {
   const std::string shift = found ? shift_words(*found.*voltage) : std::string();
-  return shift.empty() ? shift : "; more modes move it by " + shift;
+  return shift.empty() ? shift : "; more modes change it by " + shift;
 }
 
 // Tells whether the scene has contacts; the face of a dielectric with a landing is a contact, too.
@@ -112,7 +112,7 @@ std::string electrode_words(const std::string& name, const ElectrodeRecord& elec
   if (!has_contact) return text + of_charge;
   text += fmt::format("  release          {}{}\n", volts(found.release), shift_clause(found.by_modes, &VoltagesByModes::release));
   if (std::isfinite(found.pulled_through))
-    text += fmt::format("  pulled through   {}: from there on a closed switch goes on to the electrode{}\n",
+    text += fmt::format("  collapse         {}: from there on a closed switch collapses onto the electrode{}\n",
                         volts(found.pulled_through), shift_clause(found.by_modes, &VoltagesByModes::pulled_through));
   return text + of_charge;
 }
@@ -217,10 +217,11 @@ std::string bias_words(const ElectrodeRecord& electrode) {
 }
 
 std::string dynamic_words(const PullInRecord& found) {
-  return volts(found.dynamic_pull_in) + (found.dynamic_kind == "unstable_rest"
-                                             ? " (the static one: no step moves it, from there on its rest is unstable)"
-                                         : found.dynamic_kind == "overdamped" ? " (overdamped: equals the static one)"
-                                                                              : "");
+  return volts(found.dynamic_pull_in) +
+         (found.dynamic_kind == "unstable_rest"
+              ? " (equal to the static one: no lower step moves the beam, and from there on its rest position is unstable)"
+          : found.dynamic_kind == "overdamped" ? " (overdamped: equals the static one)"
+                                               : "");
 }
 
 bool sticks_by_charge(const PullInRecord& found) {
@@ -258,8 +259,8 @@ std::string words_of(const std::optional<StablePathRecord>& path) {
       fmt::format("the {} alone reaches the contact at {} through stable equilibria",
                   path->drive == piezo_drive ? "piezo" : "electrode " + path->drive, quantity(path->reaches, "V", 4));
   if (path->share)
-    words +=
-        fmt::format("; {} of devices do within {}", internal::percent(*path->share), internal::given_quantity(path->limit, "V"));
+    words += fmt::format("; {} of the devices do so within {}", internal::percent(*path->share),
+                         internal::given_quantity(path->limit, "V"));
   return words;
 }
 
@@ -297,7 +298,7 @@ std::string sweep_svg(const PullInsRecord& record) {
   const ElectrodeRecord& electrode = record.electrodes.at(record.swept);
   const auto& [pull_in, release] = std::pair(electrode.volts.static_pull_in, electrode.volts.release);
   std::string of = fmt::format("Electrode {}, swept up and down", record.swept);
-  if (const std::string others = bias_words(electrode); !others.empty()) of += ", under " + others;
+  if (const std::string others = bias_words(electrode); !others.empty()) of += ", with " + others;
   const auto [least, most] = std::minmax_element(points.begin(), points.end(),
                                                  [](const SweepPoint& a, const SweepPoint& b) { return a.voltage < b.voltage; });
   internal::Picture picture{.tables = {{"up", branch_of(points, true)}, {"down", branch_of(points, false)}}, .charts = {}};

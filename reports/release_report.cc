@@ -88,25 +88,24 @@ std::string finding(const ReleaseRecord& r) {
   const OpeningFigures& plain = r.plain.figures;
   const auto ends = [](const OpeningFigures& f) {
     if (!std::isfinite(f.release_time)) return std::string("stays closed");
-    return std::isfinite(f.settling_time) ? fmt::format("is open for good after {}", quantity(f.settling_time, "s"))
-                                          : std::string("still swings at the end of the window");
+    return std::isfinite(f.settling_time) ? fmt::format("is at rest after {}", quantity(f.settling_time, "s"))
+                                          : std::string("still vibrates when the window ends");
   };
-  std::string words = fmt::format("Dropped to 0 V at once the switch {}", ends(plain));
-  if (r.best) words += fmt::format("; braked it {}", ends(r.best->figures));
+  std::string words = fmt::format("Switched off abruptly, the beam {}", ends(plain));
+  if (r.best) words += fmt::format("; with the found waveform it {}", ends(r.best->figures));
   return words + ".";
 }
 
 // Names the sources of the figures and their confirmations.
 std::string remarks(const ReleaseRecord& r) {
   std::string words = fmt::format(
-      "Open for good: the contact point stays within {} of its open position ({} of the contact gap). Residual vibration: how "
-      "far it "
-      "still swings from there once all drives stand at 0 V.",
+      "At rest means that the contact point stays within {} of its open position ({} of the contact gap). The residual vibration "
+      "is its largest distance from there once all drives stand at 0 V.",
       quantity(r.band, "m"), percent(r.band_share));
   if (!r.best) return words + " No waveform was found that opens the switch.";
-  words += fmt::format(" Searched: {} waveforms, seed {}.", r.evaluations, r.seed);
+  words += fmt::format(" The search simulated {} waveforms, with seed {}.", r.evaluations, r.seed);
   for (const ConfirmingOpening& c : r.checks) {
-    words += fmt::format(" With {}: {}.", c.name,
+    words += fmt::format(" Simulated again with {}: {}.", c.name,
                          std::isfinite(c.figures.residual_vibration)
                              ? "residual vibration " + quantity(c.figures.residual_vibration, "m")
                              : std::string(to_string(c.figures.status)));
@@ -114,7 +113,7 @@ std::string remarks(const ReleaseRecord& r) {
   return words;
 }
 
-// Ends a little after the braked switch is quiet.
+// Returns the end of the shown time [s], a little after the switch has come to rest.
 double shown_until(const ReleaseRecord& r, double window) {
   constexpr double longer = 3;
   if (!r.best) return window;
@@ -125,30 +124,31 @@ double shown_until(const ReleaseRecord& r, double window) {
 // Shows the 95th percentiles of the devices under either opening.
 ReportSection devices_section(const ReleaseRecord::Devices& found) {
   ReportTable table{.head = {"", plain_words, "found"}, .rows = {}};
-  table.rows = {{"open for good", percent(found.plain.open), percent(found.best.open)},
-                {"from when the drives stand on", percent(found.plain.in_band), percent(found.best.in_band)}};
+  table.rows = {{"come to rest in the open position", percent(found.plain.open), percent(found.best.open)},
+                {"at rest as soon as the drives stand at 0 V", percent(found.plain.in_band), percent(found.best.in_band)}};
   const auto add = [&](const char* name, double DeviceOpenings::*figure, const char* unit) {
     const auto value = [&](double v) { return std::isfinite(v) ? quantity(v, unit) : std::string("∞"); };
     table.rows.push_back({name, value(found.plain.*figure), value(found.best.*figure)});
   };
-  add("open for good, 95 % within", &DeviceOpenings::settling_time, "s");
-  add("residual vibration, 95 % below", &DeviceOpenings::residual_vibration, "m");
-  add("beyond the open position, 95 % below", &DeviceOpenings::overshoot, "m");
+  add("settling time, 95th percentile", &DeviceOpenings::settling_time, "s");
+  add("residual vibration, 95th percentile", &DeviceOpenings::residual_vibration, "m");
+  add("overshoot beyond the open position, 95th percentile", &DeviceOpenings::overshoot, "m");
   return {.id = "devices",
-          .heading = "On devices that differ",
-          .parts = {Paragraph{fmt::format("On {} devices, all in the volts of the nominal one: {}{}.", found.count, found.spread,
-                                          found.spread_assumed ? " (assumed, the scene has no [spread])" : "")},
+          .heading = "Under process variation",
+          .parts = {Paragraph{fmt::format(
+                        "{} devices, all driven with the voltages of the nominal design. Process variation: {}{}.", found.count,
+                        found.spread, found.spread_assumed ? " (assumed, because the scene has no [spread])" : "")},
                     std::move(table)}};
 }
 
 ReportTable openings_table(const ReleaseRecord& r) {
   ReportTable table{.head = {"", plain_words, r.best ? "found" : "", {"", "words"}}, .rows = {}};
-  table.rows = {
-      quantity_row(r, "leaves its contact", &OpeningFigures::release_time, "s", false),
-      quantity_row(r, "open for good", &OpeningFigures::settling_time, "s", true),
-      quantity_row(r, "residual vibration", &OpeningFigures::residual_vibration, "m", true),
-      quantity_row(r, "furthest beyond its open position", &OpeningFigures::overshoot, "m", true),
-      {"touches again", std::to_string(r.plain.figures.touches), r.best ? std::to_string(r.best->figures.touches) : ""}};
+  table.rows = {quantity_row(r, "leaves its contact after", &OpeningFigures::release_time, "s", false),
+                quantity_row(r, "settling time in the open position", &OpeningFigures::settling_time, "s", true),
+                quantity_row(r, "residual vibration", &OpeningFigures::residual_vibration, "m", true),
+                quantity_row(r, "overshoot beyond the open position", &OpeningFigures::overshoot, "m", true),
+                {"touches after the opening", std::to_string(r.plain.figures.touches),
+                 r.best ? std::to_string(r.best->figures.touches) : ""}};
   return table;
 }
 
@@ -278,7 +278,7 @@ std::string text_of(const ReleaseRecord& r) {
   ReportSection opening{.id = "opening", .heading = "The opening", .parts = {openings_table(r)}};
   if (r.best) opening.parts.emplace_back(parameters_table(r));
   Document document{.headline = finding(r),
-                    .doubt = r.status == "interrupted" ? "Interrupted: what follows is the best so far." : "",
+                    .doubt = r.status == "interrupted" ? "Interrupted: the best waveform so far is shown." : "",
                     .sections = {std::move(opening)},
                     .warnings = r.warnings};
   if (r.devices) document.sections.push_back(devices_section(*r.devices));

@@ -35,6 +35,7 @@ using internal::percent;
 using internal::quantile_95;
 using internal::quantile_text;
 using internal::quantity;
+using internal::shown_drive;
 using internal::some_collapse;
 using internal::worst_words;
 using internal::yield_text;
@@ -69,7 +70,7 @@ internal::Chart distribution_chart(const RobustnessReport& report, std::string_v
   internal::Chart chart{
       .id = "share-" + std::string(f.symbol),
       .title = std::string(f.name),
-      .caption = fmt::format("Share of the devices whose {} is at most this.",
+      .caption = fmt::format("Share of the devices whose {} is at most the value on the axis.",
                              f.key == key_of(&Metrics::initial_contact_time) ? "first contact" : lower_case(f.name)),
       .x_column = "x",
       .x_label = std::string(f.name),
@@ -96,7 +97,8 @@ internal::Chart distribution_chart(const RobustnessReport& report, std::string_v
     }
     // Show the range of all but a few devices of any drive.
     most = std::max(most, values[std::min(values.size() - 1, values.size() * 99 / 100)]);
-    chart.series.push_back({.table = name, .column = "y", .label = drives[i].name, .role = role_of(i, drives.size())});
+    chart.series.push_back(
+        {.table = name, .column = "y", .label = shown_drive(drives[i].name), .role = role_of(i, drives.size())});
     chart.x_whole[1] = std::max(chart.x_whole[1] == 1 ? 0.0 : chart.x_whole[1], values.back());
   }
   chart.x_whole[0] = 0;
@@ -106,7 +108,7 @@ internal::Chart distribution_chart(const RobustnessReport& report, std::string_v
 }
 
 // Draws the number of devices by value, in bins that all drives share, over the range of the cumulative curves: two kinds of
-// closings are two heaps.
+// closings make two peaks.
 internal::Chart histogram_chart(const RobustnessReport& report, std::string_view key, const internal::Chart& cumulative,
                                 internal::CurveTables& tables) {
   const Figure& f = figure_of(key);
@@ -148,7 +150,8 @@ internal::Chart histogram_chart(const RobustnessReport& report, std::string_view
       point(k + 1, share);
     }
     point(counts.size(), 0);
-    chart.series.push_back({.table = name, .column = "y", .label = drives[i].name, .role = role_of(i, drives.size())});
+    chart.series.push_back(
+        {.table = name, .column = "y", .label = shown_drive(drives[i].name), .role = role_of(i, drives.size())});
   }
   chart.caption = fmt::format("Share of the devices in each interval of {}.", quantity(width, f.unit));
   return chart;
@@ -158,8 +161,8 @@ internal::Chart course_chart(const RobustnessReport& report, internal::CurveTabl
   internal::Chart chart{
       .id = "courses",
       .title = "Typical closings",
-      .caption = fmt::format("Gap of the devices whose highest rebound is the 5, 50 and 95 % quantile under {}.",
-                             report.found.drives.back().name),
+      .caption = fmt::format("Gap of the devices at the 5th, 50th and 95th percentile of the highest rebound under {}.",
+                             shown_drive(report.found.drives.back().name)),
       .x_column = "time_s",
       .x_label = "Time",
       .x_unit = "s",
@@ -199,8 +202,8 @@ internal::Picture picture_of(const RobustnessReport& report) {
   return drawn;
 }
 
-// Cut a name at its beginning: the end says more, such as a folder's own name.
-std::string shown_name(const std::string& name, std::size_t columns) {
+// Cut a name at its beginning: the end, such as the last folder of a path, says more.
+std::string end_of(const std::string& name, std::size_t columns) {
   if (internal::display_width(name) <= columns) return name;
   std::string end = name;
   while (internal::display_width(end) >= columns) {
@@ -213,8 +216,9 @@ std::string shown_name(const std::string& name, std::size_t columns) {
 
 TableCell drive_cell(const DriveRecord& drive) {
   constexpr std::size_t widest = 44;
-  TableCell cell(shown_name(drive.name, widest));
-  cell.html = escaped(drive.name);
+  const std::string name = shown_drive(drive.name);
+  TableCell cell(end_of(name, widest));
+  cell.html = escaped(name);
   return cell;
 }
 
@@ -226,12 +230,12 @@ ReportSection statistics_section(const RobustnessRecord& found) {
     for (const DriveRecord& d : found.drives) row.emplace_back(cell(d), &d == &found.drives.back() ? "own" : "");
   };
   add("Devices that close", [](const DriveRecord& d) { return yield_text(d.closing); });
-  if (some_collapse(found)) add("Pulled onto the electrode", [](const DriveRecord& d) { return yield_text(d.collapsed); });
-  add("Without a rebound", [](const DriveRecord& d) { return yield_text(d.bounce_free); });
+  if (some_collapse(found)) add("Collapse onto the electrode", [](const DriveRecord& d) { return yield_text(d.collapsed); });
+  add("Bounce-free", [](const DriveRecord& d) { return yield_text(d.bounce_free); });
   for (const Figure& f : device_figures) {
     if (!is_had(found, f)) continue;
     for (const std::size_t q : {std::size_t{1}, std::size_t{2}}) {
-      add(label_of(f) + (q == 1 ? ": median" : ": 95 % below"),
+      add(label_of(f) + (q == 1 ? ": median" : ": 95th percentile"),
           [&](const DriveRecord& d) { return quantile_text(d.figures[f].quantiles[q], f.unit); });
     }
   }
@@ -246,11 +250,12 @@ ReportSection statistics_section(const RobustnessRecord& found) {
                     Paragraph{.text = internal::window_words(found.windows), .is_note = true}}};
 }
 
-// Shows the value of measurements: the last drive with more and more known of the devices.
+// Shows the value of measurements: the last drive with more and more measured on every device.
 ReportSection knowledge_section(const RobustnessRecord& found) {
-  ReportSection section{.id = "knowledge", .heading = "What measuring a device is worth", .parts = {}};
+  ReportSection section{.id = "knowledge", .heading = "Value of per-device calibration", .parts = {}};
   if (found.by_knowledge.empty()) return section;
-  ReportTable table{.head = {"Known of every device", "Without a rebound", "v_max, 95 % below", "B_H, 95 % below"}, .rows = {}};
+  ReportTable table{.head = {"Measured on every device", "Bounce-free", "v_max, 95th percentile", "B_H, 95th percentile"},
+                    .rows = {}};
   const auto add = [&](const std::string& name, const DriveRecord& d) {
     table.rows.push_back({name, yield_text(d.bounce_free),
                           quantile_text(quantile_95(d, key_of(&Metrics::largest_impact_velocity)), "m/s"),
@@ -271,11 +276,11 @@ std::string index_text(const SobolIndex& index) {
 }
 
 ReportSection sensitivity_section(const RobustnessRecord& record) {
-  ReportSection section{.id = "sensitivity", .heading = "Where the spread comes from", .parts = {}};
+  ReportSection section{.id = "sensitivity", .heading = "Sources of the variation", .parts = {}};
   if (record.sensitivity.empty()) return section;
   ReportTable table{.head = {"Share of the variance"}, .rows = {}};
   for (const RobustnessRecord::Sensitive& f : record.sensitivity) {
-    for (const char* how : {"{}, alone", "{}, in all"})
+    for (const char* how : {"{}, first order", "{}, total"})
       table.head.emplace_back(fmt::format(fmt::runtime(how), figure_of(f.key).symbol));
   }
   for (const RobustnessRecord::Varied& v : record.spread) {
@@ -287,13 +292,14 @@ ReportSection sensitivity_section(const RobustnessRecord& record) {
       row.emplace_back(is_known ? index_text(indices->second.total) : "unknown");
     }
   }
-  section.parts = {std::move(table),
-                   Paragraph{.text = fmt::format(
-                                 "Sobol' indices under the last drive, {} rows: the share of a figure's variance that would be "
-                                 "gone if the quantity were known (alone), and the share in which it has a part (in all). "
-                                 "Where rebounds set in at once, variances say less than quantiles.",
-                                 record.sensitivity.front().rows),
-                             .is_note = true}};
+  section.parts = {
+      std::move(table),
+      Paragraph{.text = fmt::format(
+                    "Sobol' indices under the last drive, from {} rows of devices. The first-order index is the share of a "
+                    "figure's variance that would vanish if the quantity were known; the total index is the share in which the "
+                    "quantity takes part. Where a figure jumps with a rebound, percentiles say more than variances.",
+                    record.sensitivity.front().rows),
+                .is_note = true}};
   for (const RobustnessRecord::Sensitive& f : record.sensitivity) {
     if (f.variables.empty())
       section.parts.emplace_back(
@@ -313,7 +319,7 @@ ReportSection worst_section(const RobustnessRecord& record) {
   const DriveRecord& last = record.drives.back();
   ReportTable table{.head = {"Device"}, .rows = {}};
   for (const RobustnessRecord::Varied& v : record.spread) table.head.emplace_back(v.name);
-  table.head.insert(table.head.end(), {"Highest rebound", "Largest impact speed", "First contact"});
+  table.head.insert(table.head.end(), {"Highest rebound", "Largest impact velocity", "First contact"});
   for (const RobustnessRecord::Device& device : last.worst) {
     TableRow& row = table.rows.emplace_back(TableRow{fmt::format("{}", device.number)});
     for (const RobustnessRecord::Varied& v : record.spread)
@@ -326,19 +332,21 @@ ReportSection worst_section(const RobustnessRecord& record) {
     }
   }
   if (!table.rows.empty())
-    section.parts = {std::move(table), Paragraph{.text = fmt::format("Under {}.", last.name), .is_note = true}};
+    section.parts = {std::move(table),
+                     Paragraph{.text = fmt::format("The drive is: {}.", shown_drive(last.name)), .is_note = true}};
   return section;
 }
 
 std::pair<std::string, std::string> headline_of(const RobustnessRecord& found) {
   const DriveRecord &step = found.drives.front(), &own = found.drives.back();
   const auto words = [&](const DriveRecord& d) {
-    return fmt::format("{} of {} devices close without a rebound, and 95 % touch at no more than {} and rise no more than {}",
-                       percent(d.bounce_free.value), found.devices, quantity(quantile_95(d, drawn_figures[0]).value, "m/s"),
-                       quantity(quantile_95(d, drawn_figures[1]).value, "m"));
+    return fmt::format(
+        "{} of {} devices close bounce-free; the 95th percentile is {} for the impact velocity and {} for the highest rebound",
+        percent(d.bounce_free.value), found.devices, quantity(quantile_95(d, drawn_figures[0]).value, "m/s"),
+        quantity(quantile_95(d, drawn_figures[1]).value, "m"));
   };
   if (found.drives.size() == 1) return {"Under the plain step " + words(step) + ".", ""};
-  return {words(own), fmt::format("; under the plain step it is {}, {} and {}.", percent(step.bounce_free.value),
+  return {words(own), fmt::format("; under the plain step these figures are {}, {} and {}.", percent(step.bounce_free.value),
                                   quantity(quantile_95(step, drawn_figures[0]).value, "m/s"),
                                   quantity(quantile_95(step, drawn_figures[1]).value, "m"))};
 }
@@ -347,14 +355,14 @@ std::vector<KeyNumber> keys_of(const RobustnessRecord& found) {
   const DriveRecord &step = found.drives.front(), &own = found.drives.back();
   const auto before = [&](const std::string& value) { return found.drives.size() > 1 ? "plain step " + value : std::string(); };
   std::vector<KeyNumber> keys{
-      {.name = "Without a rebound", .value = percent(own.bounce_free.value), .change = before(percent(step.bounce_free.value))}};
+      {.name = "Bounce-free", .value = percent(own.bounce_free.value), .change = before(percent(step.bounce_free.value))}};
   for (const std::string_view key : drawn_figures) {
     const Figure& f = figure_of(key);
     const auto value = [&](const DriveRecord& d) {
       const double q = quantile_95(d, key).value;
       return std::isfinite(q) ? quantity(q, f.unit) : std::string("∞");
     };
-    keys.push_back({.name = label_of(f) + ", 95\u00a0%", .value = value(own), .change = before(value(step))});
+    keys.push_back({.name = label_of(f) + ", 95th percentile", .value = value(own), .change = before(value(step))});
   }
   return keys;
 }
@@ -364,7 +372,7 @@ std::vector<KeyNumber> keys_of(const RobustnessRecord& found) {
 Document document_of(const RobustnessRecord& found) {
   Document document{.title = title_of(found.origin),
                     .origin = "robustness",
-                    .sections = {{.id = "charts", .heading = "How the devices differ", .parts = {}}},
+                    .sections = {{.id = "charts", .heading = "Variation between the devices", .parts = {}}},
                     .warnings = found.warnings,
                     .made = made_again(found.origin, found.seed, found.tolerance)};
   for (const std::string& words : found.about) document.sections.front().parts.emplace_back(Paragraph{words});

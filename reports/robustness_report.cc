@@ -121,14 +121,15 @@ std::string about_words(const RobustnessReport& report) {
   const Robustness& found = report.found;
   const DeviceSpread& spread = report.nominal.scene.spread;
   const Calibration calibration = found.drives.empty() ? Calibration{} : found.drives.back().known.calibration();
-  return fmt::format("{}{} devices of the spread ({} points): {}. {}{}{}",
-                     report.spread_assumed ? std::string(assumed_words) + " " : "", found.devices,
-                     name_of(point_sets, report.options.points), internal::spread_words(spread),
-                     calibration.is_empty() ? "All have the volts that were designed for the nominal device."
-                                            : "The plain step has the volts of the nominal device; every other drive is in "
-                                              "the units of each device, known of it: " +
-                                                  internal::calibration_words(calibration) + ".",
-                     internal::error_words(spread), internal::outside_words(found));
+  return fmt::format(
+      "{}{} devices under process variation ({} points): {}. {}{}{}",
+      report.spread_assumed ? std::string(assumed_words) + " " : "", found.devices, name_of(point_sets, report.options.points),
+      internal::spread_words(spread),
+      calibration.is_empty()
+          ? "All are driven with the voltages of the nominal design."
+          : "The plain step has the voltages of the nominal design; every other drive is scaled by per-device calibration: " +
+                internal::calibration_words(calibration) + ".",
+      internal::error_words(spread), internal::outside_words(found));
 }
 
 // Writes parts by figure, in the order of `keys`.
@@ -400,7 +401,7 @@ RobustnessRecord record_of(const RobustnessReport& report) {
                           .derivatives = internal::record_of(derivatives, found.drives.back()),
                           .other_ways = {},
                           .warnings = warnings(report)};
-  if (found.interrupted) record.about.emplace_back("Interrupted: these are not all devices.");
+  if (found.interrupted) record.about.emplace_back("Interrupted: the devices are incomplete.");
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   for (const DriveRobustness& d : found.drives) record.drives.push_back(drive_of(report, ensemble, d));
   for (const DriveRobustness& d : found.by_knowledge) record.by_knowledge.push_back(drive_of(report, ensemble, d));

@@ -31,7 +31,7 @@ struct RobustnessReport {
   Sensitivity sensitivity = {};
   Derivatives derivatives = {};
   std::vector<DeviceCourse> courses = {};
-  std::optional<BoxAndChaos> box_and_chaos = {};  ///< other ways, also of the last drive
+  std::optional<BoxAndChaos> box_and_chaos = {};  ///< worst cases and polynomial chaos, also of the last drive
   HoldWindows windows = {};                       ///< windows of hold levels, whatever the drive
   std::string unheld = {};                        ///< reason why the last drive does not hold the nominal device, hold_warning()
   bool interrupted = found.interrupted;           ///< true when the study, or the work on the details, was interrupted
@@ -144,8 +144,8 @@ struct RobustnessRecord {
 [[nodiscard]] std::string robustness_csv(const RobustnessReport& report);
 
 /// Shows statistics, cumulative distributions and histograms, the closings of typical devices, every figure against every
-/// quantity. It also shows the value of measurements, the sources of the spread, derivatives at the nominal device, the other
-/// ways, the worst devices, failures.
+/// quantity. It also shows the value of measurements, the sources of the variation, derivatives at the nominal design, worst
+/// cases, polynomial chaos, the worst devices, and failures.
 [[nodiscard]] Document robustness_document(const RobustnessReport& report);
 
 namespace internal {

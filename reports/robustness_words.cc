@@ -6,8 +6,13 @@
 #include <cmath>
 
 #include "document/quantity.h"
+#include "studies/search/devices_findings.h"
 
 namespace softland::internal {
+
+std::string shown_drive(const std::string& name) {
+  return name == for_the_devices ? "best.toml" : name == for_the_drawing ? "drawing.toml" : name;
+}
 
 std::string spread_words(const DeviceSpread& spread) {
   std::string words;
@@ -25,7 +30,7 @@ std::string spread_words(const DeviceSpread& spread) {
 }
 
 std::string_view error_words(const DeviceSpread& spread) {
-  return spread.varies_drives() ? " The sources of the drives err as the spread says." : "";
+  return spread.varies_drives() ? " The voltage sources have the errors that [spread] states." : "";
 }
 
 std::string outside_words(const Robustness& found) {
@@ -36,7 +41,7 @@ std::string outside_words(const Robustness& found) {
   if (count == 0) return {};
   const std::string& why = std::ranges::find_if(outcomes, outside)->failure;
   return fmt::format(
-      " {} of them cannot be, and count as those that do not close; the first: {}.{}", count, why,
+      " {} of them are outside the model and count as devices that do not close; the first: {}.{}", count, why,
       why.find(".span = ") == std::string::npos ? "" : " A span up to \"tip\", or in percent, follows the length.");
 }
 
@@ -45,14 +50,14 @@ std::string window_words(const HoldWindows& windows) {
   std::string words;
   for (const auto& [electrode, window] : windows.of_electrodes) {
     words += fmt::format("{}electrode {} ", words.empty() ? "" : ", ", electrode);
-    words += !std::isfinite(window.lower) ? "at no level"
+    words += !std::isfinite(window.lower) ? "no voltage"
              : std::isinf(window.upper)
                  ? fmt::format("from {} on", quantity(window.lower, "V", digits))
                  : fmt::format("{} to {}", quantity(window.lower, "V", digits), quantity(window.upper, "V", digits));
   }
   if (words.empty()) return words;
-  return fmt::format("Hold levels that keep {:.0f} % of {} devices closed, from release voltage to pull-through: {}.",
-                     100 * held_share, windows.devices, words);
+  return fmt::format("Hold voltages that keep {:.0f} % of {} devices closed, between release and collapse: {}.", 100 * held_share,
+                     windows.devices, words);
 }
 
 std::string calibration_words(const Calibration& c) {
@@ -71,8 +76,8 @@ std::string calibration_words(const Calibration& c) {
 }
 
 std::string why_no_indices(std::size_t rows, std::size_t failed_rows) {
-  return fmt::format("no shares: {} of the {} rows of devices made for them hold one without the figure, and 1 % may",
-                     failed_rows, rows);
+  return fmt::format("no indices: {} of the {} rows of devices hold one without the figure, and at most 1 % may", failed_rows,
+                     rows);
 }
 
 bool is_erring(const Calibration& c) {

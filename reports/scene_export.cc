@@ -64,7 +64,7 @@ struct Measured {
   std::optional<double> value = {};
 
   void read(const std::string& option, const std::string& text) {
-    require_request(!value, [&] { return fmt::format("{} {}: {} stands twice", option, visible(text), name); });
+    require_request(!value, [&] { return fmt::format("{} {}: {} is given twice", option, visible(text), name); });
     Quantity q;
     try {
       q = parse_quantity(text);
@@ -106,7 +106,7 @@ struct Measurements {
       known->read(fmt::format("{} {} =", requested("measured"), name), one.substr(sign + 1));
     }
     require_request(!time.value || !pull_in.value, [] {
-      return requested("measured") + ": a closing time tells the volts of a device, as Vdp does: give one of them";
+      return requested("measured") + ": a closing time and Vdp both set the voltage scale of a device: give one of them";
     });
   }
   [[nodiscard]] bool are_none() const { return !pull_in.value && !frequency.value && !piezo.value && !time.value; }
@@ -118,7 +118,7 @@ struct Measurements {
 // Returns the relative error of a measurement: that of [calibration], or the usual one, with a remark.
 double error_of(const Measured& measured, const std::optional<double>& given, const Say& say) {
   if (given && *given > 0) return *given;
-  say(fmt::format("{}: taken to be right to {}: [calibration] gives no error of {}", measured.said,
+  say(fmt::format("{}: its error is taken to be {}, because [calibration] gives none for {}", measured.said,
                   plain_number(100 * usual_error) + " %", measured.name));
   return usual_error;
 }
@@ -131,8 +131,8 @@ void warn_if_strange(const Measured& measured, double own, double ratio, double 
   const double off = std::abs(ratio - 1), sigma = std::hypot(deviation, error_of(measured, error, say));
   if (off <= strange * sigma) return;
   say(
-      fmt::format("warning: {}: {} % from the nominal device, {} times the standard deviation of devices and measurement: is "
-                  "it this switch?",
+      fmt::format("warning: {}: it differs from the nominal device by {} %, {} times the standard deviation of devices and "
+                  "measurement; check that it was measured on this switch",
                   measured.said, plain_number(100 * std::abs(own - 1), 3), plain_number(off / sigma, 2)));
 }
 
@@ -153,8 +153,9 @@ DeviceUnits units_of(const PreparedScene& p, const Measurements& measured, int j
                                            measured.piezo.value.has_value() == calibration.piezo_error.has_value() &&
                                            measured.time.value.has_value() == calibration.time_error.has_value()),
                   [] {
-                    return fmt::format("{}, {}, {}: the scene sorts devices into classes: give what [calibration] measures",
-                                       requested("measured"), requested("device-vdp"), requested("device-frequency"));
+                    return fmt::format(
+                        "{}, {}, {}: the scene sorts devices into classes; give the measurements that [calibration] names",
+                        requested("measured"), requested("device-vdp"), requested("device-frequency"));
                   });
   const DeviceUnits told = measured.time.value ? meter.told_by(*measured.time.value) : DeviceUnits{};
   const double volts = measured.pull_in.value ? *measured.pull_in.value / meter.pull_in() : told.volts,
@@ -240,7 +241,7 @@ std::string sent_text(const std::string& format, const PreparedScene& p, const s
   const GeneratorFormat* const generator = generator_format(format);
   if (generator == nullptr) return codes(coded(p, sent, say));
   require_field(drives.size() == 1, "format", format, [&] {
-    return fmt::format("a file holds one drive: choose it by {}, one of {}", requested("drive"), fmt::join(drives, ", "));
+    return fmt::format("a file holds one drive: choose it with {}, one of {}", requested("drive"), fmt::join(drives, ", "));
   });
   return generator_text(*generator, p, drives.front(), sent.signals.at(drives.front()), sampling);
 }
@@ -271,19 +272,19 @@ std::string exported_text(const SceneFile& file, const ExportRequest& request, c
   require_field(row != nullptr, "signal", visible(request.signal), [] { return "must be told or output"; });
   const Sent sent_as = row->value;
   require_request((request.format != "codes" && generator == nullptr) || sent_as == Sent::told, [&] {
-    return fmt::format("{} {} {} output: a generator is told samples, not the output of its source", requested("format"),
-                       request.format, requested("signal"));
+    return fmt::format("{} {} {} output: a generator takes the commanded samples, not the output of its source",
+                       requested("format"), request.format, requested("signal"));
   });
   require_request(generator != nullptr || (!request.sampling.amplifier && !request.sampling.marker), [&] {
-    return fmt::format("{}, {}: belong to the file of a generator, {} {} is none", requested("amplifier"), requested("marker"),
-                       requested("format"), request.format);
+    return fmt::format("{}, {}: belong to the file of a generator, which {} {} is not", requested("amplifier"),
+                       requested("marker"), requested("format"), request.format);
   });
   const Measurements measured(request);
   const Exported what = exported(file, request, !measured.are_none(), watch);
   const PreparedScene& p = what.sampled;
   if (std::optional<std::string> model = circuit(request.format, p)) {
     require_field(measured.are_none(), "format", request.format,
-                  [] { return "is of the drawing, and of no device that was measured"; });
+                  [] { return "belongs to the nominal design, not to a measured device"; });
     for (const std::string& line : renamed_pins(p.drive_names())) say(line);
     return *std::move(model);
   }
@@ -292,7 +293,7 @@ std::string exported_text(const SceneFile& file, const ExportRequest& request, c
   if (const SceneFile& scene = p.scene.file; sent.signals.empty()) {
     constexpr std::string_view none = "there is no waveform to export";
     for (const std::string& drive : scene.keys("waveform"))
-      scene.refuse("waveform." + drive, fmt::format("{}: '{}' is a factor of the model, and no source is told it", none, drive));
+      scene.refuse("waveform." + drive, fmt::format("{}: '{}' is a factor of the model, not a voltage of a source", none, drive));
     throw InvalidInput(fmt::format("{}: {}; there must be at least one", scene.name(), none));
   }
   if (!request.sampling.drive.empty())
@@ -300,8 +301,9 @@ std::string exported_text(const SceneFile& file, const ExportRequest& request, c
   if (generator == nullptr && request.format != "codes") {
     for (const auto& [name, amplifier] : sent.amplifiers) {
       if (sent.signals.contains(name))
-        say(fmt::format("amplifier of drive '{}': volts are those at the switch, {} of them a volt of its source ([driver.{}])",
-                        name, plain_number(amplifier, 6), name));
+        say(fmt::format(
+            "amplifier of drive '{}': voltages are those at the switch, {} V for each volt of its source ([driver.{}])", name,
+            plain_number(amplifier, 6), name));
     }
   }
   const double end = std::max(p.duration, last_breakpoint(sent.signals));  // the hold level belongs to the waveform
@@ -346,7 +348,7 @@ std::vector<std::string> sent_endings(const PreparedScene& p) {
 void require_shots(const std::string& format, const PreparedScene& p, const std::vector<std::string>& drives) {
   const bool is_for_generator = generator_format(format) != nullptr;
   require_field(std::ranges::find(circuits, format) == circuits.end(), "format", format,
-                [] { return "is the switch itself, and no waveform that a generator takes"; });
+                [] { return "is a model of the switch, not a waveform for a generator"; });
   for (const std::string& drive : drives) {
     const DriverModel& source = p.drives.at(drive).source;
     if (is_for_generator || format == "codes") require_samples(format, drive, source);

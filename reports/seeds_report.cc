@@ -27,7 +27,7 @@ constexpr std::array shown_figures{figure_of(&Metrics::initial_contact_time), fi
 
 double or_none(double value) { return std::isfinite(value) ? value : worst; }
 
-// Least, quartiles and most.
+// Lowest value, quartiles and highest value.
 using FiveNumbers = std::array<double, 5>;
 FiveNumbers five_numbers(const std::vector<double>& sample) {
   FiveNumbers all;
@@ -83,7 +83,7 @@ std::vector<std::string> search_cells(const SearchOfSeed& one) {
 std::vector<std::string> heads() {
   std::vector<std::string> all{"Seed", "Outcome", "Cost"};
   for (const Figure& f : shown_figures) all.emplace_back(f.name);
-  all.insert(all.end(), {"Evaluations", "Ended by"});
+  all.insert(all.end(), {"Evaluations", "Stopped by"});
   return all;
 }
 
@@ -137,7 +137,7 @@ std::string seeds_caption(const SeedsFindings& seeds) {
   const std::size_t count = seeds.searches.size();
   if (count == 0) return fmt::format("None of {} searches is done.", seeds.planned);
   std::string words = count < seeds.planned ? fmt::format("{} of {} searches are done.", count, seeds.planned)
-                                            : fmt::format("{} searches that differ in their seeds.", count);
+                                            : fmt::format("{} searches, each with its own seed.", count);
   const SearchOfSeed& best = seeds.searches.at(seeds.best);
   if (!std::isfinite(best.cost)) return words + " None of them found a feasible waveform.";
   words += fmt::format(" The best is that of seed {}, with cost {}.", best.seed, quantity(best.cost, "", 4));
@@ -155,7 +155,7 @@ std::string seeds_caption(const SeedsFindings& seeds) {
   }
   if (failures == 0) return words + (count == 1 ? " It meets the goal." : " All of them meet the goal.");
   if (failures > most_named) failed += fmt::format(" and {} more", failures - most_named);
-  return words + fmt::format(" {} of {} fail: {}.", failures, count, failed);
+  return words + fmt::format(" {} of {} fail; their seeds are {}.", failures, count, failed);
 }
 
 ReportSection seeds_section(const SeedsFindings& seeds) {
@@ -166,7 +166,7 @@ ReportSection seeds_section(const SeedsFindings& seeds) {
     TableRow& row = table.rows.emplace_back();
     for (const std::string& word : search_cells(seeds.searches[k])) row.emplace_back(word, k == seeds.best ? "own" : "");
   }
-  return {.id = "seeds", .heading = "Searches from other seeds", .parts = {Paragraph{seeds_caption(seeds)}, std::move(table)}};
+  return {.id = "seeds", .heading = "Searches with other seeds", .parts = {Paragraph{seeds_caption(seeds)}, std::move(table)}};
 }
 
 }  // namespace internal

@@ -76,8 +76,8 @@ std::string range_words(double low, double high) {
 }
 
 std::string rebound_words(const PredictedRecord& p) {
-  if (!std::isfinite(p.rebound_high)) return "rebounds not known";
-  return p.rebound_high > 0 ? fmt::format("95 % of the rebounds below {}", quantity(p.rebound_high, "m", 2)) : "no rebound";
+  if (!std::isfinite(p.rebound_high)) return "rebounds unknown";
+  return p.rebound_high > 0 ? fmt::format("95th percentile of the rebound {}", quantity(p.rebound_high, "m", 2)) : "no rebound";
 }
 
 std::string expected_words(const PredictedRecord& p) {
@@ -104,14 +104,16 @@ std::pair<std::string, std::string> headline_of(const TuningReport& report) {
   if (report.bounce_free_in_a_row > 0) {
     const std::string row =
         report.bounce_free_in_a_row == 1 ? "once so far" : fmt::format("{} times in a row", report.bounce_free_in_a_row);
-    return {fmt::format("After {} the switch lands without a bounce", after),
-            fmt::format(", {}. The waveform kept {}touches at {}; a plain step on the drawing touches at {}{}.", row,
-                        is_slow ? "carries the switch slowly through stable equilibria and " : "",
-                        quantity(report.kept.predicted.touch_median, "s"), quantity(report.step_closing_time, "s"),
-                        is_slow ? fmt::format(" and bounces until {}", quantity(report.step_permanent_contact, "s")) : "")};
+    return {fmt::format("After {} the switch closes bounce-free", after),
+            fmt::format(
+                ", {}. With the best waveform so far it {}touches at {}; with a plain step the nominal design touches at {}{}.",
+                row, is_slow ? "moves slowly through stable equilibria and " : "",
+                quantity(report.kept.predicted.touch_median, "s"), quantity(report.step_closing_time, "s"),
+                is_slow ? fmt::format(" and bounces until {}", quantity(report.step_permanent_contact, "s")) : "")};
   }
-  if (report.ever_bounce_free()) return {fmt::format("After {} the last one bounced", after), ", though one before it did not."};
-  return {fmt::format("After {} none has landed without a bounce yet.", after), ""};
+  if (report.ever_bounce_free())
+    return {fmt::format("After {} the last one bounced", after), ", but an earlier one was bounce-free."};
+  return {fmt::format("After {} none was bounce-free.", after), ""};
 }
 
 // ---- the page
@@ -160,12 +162,11 @@ ReportSection belief_section(const BeliefSummary& belief) {
                           drawn_cell(belief_bar(q), "picture")});
   ReportSection section{
       .id = "belief",
-      .heading = "What is known of the device",
+      .heading = "Estimated quantities of the device",
       .parts = {std::move(table),
-                Paragraph{.text =
-                              "From the scene's value, with one standard deviation. In the pictures: two deviations to either "
-                              "side, before (grey) and now. What a landing depends on may be known far better than any of "
-                              "these alone: their errors go together.",
+                Paragraph{.text = "Deviations from the values of the scene, with one standard deviation. The bars have two "
+                                  "standard deviations to either side, before the tuning (grey) and now. The errors are "
+                                  "correlated: a landing may be predicted far better than any single quantity.",
                           .is_note = true}},
       .shown = ShownIn::page};
   for (const std::string& sentence : belief.correlated) section.parts.emplace_back(Paragraph{.text = sentence, .is_note = true});
@@ -244,8 +245,7 @@ std::string delay_words(const BeliefSummary& belief) {
                                   [](const BelievedQuantity& one) { return one.name == trigger_delay_name; });
   if (delay == belief.quantities.end() || !(std::abs(delay->mean) > certain * delay->deviation)) return {};
   return fmt::format(
-      "The records begin {} {} the drives, with a standard error of {}: the trigger is {}. Touches are told as they were "
-      "recorded.",
+      "The records begin {} {} the drives, with a standard error of {}: the trigger is {}. Touch times are as recorded.",
       quantity(std::abs(delay->mean), "s", 2), delay->mean > 0 ? "after" : "before", quantity(delay->deviation, "s", 2),
       delay->mean > 0 ? "late" : "early");
 }
@@ -254,22 +254,22 @@ ReportSection records_section(const TuningReport& report) {
   constexpr std::size_t most = 24;
   const std::size_t first = report.closings.size() > most ? report.closings.size() - most : 0;
   const Shown shown = shown_times(report, first);
-  ReportTable table{.head = {"Closing", "Touch expected", "Touch", "Bounces", ""}, .rows = {}};
+  ReportTable table{.head = {"Closing", "Predicted touch", "Touch", "Bounces", ""}, .rows = {}};
   for (std::size_t i = first; i < report.closings.size(); ++i) table.rows.push_back(record_row(report.closings[i], shown));
   table.rows.push_back({fmt::format("{}, next", report.next.number),
                         range_words(report.next.predicted.touch_low, report.next.predicted.touch_high), "", "",
                         drawn_cell(strip(expected_bar(report.next.predicted, shown), "the next closing"), "picture")});
   return {
       .id = "records",
-      .heading = "Each closing under its prediction",
-      .parts = {
-          std::move(table),
-          drawing_of(fmt::format("<p class=\"below\">Grey: where the touch was expected before it was seen, with 95 %. Blue: "
-                                 "where the contact was closed. The pictures show {}.</p>\n",
-                                 escaped(range_words(shown.from, shown.to)))),
-          Paragraph{.text = delay_words(report.belief), .is_note = true},
-          Paragraph{.text = first > 0 ? fmt::format("The first {} closings are not shown.", first) : "", .is_note = true},
-          Paragraph{.text = "Expected of the waveform kept: " + expected_words(report.kept.predicted) + ".", .is_note = true}}};
+      .heading = "Closings and their predictions",
+      .parts = {std::move(table),
+                drawing_of(fmt::format("<p class=\"below\">Grey: predicted time of the touch, with 95 % confidence. Blue: the "
+                                       "contact was closed. The bars span {}.</p>\n",
+                                       escaped(range_words(shown.from, shown.to)))),
+                Paragraph{.text = delay_words(report.belief), .is_note = true},
+                Paragraph{.text = first > 0 ? fmt::format("The first {} closings are not shown.", first) : "", .is_note = true},
+                Paragraph{.text = "Prediction for the best waveform so far: " + expected_words(report.kept.predicted) + ".",
+                          .is_note = true}}};
 }
 
 internal::Picture picture_of(const TuningReport& report) {
@@ -280,7 +280,7 @@ internal::Picture picture_of(const TuningReport& report) {
   for (const auto& [name, rows] : kept) {
     internal::Chart chart{.id = "drive-" + std::to_string(drawn.charts.size()),
                           .title = kept.size() == 1 ? "Voltage" : "Voltage of " + name,
-                          .caption = "Straight lines; the last level is held.",
+                          .caption = "The waveform is piecewise linear; its last voltage is held.",
                           .x_column = "time_s",
                           .x_label = "Time",
                           .x_unit = "s",
@@ -306,7 +306,7 @@ internal::Picture picture_of(const TuningReport& report) {
           {.table = fmt::format("{}-{}", chart.id, chart.series.size()), .column = "volts", .label = label, .role = role});
     };
     if (differ) add(next.at(name), "proposed next", internal::Role::baseline);
-    add(rows, differ ? "kept so far" : "kept, and proposed next", internal::Role::best);
+    add(rows, differ ? "best so far" : "best so far, and proposed next", internal::Role::best);
     chart.x_whole = chart.x_home = {0, end};
     drawn.charts.push_back(std::move(chart));
   }
@@ -315,19 +315,20 @@ internal::Picture picture_of(const TuningReport& report) {
 
 std::vector<KeyNumber> keys_of(const TuningReport& report) {
   const PredictedRecord& p = report.kept.predicted;
-  return {{.name = "Closings",
-           .value = fmt::format("{}", learned(report)),
-           .change = report.bounce_free_in_a_row > 0 ? fmt::format("the last {} without a bounce", report.bounce_free_in_a_row)
-                                                     : "the last one bounced"},
-          {.name = "Touch of the waveform kept",
-           .value = quantity(p.touch_median, "s"),
-           .change = fmt::format("plain step on the drawing {}", quantity(report.step_closing_time, "s"))},
-          {.name = "Its rebound, 95 % below",
-           .value = p.rebound_high == 0 ? "none" : quantity(p.rebound_high, "m", 2),
-           .change = p.rebound_high == 0
-                         ? "as far as it is known"
-                         : fmt::format("median {}", internal::quantity_beside(p.rebound_median, p.rebound_high, "m", 2))},
-          {.name = "It may bounce", .value = percent(p.bounces), .change = "of the devices that this may be"}};
+  return {
+      {.name = "Closings",
+       .value = fmt::format("{}", learned(report)),
+       .change = report.bounce_free_in_a_row > 0 ? fmt::format("the last {} bounce-free", report.bounce_free_in_a_row)
+                                                 : "the last one bounced"},
+      {.name = "Predicted touch",
+       .value = quantity(p.touch_median, "s"),
+       .change = fmt::format("plain step on the nominal design {}", quantity(report.step_closing_time, "s"))},
+      {.name = "Predicted rebound, 95th percentile",
+       .value = p.rebound_high == 0 ? "none" : quantity(p.rebound_high, "m", 2),
+       .change = p.rebound_high == 0
+                     ? "by the present estimate"
+                     : fmt::format("median {}", internal::quantity_beside(p.rebound_median, p.rebound_high, "m", 2))},
+      {.name = "Probability of a bounce", .value = percent(p.bounces), .change = "over the devices that agree with the records"}};
 }
 
 }  // namespace
@@ -500,7 +501,7 @@ TunedBelief tuned_belief(const json& written) {
 
 std::string closing_words(const TuningReport& report) {
   const TuningReport::Closing& last = report.closings.back();
-  return fmt::format("closing {} {}; expected of the next: {}", last.shot.number, record_words(last.record),
+  return fmt::format("closing {} {}; prediction for the next: {}", last.shot.number, record_words(last.record),
                      expected_words(report.next.predicted));
 }
 
@@ -513,10 +514,9 @@ Document tuning_document(const TuningReport& report) {
                     .draw = [&report] { return picture_of(report); },
                     .made = made_again(report.origin, report.seed, report.tolerance)};
   std::tie(document.headline, document.headline_rest) = headline_of(report);
-  if (report.end == TuningEnd::interrupted)
-    document.headline = "Interrupted: what follows is what there is. " + document.headline;
+  if (report.end == TuningEnd::interrupted) document.headline = "Interrupted: the results are incomplete. " + document.headline;
   document.sections.push_back(
-      {.id = "waveforms", .heading = "What the source is told", .parts = {internal::all_charts()}, .shown = ShownIn::page});
+      {.id = "waveforms", .heading = "Commanded voltage", .parts = {internal::all_charts()}, .shown = ShownIn::page});
   return document;
 }
 

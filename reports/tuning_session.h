@@ -50,8 +50,8 @@ class TuningSession {
   /// Puts the record of the next shot on the disk, and learns it. Throws InvalidInput for an impossible record, and OutputLost.
   /// It throws Interrupted when the record is on the disk but not learned; give it again then.
   void learn(const ContactRecord& record, const Watch& watch = {});
-  /// Says how the tuning ends here: done, or `most` closings are used; none where it continues. Sets the next shot to the
-  /// waveform kept where the next shot is the last one, or the switch has landed often enough by other waveforms.
+  /// Returns how the tuning ends at this shot, with success or with `most` closings used; none if it continues. Makes the best
+  /// waveform the next shot when that is the last one, or when other waveforms have closed the switch bounce-free often enough.
   [[nodiscard]] std::optional<TuningEnd> ends(int most);
   /// Throws InvalidInput where the last three shots gave no record.
   void throw_if_failing() const;

@@ -31,7 +31,7 @@
   reads.prepend(clock.parentNode);
   reads.hidden = false;
 
-  // The last place in a list that rises whose value is not above this one.
+  // Returns the last index of an ascending list whose value is not above this one.
   const before = (list, value) => {
     let [low, high] = [0, list.length];
     while (low < high) {
@@ -41,7 +41,7 @@
     }
     return Math.max(0, low - 1);
   };
-  // Heights of the lower face at all places [m], on straight lines between the instants that are kept.
+  // Returns the heights of the lower face at all places [m], interpolated linearly between the recorded instants.
   const heights = (run, at) => {
     const row = Math.min(before(run.time, at), run.time.length - 2);
     const whole = run.time[row + 1] - run.time[row];
@@ -49,21 +49,21 @@
     const now = run.amplitudes.map((mode) => mode[row] + share * (mode[row + 1] - mode[row]));
     return run.rest.map((rest, place) => now.reduce((sum, amplitude, mode) => sum - amplitude * run.shapes[mode][place], rest));
   };
-  // A band between two heights above the lower face, from one place to another [px].
+  // Returns the outline of a band between two heights above the lower face, from one place to another [px].
   const band = (run, heights, low, high, from = -Infinity, to = Infinity) => {
     const edge = (above) =>
       run.x.flatMap((x, place) => (x >= from && x <= to ? [`${x} ${(bottom - perMetre * heights[place] - above).toFixed(3)}`] : []));
     return "M" + [...edge(low), ...edge(high).reverse()].join("L") + "Z";
   };
-  // 1 closed, 0 open, between them in turn.
+  // Returns 1 for a closed contact, 0 for an open one, and 0.5 for a stretch of many short touches.
   const state = (run, name) => {
     const table = time.tables[["closed", run.role, ...(contacts.length > 1 ? [name] : [])].join("/")];
     return table ? table.closed[before(table.time_s, now)] : null;
   };
-  const words = {0: "open", 0.5: "closed and open in turn", 1: "closed"};
+  const words = {0: "open", 0.5: "closing and opening", 1: "closed"};
 
   let now = runs[0].time[0];
-  let playing = 0;  // when the last frame was drawn [ms]; 0: it does not play
+  let playing = 0;  // time of the last frame [ms]; 0 while the animation is paused
   const range = () => time.range();
   const draw = () => {
     for (const run of runs) {
@@ -90,7 +90,7 @@
     time.point(now);
   };
 
-  // From all of a run in ten seconds to its highest rebound in four.
+  // The speeds reach from the whole run in ten seconds to its highest rebound in four seconds.
   const whole = Math.max(...runs.map((run) => run.time[run.time.length - 1]));
   const [fastest, slowest] = [whole / 10, Math.min(whole / 40, bounce / 4)];
   const steps = Math.max(1, Math.round(Math.log(fastest / slowest) / Math.log(4)));

@@ -1,4 +1,4 @@
-// Draws an exploration: maps over two variables, the front, parallel coordinates, a scatter matrix and the effect of each variable.
+// Draws an exploration: maps over two variables, the Pareto front, parallel coordinates, a scatter matrix and the effect of each variable.
 (() => {
   "use strict";
   const {noBreak, prefix, minus, quantity, tickText, colour, font, makeCards} = softland;
@@ -9,7 +9,7 @@
   [...letters].forEach((letter, i) => (digit[letter.charCodeAt(0)] = i));
   const pair = (text, i) => 64 * digit[text.charCodeAt(2 * i)] + digit[text.charCodeAt(2 * i + 1)];
 
-  // Columns come as two letters a value: steps from `low`, of a logarithm where `log`.
+  // Each value of a column is two letters: a number of steps from `low`, on a logarithmic scale if `log` is set.
   const columns = data.columns.map((about, index) => {
     const value = (steps) => (about.log ? Math.exp(about.low + steps * about.step) : about.low + steps * about.step);
     const values = new Float64Array(rows).fill(about.known && !about.data ? value(0) : NaN);
@@ -46,7 +46,7 @@
     return made;
   };
 
-  // An axis from data to pixels; round numbers on it.
+  // An axis maps data to pixels and has round numbers as ticks.
   const scale = (log, low, high, from, to) => {
     const t = log ? Math.log : (v) => v;
     if (!(high > low)) [low, high] = log ? [low / 1.5, high * 1.5] : [low - Math.abs(low || 1) / 10, high + Math.abs(high || 1) / 10];
@@ -72,7 +72,7 @@
     const decade = 10 ** Math.floor(Math.log10(raw));
     const step = [1, 2, 5, 10].find((f) => f * decade >= raw * (1 - 1e-9)) * decade;
     const first = Math.ceil(low / step - 1e-9);
-    if (!(step > 0 && Math.abs(first) < 2 ** 52)) return [low, high];  // no round number between them
+    if (!(step > 0 && Math.abs(first) < 2 ** 52)) return [low, high];  // no round number lies between the ends
     for (let k = 0; k <= 10 * wanted && (first + k) * step <= high + 1e-9 * step; ++k) out.push((first + k) * step);
     return out;
   };
@@ -84,7 +84,7 @@
     return "rgb(" + viridis[k].map((c, i) => Math.round(c + (at - k) * (viridis[k + 1][i] - c))).join() + ")";
   };
   const shades = Array.from({length: 256}, (none, i) => shade(i / 255));
-  // What colours stand for: without the outer two per cent where these stretch the range to more than three times.
+  // Returns the range of values that the colours cover. It omits the outer 2 % at each end if they make it more than three times as wide.
   const colourRange = (column, values) => {
     const known = values.filter((v) => !Number.isNaN(v)).sort();
     if (!known.length) return {low: 0, high: 1, log: false};
@@ -98,7 +98,7 @@
   };
   const shadeOf = ({low, high, log}, value) => shades[Math.min(255, Math.max(0, Math.round((255 * (log ? Math.log(value / low) : value - low)) / (log ? Math.log(high / low) : high - low))))];
 
-  // A canvas that is as sharp as the screen, drawn again when its size or the colours change.
+  // Makes a canvas with the resolution of the screen, which is drawn again when its size or the colours change.
   const canvases = [];
   const canvas = (holder, label, height, draw) => {
     const made = element("canvas", {tabIndex: 0});
@@ -126,7 +126,7 @@
         draw(base, one);
         one.show();
       },
-      // The picture, and on it what moves.
+      // Shows the picture, and on top of it what `extra` draws: the parts that follow the pointer.
       show(extra) {
         const ratio = devicePixelRatio || 1;
         ctx.setTransform(1, 0, 0, 1, 0, 0);
@@ -155,7 +155,7 @@
     ctx.fillStyle = colour(fill);
     ctx.fillText(text, x, y);
   };
-  // As much of a text as there is room for.
+  // Cuts a text to the room that there is.
   const fitted = (ctx, text, room, size = 12) => {
     ctx.font = font(size);
     if (ctx.measureText(text).width <= room) return text;
@@ -177,7 +177,7 @@
     event.preventDefault();
   });
 
-  // Selection by limits of columns: what is outside is pale in every picture.
+  // The limits of columns select points; points outside are pale in every picture.
   const limits = new Map();  // index of a column -> [low, high]
   const inside = new Uint8Array(rows).fill(1);
   let insideCount = rows;
@@ -189,7 +189,7 @@
     }
     insideCount = inside.reduce((sum, one) => sum + one, 0);
   };
-  // About so many of the rows that a test takes at the most, each with the same chance; the same ones at every call.
+  // Returns at most about `most` of the rows that pass the test, each with the same probability; the choice is the same at every call.
   const chance = (row) => {
     let bits = Math.imul(row + 1, 0x9e3779b1);
     bits = Math.imul(bits ^ (bits >>> 15), 0x85ebca6b);
@@ -268,7 +268,7 @@
       dims.forEach((none, d) => (cell += strides[d] * (d === xd ? i : d === yd ? j : fixed[d])));
       return rowAt[cell];
     };
-    // Each value has a cell that reaches half-way to its neighbours; equal ratios make a logarithmic axis.
+    // Each value has a cell that reaches half-way to its neighbours. Values in equal ratios make the axis logarithmic.
     const cellsOf = (values, from, to) => {
       const n = values.length;
       const equalRatios = n > 2 && values[0] > 0 && values[n - 1] > 3 * values[0] && Math.abs(Math.log(values[1] / values[0]) - Math.log(values[n - 1] / values[0]) / (n - 1)) < (0.01 * Math.log(values[n - 1] / values[0])) / (n - 1);
@@ -523,7 +523,7 @@
     holder.append(beside);
     let across = null;
     let up = null;
-    const view = canvas(left, "Front: points that no other one beats in every aim", (width) => Math.round(Math.min(460, Math.max(300, 0.66 * width))), (ctx, {width, height}) => {
+    const view = canvas(left, "Pareto front: points that no other point improves in all figures", (width) => Math.round(Math.min(460, Math.max(300, 0.66 * width))), (ctx, {width, height}) => {
       order = [...data.front].sort((a, b) => x.values[a] - x.values[b]);
       const box = {left: 66, right: width - 14, top: 12, bottom: height - 48};
       const ends = (column) => {
@@ -706,7 +706,7 @@
     const most = 3000;
     const place = {};
     const view = canvas(holder, "Parallel coordinates: a line for every point", (width) => (width < 560 ? Math.max(200, 72 * shownColumns().length) : 400), (ctx, {width, height}) => {
-      const narrow = width < 560;  // the axes lie there, one below the other, each with a strip for its words, which no line crosses
+      const narrow = width < 560;  // the axes are then horizontal, one below the other, each with a strip for its labels that no line crosses
       const strip = narrow ? 31 : 0;
       const list = shownColumns();
       tintRange = colourRange(tint, tint.values);
@@ -754,7 +754,7 @@
           write(ctx, words(column, axis.axis.low, 3), 12, axis.at + 28, {size: 11});
           write(ctx, words(column, axis.axis.high, 3), width - 12, axis.at + 28, {align: "right", size: 11});
         } else {
-          // The words of the outer axes end where the picture does.
+          // The labels of the outer axes end at the edge of the picture.
           const name = fitted(ctx, column.name, 1.9 * room);
           const half = ctx.measureText(name).width / 2;
           write(ctx, name, Math.min(Math.max(axis.at, half + 2), width - half - 2), k % 2 ? 14 : 30, {align: "center", fill: "ink", halo: true});
@@ -787,7 +787,7 @@
       tellLimits();
       everything();
     };
-    // Drag along an axis to set its limits, click to take them away.
+    // Dragging along an axis sets its limits, a click removes them.
     let drag = null;
     const along = ([a, b]) => (view.width < 560 ? [b, a] : [a, b]);
     view.canvas.addEventListener("pointerdown", (event) => {

@@ -10,9 +10,9 @@
 
   const largest = (scale) => Math.max(Math.abs(scale.min), Math.abs(scale.max));
 
-  // One x axis for curves with knots of their own: the union of all knots, values in between on the straight line. A jump (two knots at one
-  // x) stays a jump.
-  // A few knots far apart get company (`extra`), so that the read-out follows the cursor. Curves of dots have no values in between.
+  // Puts curves with different knots on one x axis: the union of all knots, with linear interpolation between those of a curve. A jump (two
+  // knots at one x) stays a jump. The knots `extra` are added where knots are far apart, so that the read-out follows the cursor. Curves of
+  // dots are not interpolated.
   const aligned = (curves, extra, dots) => {
     const count = new Map(extra.map((x) => [x, 1]));
     for (const {xs} of curves) {
@@ -55,7 +55,7 @@
     fifth: {width: 1.8, dash: [5, 2, 1.5, 2, 1.5, 2]},
     limit: {width: 1.25, dash: [2, 3]},
   };
-  // Decades, thinned to what there is room for; of fewer than three their parts as well.
+  // Returns ticks at decades, as many as there is room for; an axis of fewer than three decades has ticks at 1, 2 and 5 of each.
   const decades = (u, axis, min, max) => {
     const first = Math.ceil(Math.log10(min) - 1e-9);
     const last = Math.floor(Math.log10(max) + 1e-9);
@@ -67,7 +67,7 @@
     }
     return splits.filter((value) => value >= min * (1 - 1e-9) && value <= max * (1 + 1e-9));
   };
-  // As wide as the longest number needs.
+  // Returns the width of the longest number [px].
   const roomFor = (u, values) => {
     if (!values) return 54;
     u.ctx.save();
@@ -78,7 +78,7 @@
   };
 
   const drawn = new Map();   // chart id -> uPlot
-  const wanted = new Map();  // chart id -> the range this script last asked for; any other range comes from the reader's hand
+  const wanted = new Map();  // chart id -> the range that this script set last; the reader has set any other range
 
   const timeCharts = () => charts.filter((chart) => chart.group === "time" && drawn.has(chart.id));
   const press = (view) => {
@@ -112,7 +112,7 @@
       setRange(chart, range);
     }
   };
-  // What moves with the time charts is told the time of their cursor [s] by `follow` and another view by `viewed`, and sets the cursor.
+  // The animation follows the time charts: `follow` gives it the time of their cursor [s], `viewed` a change of the view; `point` sets the cursor.
   const time = {
     tables,
     follow: () => {},
@@ -126,7 +126,7 @@
       }
     },
   };
-  // The next sample to the left or right that lies some pixels away.
+  // Moves the cursor by some pixels to the left or right, to the next sample there.
   const step = (chart, direction) => {
     const u = drawn.get(chart.id);
     const width = u.bbox.width / uPlot.pxRatio;
@@ -134,7 +134,7 @@
     u.setCursor({left: Math.min(width, Math.max(0, from + 4 * direction)), top: u.bbox.height / uPlot.pxRatio / 2}, true, true);
   };
 
-  // Words on a halo of the paper's colour, so that no curve runs through them, within the picture.
+  // Writes words inside the picture, on a halo of the background colour, so that no curve runs through them.
   const write = (u, words, x, y) => {
     const {ctx, bbox} = u;
     const half = ctx.measureText(words).width / 2;
@@ -148,8 +148,8 @@
     ctx.fillText(words, at, down);
   };
 
-  // A bar for each series, from its own knots: an instant is a pixel wide.
-  const states = {0: "open", 0.5: "in turn", 1: "closed"};
+  // Draws a bar for each series from its own knots; a contact of an instant is one pixel wide.
+  const states = {0: "open", 0.5: "closing and opening", 1: "closed"};
   const drawBars = (u, chart) => {
     const {ctx, bbox} = u;
     const row = bbox.height / chart.series.length;
@@ -195,7 +195,7 @@
       ctx.stroke();
       ctx.fillStyle = colour("muted");
       ctx.font = font(12 * ratio);
-      // Below the line, but above it where the curves end visibly below.
+      // The words stand below the zero line, or above it where the curves reach visibly below.
       const lowest = u.data.slice(1).reduce((low, row) => row.reduce((least, value) => (value !== null && value < least ? value : least), low), 0);
       const under = chart.zeroLabelLeft || lowest > -0.03 * (u.scales.y.max - u.scales.y.min);
       ctx.textBaseline = under ? "top" : "bottom";
@@ -237,7 +237,7 @@
       const low = Math.min(min, chart.zero || min > 0 && min < 0.6 * max ? 0 : min);
       const high = Math.max(max, 0);
       const margin = high > low ? 0.06 * (high - low) : Math.max(1e-12, Math.abs(high));
-      const below = chart.zeroLabel ? Math.max(margin, (0.1 * (high - low) * 240) / chart.height) : margin;  // room for its words
+      const below = chart.zeroLabel ? Math.max(margin, (0.1 * (high - low) * 240) / chart.height) : margin;  // room for the words at the zero line
       return [low < 0 || chart.zero ? low - below : low, high + margin];
     };
     const range = chart.bars ? [0, 1] : y.home ? y.home : y.scale === "linear" ? padded : (u, min, max) => [min / 1.5, max * 1.5];
@@ -305,7 +305,7 @@
     };
   };
 
-  // Charts of a group have one x axis for all their curves: the same cursor reads the same sample in every one.
+  // Charts of a group share one x axis, so that the cursor reads the same sample in each of them.
   const curve = (chart) => ({table, column: key}) => ({xs: tables[table][chart.x.column], ys: tables[table][key]});
   const groups = new Map();
   for (const chart of charts) {

@@ -5,7 +5,7 @@ const softland = (() => {
   const noBreak = "\u00a0";
   const prefix = (largest) => (largest > 0 ? prefixes.find(([factor]) => largest >= factor * (1 - 1e-9)) || prefixes[prefixes.length - 1] : [1, ""]);
   const minus = (text) => String(text).replace("-", "\u2212");
-  // As reports/quantity.h: nothing below `least`, the resolution of the unit.
+  // Formats a number as reports/quantity.h does; a value below `least`, the resolution of the unit, is 0.
   const quantity = (value, unit, least, digits = 4) => {
     if (value == null || !isFinite(value)) return "";
     if (!unit) return minus(+value.toPrecision(digits));
@@ -16,13 +16,13 @@ const softland = (() => {
     return minus((value / factor).toFixed(Math.max(0, decimals))) + noBreak + symbol + unit;
   };
   const superscript = (exponent) => "10" + String(exponent).replace(/./g, (c) => "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079"["-0123456789".indexOf(c)]);
-  // A number at an axis: whole powers of ten beyond four digits as such.
+  // Formats a number at an axis; whole powers of ten beyond four digits are written as powers.
   const tickText = (value) => {
     const exponent = Math.log10(Math.abs(value));
     if (value > 0 && Math.abs(exponent) > 3.5 && Math.abs(exponent - Math.round(exponent)) < 1e-9) return superscript(Math.round(exponent));
     return minus(+value.toPrecision(6));
   };
-  // Columns come as integer steps of a unit, or as plain values.
+  // Returns the values of a column, which holds integer steps of a unit or plain values.
   const column = ({unit, steps, values}) => {
     if (values) return values;
     let sum = 0;
@@ -30,7 +30,7 @@ const softland = (() => {
   };
   const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
   const font = (size) => size + 'px system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
-  // On a narrow screen every row of a wide table is a card whose numbers bear the heading of their column.
+  // Prepares wide tables for narrow screens, where every row is a card whose numbers have the headings of their columns.
   const makeCards = () => {
     for (const table of document.querySelectorAll("table")) {
       const headings = [...table.querySelectorAll("thead th")].map((one) => one.textContent);

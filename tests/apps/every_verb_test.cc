@@ -176,7 +176,7 @@ TEST_P(EveryVerb, FindsTheLimit_slow) {
   const std::vector<std::string> words = scene().quickly({"limit", scene().name, "--no-curves", "--quiet", "--out", "out"});
   if (!scene().has_contact()) return refused(words, "limit needs a [contact]");
   if (!scene().has("\\[electrode")) return refused(words, "needs an electrode");
-  EXPECT_NE(done(words).out.find("least time of a touch"), std::string::npos);
+  EXPECT_NE(done(words).out.find("least time, impact velocity at most"), std::string::npos);
   const json j = json::parse(read(here.path() / "out/limit.json"), nullptr, false);
   EXPECT_GT(j["touch"]["least_time_s"], 0);
   EXPECT_LE(j["touch"]["impact_velocity_m_s"], 1.0001 * j["permitted_impact_velocity_m_s"].get<double>());
@@ -191,7 +191,7 @@ TEST_P(EveryVerb, OpensAgain) {
       scene().quickly({"release", scene().name, "--budget", "300", "--samples", "10", "--quiet", "--out", "out"});
   if (!scene().has_contact()) return refused(words, "release needs a [contact]");
   if (!scene().has("\\[electrode")) return refused(words, "needs an electrode");
-  EXPECT_NE(done(words).out.find("open for good"), std::string::npos);
+  EXPECT_NE(done(words).out.find("settling time in the open position"), std::string::npos);
   const json j = json::parse(read(here.path() / "out/release.json"), nullptr, false);
   EXPECT_LT(j["best"]["figures"]["residual_vibration_m"], j["plain"]["figures"]["residual_vibration_m"]);
   EXPECT_GT(fs::file_size(here.path() / "out/release.svg"), 1000U);
@@ -220,7 +220,7 @@ TEST_P(EveryVerb, CyclesAtARate_optimized) {
   const json& drive = j["drives"].back();
   ASSERT_EQ(drive["status"], "done") << drive["message"];
   ASSERT_EQ(drive["cycles"].size(), 2U);
-  const bool sticks = text.find("the switch is closed when a cycle ends") != std::string::npos;
+  const bool sticks = text.find("it does not open in every cycle") != std::string::npos;
   EXPECT_EQ(sticks, scene().name == "nem-casimir.toml") << "which adhesion holds at 0 V";
   for (const json& cycle : drive["cycles"]) {
     if (sticks) break;
@@ -284,8 +284,8 @@ TEST_P(EveryVerb, Judges_long) {
   for (const auto& [electrode, window] : j["hold_window_V"].items()) {
     EXPECT_TRUE(window[1].is_null() || window[0] < window[1]) << electrode;
     EXPECT_EQ(j["hold_window_devices"], 20);
-    EXPECT_NE(text.find("Hold levels that keep 99 % of 20 devices closed"), std::string::npos) << text;
-    EXPECT_NE(read(here.path() / "out/robustness.html").find("Hold levels that keep"), std::string::npos);
+    EXPECT_NE(text.find("Hold voltages that keep 99 % of 20 devices closed"), std::string::npos) << text;
+    EXPECT_NE(read(here.path() / "out/robustness.html").find("Hold voltages that keep"), std::string::npos);
   }
   (void)done({"simulate", "out/worst-1.toml", "--quiet"});
 }
@@ -324,9 +324,9 @@ TEST(LimitCurves, FallWithTheVoltageAndTheSpeedAndAreDrawn_long) {
   const std::string scene = (fs::path(SOFTLAND_SOURCE_DIR) / "scenes/two-electrodes.toml").string();
   const Outcome o = here.run({"limit", scene, "--quiet", "--out", "out"});
   ASSERT_EQ(o.status, 0) << o.err;
-  EXPECT_NE(o.out.find("volts up to"), std::string::npos) << o.out;
+  EXPECT_NE(o.out.find("voltage up to"), std::string::npos) << o.out;
   const std::string svg = read(here.path() / "out/limit.svg");
-  for (const char* title : {"Least time against the peak voltage", "Least time against the permitted speed"})
+  for (const char* title : {"Least time against the peak voltage", "Least time against the permitted impact velocity"})
     EXPECT_NE(svg.find(title), std::string::npos) << title;
   const json j = json::parse(read(here.path() / "out/limit.json"), nullptr, false);
   for (const char* curve : {"over_peak_voltage", "over_impact_velocity"}) {

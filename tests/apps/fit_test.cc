@@ -121,7 +121,7 @@ TEST_F(FitVerb, DoubtsImpossibleData) {
     write(here.path() / "bench.toml", data);
     const Outcome o = fit({"--quiet"});
     EXPECT_EQ(o.status, 4) << data << o.err;
-    EXPECT_EQ(o.out.find("This fit is not to be believed: "), 0U) << o.out;
+    EXPECT_EQ(o.out.find("Do not trust this fit: "), 0U) << o.out;
     const json told = json::parse(read(here.path() / "out/fit.json"));
     EXPECT_EQ(told["status"], "not_believed");
     EXPECT_FALSE(told["doubts"].empty());

@@ -60,7 +60,7 @@ TEST_F(Seeds, AreOneSearchEachAndTheBestIsReported_optimized) {
   EXPECT_EQ(j["seed"], study["best_seed"]);
   // The page that is made again from the result has the table as well.
   const std::string page = read(at("one/report.html"));
-  EXPECT_THAT(page, HasSubstr("Searches from other seeds"));
+  EXPECT_THAT(page, HasSubstr("Searches with other seeds"));
   done({"report", "one", "--out", "again"});
   EXPECT_EQ(read(at("again/report.html")), page);
 }
@@ -144,7 +144,7 @@ TEST_F(Seeds, ThatFailAreNamed) {
   const Outcome o = here.run({"optimize", "gold.toml", "--quiet", "--budget", "20", "--seeds", "2", "--out", "open", "--set",
                               "waveform.main.level=5 V", "--set", "driver.main.max_voltage=6 V"});
   EXPECT_EQ(o.status, 4) << o.err;
-  EXPECT_THAT(o.out, HasSubstr("2 searches that differ in their seeds. None of them found a feasible waveform."));
+  EXPECT_THAT(o.out, HasSubstr("2 searches, each with its own seed. None of them found a feasible waveform."));
   const json study = test::result_in(at("open"))["seeds"];
   EXPECT_EQ(study["failed"].size(), 2U);
   EXPECT_TRUE(study["cost"]["median"].is_null());

@@ -116,9 +116,9 @@ TEST(Success, IsNotAVerdictThatMoreModesReverse_optimized) {
   EXPECT_NEAR(parsed(voltages)["pull_in"]["by_modes"]["static_V"]["converged"].get<double>(),
               parsed(voltages)["pull_in"]["static_V"].get<double>(), 0.02);
   EXPECT_THAT(run("pull-in", {"bridge.toml", "--quiet"}, false).out,
-              AllOf(HasSubstr("(fold of the static branch); more modes move it by −0.0085 %\n"),
-                    HasSubstr("goes on to the electrode; more modes move it by −5.3 %, to 62.58 V")));
-  // A plate has one mode only.
+              AllOf(HasSubstr("(fold of the static branch); more modes change it by −0.0085 %\n"),
+                    HasSubstr("collapses onto the electrode; more modes change it by −5.3 %, to 62.58 V")));
+  // A plate has no more modes.
   write(here.path() / "plate.toml", edited(between_two, "side = \"both\"\ngap = \"3 um\"\n", ""));
   const Outcome plate =
       run("simulate", {"plate.toml", "--quiet", "--set", "waveform.main.level=16 V", "--set", "gap.contact=2 um"}, true);
@@ -158,7 +158,7 @@ TEST(NoStableRest, IsNotCalledOverdamped_optimized) {
   write(here.path() / "two.toml", between_two);
   for (const char* verb : {"check", "pull-in"}) {
     const Outcome o = here.run({verb, "two.toml", "--quiet"});
-    EXPECT_THAT(o.out, AllOf(HasSubstr("no step moves it, from there on its rest is unstable"), Not(HasSubstr("overdamped"))));
+    EXPECT_THAT(o.out, AllOf(HasSubstr("from there on its rest position is unstable"), Not(HasSubstr("overdamped"))));
     // In a very viscous film the step does not overshoot.
     const Outcome thick = here.run({verb, "gold.toml", "--quiet", "--set", "gas.viscosity=1 Pa s"});
     EXPECT_THAT(thick.out, HasSubstr("overdamped: equals the static one")) << thick.err;
@@ -231,7 +231,8 @@ TEST(Success, OfARobustSearchIsNotThatOfDevicesThatAllFail_optimized) {
                               "driver.main.max_voltage=25 V"});
   EXPECT_EQ(o.status, 4) << o.err;
   const std::string first_lines = o.out.substr(0, o.out.find("\n\n"));
-  EXPECT_THAT(first_lines, AllOf(HasSubstr("outside the model"), HasSubstr("nothing is gained"))) << o.out.substr(0, 800);
+  EXPECT_THAT(first_lines, AllOf(HasSubstr("outside the model"), HasSubstr("the search has gained nothing")))
+      << o.out.substr(0, 800);
   const json found = json::parse(read(here.path() / "out/result.json"), nullptr, false);
   EXPECT_EQ(found["goal_met"], false);
   EXPECT_EQ(found["robust"]["measure_tells"], false);
@@ -409,7 +410,7 @@ TEST(ClosedStart, IsNamedWhereTheOpenOneDoesNotExistAndTakenWhereItIsAskedFor) {
   const std::string named = "waveform.main.before_state = \"closed\" begins there";
   const Outcome without = here.run({"simulate", "relay.toml"});
   EXPECT_EQ(without.status, 4);
-  EXPECT_THAT(without.out, HasSubstr("no stable equilibrium to begin in"));
+  EXPECT_THAT(without.out, HasSubstr("no stable equilibrium to start from"));
   EXPECT_THAT(without.err, AllOf(HasSubstr("3.011673"), HasSubstr(named), HasSubstr("collapsed_at_rest")));
   const json other = json::parse(here.run({"simulate", "relay.toml", "--json", "-"}).out);
   EXPECT_EQ(other["status"], "collapsed_at_rest");
@@ -423,13 +424,13 @@ TEST(ClosedStart, IsNamedWhereTheOpenOneDoesNotExistAndTakenWhereItIsAskedFor) {
   };
   const Outcome text = with({"simulate", "relay.toml", "--out", "run"});
   EXPECT_EQ(text.status, 0) << text.err;
-  EXPECT_THAT(text.out, HasSubstr("The switch begins closed, opens, and is at rest from"));
+  EXPECT_THAT(text.out, HasSubstr("The switch begins closed, opens and is at rest from"));
   const json j = json::parse(read(here.path() / "run/result.json"));
   EXPECT_EQ(j["status"], "done");
   for (const char* none : {"initial_contact_time_s", "impact_velocity_m_s", "bounce_time_s", "peak_contact_force_N"})
     EXPECT_TRUE(j["metrics"][none].is_null()) << none;
-  EXPECT_THAT(here.run({"report", "run"}).out, HasSubstr("begins closed, opens, and is at rest from"));
-  // The trajectory begins on the contact and ends open.
+  EXPECT_THAT(here.run({"report", "run"}).out, HasSubstr("begins closed, opens and is at rest from"));
+  // The trajectory begins on the contact, and ends open.
   std::istringstream rows(read(here.path() / "run/trajectory.csv"));
   std::string line, first, last;
   std::getline(rows, line);

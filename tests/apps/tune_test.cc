@@ -182,8 +182,8 @@ TEST_F(TuneVerb, LandsADeviceAndLeavesWhatItKnows_optimized) {
   EXPECT_EQ(j["closings"].size(), logged());
   EXPECT_EQ(j["best"]["bounce_free"], true);
   EXPECT_GT(j["belief"]["quantities"].size(), 2U);
-  EXPECT_THAT(o.err, AllOf(HasSubstr("softland: closing 1 "), HasSubstr("expected of the next: touch at ")));
-  EXPECT_THAT(o.out, HasSubstr("lands without a bounce"));
+  EXPECT_THAT(o.err, AllOf(HasSubstr("softland: closing 1 "), HasSubstr("prediction for the next: touch at ")));
+  EXPECT_THAT(o.out, HasSubstr("closes bounce-free"));
   EXPECT_THAT(read(here.path() / "out/tune.html"), HasSubstr("<section id=\"records\">"));
   // The voltages of best.toml are those of best.csv, and within the limits.
   const Outcome run = here.run({"simulate", "out/best.toml", "--quiet", "--json", "-"});
@@ -344,7 +344,7 @@ TEST_F(TuneVerb, WritesItsShotsInEveryFormatOfExport_optimized) {
     const Outcome o = shot_in(format, sources);
     if (format == "spice-model" || format == "spice-bench" || format == "verilog-a") {
       EXPECT_EQ(o.status, 2) << format;
-      EXPECT_THAT(o.err, HasSubstr("--format " + format + ": is the switch itself"));
+      EXPECT_THAT(o.err, HasSubstr("--format " + format + ": is a model of the switch"));
       continue;
     }
     ++written;

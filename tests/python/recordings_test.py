@@ -166,7 +166,7 @@ class Exports(unittest.TestCase):
     def test_what_is_lost_by_samples_is_a_warning(self):
         scene = softland.load(GOLD)
         scene.waveforms["main"] = softland.Waveform("pulse", levels=[20.9, 1.7, scene.waveforms["main"].hold_level], times=["16.3 us", "35.9 us"], edge="1 us")
-        with self.assertWarnsRegex(UserWarning, "Vdp.*taken to be right"):
+        with self.assertWarnsRegex(UserWarning, "Vdp.*error is taken to be"):
             scene.export(measured={"Vdp": "14.3 V"})
         with self.assertRaisesRegex(softland.InvalidInput, "sample_rate"):
             scene.export("rigol-csv")

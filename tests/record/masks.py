@@ -40,8 +40,8 @@ TEXT_MASKS = [(verb, file, re.compile(expression, re.M)) for verb, file, express
     ("accuracy", ".html", r"(^<h1>A closing with .* takes ).*(</h1>$)"),
     ("accuracy", ".html", r"(^<svg )[\s\S]*?(^</svg>)"),
     ("accuracy", ".svg", r"(^<svg )[\s\S]*(^</svg>)"),
-    ("", ".html", r"(<dt>Its computing time</dt><dd[^>]*>).*?(</dd>)"),
-    ("", ".html", r"(<p>Made with ).*?(\. The same bits are to be expected)"),
+    ("", ".html", r"(<dt>Computing time of this run</dt><dd[^>]*>).*?(</dd>)"),
+    ("", ".html", r"(<p>Made with ).*?(\. The same program on the same kind of processor)"),
     ("", ".html", r"(<p class=\"below\">Computed by ).*(\.</p>)"),
 ]]
 

@@ -114,7 +114,7 @@ def about_the_clock(name, verb, text, at, line):
         else:
             return bool(re.match(r"[\d.]*\s[nµm]?s(\n|$)", after) or re.match(r"1e-\d+ +[a-z]", line) or (text.startswith("A closing with") and "\n\n" not in text[:at]))
     if name.endswith(".html"):
-        return "Made with" in line or "Computed by" in line or "Its computing time" in line
+        return "Made with" in line or "Computed by" in line or "Computing time of this run" in line
     if verb == "effects":
         rhs = list(re.finditer(r"[\d.]+\s[nµm]s", line))
         begin = text.rfind("\n", 0, at) + 1

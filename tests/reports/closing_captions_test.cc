@@ -28,9 +28,8 @@ TEST(Headline, OfASoftLandingNamesBothClosings) {
   json result = sample_optimize_result(few_rows);
   result["checks"].erase(1);
   EXPECT_EQ(sentence(result),
-            "Softland's waveform closes the switch at 44.5 µs with no rebound; the plain step first touches at 23.2 µs, then "
-            "bounces about 57 times up to "
-            "803 nm and settles after about 374 µs.");
+            "Softland's waveform closes the switch bounce-free at 44.5 µs; with the plain step it first touches at 23.2 µs, then "
+            "bounces about 57 times up to 803 nm and settles after about 374 µs.");
 }
 
 TEST(Headline, SaysWhenTheGoalWasNotMet) {
@@ -42,8 +41,8 @@ TEST(Headline, SaysWhenTheGoalWasNotMet) {
   metrics["permanent_contact_time_s"] = 61e-6;
   result["errors"] = nullptr;
   EXPECT_EQ(sentence(result),
-            "The goal was not met. Softland's waveform first touches at 44.5 µs, then bounces once up to 12.3 nm and settles "
-            "after 61.0 µs; the plain step "
+            "The goal was not met. With softland's waveform the switch first touches at 44.5 µs, then bounces once up to 12.3 nm "
+            "and settles after 61.0 µs; with the plain step it "
             "first touches at 23.2 µs, then bounces about 57 times up to 803 nm and settles after about 374 µs.");
 }
 
@@ -54,7 +53,7 @@ TEST(Headline, SaysWhenNothingTouches) {
   result["baseline"]["metrics"] = {
       {"initial_contact_time_s", nullptr}, {"permanent_contact_time_s", nullptr}, {"bounce_count", nullptr}, {"settled", false}};
   EXPECT_EQ(sentence(result),
-            "The goal was not met. Softland's waveform closes the switch at 44.5 µs with no rebound; the plain step does not "
+            "The goal was not met. Softland's waveform closes the switch bounce-free at 44.5 µs; the plain step does not "
             "close it within 600 µs.");
   json single = sample_simulate_result(few_rows);
   single["status"] = "no_contact";
@@ -71,7 +70,7 @@ TEST(Headline, SaysWhenASwitchHasNotSettled) {
   EXPECT_EQ(
       sentence(result),
       "The switch first touches at 23.2 µs, then bounces about 57 times up to 803 nm and has not settled when the window ends at "
-      "600 µs (what follows is not counted).");
+      "600 µs (later bounces are not counted).");
 }
 
 TEST(Headline, QuotesIllConditionedFiguresWithAbout) {
@@ -83,19 +82,19 @@ TEST(Headline, NamesTheReboundsThatAreTooSmallToCount) {
   json result = sample_optimize_result(few_rows);
   result["best"]["metrics"]["major_bounce_height_m"] = 0.42e-9;
   EXPECT_EQ(plain(headline(read_closing(result)).main),
-            "Softland's waveform closes the switch at 44.5 µs with no rebound above 420 pm");
+            "Softland's waveform closes the switch bounce-free at 44.5 µs (highest rebound 420 pm)");
 }
 
 TEST(Headline, SaysWhyThereIsNoClosing) {
   EXPECT_EQ(sentence({{"kind", "simulate"}, {"status", "collapsed_at_rest"}}),
-            "The switch has no stable equilibrium to begin in under what its drives stand at before t = 0 (an open one, unless "
-            "before_state says otherwise).");
+            "The switch has no stable equilibrium to start from at the voltages before t = 0 (an open one, unless before_state "
+            "asks for a closed one).");
   EXPECT_EQ(sentence({{"kind", "simulate"},
                       {"status", "collapsed_onto_electrode"},
                       {"metrics", {{"initial_contact_time_s", nullptr}, {"settled", false}}}}),
-            "The switch is pulled onto an electrode before it touches its contact.");
+            "The switch collapses onto an electrode before it touches its contact.");
   EXPECT_EQ(sentence({{"kind", "simulate"}, {"status", "collapsed_onto_electrode"}}),
-            "The switch is pulled through the contact onto the electrode.");
+            "The switch collapses onto the electrode, past its contact.");
   EXPECT_EQ(sentence({{"kind", "simulate"}, {"status", "numerical_failure"}}), "The switch could not be simulated to the end.");
   EXPECT_EQ(sentence({{"kind", "simulate"}}), "There are no figures for the switch.");
   json result = sample_optimize_result(few_rows);
@@ -105,41 +104,43 @@ TEST(Headline, SaysWhyThereIsNoClosing) {
   result["baseline"]["metrics"]["bounce_count"] = 0;
   result["baseline"]["metrics"]["major_bounce_height_m"] = 0;
   EXPECT_EQ(sentence(result),
-            "The goal was not met. No feasible waveform was found; the plain step closes it at 23.2 µs with no rebound.");
+            "The goal was not met. No feasible waveform was found; the plain step closes it bounce-free at 23.2 µs.");
 }
 
 TEST(Headline, OfAnInterruptedSearchIsAboutItsBestSoFar) {
   json result = sample_optimize_result(few_rows);
   result["status"] = "interrupted";
   EXPECT_TRUE(sentence(result).starts_with(
-      "The search was interrupted; this is its best so far. Softland's waveform closes the switch at 44.5 µs"))
+      "The search was interrupted; this is its best so far. Softland's waveform closes the switch bounce-free at 44.5 µs"))
       << sentence(result);
 }
 
 TEST(Captions, StateWhatTheNumbersSay) {
   const json result = sample_optimize_result(few_rows);
-  EXPECT_EQ(plain(gap_caption(read_closing(result))),
-            "Distance of the contact point to the contact plane (positive: open); dots mark rebounds above 1 nm. The plain step "
-            "bounces about 57 times, up to 803 nm, until about 374 µs; softland's waveform lands at 44.5 µs with 900 µm/s and "
-            "stays closed.");
+  EXPECT_EQ(
+      plain(gap_caption(read_closing(result))),
+      "Distance of the contact point from the contact plane (positive: open); dots mark rebounds above 1 nm. With the plain "
+      "step the switch bounces about 57 times, up to 803 nm, until about 374 µs; with softland's waveform the switch lands "
+      "at 44.5 µs with an impact velocity of 900 µm/s and stays closed.");
   EXPECT_EQ(plain(landing_caption(read_closing(result))),
-            "The same gap in a narrow band around the contact plane; below it the contact is pressed. The plain step reaches the "
-            "plane with 133 mm/s and rises 803 nm above it again; softland's waveform reaches the plane with 900 µm/s and does "
-            "not rise above it again.");
+            "The same gap, enlarged around the contact plane; below the plane the contact is compressed. With the plain step the "
+            "switch reaches the plane at 133 mm/s and rebounds by up to 803 nm; with softland's waveform the switch reaches the "
+            "plane at 900 µm/s and does not rebound.");
   EXPECT_EQ(plain(velocity_caption(read_closing(result))),
-            "Velocity of the contact point, positive towards the contact. The plain step lands at 133 mm/s, softland's "
-            "waveform at 900 µm/s (148 times lower).");
-  EXPECT_EQ(plain(force_caption(read_closing(result))),
-            "Force of the contact on the beam. The plain step peaks at 290 µN, softland's waveform at 2.70 µN (107 times lower). "
-            "Closed and at rest, the contact "
-            "carries 2.10 µN.");
+            "Velocity of the contact point, positive towards the contact. The impact velocity is 133 mm/s under the plain step "
+            "and 900 µm/s under softland's waveform (148 times lower).");
+  EXPECT_EQ(
+      plain(force_caption(read_closing(result))),
+      "Force of the contact on the beam. Its peak is 290 µN under the plain step and 2.70 µN under softland's waveform (107 "
+      "times lower). Closed and at rest, the contact carries 2.10 µN.");
   EXPECT_EQ(plain(waveform_caption(read_closing(result), "piezo")),
-            "Voltage of the drive “piezo”. Softland's waveform runs between 0 mV and 603 mV, at most 121 mV/µs; the plain step "
+            "Voltage of the drive “piezo”. Softland's waveform runs between 0 mV and 603 mV, with a slew rate of at most 121 "
+            "mV/µs; the plain step "
             "stays at 0 V.");
   EXPECT_EQ(plain(waveform_caption(read_closing(result), "main")), "Voltage of the drive “main”. Both waveforms stay at 28.1 V.");
   EXPECT_EQ(plain(checks_caption(*read_closing(result).search)),
-            "Simulated again with a tolerance of 1e-9 and with 6 modes, it closes without a rebound in 1 of 2 ways; at worst it "
-            "rebounds by up to 3.20 nm and touches at 2.30 mm/s (modes 6).");
+            "Not confirmed: simulated again with a tolerance of 1e-9 and with 6 modes, the switch is not bounce-free in 1 of 2 "
+            "re-runs; at worst it rebounds by up to 3.20 nm after an impact velocity of 2.30 mm/s (modes 6).");
   EXPECT_FALSE(checks_agree(read_closing(result)));
 }
 
@@ -152,9 +153,9 @@ TEST(Captions, OfWhatConfirmsAWinnerTellGasLawsFromModes) {
                       {{"name", "modes 10"}, {"metrics", clean}},
                       {{"name", "gas veijola"}, {"metrics", bounces}}};
   EXPECT_EQ(plain(checks_caption(*read_closing(result).search)),
-            "Simulated again with a tolerance of 1e-9 and with 6, 8 and 10 modes, it closes without a rebound, at 880 µm/s at "
-            "most. Under other gas laws that hold here (veijola) this waveform may not land: it rebounds by up to 3.20 nm and "
-            "touches at 2.30 mm/s (veijola).");
+            "Confirmed: simulated again with a tolerance of 1e-9 and with 6, 8 and 10 modes, the switch closes bounce-free, with "
+            "an impact velocity of at most 880 µm/s. Under the other gas laws that are valid here (veijola) this waveform may "
+            "bounce: it rebounds by up to 3.20 nm after an impact velocity of 2.30 mm/s (veijola).");
   EXPECT_TRUE(checks_agree(read_closing(result)));
   EXPECT_FALSE(all_checks_land(*read_closing(result).search));
   EXPECT_EQ(headline(read_closing(result)).whole().find("modes"), std::string::npos);
@@ -163,8 +164,8 @@ TEST(Captions, OfWhatConfirmsAWinnerTellGasLawsFromModes) {
   result["checks"][2]["metrics"] = bounces;
   EXPECT_FALSE(checks_agree(read_closing(result)));
   EXPECT_TRUE(sentence(result).ends_with(
-      "This landing belongs to the modes that the scene keeps: with 8 of them it rebounds by up to 3.20 nm and "
-      "touches at 2.30 mm/s."));
+      "This result holds for the number of modes in the scene only: with 8 modes it rebounds by up to 3.20 nm after an "
+      "impact velocity of 2.30 mm/s."));
   EXPECT_EQ(worst_figure(*worst_check(read_closing(result).search->checks)), "major_bounce_height_m");
   result["checks"][2]["metrics"] = {{"initial_contact_time_s", nullptr}};
   EXPECT_EQ(worst_figure(*worst_check(read_closing(result).search->checks)), "initial_contact_time_s");
@@ -173,14 +174,15 @@ TEST(Captions, OfWhatConfirmsAWinnerTellGasLawsFromModes) {
 TEST(Captions, OfALandingNeverCallItCleanerThanItIs) {
   json result = sample_optimize_result(few_rows);
   result["best"]["metrics"]["major_bounce_height_m"] = 0.42e-9;
-  EXPECT_TRUE(plain(gap_caption(read_closing(result))).ends_with("and stays closed but for rebounds of 420 pm at most."));
-  EXPECT_TRUE(plain(landing_caption(read_closing(result))).ends_with("with 900 µm/s and rises 420 pm above it again."));
+  EXPECT_TRUE(plain(gap_caption(read_closing(result))).ends_with("and stays closed but for rebounds of at most 420 pm."));
+  EXPECT_TRUE(plain(landing_caption(read_closing(result))).ends_with("at 900 µm/s and rebounds by up to 420 pm."));
   result["best"]["metrics"]["settled"] = false;
   EXPECT_TRUE(
-      plain(gap_caption(read_closing(result))).ends_with("rebounds, up to 420 pm, and is still open when the window ends."));
+      plain(gap_caption(read_closing(result))).ends_with("rebounds, up to 420 pm, and has not settled when the window ends."));
   result["best"]["metrics"] = {{"initial_contact_time_s", nullptr}};
   result["curves"]["best"]["tip_gap_m"] = {2e-6, 1.25e-6, nullptr, 1.5e-6};
-  EXPECT_TRUE(plain(gap_caption(read_closing(result))).ends_with("softland's waveform never touches (no nearer than 1.25 µm)."));
+  EXPECT_TRUE(plain(gap_caption(read_closing(result)))
+                  .ends_with("with softland's waveform the switch never touches: the smallest gap is 1.25 µm."));
 }
 
 TEST(Captions, OfASearchNameTheWinner) {
@@ -189,19 +191,19 @@ TEST(Captions, OfASearchNameTheWinner) {
               {"search", {{"value_name", "cost"}, {"best_so_far", {{1, 2.0}, {17, nullptr}, {120, 0.5}, {240, 0.5}}}}}};
   EXPECT_EQ(search_caption(read_closing(result), *read_closing(result).search),
             "Cost of every waveform tried (dots) and of the best so far (line). In 300 evaluations the cost fell from 2 to 0.5 "
-            "(4.0 times lower); the winner is "
-            "number 120 of them.");
+            "(4.0 times lower); the chosen waveform is "
+            "number 120.");
   result["search"]["best_so_far"] = {{1, 2.0}, {40, 1.0}, {120, 0.5}};
   result["best"]["cost"] = 1.0;  // the run with the lowest cost misses the goal
   result["baseline"]["cost"] = 0.97;
   EXPECT_EQ(search_caption(read_closing(result), *read_closing(result).search),
-            "Cost of every waveform tried (dots) and of the best so far (line); the plain step's is 0.97. In 300 evaluations "
-            "the cost fell from 2 to 0.5 (4.0 times lower); the winner is number 40 of them.");
+            "Cost of every waveform tried (dots) and of the best so far (line); that of the plain step is 0.97. In 300 "
+            "evaluations the cost fell from 2 to 0.5 (4.0 times lower); the chosen waveform is number 40.");
   result["search"]["best_so_far"] = {{0, 2.0}};
   result["best"]["cost"] = 2.0;
   result["search"]["evaluations"] = {{0, 2.0}, {7, 3.0}};
   EXPECT_TRUE(search_caption(read_closing(result), *read_closing(result).search)
-                  .ends_with("In 300 evaluations the cost stayed at 2; the winner is number 1 of them."));
+                  .ends_with("In 300 evaluations the cost stayed at 2; the chosen waveform is number 1."));
 }
 
 TEST(Goal, ComparesTheFiguresOfTheTarget) {
@@ -218,10 +220,10 @@ TEST(Goal, ComparesTheFiguresOfTheTarget) {
 TEST(Captions, OfASingleRunSpeakOfTheSwitch) {
   const json result = sample_simulate_result(few_rows);
   EXPECT_EQ(plain(gap_caption(read_closing(result))),
-            "Distance of the contact point to the contact plane (positive: open); dots mark rebounds above 1 nm. The switch "
+            "Distance of the contact point from the contact plane (positive: open); dots mark rebounds above 1 nm. The switch "
             "bounces about 57 times, up to 803 nm, until about 370 µs.");
   EXPECT_EQ(plain(force_caption(read_closing(result))),
-            "Force of the contact on the beam. It peaks at 290 µN. Closed and at rest, the contact carries 2.10 µN.");
+            "Force of the contact on the beam. Its peak is 290 µN. Closed and at rest, the contact carries 2.10 µN.");
 }
 
 TEST(Change, DistinguishesBetterFromWorse) {

@@ -125,7 +125,7 @@ TEST(Charts, ShowWhenTheContactIsClosedBelowTheGap) {
   const Chart& chart = drawn.charts[1];
   ASSERT_EQ(chart.series.size(), 2U);
   EXPECT_EQ(chart.height, 2 * bar_height);
-  EXPECT_NE(chart.caption.find("A pale stretch holds several touches"), std::string::npos);
+  EXPECT_NE(chart.caption.find("A pale bar stands for several touches"), std::string::npos);
   const CurveTable& best = drawn.tables.at("closed/best");
   EXPECT_EQ(best.at("time_s"), (std::vector<double>{0, 44.5e-6, 44.5e-6, 600e-6}));
   EXPECT_EQ(best.at("closed"), (std::vector<double>{0, 0, 1, 1}));
@@ -152,7 +152,7 @@ TEST(Charts, SayWhereTheElectricalStateHasARuleOfItsOwn) {
   const auto caption = [&] { return picture(read_closing(result)).charts.at(1).caption; };
   EXPECT_EQ(caption().find("electrically"), std::string::npos);
   result["scene"]["metrics"]["closed_force"] = "0.1 uN";
-  EXPECT_NE(caption().find("counts as electrically closed by metrics.closed_force"), std::string::npos);
+  EXPECT_NE(caption().find("electrically closed, which metrics.closed_force decides"), std::string::npos);
 }
 
 TEST(Charts, SurvivePackingToOnePartInTenMillion) {

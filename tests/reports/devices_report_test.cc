@@ -92,8 +92,8 @@ TEST(DevicesReport, SaysFirstWhatDevicesDo) {
     EXPECT_THAT(text, HasSubstr(part));
   EXPECT_THAT(text, Not(HasSubstr("drawing.toml  "))) << "on the page";
   for (const char* part : {"nominal design: drawing.toml", "default: best.toml", "Vdp and piezo to 1 %",
-                           "Impact speed, by the error of Vdp", "89.0\u00a0nm more than counts as a rebound",
-                           "99 % of 200 devices closed, from release voltage to pull-through:", "holds: 97.0 % of the devices",
+                           "Impact velocity against the error of Vdp", "89.0\u00a0nm above the height from which rebounds count",
+                           "99 % of 200 devices closed, between release and collapse:", "holds: 97.0 % of the devices",
                            "The piezo carries 96.5 % of the devices to their contact"})
     EXPECT_THAT(page, HasSubstr(part));
 }
@@ -105,12 +105,13 @@ TEST(DevicesReport, SaysThatTheStepIsDelayedAndWhatMeasuringWins) {
     std::ranges::replace(words, '\n', ' ');
     return words;
   };
-  EXPECT_THAT(text(), HasSubstr("The plain step of the electrode comes at 463\u00a0µs"));
+  EXPECT_THAT(text(), HasSubstr("The plain step of the electrode is delayed to 463\u00a0µs"));
   EXPECT_THAT(text(), HasSubstr("--hold-step fixed"));
-  EXPECT_THAT(text(), HasSubstr("With Vdp measured to 1 % on each, 95 % touch at no more than 16.6\u00a0mm/s: calibrated.toml."));
+  EXPECT_THAT(text(),
+              HasSubstr("(Vdp measured to 1 %), the 95th percentile of the impact velocity is 16.6\u00a0mm/s: calibrated.toml."));
   r.search->devices->measured.clear();
   r.search->devices->next_command.clear();
-  EXPECT_THAT(text(), HasSubstr("Neither Vdp measured to 1 % nor a closing time measured to 50 ns on each device makes"));
+  EXPECT_THAT(text(), HasSubstr("neither Vdp measured to 1 % nor a closing time measured to 50 ns on each device gives"));
 }
 
 TEST(DevicesReport, DrawsDevicesUnderTheStepAndTheWaveformSideBySide) {
@@ -125,7 +126,7 @@ TEST(DevicesReport, DrawsDevicesUnderTheStepAndTheWaveformSideBySide) {
   EXPECT_GE(step.at("low")[2], 700e-9);
   EXPECT_LE(step.at("high")[2], 800e-9);
   for (const std::string& text : {page_html(closing_document(r)), svg_devices(r)}) {
-    EXPECT_THAT(text, HasSubstr("band of 5 to 95 %"));
+    EXPECT_THAT(text, HasSubstr("band from the 5th to the 95th percentile"));
     EXPECT_THAT(text, HasSubstr("clip-devices-best"));
   }
   DevicesFindings changed = *r.search->devices;  // a file that a user has edited
@@ -141,7 +142,7 @@ TEST(DevicesReport, DrawsDevicesUnderTheStepAndTheWaveformSideBySide) {
 TEST(DevicesReport, SaysHowManyLandWhereHalfOfThemDo) {
   ClosingRecord r = devices_result();
   r.search->devices->rows[2].bounce_free = 0.77;
-  EXPECT_THAT(internal::headline(r).whole(), HasSubstr("77.0 % close without a rebound (plain step 0.0 %), and 95 % touch"));
+  EXPECT_THAT(internal::headline(r).whole(), HasSubstr("77.0 % close bounce-free (plain step 0.0 %), and 95 % touch"));
 }
 
 TEST(DevicesReport, SaysInWhichFigureNothingIsAsGoodAsThePlainStep) {
@@ -152,8 +153,9 @@ TEST(DevicesReport, SaysInWhichFigureNothingIsAsGoodAsThePlainStep) {
   const std::string words = internal::headline(r).whole();
   EXPECT_THAT(
       words,
-      HasSubstr("(assumed, the scene has no [spread]: gaps ± 2 %), no waveform that was found is as good as the plain step"));
-  EXPECT_THAT(words, HasSubstr("the best is worse in its largest impact speed. best.toml is the plain step."));
+      HasSubstr(
+          "(assumed, because the scene has no [spread]: gaps ± 2 %), no waveform that was found is as good as the plain step"));
+  EXPECT_THAT(words, HasSubstr("the best one is worse in its largest impact speed. best.toml is the plain step."));
 }
 
 TEST(DevicesReport, ComesBackFromJsonAsItWas) {
@@ -178,7 +180,7 @@ TEST(DevicesReport, StandsFirstOnThePage) {
   EXPECT_LT(table, figures);
   EXPECT_THAT(page, HasSubstr("<dt>Impact velocity, 95th percentile</dt>"));
   EXPECT_THAT(page, HasSubstr("<td class=\"own\">33.0 (36.3)\u00a0mm/s</td>"));
-  EXPECT_THAT(page, HasSubstr("aria-label=\"Without a rebound, by the error of Vdp"));
+  EXPECT_THAT(page, HasSubstr("aria-label=\"Bounce-free devices against the error of Vdp"));
   EXPECT_THAT(page_html(closing_document(search_alone())), Not(HasSubstr("id=\"devices\"")));
 }
 

@@ -162,14 +162,14 @@ TEST(ExplorationPage, HoldsValuesToAFourThousandthOfTheirRange) {
 TEST(ExplorationPage, IsBelowTwoMegabytesWhateverTheNumberOfPoints_optimized) {
   const std::string grid = page_html(exploration_document(sample_grid(200, 200)));
   EXPECT_LT(grid.size(), most_bytes);
-  EXPECT_FALSE(holds(grid, "Drawn are")) << "all of 40 000 points fit";
+  EXPECT_FALSE(holds(grid, "points are drawn")) << "all of 40 000 points fit";
   const std::string large = page_html(exploration_document(sample_grid(400, 500)));
   EXPECT_LT(large.size(), most_bytes);
-  EXPECT_THAT(large, HasSubstr("Drawn are 50000 of 200000 points: one in 2 of the 400 values of structure.length, one in 2 of "
-                               "the 500 values of gap.contact. Counts and effects are"));
+  EXPECT_THAT(large, HasSubstr("50000 of 200000 points are drawn: one in 2 of the 400 values of structure.length, one in 2 of "
+                               "the 500 values of gap.contact. Counts and effects include"));
   const std::string cloud = page_html(exploration_document(sample_cloud(100'000)));
   EXPECT_LT(cloud.size(), most_bytes);
-  EXPECT_TRUE(holds(cloud, "of 100000 points: chosen at random, each with the same chance, and the front."));
+  EXPECT_TRUE(holds(cloud, "of 100000 points are drawn: chosen at random, each with the same probability, and the front."));
 }
 
 TEST(ExplorationPage, KeepsEveryPointOfTheFrontWhenItThins_optimized) {
@@ -201,7 +201,7 @@ TEST(ExplorationPage, BearsNoPointsAndOneAndNoneThatIsDone) {
     point.status = "numerical_failure";
     std::fill(point.values.begin() + 5, point.values.end(), Metrics::unset);
   }
-  EXPECT_TRUE(holds(page_html(exploration_document(report)), "No point settles and has all of the figures of the front."));
+  EXPECT_TRUE(holds(page_html(exploration_document(report)), "No point settles and has all the figures of the Pareto front."));
   report.points.resize(1);
   EXPECT_FALSE(page_html(exploration_document(report)).empty());
   report.points.clear();

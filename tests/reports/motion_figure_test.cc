@@ -41,7 +41,7 @@ std::size_t count_of(const std::string& text, const std::string& part) {
 TEST(MotionFigure, ShowsInstantsWithoutAScript) {
   const std::string figure = motion_figure(bouncing());
   for (const char* words : {"at the start, 0\u00a0s", "first touch, 34.3\u00a0µs", "highest rebound, ",
-                            "held at the end, 600\u00a0µs", "at the contact, enlarged", "electrode main"})
+                            "closed at the end, 600\u00a0µs", "at the contact, enlarged", "electrode main"})
     EXPECT_THAT(figure, HasSubstr(words));
 }
 

@@ -68,10 +68,10 @@ const Study& study() {
 TEST(RobustnessReport, OfATerminalHasEveryDriveAndWhatMeasuringIsWorth_optimized) {
   const std::string text = terminal_text(robustness_document(study().report()));
   for (const char* words :
-       {"64 devices of the spread (sobol points): gap.electrode and gap.contact ± 2.0 % (normal)", "plain step",
-        "<slow>, \"mine\"", "Known of every device", "\nnothing ", "\nVdp and frequency, 8 classes ", "\nVdp and frequency ",
+       {"64 devices under process variation (sobol points): gap.electrode and gap.contact ± 2.0 % (normal)", "plain step",
+        "<slow>, \"mine\"", "Measured on every device", "\nnothing ", "\nVdp and frequency, 8 classes ", "\nVdp and frequency ",
         "\nVdp ± 1.0 %, frequency exactly ", "Share of the variance ", "\nTo first order", " %/%, ", "\nstructure.thickness ",
-        "Other ways, under <slow>, \"mine\"", "\nWorst in the box: found by search ", "\nWorst B_H ",
+        "Cross-checks, under <slow>, \"mine\"", "\nWorst in the box: found by search ", "\nWorst B_H ",
         "± 2.39 standard deviations"})
     EXPECT_THAT(text, HasSubstr(words));
   RobustnessReport bare = study().report();
@@ -79,7 +79,7 @@ TEST(RobustnessReport, OfATerminalHasEveryDriveAndWhatMeasuringIsWorth_optimized
   bare.box_and_chaos = {};
   bare.derivatives = {};
   EXPECT_THAT(terminal_text(robustness_document(bare)), Not(HasSubstr("Share of the variance")));
-  EXPECT_THAT(terminal_text(robustness_document(bare)), Not(HasSubstr("Other ways")));
+  EXPECT_THAT(terminal_text(robustness_document(bare)), Not(HasSubstr("Cross-checks")));
   EXPECT_THAT(terminal_text(robustness_document(bare)), Not(HasSubstr("first order")));
 }
 
@@ -125,9 +125,9 @@ TEST(RobustnessReport, SaysWhereChaosFails_optimized) {
   report.box_and_chaos = ways;
   std::string text = terminal_text(robustness_document(report));
   std::replace(text.begin(), text.end(), '\n', ' ');
-  EXPECT_THAT(text, HasSubstr("3 of them do not close; mean, deviation and quantile of chaos go on"));
+  EXPECT_THAT(text, HasSubstr("3 of them do not close; its mean, standard deviation and percentile treat"));
   EXPECT_THAT(text, HasSubstr("It predicts t_i of those that close. It fails for v_max (60.0 % of the variance): "));
-  EXPECT_THAT(text, HasSubstr("It says nothing of B_H"));
+  EXPECT_THAT(text, HasSubstr("It cannot describe B_H"));
   EXPECT_THAT(text, HasSubstr("∞"));
   const std::string page = page_html(robustness_document(report));
   EXPECT_THAT(page, HasSubstr("It fails for v<sub>max</sub> (60.0"));
@@ -150,13 +150,13 @@ TEST(RobustnessReport, ShowsOfJitterTheTimeOfAnEdge_optimized) {
   file.set(R"(spread={"driver.main.jitter"={distribution="uniform", half_width="50 ns"}})");
   Study jittered{.nominal = prepare(file), .options = {.samples = 64}, .found = {}};
   jittered.found = robustness(jittered.nominal, {}, jittered.options);
-  EXPECT_THAT(terminal_text(robustness_document(jittered.report())),
-              HasSubstr("The sources of the drives err as the spread says."));
+  EXPECT_THAT(terminal_text(robustness_document(jittered.report())), HasSubstr("The voltage sources have the errors"));
   EXPECT_THAT(terminal_text(robustness_document(jittered.report())),
               HasSubstr("driver.main.jitter within ± 50.0\u00a0ns (uniform)"));
   for (const bool err : {false, true}) {
-    const bool said = page_html(robustness_document((err ? jittered : study()).report())).find("The sources of the drives err") <
-                      std::string::npos;
+    const bool said =
+        page_html(robustness_document((err ? jittered : study()).report())).find("The voltage sources have the errors") <
+        std::string::npos;
     EXPECT_EQ(said, err);
   }
   std::istringstream in(robustness_csv(jittered.report()));
@@ -197,7 +197,7 @@ TEST(RobustnessReport, SaysWhatItsDerivativesAreWorth_optimized) {
   const std::string text = terminal_text(robustness_document(report)), page = page_html(robustness_document(report));
   const nlohmann::json j = json_of(record_of(report))["derivatives"];
   EXPECT_THAT(text, HasSubstr("To first order (grazing)"));
-  EXPECT_THAT(page, HasSubstr("has 3.0 % of the speed of the first touch"));
+  EXPECT_THAT(page, HasSubstr("has 3.0 % of the impact velocity"));
   EXPECT_THAT(page, HasSubstr("ill-conditioned: so &amp; so"));
   EXPECT_THAT(page, HasSubstr("structure.thickness is left out: no device beside it."));
   EXPECT_EQ(j["grazes"], true);
@@ -355,7 +355,7 @@ TEST(RobustnessReport, SharesAreNeverBeyondAll) {
 TEST(RobustnessReport, SaysWhatIsMissingForShares) {
   Study s = study();
   for (FigureSensitivity& f : s.sensitivity.figures) f.estimate = {.rows = 256, .failed_rows = 12};
-  const std::string words = "no shares: 12 of the 256 rows of devices made for them";
+  const std::string words = "no indices: 12 of the 256 rows of devices hold one";
   EXPECT_THAT(page_html(robustness_document(s.report())), HasSubstr(words));
   EXPECT_THAT(terminal_text(robustness_document(s.report())), HasSubstr("t_i: " + words));
   EXPECT_THAT(terminal_text(robustness_document(s.report())), Not(HasSubstr("too many"))) << "all devices of the sample close";

@@ -76,7 +76,7 @@ TEST(SeedsReport, OfAResultIsReadBackAndStandsInEveryReport) {
   ASSERT_TRUE(again.search->seeds);
   EXPECT_EQ(json_of(again)["seeds"], json_of(result)["seeds"]);
   EXPECT_EQ(again.search->seeds->best, 1U);
-  EXPECT_NE(page_html(closing_document(again)).find("Searches from other seeds"), std::string::npos);
+  EXPECT_NE(page_html(closing_document(again)).find("Searches with other seeds"), std::string::npos);
   EXPECT_NE(terminal_text(closing_document(again)).find("\n2     goal met, confirmed"), std::string::npos)
       << terminal_text(closing_document(again));
 }

@@ -18,7 +18,8 @@ using ::testing::Not;
 TEST(SvgPicture, IsWellFormedAndTellsTheFinding) {
   const std::string svg = svg_gap_chart(read_closing(test::sample_optimize_result(6000)));
   EXPECT_EQ(test::xml_fault(svg), "");
-  EXPECT_THAT(svg, HasSubstr("<title>Softland&#39;s waveform closes the switch at 44.5\u00a0µs with no rebound; the plain step"));
+  EXPECT_THAT(svg,
+              HasSubstr("<title>Softland&#39;s waveform closes the switch bounce-free at 44.5\u00a0µs; with the plain step it"));
   EXPECT_THAT(svg, HasSubstr("Time (µs)"));
   EXPECT_THAT(svg, HasSubstr("Gap (nm)"));
   EXPECT_THAT(svg, HasSubstr("Voltage (mV)"));

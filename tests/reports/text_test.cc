@@ -158,10 +158,11 @@ TEST(TextReport, GivesIllConditionedFiguresAsMedianAndRange) {
     return text;
   };
   EXPECT_THAT(words(), HasSubstr("a cloud of 16 runs"));
-  EXPECT_THAT(words(), HasSubstr("The runs part at rebound 7 (85.20\u00a0µs, 1.01\u00a0nm high), near the height from which "
-                                 "rebounds count."));
+  EXPECT_THAT(words(),
+              HasSubstr("The runs diverge at rebound 7 (85.20\u00a0µs, 1.01\u00a0nm high), close to the height from which "
+                        "rebounds count."));
   result["cloud"]["grazing_rebound"]["at_significant_height"] = false;
-  EXPECT_THAT(words(), HasSubstr("after the gentlest touch until then, 2.00\u00a0mm/s."));
+  EXPECT_THAT(words(), HasSubstr("after the slowest impact until then (2.00\u00a0mm/s)."));
 }
 
 }  // namespace
