@@ -50,7 +50,7 @@ std::vector<std::string> exported_drives(const PreparedScene& p, const std::stri
   }
   if (named.empty()) return driven;
   require_field(std::ranges::find(all, named) != all.end(), "drive", named,
-                [&] { return fmt::format("is no drive of this scene; there are {}", fmt::join(all, ", ")); });
+                [&] { return fmt::format("unknown drive; choose one of {}", fmt::join(all, ", ")); });
   return {named};
 }
 

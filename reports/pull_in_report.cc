@@ -268,7 +268,7 @@ json json_of(const PullInsRecord& record) { return internal::record_json(record)
 
 PullInsRecord read_pull_ins(const json& from) {
   PullInsRecord record = internal::whole_record<PullInsRecord>(from);
-  require(record.sweep.empty() || record.electrodes.contains(record.swept), "\"swept\" is none of the electrodes");
+  require(record.sweep.empty() || record.electrodes.contains(record.swept), "\"swept\" must be one of the electrodes");
   return record;
 }
 

@@ -100,7 +100,7 @@ struct Measurements {
                               : name == time.name       ? &time
                                                         : nullptr;
       require_field(known != nullptr, "measured", visible(request.measured), [&] {
-        return fmt::format("'{}' is no measurement; there are {}, such as \"{}=54.2 V\"", visible(one),
+        return fmt::format("unknown measurement '{}'; choose from {}, such as \"{}=54.2 V\"", visible(one),
                            in_words(measurement_names), pull_in.name);
       });
       known->read(fmt::format("{} {} =", requested("measured"), name), one.substr(sign + 1));

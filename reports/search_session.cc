@@ -38,7 +38,7 @@ ResultFolder claimed(const SearchOutput& output, const StoredSearch& search, con
   ResultFolder folder = output.claim(files_of_searches(), kept);
   // The previous holder of the folder may have moved them.
   require_request(!known || is_store(known->place / evaluations_file), [&] {
-    return fmt::format("{}: {} is gone; try again", requested("resume"), (known->place / evaluations_file).string());
+    return fmt::format("{}: {} was removed; try again", requested("resume"), (known->place / evaluations_file).string());
   });
   if (known && !stays) folder.adopt(known->place);
   return folder;

@@ -29,7 +29,7 @@ void require_value(bool holds, std::string_view key, const json& value, std::str
 void require_known(const json& object, const std::string& path, std::initializer_list<std::string_view> known) {
   for (const auto& [key, value] : object.items()) {
     require(std::find(known.begin(), known.end(), key) != known.end(), [&key = key, &path, &known] {
-      return fmt::format("{}{}: there is no such key; there are {}", path, shortened(key), fmt::join(known, ", "));
+      return fmt::format("{}{}: unknown key; choose one of {}", path, shortened(key), fmt::join(known, ", "));
     });
   }
 }
@@ -100,7 +100,7 @@ std::vector<Waveform> ToldShot::waveforms(const PreparedScene& nominal) const {
   DriveWaveforms all;
   for (const auto& [name, table] : drives) {
     require(std::find(names.begin(), names.end(), name) != names.end(), [&, &name = name] {
-      return fmt::format("drives.{}: there is no such drive; there are {}", shortened(name), fmt::join(names, ", "));
+      return fmt::format("drives.{}: unknown drive; choose one of {}", shortened(name), fmt::join(names, ", "));
     });
     all.emplace(name, table);
   }
@@ -132,7 +132,7 @@ json read_line(std::string_view line) {
     return true;
   };
   json object = json::parse(line, watch_depth, false);
-  require(object.is_object(), [&] { return fmt::format("is no JSON object: {}", shortened(line)); });
+  require(object.is_object(), [&] { return fmt::format("must be a JSON object: {}", shortened(line)); });
   return object;
 }
 

@@ -48,7 +48,7 @@ struct ToldShot {
 /// The longest line that is read [byte].
 inline constexpr std::size_t longest_line = std::size_t{16} << 20;
 
-/// Reads one line as a JSON object. Throws InvalidInput with the rule, as all of these do: "is no JSON object: ...".
+/// Reads one line as a JSON object. Throws InvalidInput with the rule, as all of these do: "must be a JSON object: ...".
 [[nodiscard]] nlohmann::json read_line(std::string_view line);
 /// Tells whether this line says that there are no more shots.
 [[nodiscard]] bool is_end(const nlohmann::json& line);

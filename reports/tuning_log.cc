@@ -30,7 +30,7 @@ fs::path free_name(const fs::path& file) {
 }
 
 void require_origin(const json& line, const json& origin, const std::string& place) {
-  require(line.contains(origin_key), [&] { return place + ": is no log of a tuning"; });
+  require(line.contains(origin_key), [&] { return place + ": must be the log of a tuning"; });
   for (const auto& [key, value] : origin.items()) {
     const json known = line[origin_key].value(key, json());
     require(known == value, [&, &key = key, &value = value] {

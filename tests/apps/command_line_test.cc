@@ -889,7 +889,7 @@ TEST(Export, ForAGeneratorTellsHowTheSwitchClosesAsSampled_optimized) {
            {{"--format", "keysight-arb", "--sample-rate", "1 MHz", "--marker", "1 s"}, "must be within the waveform"},
            {{"--format", "digilent-csv", "--sample-rate", "1 MHz", "--marker", "1 us"}, "cannot hold a marker"},
            {{"--format", "csv", "--amplifier", "20"}, "belong to the file of a generator"},
-           {{"--drive", "piezo"}, "is no drive of this scene; there are main"}}) {
+           {{"--drive", "piezo"}, "unknown drive; choose one of main"}}) {
     std::vector<std::string> all{"export", "landing.toml"};
     all.insert(all.end(), words.begin(), words.end());
     const Outcome bad = here.run(all);
@@ -1118,10 +1118,10 @@ TEST(Export, TakesWhatWasMeasuredAndSaysWhatIsStrange_optimized) {
            {"Vdp=20 V", "--measured Vdp = 20 V: the waveform of this device: drive 'main': the voltage reaches 25 V, above"},
            {"Vdp=3 A", "--measured Vdp = 3 A: must be a voltage [V] above 0"},
            {"Vdp=14 V,Vdp=14 V", "Vdp stands twice"},
-           {"mass=3 kg", "'mass=3 kg' is no measurement; there are Vdp, frequency, piezo and time"},
+           {"mass=3 kg", "unknown measurement 'mass=3 kg'; choose from Vdp, frequency, piezo and time"},
            {"piezo=1.6 %/V", "piezo cannot be measured: there is no [piezo]"},
            {"piezo=31 nm/V", "--measured piezo = 31 nm/V: must be an inverse voltage [1/V] above 0, such as \"1.6 %/V\""},
-           {"Vdp", "'Vdp' is no measurement"}}) {
+           {"Vdp", "unknown measurement 'Vdp'"}}) {
     const Outcome bad = run(measured);
     EXPECT_EQ(bad.status, 2) << measured;
     EXPECT_THAT(bad.err, HasSubstr(said));

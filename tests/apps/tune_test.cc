@@ -67,16 +67,16 @@ TEST_F(DeviceVerb, AnswersEveryShotWithTheRecordOfALaboratory) {
 
 TEST_F(DeviceVerb, RefusesWhatItCannotDoAndGoesOn) {
   const std::vector<std::pair<std::string, std::string>> lines{
-      {"shoot\n", "the line is no JSON object: shoot"},
+      {"shoot\n", "the line must be a JSON object: shoot"},
       {"{\"shot\":2}\n", "hold_s: is missing"},
       {"{\"shot\":1.5,\"hold_s\":1e-4,\"drives\":{}}\n", "shot = 1.5: must be a whole number from 1 on"},
       {"{\"shot\":2,\"hold_s\":0,\"drives\":{}}\n", "hold_s = 0: must be above 0"},
-      {"{\"shot\":2,\"hold\":1,\"drives\":{}}\n", "hold: there is no such key; there are shot, hold_s, drives"},
+      {"{\"shot\":2,\"hold\":1,\"drives\":{}}\n", "hold: unknown key; choose one of shot, hold_s, drives"},
       {shot(2, "{}"), "drives = {}: must be"},
       {shot(2, R"({"main":{"time_s":[0,1e-6],"V":[5]}})"), "drives.main: time_s has 2 numbers and V has 1: must be as many"},
       {shot(2, R"({"main":{"time_s":[0,2e-6,1e-6],"V":[5,5,5]}})"), "drives.main.time_s: must begin at 0 and never decrease"},
       {shot(2, R"({"main":{"time_s":[0],"V":["5 V"]}})"), "drives.main.V = \"5 V\": must be a number"},
-      {shot(2, R"({"pzt":{"time_s":[0],"V":[5]}})"), "drives.pzt: there is no such drive; there are main"},
+      {shot(2, R"({"pzt":{"time_s":[0],"V":[5]}})"), "drives.pzt: unknown drive; choose one of main"},
       {shot(2, R"({"main":{"time_s":[0],"V":[21.5]}})"), "drives.main: the voltage reaches 21.5 V"},
       {shot(2, R"({"main":{"time_s":[0],"V":[-1]}})"), "drives.main: "}};
   std::string all;

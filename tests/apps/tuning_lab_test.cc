@@ -90,20 +90,20 @@ TEST_F(TuningLabs, ReadEveryKindOfRecord) {
 
 TEST_F(TuningLabs, SayWhatIsWrongWithEveryMalformedAnswer) {
   const std::map<std::string, std::string> answers{
-      {"", "is no JSON object: "},
-      {"edges 36 us", "is no JSON object: edges 36 us"},
-      {"[1]", "is no JSON object"},
-      {R"({"shot":1)", "is no JSON object"},
+      {"", "must be a JSON object: "},
+      {"edges 36 us", "must be a JSON object: edges 36 us"},
+      {"[1]", "must be a JSON object"},
+      {R"({"shot":1)", "must be a JSON object"},
       {R"({"shot":1})", "must have edges_s, closing_time_s or error"},
       {R"({"edges_s":[]})", "shot: is missing"},
       {R"({"shot":2,"edges_s":[]})", "shot = 2: must be 1"},
       {R"({"shot":"1","edges_s":[]})", "shot = \"1\": must be a whole number"},
-      {R"({"shot":1,"edge_s":[]})", "edge_s: there is no such key; there are shot, edges_s"},
+      {R"({"shot":1,"edge_s":[]})", "edge_s: unknown key; choose one of shot, edges_s"},
       {R"({"shot":1,"edges_s":3})", "edges_s = 3: must be a list of [time, 1"},
       {R"({"shot":1,"edges_s":[[1e-5,2]]})", "edges_s = [1e-05,2]: must be a list of [time, 1"},
       {R"({"shot":1,"edges_s":[[1e-5,0]]})", "edges_s: states must alternate, and the first edge closes the contact"},
       {R"({"shot":1,"edges_s":[[2e-5,1],[1e-5,0]]})", "edges_s: times must be finite, above 0 and in order"},
-      {R"({"shot":1,"edges_s":[[1e999,1]]})", "is no JSON object"},
+      {R"({"shot":1,"edges_s":[[1e999,1]]})", "must be a JSON object"},
       {R"({"shot":1,"edges_s":[[null,1]]})", "edges_s = null: must be a time"},
       {R"({"shot":1,"closing_time_s":"36 us"})", "closing_time_s = \"36 us\": must be a time in seconds, or null"},
       {R"({"shot":1,"closing_time_s":-1})", "closing_time_s: must be finite and above 0"},
@@ -117,7 +117,7 @@ TEST_F(TuningLabs, SayWhatIsWrongWithEveryMalformedAnswer) {
       {R"({"shot":1,"edges_s":[],"loudness":0})", "loudness: must be finite and above 0"},
       {R"({"shot":1,"error":""})", "error = \"\": must be a text"},
       {std::string(100, '[') + std::string(100, ']'), "is nested more than 8 deep"},
-      {"\xff\xfe", "is no JSON object"}};
+      {"\xff\xfe", "must be a JSON object"}};
   for (const auto& [answer, rule] : answers) {
     write(here.path() / "answer", answer + "\n");
     EXPECT_THAT(refusal("cat '" + (here.path() / "answer").string() + "'"),
@@ -233,14 +233,14 @@ TEST_F(TuningLogs, SayWhyTheyCannotGoOn) {
   EXPECT_THAT(refused({{"seed", 2}}), HasSubstr("closings.jsonl:1: its closings are of another seed: 1 instead of 2"));
   const std::string header = read(file());
   for (const auto& [line, rule] : std::map<std::string, std::string>{
-           {"garbage", "closings.jsonl:2: is no JSON object"},
+           {"garbage", "closings.jsonl:2: must be a JSON object"},
            {R"({"shot":{}})", "closings.jsonl:2: must have shot and record"},
            {R"({"shot":{"shot":1,"hold_s":1,"drives":{}},"record":{}})", "closings.jsonl:2: drives = {}: must be "}}) {
     write(file(), header + line + "\n");
     EXPECT_THAT(refused(), HasSubstr(rule)) << line;
   }
   write(file(), "{}\n");
-  EXPECT_THAT(refused(), HasSubstr("closings.jsonl:1: is no log of a tuning"));
+  EXPECT_THAT(refused(), HasSubstr("closings.jsonl:1: must be the log of a tuning"));
 }
 
 }  // namespace
