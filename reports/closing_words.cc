@@ -131,7 +131,7 @@ std::string landing_words(const Actor& actor, const RunRecord& run, const Figure
     words += ", then " + bounces(figures, run.errors);
     if (height > 0) words += " up to " + quantity(height, "m");
   } else if (height > 0) {
-    words += ", then rebounds up to " + quantity(height, "m");
+    words += ", then rebounds by up to " + quantity(height, "m");
   }
   if (settles(figures)) return words + " and settles after " + settling(figures, run.errors);
   if (std::isfinite(figures[&Metrics::open_command])) return words + " and has not settled when it is commanded to open";

@@ -1117,7 +1117,7 @@ TEST(Export, TakesWhatWasMeasuredAndSaysWhatIsStrange_optimized) {
   for (const auto& [measured, said] : std::vector<std::pair<std::string, std::string>>{
            {"Vdp=20 V", "--measured Vdp = 20 V: the waveform of this device: drive 'main': the voltage reaches 25 V, above"},
            {"Vdp=3 A", "--measured Vdp = 3 A: must be a voltage [V] above 0"},
-           {"Vdp=14 V,Vdp=14 V", "Vdp stands twice"},
+           {"Vdp=14 V,Vdp=14 V", "Vdp is given twice"},
            {"mass=3 kg", "unknown measurement 'mass=3 kg'; choose from Vdp, frequency, piezo and time"},
            {"piezo=1.6 %/V", "piezo cannot be measured: there is no [piezo]"},
            {"piezo=31 nm/V", "--measured piezo = 31 nm/V: must be an inverse voltage [1/V] above 0, such as \"1.6 %/V\""},

@@ -138,7 +138,7 @@ TEST_F(FitVerb, DoubtsImpossibleData) {
   // Two different values of the same quantity.
   EXPECT_THAT(
       doubted(bench + std::string("[[measurement]]\nquantity = \"frequency\"\nvalue = \"20.9 kHz\"\nerror = \"0.01 %\"\n")),
-      HasSubstr("RMS residual"));
+      HasSubstr("off the data by"));
 }
 
 TEST_F(FitVerb, RefusesDataThatNothingHas) {

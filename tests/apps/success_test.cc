@@ -230,7 +230,8 @@ TEST(Success, OfARobustSearchIsNotThatOfDevicesThatAllFail_optimized) {
                               "--set",
                               "driver.main.max_voltage=25 V"});
   EXPECT_EQ(o.status, 4) << o.err;
-  const std::string first_lines = o.out.substr(0, o.out.find("\n\n"));
+  std::string first_lines = o.out.substr(0, o.out.find("\n\n"));
+  std::ranges::replace(first_lines, '\n', ' ');
   EXPECT_THAT(first_lines, AllOf(HasSubstr("outside the model"), HasSubstr("the search has gained nothing")))
       << o.out.substr(0, 800);
   const json found = json::parse(read(here.path() / "out/result.json"), nullptr, false);

@@ -225,7 +225,7 @@ TEST(ExplorationText, TellsTheFrontWithItsKnee) {
   EXPECT_THAT(text, HasSubstr("400 points over structure.thickness, gap.electrode, "));
   EXPECT_THAT(text, HasSubstr("Front: "));
   EXPECT_THAT(text, HasSubstr("hypervolume "));
-  EXPECT_THAT(text, HasSubstr("* the knee"));
+  EXPECT_THAT(text, HasSubstr("* is the knee"));
 }
 
 TEST(ExplorationJson, HoldsTheFrontAndHowPointsEnded) {
