@@ -159,7 +159,7 @@ TEST(TuningReport, PutsOnlyTextIntoItsPage) {
   const std::string page = page_html(tuning_document(tuned_sample()));
   for (const char* tag : {"<b>", "<i>", "<u>", "<s>"}) EXPECT_THAT(page, Not(HasSubstr(tag)));
   for (const char* part :
-       {"id=\"records\"", "id=\"belief\"", "id=\"waveforms\"", "id=\"reproduce\"", "kept so far", "proposed next"})
+       {"id=\"records\"", "id=\"belief\"", "id=\"waveforms\"", "id=\"reproduce\"", "best so far", "proposed next"})
     EXPECT_THAT(page, HasSubstr(part));
   // The first record has three closed intervals, drawn below the prediction.
   const std::size_t first = page.find("aria-label=\"closing 1 touched");
