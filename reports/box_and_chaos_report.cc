@@ -89,7 +89,7 @@ std::string chaos_words(const OtherWays& ways) {
                     ways.left_out);
   }
   if (!good.empty())
-    words += fmt::format(" It predicts {}{} well.", in_words(good), ways.left_out > 0 ? " of those that close" : "");
+    words += fmt::format(" It predicts {}{}.", in_words(good), ways.left_out > 0 ? " of those that close" : "");
   if (!bad.empty()) {
     words += fmt::format(
         " It fails for {}: a figure jumps where a small change of a quantity adds or removes a touch, and polynomials cannot "
