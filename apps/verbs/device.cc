@@ -51,7 +51,7 @@ int run_device(const Common& c, const verbs::Told& told) {
       if (is_end(told)) break;
       print(line_text(answer(device, told)));
     } catch (const InvalidInput& error) {
-      print(line_text({{"shot", nullptr}, {"error", fmt::format("invalid line: {}", error.what())}}));
+      print(line_text({{"shot", nullptr}, {"error", fmt::format("the line {}", error.what())}}));
     }
   }
   return exit_done;

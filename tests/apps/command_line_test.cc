@@ -744,7 +744,7 @@ TEST(Read, NamesWhatItCannotRead) {
   EXPECT_EQ(here.run({"read", "comma.csv", "--set", "decimal=,"}).status, 0);
   EXPECT_THAT(here.run({"read", "comma.csv", "--set", "decimal=,", "--set", "interval=2 us"}).out,
               HasSubstr("every 2 us, from 0 s to 2 us"));
-  EXPECT_THAT(said({"read", "comma.csv", "--set", "scale=2"}), HasSubstr("what a scene makes of a file"));
+  EXPECT_THAT(said({"read", "comma.csv", "--set", "scale=2"}), HasSubstr("is not a key for reading a file"));
   EXPECT_THAT(said({"read", "comma.csv", "--set", "decimals=,"}), HasSubstr("did you mean 'decimal'?"));
   EXPECT_THAT(said({"read", "comma.csv", "--plot", "--json", "-"}), HasSubstr("standard output"));
   EXPECT_THAT(said({"read", "absent.csv"}), HasSubstr("absent.csv: cannot be read"));

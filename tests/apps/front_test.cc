@@ -75,7 +75,7 @@ TEST_F(Front, IsRefusedWithTheRule) {
   EXPECT_THAT(refused({"--vary", box, "--pareto", "impact_velocity,beauty"}), HasSubstr("\"beauty\" is not among the figures"));
   EXPECT_THAT(refused({"--vary", box, "--pareto", "impact_velocity"}), HasSubstr("at least two"));
   EXPECT_THAT(refused({"--vary", box, "--pareto", aims, "--sample", "sobol:8"}), HasSubstr("nsga2:N"));
-  EXPECT_THAT(refused({"--vary", box, "--sample", "nsga2:80"}), HasSubstr("needs its figures"));
+  EXPECT_THAT(refused({"--vary", box, "--sample", "nsga2:80"}), HasSubstr("needs both its figures"));
   EXPECT_THAT(refused({"--vary", box, "--pareto", aims, "--shard", "1/2"}), HasSubstr("cannot be divided"));
   EXPECT_FALSE(fs::exists(at("softland-out.sqlite")));
 }

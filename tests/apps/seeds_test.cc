@@ -122,7 +122,7 @@ TEST_F(Seeds, ThatAreInterruptedTellWhatIsDoneAndGoOn) {
   kill(child, SIGINT);
   const Outcome o = here.finish(child);
   EXPECT_EQ(o.status, 130) << o.err;
-  EXPECT_THAT(o.out, HasSubstr("--resume goes on"));
+  EXPECT_THAT(o.out, HasSubstr("--resume continues"));
   const json j = json::parse(read(at("out.json")), nullptr, false);
   EXPECT_EQ(j["status"], "interrupted");
   EXPECT_EQ(j["seeds"]["planned"], 400);

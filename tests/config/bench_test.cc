@@ -217,7 +217,7 @@ TEST(Bench, NamesTheKeyThatAFileOfAnInstrumentLacks) {
   expect_so("velocity", scope + "column = \"CH2\"", "the velocity is in V: expected a velocity [m/s]; per_volt");
   expect_so("velocity", scope + "column = 2\nunit = \"um\"", "the velocity is in um: expected a velocity");
   expect_so("velocity", scope + "column = 2\nunit = \"m/s\"\nper_volt = \"1 m/s\"", "must not be given together with unit");
-  expect_so("velocity", "file = \"plain.csv\"", "the file names no unit: say unit");
+  expect_so("velocity", "file = \"plain.csv\"", "the file names no unit: give unit");
   expect_so("velocity", scope + "column = 2\nunit = \"m/s\"\nuntil = \"-1 us\"", "must not be before the first row");
   expect_so("contact", low + "closed = \"below\"\nuntil = \"9 us\"", "is of a position or velocity only");
   expect_so("capacitance", scope + "column = 2", "applies to a file of values over time only");
@@ -249,7 +249,7 @@ TEST(Bench, RefusesWhatItCannotMean) {
   expect_refused("measurements = 1", "unknown key (did you mean 'measurement'?)");
   expect_refused("[[measurement]]\nquantity = \"pullin\"\nvalue = \"1 V\"\nerror = \"1 %\"", "did you mean 'pull_in'?");
   expect_refused(begin + "value = \"1 V\"", "bench.toml:1: [[measurement]]: missing key 'error'");
-  expect_refused(begin + "error = \"1 %\"", "must have one of 'value' and 'file'");
+  expect_refused(begin + "error = \"1 %\"", "needs either 'value' or 'file'");
   expect_refused(begin + "value = \"1 um\"\nerror = \"1 %\"",
                  "bench.toml:3: measurement.value = \"1 um\": expected a voltage [V], got a length [m]");
   expect_refused(begin + "value = 17.1\nerror = \"1 %\"", "expected a voltage in quotes");

@@ -98,7 +98,7 @@ TEST(DielectricKeys, AreRefusedByFileLineAndKey) {
   EXPECT_THAT(refusal_of(edited_plate("thickness =", "thick =")),
               HasSubstr("electrode.main.dielectric.thick = \"0.2 um\": unknown key"));
   EXPECT_THAT(refusal_of(edited_plate("permittivity =", "eps_r =")),
-              HasSubstr("electrode.main.dielectric.eps_r = 7.6: unknown key; 'permittivity' is that of the insulator over"));
+              HasSubstr("electrode.main.dielectric.eps_r = 7.6: unknown key; 'permittivity' is the relative permittivity"));
   EXPECT_THAT(refusal_of(edited_plate("{ thickness = \"0.2 um\", permittivity = 7.6, roughness = \"5 nm\" }", "\"0.2 um\"")),
               HasSubstr("electrode.main.dielectric = \"0.2 um\": expected keys in braces"));
   EXPECT_THAT(refusal_of(edited_plate("fringing = \"none\"", "fringing = \"none\"\nside = \"both\"\ngap = \"4 um\"")),

@@ -203,7 +203,7 @@ TEST_F(ModalScene, MayBeClampedAtItsFarEnd) {
   EXPECT_THAT(refusal(bridge), HasSubstr("x.toml:1: [structure]: the far end does not move in any mode: set far_anchor = "
                                          "\"clamped\""));
   EXPECT_THAT(refusal(edited(clamped, "bridge.csv", "modes.csv")),
-              HasSubstr("x.toml:4: structure.far_anchor = \"clamped\": the far end of the file does not stand still"));
+              HasSubstr("x.toml:4: structure.far_anchor = \"clamped\": requires a far end that does not move"));
   EXPECT_THAT(refusal(edited(edited(stretched, "\"clamped\"", "\"free\""), "bridge.csv", "modes.csv")),
               HasSubstr("x.toml:5: structure.axial_stiffness = \"12 kN/m\": needs far_anchor = \"clamped\""));
   EXPECT_THAT(refusal(edited(stretched, "bridge.csv", "bent.csv")),
@@ -238,7 +238,7 @@ TEST_F(ModalScene, RefusesListsThatAreNoTable) {
   EXPECT_THAT(refusal(held(edited(right, "\"50 um\"", "\"150 um\""))),
               HasSubstr("at least three positions that increase from 0"));
   EXPECT_THAT(refusal(held(edited(right, "[[0,", "[[1,"))), HasSubstr("a shape must be finite and 0 at the clamp"));
-  EXPECT_THAT(refusal(held(right + "axis = \"x\"\n")), HasSubstr("the scene holds its modes itself"));
+  EXPECT_THAT(refusal(held(right + "axis = \"x\"\n")), HasSubstr("this scene holds its modes itself"));
   EXPECT_THAT(refusal(held(right + "file = \"modes.csv\"\n")), HasSubstr("cannot stand beside"));
 }
 

@@ -81,7 +81,7 @@ TEST(GeneratorFile, SaysWhereTheSyncOutputFalls) {
     if (format.has_marker) {
       EXPECT_NE(generator_file(format, s).find("Marker Point:17\n"), std::string::npos);
     } else {
-      expect_invalid([&] { (void)generator_file(format, s); }, {std::string(format.instrument), "no marker"});
+      expect_invalid([&] { (void)generator_file(format, s); }, {std::string(format.instrument), "cannot hold a marker"});
     }
   }
 }

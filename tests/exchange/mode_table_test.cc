@@ -158,7 +158,7 @@ TEST(ModeTable, RefusesWithTheRule) {
   EXPECT_THAT(edited("frd", " -1         7 2.0", " -1        7 2.0"),
               HasSubstr("the line of a node must have 49 columns, and has 48"));
   EXPECT_THAT(edited("frd", "MODAL", "XXXXX"), HasSubstr("accepted")) << "the kind of step is told by its number";
-  EXPECT_THAT(edited("frd", "1PGK                2.46", "1PGK                2.86"), HasSubstr("by the generalised stiffness"));
+  EXPECT_THAT(edited("frd", "1PGK                2.46", "1PGK                2.86"), HasSubstr("from the generalised stiffness"));
   EXPECT_THAT(edited("comsol", "% Nodes:              6", "% Nodes:              7"),
               HasSubstr("the file has 6 rows, but states 7 nodes"));
   EXPECT_THAT(edited("table", "frequency_Hz,,,25000,156000", "frequency_Hz,,,25000,15600"),
@@ -189,7 +189,7 @@ TEST(ModeTable, OfAMeshWithoutNodesIsRefused) {
 TEST(ModeTable, OfAHingedEndIsRefused) {
   std::string text = "x_m,mode_1\nfrequency_Hz,1000\n";
   for (int i = 0; i <= 20; ++i) text += fmt::format("{},{}\n", i * 1e-6, i * 1e5);
-  EXPECT_THAT(refusal_of(text, {}), HasSubstr("leaves the first place with a slope, as at a hinge"));
+  EXPECT_THAT(refusal_of(text, {}), HasSubstr("the first place must be a clamp"));
 }
 
 // Modes of a table that stand still at the far end: of a clamp there, and of a hinge.

@@ -62,7 +62,7 @@ TEST(Recording, WhatIsNoRecordOverTimeIsRefusedByName) {
   refused("Record Length,3,,0,1.5\nHorizontal Units,Hz,,1,2\n,,,2,3\n,,,3,4\n,,,4,5\n", {"spectrum over Hz"});
   refused("    1C\n    1UUSER\n", {"a mesh with results (CalculiX)"});
   refused("% Model,x.mph\n% Version,COMSOL\n1,2\n3,4\n", {"COMSOL"});
-  refused("    -1\n    55\nNONE\n    -1\n", {"no record over time", "data set 55"});
+  refused("    -1\n    55\nNONE\n    -1\n", {"must hold a record over time", "data set 55"});
   refused("PK\x03\x04xxxx", {"spreadsheet", "CSV"});
   refused(std::string("abc\0\0\0\0\0\0def\x01", 13), {"binary"});
   refused("", {"empty"});
@@ -146,7 +146,7 @@ TEST(Recording, OfSeveralSourcesOneIsChosen) {
   refused(circuit, {"a.Vdrive, b.Vdrive"});
   EXPECT_EQ(read(circuit, {.column = "b.Vdrive"}).channels.front().values, (std::vector<double>{0, 7}));
   refused("V1 a 0 PWL(0 0 1u 5) R=0\n", {"R=0", "not read"});
-  refused("V1 a 0 PWL(0 0 1u\n", {"ends inside"});
+  refused("V1 a 0 PWL(0 0 1u\n", {"ends within"});
   refused("0 0\n1u 5 6\n2u 7\n", {"x.csv"});
 }
 

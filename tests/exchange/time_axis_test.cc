@@ -135,7 +135,7 @@ TEST(TimeAxis, XposIsANumberAShareOfThePeriodOrATime) {
     }
     axis_refused(
         easywave(declared, count, [](std::size_t i) { return 0.3 * static_cast<double>(i); }),
-        {"\"xpos\" rises by 0.3", "share of a period of 256 samples", "\"frequency\" and \"data length\"", "interval = "});
+        {"\"xpos\" increases by 0.3", "share of a period of 256 samples", "\"frequency\" and \"data length\"", "interval = "});
   }
   axis_refused(replaced(easywave(8, 8, [](std::size_t i) { return static_cast<double>(i) / 8; }), "frequency,1000\n", ""),
                {"\"xpos\"", "\"frequency\"", "interval = ", "time_unit"});
@@ -155,7 +155,7 @@ TEST(TimeAxis, NumbersOfSamplesThatBeginLaterAreLater) {
   const Recording later = read_axis(easywave(256, 20, [](std::size_t i) { return static_cast<double>(i + 11); }));
   EXPECT_NEAR(later.times.front(), 10 * 1e-3 / 256, 1e-15);
   axis_refused(easywave(256, 20, [](std::size_t i) { return static_cast<double>(i + 250); }),
-               {"speaks of 256 samples", "holds 269"});
+               {"states 256 samples", "holds 269"});
 }
 
 TEST(TimeAxis, TheUnitAboveIsThatOfTheTimes) {
@@ -248,7 +248,7 @@ TEST(TimeAxis, AQuotedPreambleWithEqualsSignsIsRead) {
   EXPECT_EQ(made.interval, 1 / 5e8);
   EXPECT_NEAR(made.times.back(), 46e-9, 1e-20);
   axis_refused(rigol("24", "250000000"), {"\"Sampling Frequency (Hz)\"", "4 ns apart", "interval = "});
-  axis_refused(rigol("12", "500000000"), {"speaks of 12 samples", "\"Number of Data points\""});
+  axis_refused(rigol("12", "500000000"), {"states 12 samples", "\"Number of Data points\""});
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ TEST(Trace, ToldWhatIsTaken) {
 }
 
 TEST(Trace, TimesThatRepeatGoBackOrDriftAreRefused) {
-  trace_refused("t (s),U (V)\n0,1\n0,2\n1,3\n", {"x.csv:3", "stands twice", "interval = "});
+  trace_refused("t (s),U (V)\n0,1\n0,2\n1,3\n", {"x.csv:3", "is given twice", "interval = "});
   trace_refused("t (s),U (V)\n0,1\n2,2\n1,3\n", {"x.csv:4", "goes back", "skip", "interval = "});
   trace_refused("Sample Interval,2e-6\nt (s),U (V)\n0,1\n1e-6,2\n2e-6,3\n3e-6,4\n",
                 {"2 us apart", "drift", "interval = \"2 us\""});
@@ -67,7 +67,7 @@ TEST(Trace, TimesThatAreRoundedFollowTheIntervalOfTheFile) {
 TEST(Trace, MissingValuesAtTheEndsAndBetween) {
   const Trace trace = trace_in("t (s),U (V),W (V)\n0,,1\n1,2,1\n2,,1\n3,4,1\n4,,1\n", {.column = "U"});
   EXPECT_EQ(trace.times, (std::vector<double>{1, 3}));
-  EXPECT_THAT(trace.told, testing::HasSubstr("3 rows without a number, the first in line 2"));
+  EXPECT_THAT(trace.told, testing::HasSubstr("3 rows without a number are left out, the first in line 2"));
   trace_refused("t (s),U (V)\n0,1\n1,inf\n2,3\n", {"x.csv:3", "column 2", "not finite"});
   EXPECT_EQ(trace_in("t (s),U (V)\n0,1\n1,2\n2,inf\n").values, (std::vector<double>{1, 2}));
 }

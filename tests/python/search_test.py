@@ -175,7 +175,7 @@ class Kept(unittest.TestCase):
         scene = softland.load(GOLD)
         with self.assertRaisesRegex(softland.InvalidInput, "out: must not be given for a search with Python functions"):
             scene.optimize(objective=lambda closing, step: 1.0, out=self.out / "own")
-        with self.assertRaisesRegex(softland.InvalidInput, "resume: needs `out`"):
+        with self.assertRaisesRegex(softland.InvalidInput, "resume: requires `out`"):
             scene.optimize(resume=True)
         scene.optimize(**self.OPTIONS, budget=20, out=self.out / "other")
         with self.assertRaisesRegex(softland.InvalidInput, "resume: .*holds another search: it is for target bounce, not impact"):

@@ -101,7 +101,7 @@ TEST_F(Merge, RefusesWhatDoesNotBelongTogether) {
   refused({path("a")}, path("b"), "exists already; it is not replaced");
   refused({path("a")}, path("a"), "exists already; it is not replaced");
   refused({path("a"), path("nothing")}, file, "the file does not exist");
-  refused({}, file, "one part at least");
+  refused({}, file, "at least one part");
   EXPECT_THAT(names_in(TemporaryFolder::path()), ElementsAre("a", "b"));
 }
 
@@ -134,7 +134,7 @@ TEST_F(Merge, OfMorePartsThanAProcessMayEverOpenSaysSo) {
     const rlimit limit{14, 14};
     ::setrlimit(RLIMIT_NOFILE, &limit);
     EXPECT_THAT([&] { static_cast<void>(merge_studies(parts, file, origin())); },
-                ThrowsMessage<InvalidInput>(AllOf(HasSubstr("Too many open files"), Not(HasSubstr("is no store")))));
+                ThrowsMessage<InvalidInput>(AllOf(HasSubstr("Too many open files"), Not(HasSubstr("not a store")))));
     ::_exit(::testing::Test::HasFailure() ? 1 : 0);
   }
   int status = -1;

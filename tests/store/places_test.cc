@@ -101,7 +101,7 @@ TEST_F(Place, OfAStoreOfALaterSchemaIsRefused) {
               ThrowsMessage<InvalidInput>(
                   HasSubstr("was written by a later version of softland (store schema 3; this version reads up to 2)")));
   EXPECT_THAT([&] { StudyStore(file, plan_of(10), origin(), Opening::resume); },
-              ThrowsMessage<InvalidInput>(HasSubstr("a later softland")));
+              ThrowsMessage<InvalidInput>(HasSubstr("a later version of softland")));
   EXPECT_EQ(content_of(file), before);
 }
 
@@ -152,7 +152,7 @@ TEST_F(Place, OfAStoreWhoseNumbersCannotBeIsRefused) {
         std::pair{"UPDATE study SET points = 0", "its plan has 0 points"},
         std::pair{"UPDATE study SET points = 9223372036854775807", "its plan has 9223372036854775807"},
         std::pair{"UPDATE study SET points = 11", "its plan has changed since it was written"},
-        std::pair{"UPDATE columns SET unit = 'mm' WHERE unit = 'm'", "its plan is not the one"},
+        std::pair{"UPDATE columns SET unit = 'mm' WHERE unit = 'm'", "its plan has changed"},
         std::pair{"ALTER TABLE results DROP COLUMN bounce_count", "no such column"},
         std::pair{"ALTER TABLE study DROP COLUMN seed", "no such column: seed"},
         std::pair{"DELETE FROM results WHERE point = 9", "it has 9 rows, and 10 were written"},
@@ -308,7 +308,7 @@ TEST_F(Place, UnderTwoNamesIsNotWritten) {
   make_store(file, 10);
   fs::create_hard_link(file, path("other name"));
   EXPECT_THAT([&] { StudyStore(file, plan_of(10), origin(), Opening::resume); },
-              ThrowsMessage<InvalidInput>(HasSubstr("has another name as well")));
+              ThrowsMessage<InvalidInput>(HasSubstr("must not have a second name")));
 }
 
 TEST_F(Place, ThatCannotBeWrittenToIsReadWithoutLitter) {
@@ -503,7 +503,7 @@ TEST_F(Place, HeldByAnotherProgramIsReported) {
   const internal::Database database(file, internal::Access::write, "study.sqlite");
   sqlite3_busy_timeout(database.handle(), 1);
   EXPECT_THAT([&] { internal::check_schema(database); },
-              ThrowsMessage<InvalidInput>(HasSubstr("another program holds the file")));
+              ThrowsMessage<InvalidInput>(HasSubstr("another program has locked the file")));
   sqlite3_close(other);
 }
 

@@ -185,13 +185,13 @@ TEST_F(Store, RefusesPlansThatItCannotHold) {
     EXPECT_FALSE(std::filesystem::exists(file));
   };
   plan.columns[0].key = "gap.contact";
-  refused("\"gap.contact\" is no word");
+  refused("\"gap.contact\" must be a word");
   plan.columns[0].key = "Status";
   refused("called Status");
   plan.columns[0].key = "BOUNCE_count";
   refused("called bounce_count");
   plan = plan_of(0);
-  refused("one point at least");
+  refused("at least one point");
 }
 
 TEST_F(Store, TakesARowOnceAndRefusesOtherBits) {

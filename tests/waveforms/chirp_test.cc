@@ -128,7 +128,7 @@ TEST(Chirp, NamesParameterValueAndRule) {
   refused([](Chirp& c) { c.decay_time = 0; }, {"decay_time of a chirp", "0 s", "> 0"});
   refused([](Chirp& c) { c.fade = 50_us; }, {"fade of a chirp", "half"});
   refused([](Chirp& c) { c.end = kInfinity; }, {"frequency_ratio of a chirp is 3", "without an end"});
-  refused([](Chirp& c) { c.end = c.decay_time = kInfinity, c.frequency_ratio = 1; }, {"neither an end nor a decay_time"});
+  refused([](Chirp& c) { c.end = c.decay_time = kInfinity, c.frequency_ratio = 1; }, {"must have an end or a decay_time"});
 }
 
 }  // namespace

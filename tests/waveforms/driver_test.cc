@@ -240,7 +240,7 @@ TEST(Driver, SamplesASineThatNeverEndsUpToTheEnd) {
   EXPECT_EQ(out.voltage(49.95_us), endless.voltage(499 / 10e6));
   EXPECT_EQ(out.hold_level(), 3);
   test::expect_invalid([&] { (void)driven(endless, {.sample_rate = 1e12}, limits, 1); },
-                       {"takes 1000000000000 samples", "it may take 10000000"});
+                       {"has 1000000000000 samples", "it must have at most 10000000"});
 }
 
 TEST(Driver, AppliesTheCommandedVoltageBeforeItBegins) {

@@ -115,11 +115,11 @@ TEST(OwnWaveform, WithoutBreakpointsIsConstantAfterWhatStoodBefore) {
 }
 
 TEST(OwnWaveform, WithoutBreakpointsIsRefusedWhereItWouldBeZeroForEverOrIsNotConstant) {
-  expect_invalid([] { (void)signal(made([](double) { return 0.0; }, {})); }, {"'made'", "no breakpoints", "0 V, for ever"});
+  expect_invalid([] { (void)signal(made([](double) { return 0.0; }, {})); }, {"'made'", "no breakpoints", "0 V"});
   expect_invalid([] { (void)signal(made([](double t) { return 1e6 * std::min(t, 20e-6); }, {})); },
-                 {"'made'", "no breakpoints", "0 V, for ever", "and it is"});
+                 {"'made'", "no breakpoints", "0 V", "and it is"});
   expect_invalid([] { (void)signal(made([](double t) { return t < 3e-6 ? 5.0 : 7.0; }, {})); },
-                 {"'made'", "no breakpoints", "5 V, for ever", "and it is 7 V"});
+                 {"'made'", "no breakpoints", "5 V", "and it is 7 V"});
 }
 
 TEST(OwnWaveform, HasItsParametersAndIsCalledByItsName) {
@@ -139,7 +139,7 @@ TEST(OwnWaveform, IsRefusedWhereItHasNoSignal) {
       [] {
         (void)signal(made([](double) { return 1.0; }, {3e-6, 2e-6}));
       },
-      {"'made'", "2e-06 s comes after", "3e-06 s"});
+      {"'made'", "2e-06 s follows", "3e-06 s"});
   expect_invalid([] { (void)signal(made([](double) { return 1.0; }, {-1e-6})); }, {"'made'", "-1e-06 s"});
   const double nan = std::numeric_limits<double>::quiet_NaN();
   expect_invalid([=] { (void)signal(made([=](double t) { return t > 1e-6 ? nan : 1.0; }, {2e-6})); },

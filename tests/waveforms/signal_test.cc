@@ -181,7 +181,7 @@ TEST(Signal, AnglesWithoutADigitLeftStillReturn) {
 }
 
 TEST(Signal, RefusesBadPieces) {
-  expect_invalid([] { of({}); }, {"no pieces"});
+  expect_invalid([] { of({}); }, {"at least one piece"});
   expect_invalid([] { of({{.begin = 1e-3}}); }, {"begins at 0.001 s", "must begin at 0"});
   expect_invalid([] { of({{}, {.begin = 2}, {.begin = 2}}); }, {"piece 3", "2 s", "after"});
   expect_invalid([] { of({{.value = kNaN}}); }, {"value of piece 1", "nan", "finite"});
@@ -194,7 +194,7 @@ TEST(Signal, RefusesBadPieces) {
 }
 
 TEST(Signal, RefusesBadPoints) {
-  expect_invalid([] { Signal::piecewise_linear({}); }, {"no points"});
+  expect_invalid([] { Signal::piecewise_linear({}); }, {"at least one point"});
   expect_invalid([] { Signal::piecewise_linear({{1, 2}}); }, {"begins at 1 s"});
   expect_invalid([] { Signal::piecewise_linear({{0, 0}, {2, 1}, {1, 2}}); }, {"point 3", "1 s", "2 s"});
   expect_invalid([] { Signal::piecewise_linear({{0, 0}, {kNaN, 1}, {1, 2}}); }, {"point 2", "nan"});
