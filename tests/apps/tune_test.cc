@@ -476,8 +476,7 @@ TEST_F(TuneVerb, NamesTheOptionThatItCannotTake) {
       {{"--device", "x", "--constrain", "initial_contact_time < 33"}, "--constrain: "},
       {{"--device", "x", "--constrain", "impact_velocity < 1 mm/s"}, "a condition must limit initial_contact_time from above"},
       {{"--device", "x", "--trigger-delay", "1 V"}, "--trigger-delay 1 V: must be a time [s]"},
-      {{"--device", "x", "--format", "csv"},
-       "--format, --sample-rate, --bits and --amplifier require --by-hand"},
+      {{"--device", "x", "--format", "csv"}, "--format, --sample-rate, --bits and --amplifier require --by-hand"},
       {{"--by-hand", "--amplifier", "0"}, "--amplifier"},
       {{"--device", "x", "--actuator", "hand"}, "--actuator hand: must be electrostatic"},
       {{"--device", "x", "--resume"}, "closings.jsonl: the file does not exist"}};
