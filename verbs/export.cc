@@ -38,7 +38,7 @@ void options(Archive& a, ExportVerb& r) {
   a.as({.is_positional = true})
       .text("format", r.format, "NAME",
             "csv (default), spice-pwl, codes, keysight-arb, siglent-csv, tektronix-csv, rigol-csv, digilent-csv, spice-model, "
-            "spice-bench or verilog-a. codes are the samples as integers from 0 to 2^bits - 1. "
+            "spice-bench or verilog-a; codes are the samples as integers from 0 to 2^bits - 1. "
             "With a file for a generator, the closing under its samples is simulated and reported. "
             "spice-model and verilog-a are the switch as a circuit element; "
             "spice-bench is a run of ngspice with the switch and its drives");
@@ -58,8 +58,8 @@ void options(Archive& a, ExportVerb& r) {
   a.text("drive", r.sampling.drive, "DRIVE", "export this drive only");
   a.as({.type = "Literal[\"told\", \"output\"]"})
       .text("signal", r.signal, "NAME",
-            "told (default): the commanded voltage, as samples if the source takes samples; "
-            "or output: the voltage that the source applies");
+            "signal to export: told (default) or output; told is the commanded voltage, as samples if the source takes samples, "
+            "and output is the voltage that the source applies");
   a.as({.type = "Mapping[str, float | str] | None", .value = "None", .told = "_pairs({}, \"=\")"})
       .text("measured", r.measured, "WHAT",
             "scale the waveform for one device by its measurements, "

@@ -71,8 +71,8 @@ void options(Archive& a, OptimizeVerb& r) {
   const auto by_default = [](std::string names) { return names.insert(names.find(','), " (default)"); };
   a.text("target", r.target, "NAME",
          by_default(listed(targets)) +
-             ", or a weighted sum such as \"0.7 bounce + 0.3 energy\". "
-             "The goal of each target includes that no rebound is significant");
+             ", or a weighted sum such as \"0.7 bounce + 0.3 energy\"; "
+             "the goal of each target includes that no rebound is significant");
   a.object("objective", "Callable[[dict[str, Any], dict[str, float]], Any] | None", "None",
            "(closing, step) -> F, used instead of a target: both arguments are dicts of figures [SI], "
            "of the candidate and of the plain step. F >= 0, about 1 for the step, is minimised. "
@@ -88,7 +88,7 @@ void options(Archive& a, OptimizeVerb& r) {
   a.text(
       "waveform", r.waveform, "NAME",
       "waveform family to search: " + listed_searched_families() +
-          ". N is the number of levels, knots, pulses or sines, such as knots:8. "
+          "; N is the number of levels, knots, pulses or sines, such as knots:8. "
           "Each drive may have its own family: main=step,pzt=pulse. "
           "Families joined by + are searched in turn: each search starts from the results of the earlier ones, "
           "and the best waveform is refined. Defaults: " +

@@ -49,7 +49,7 @@ int new_verb(const std::string& name) {
 
 void add_new(Verb& verb) {
   const auto kind = std::make_shared<std::string>(kinds.front().name);
-  verb.positional("KIND", *kind, names_of_kinds() + " (default: the first)", false);
+  verb.positional("KIND", *kind, names_of_kinds() + "; default: the first", false);
   verb.footer("Example:\n  softland new cantilever > my-switch.toml");
   verb.runs([kind](const Common&) { return new_verb(*kind); });
 }
