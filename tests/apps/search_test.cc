@@ -684,7 +684,7 @@ TEST_P(DefaultSearch, ReachesItsBar_slow) {
   const Workplace here;
   const Outcome o = here.run({"optimize", fmt::format("{}/scenes/{}.toml", SOFTLAND_SOURCE_DIR, bar.scene), "--actuator",
                               bar.actuator, "--quiet", "--out", "out"});
-  ASSERT_EQ(o.code, 0) << o.err;
+  ASSERT_EQ(o.status, 0) << o.err;
   const json rows = result(here, "out")["devices"]["rows"];
   const auto row = [&](const char* name) {
     return *std::ranges::find_if(rows, [&](const json& one) { return one["name"] == name; });
