@@ -1,5 +1,6 @@
 // Verb `fit`: fits a scene to measurements.
 #include "studies/inverse/fit.h"
+#include "studies/inverse/fitted_scene.h"
 
 #include <fmt/format.h>
 

@@ -10,6 +10,7 @@
 
 #include "base/decompositions.h"
 #include "base/random.h"
+#include "studies/inverse/least_squares.h"
 
 namespace softland {
 namespace {
@@ -58,8 +59,8 @@ double Likelihood::touch_residual(const ImaginedClosing& closing, const ContactR
 
 double Likelihood::of_record(const ImaginedClosing& closing, const ContactRecord& record) const {
   constexpr double linear_from = 6;
-  const double r = std::abs(touch_residual(closing, record));
-  double sum = r < linear_from ? -r * r / 2 : linear_from * (linear_from / 2 - r);
+  const double r = touch_residual(closing, record);
+  double sum = -loss_value(Loss::huber, r, linear_from) / 2;
   if (!closing.is_seen_to_close() || !first_touch(record)) return sum;
   const auto imagined = closing.seen();
   const double unseen = scene_.options().laboratory.unseen;
@@ -108,7 +109,7 @@ double Likelihood::of(std::span<const ImaginedClosing> closings) const {
 }
 
 Belief Belief::prior(Eigen::Index size, Draws& draws) {
-  Belief belief{.mean = VectorXd::Zero(size), .mode = VectorXd::Zero(size), .covariance = MatrixXd::Identity(size, size)};
+  Belief belief{.moments = NormalBelief::standard(size), .mode = VectorXd::Zero(size)};
   for (std::size_t k = 0; k < sampled_devices; ++k) belief.points.push_back(draws.normals(size));
   belief.weights.assign(sampled_devices, 1.0 / static_cast<double>(sampled_devices));
   belief.effective_devices = static_cast<double>(sampled_devices);
@@ -131,6 +132,12 @@ std::vector<VectorXd> Belief::resampled(std::size_t count, Draws& draws) const {
 }
 
 namespace {
+
+// Residuals of touch times, and their derivatives by z.
+struct LinearTouches {
+  VectorXd residuals;
+  MatrixXd slopes;
+};
 
 class Learner {
  public:
@@ -181,6 +188,7 @@ class Learner {
 
   void find_mode(const Belief& last);
   void climb_from(const std::vector<VectorXd>& starts, std::size_t most, double enough);
+  [[nodiscard]] LinearTouches linear_touches(const VectorXd& z) const;
   [[nodiscard]] std::pair<VectorXd, MatrixXd> fitted(VectorXd z) const;
   [[nodiscard]] std::vector<double> misfits(std::span<const VectorXd> points) const;
   // Residual of a fixed ratio of the gaps: a thousandth of the ratio's standard deviation gives a residual of 1.
@@ -206,39 +214,46 @@ class Learner {
   double best_ = -std::numeric_limits<double>::infinity();
 };
 
-// Minimises the sum of squared residuals of the touch times and of z by Levenberg and Marquardt's method. Residuals beyond 4
-// are compressed. Returns the minimum and the curvature there.
-std::pair<VectorXd, MatrixXd> Learner::fitted(VectorXd z) const {
-  constexpr double apart = 0.01, steepest = 3000, longest = 1.5, enough = 0.02, hopeless = 1e4;
-  constexpr int most_rounds = 14;
+// Returns the residuals at z, those beyond 4 compressed, and their slopes by differences. All devices close together.
+LinearTouches Learner::linear_touches(const VectorXd& z) const {
+  constexpr double apart = 0.01, steepest = 3000;
   const auto touches = static_cast<Eigen::Index>(shots_.size()), m = touches + (pins_ratio_ ? 1 : 0), n = scene_.size();
   const auto compressed = [](double r) {
     constexpr double from = 4;
     return std::abs(r) < from ? r : std::copysign(from * (1 + std::log1p(std::abs(r) / from - 1)), r);
   };
-  VectorXd best = z, residuals(m);
-  MatrixXd slopes(m, n), curvature = MatrixXd::Identity(n, n);
+  std::vector<VectorXd> points{z};
+  for (Eigen::Index k = 0; k < n; ++k) points.push_back(z + apart * VectorXd::Unit(n, k));
+  const std::vector<ImaginedClosing> closings = close(points);
+  MatrixXd residuals(m, n + 1);  // a column for each point
+  for (Eigen::Index k = 0; k <= n; ++k) {
+    for (Eigen::Index i = 0; i < touches; ++i)
+      residuals(i, k) = compressed(likelihood_.touch_residual(closings[static_cast<std::size_t>(k * touches + i)],
+                                                              shots_[static_cast<std::size_t>(i)].record));
+    if (pins_ratio_) residuals(touches, k) = ratio_residual(points[static_cast<std::size_t>(k)]);
+  }
+  const VectorXd own = residuals.col(0);
+  const MatrixXd slopes = (residuals.rightCols(n).colwise() - own) / apart;
+  return {.residuals = own, .slopes = slopes.cwiseMax(-steepest).cwiseMin(steepest)};
+}
+
+// Minimises the squares of the residuals of touch times and of z by Levenberg and Marquardt. Returns the minimum, and the
+// curvature there: the inverse covariance of a normal distribution.
+std::pair<VectorXd, MatrixXd> Learner::fitted(VectorXd z) const {
+  constexpr double longest = 1.5, enough = 0.02, hopeless = 1e4;
+  constexpr int most_rounds = 14;
+  const Eigen::Index n = scene_.size();
+  VectorXd best = z;
+  LinearTouches at_best{.residuals = {}, .slopes = MatrixXd::Zero(0, n)};
+  MatrixXd curvature = MatrixXd::Identity(n, n);
   double least = std::numeric_limits<double>::infinity(), damping = 1e-2;
   for (int round = 0; round < most_rounds && damping < hopeless; ++round) {
-    std::vector<VectorXd> points{z};
-    for (Eigen::Index k = 0; k < n; ++k) points.push_back(z + apart * VectorXd::Unit(n, k));
-    const std::vector<ImaginedClosing> closings = close(points);
-    const auto residual = [&](Eigen::Index point, Eigen::Index i) {
-      if (i == touches) return ratio_residual(points[static_cast<std::size_t>(point)]);
-      return compressed(likelihood_.touch_residual(closings[static_cast<std::size_t>(point * touches + i)],
-                                                   shots_[static_cast<std::size_t>(i)].record));
-    };
-    VectorXd own(m);
-    for (Eigen::Index i = 0; i < m; ++i) own[i] = residual(0, i);
-    const double sum = z.squaredNorm() + own.squaredNorm(), gain = least - sum;
+    LinearTouches own = linear_touches(z);
+    const double sum = z.squaredNorm() + own.residuals.squaredNorm(), gain = least - sum;
     const bool helps = gain > 1e-9;
     if (helps) {
-      least = sum, best = z, residuals = own;
-      for (Eigen::Index i = 0; i < m; ++i) {
-        for (Eigen::Index k = 0; k < n; ++k)
-          slopes(i, k) = std::clamp((residual(k + 1, i) - own[i]) / apart, -steepest, steepest);
-      }
-      curvature = slopes.transpose() * slopes + MatrixXd::Identity(n, n);
+      least = sum, best = z, at_best = std::move(own);
+      curvature = at_best.slopes.transpose() * at_best.slopes + MatrixXd::Identity(n, n);
       damping = std::max(1e-6, damping / 5);
     } else {
       damping = std::max(8 * damping, 1e-4);
@@ -246,7 +261,7 @@ std::pair<VectorXd, MatrixXd> Learner::fitted(VectorXd z) const {
     if (helps && gain < enough && round > 1) break;
     MatrixXd damped = curvature;
     damped.diagonal() *= 1 + damping;
-    VectorXd step = -solve_semidefinite(damped, slopes.transpose() * residuals + best);
+    VectorXd step = -solve_semidefinite(damped, at_best.slopes.transpose() * at_best.residuals + best);
     if (step.norm() > longest) step *= longest / step.norm();
     z = best + step;
   }
@@ -275,7 +290,7 @@ void Learner::find_mode(const Belief& last) {
   const auto shots = static_cast<double>(shots_.size());
   std::vector<VectorXd> starts = last.resampled(of_last, draws_);
   starts.push_back(last.mode);
-  starts.push_back(last.mean);
+  starts.push_back(last.moments.mean);
   std::ranges::move(fresh(of_prior, 1.2), std::back_inserter(starts));
   climb_from(starts, 3, -6 - 2 * shots);
   if (best_ < -12 - 4 * shots) climb_from(fresh(many, 1.6), 6, -12 - 4 * shots);
@@ -335,41 +350,28 @@ Belief Learner::sampled() {
   constexpr int most_rounds = 4;
   constexpr double least_share = 0.2, cooler = 0.7, coldest = 1e-3;
   const Eigen::Index n = scene_.size();
-  Belief belief{.mean = mode_, .mode = mode_, .log_posterior = best_};
-  belief.covariance = MatrixXd(n, n);
-  for (Eigen::Index k = 0; k < n; ++k) belief.covariance.col(k) = solve_semidefinite(curvature_, VectorXd::Unit(n, k));
+  Belief belief{.moments = {.mean = mode_, .covariance = MatrixXd(n, n)}, .mode = mode_, .log_posterior = best_};
+  NormalBelief& moments = belief.moments;
+  for (Eigen::Index k = 0; k < n; ++k) moments.covariance.col(k) = solve_semidefinite(curvature_, VectorXd::Unit(n, k));
   for (int round = 0; round < most_rounds; ++round) {
     const double wider = round == 0 ? 1.5 : 1.2;
-    const MatrixXd factor = cholesky_factor(wider * belief.covariance + 1e-8 * MatrixXd::Identity(n, n));
+    const MatrixXd factor = cholesky_factor(wider * moments.covariance + 1e-8 * MatrixXd::Identity(n, n));
     belief.points.clear();
     std::vector<double> drawn;
     for (std::size_t k = 0; k < sampled_devices; ++k) {
       const VectorXd e = round == 0 && k == 0 ? VectorXd::Zero(n) : draws_.normals(n);
-      belief.points.push_back(belief.mean + factor * e);
+      belief.points.push_back(moments.mean + factor * e);
       drawn.push_back(-e.squaredNorm() / 2);
     }
     std::vector<double> ratios = log_posteriors(belief.points);
     for (std::size_t k = 0; k < ratios.size(); ++k) ratios[k] -= drawn[k];
-    const double largest = *std::ranges::max_element(ratios);
-    const auto weigh = [&](double power) {
-      double sum = 0, squares = 0;
-      belief.weights.clear();
-      for (const double ratio : ratios) {
-        belief.weights.push_back(std::exp(power * (ratio - largest)));
-        sum += belief.weights.back(), squares += belief.weights.back() * belief.weights.back();
-      }
-      for (double& weight : belief.weights) weight /= sum;
-      return sum * sum / squares;
-    };
-    double effective = belief.effective_devices = weigh(1), power = 1;
-    while (effective < least_share * static_cast<double>(sampled_devices) && power > coldest) effective = weigh(power *= cooler);
-    belief.mean.setZero();
-    for (std::size_t k = 0; k < sampled_devices; ++k) belief.mean += belief.weights[k] * belief.points[k];
-    belief.covariance.setZero();
-    for (std::size_t k = 0; k < sampled_devices; ++k) {
-      const VectorXd off = belief.points[k] - belief.mean;
-      belief.covariance += belief.weights[k] * off * off.transpose();
-    }
+    Weights weights = weights_of(ratios);
+    belief.effective_devices = weights.effective;
+    double power = 1;
+    while (weights.effective < least_share * static_cast<double>(sampled_devices) && power > coldest)
+      weights = weights_of(ratios, power *= cooler);
+    belief.weights = std::move(weights.values);
+    moments = moments_of(belief.weights, belief.points);
     if (power == 1) break;
   }
   return belief;

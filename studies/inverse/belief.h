@@ -1,5 +1,5 @@
-// The belief about a device from the records of its closings: devices with weights, in the standard normal coordinates z of
-// TunedScene.
+// The belief about a device from its records: devices with weights, in the standard normal coordinates z of TunedScene. It is
+// the posterior of studies/inverse/posterior.h with these terms:
 //
 //   -ln p(z | records) = |z|^2 / 2 + sum over records L(record, closing of the device z under the same shot) + const
 //
@@ -21,6 +21,7 @@
 #include <span>
 #include <vector>
 
+#include "studies/inverse/posterior.h"
 #include "studies/inverse/tuned_scene.h"
 
 namespace softland {
@@ -31,8 +32,7 @@ struct LearnedShot {
   ContactRecord record;
 };
 
-/// A sequence of random numbers, standard normal or uniform in (0, 1). Each number is a function of the seed and of its
-/// position.
+/// A sequence of random numbers, standard normal or uniform in (0, 1). Each is a function of the seed and of its position.
 class Draws {
  public:
   Draws(std::uint64_t seed, std::uint64_t first) : seed_(seed), next_(first) {}
@@ -65,13 +65,12 @@ class Likelihood {
 };
 
 struct Belief {
-  std::vector<Eigen::VectorXd> points;  ///< coordinates z of the devices
-  std::vector<double> weights;          ///< weights of the devices, with a sum of 1
-  Eigen::VectorXd mean, mode;           ///< mean and mode of z
-  Eigen::MatrixXd covariance;           ///< covariance of z over the weighted devices
-  double effective_devices =
-      0;  ///< effective number of devices: 1 over the sum of the squared weights, before the weights are tempered
-  double log_posterior = 0;  ///< log of the posterior density at the mode, without its constant
+  std::vector<Eigen::VectorXd> points;  ///< z of the devices
+  std::vector<double> weights;          ///< their sum is 1
+  NormalBelief moments;                 ///< mean and covariance of z
+  Eigen::VectorXd mode;                 ///< mode of z
+  double effective_devices = 0;         ///< 1 / (sum of the squared weights), by the weights of the likelihood itself
+  double log_posterior = 0;             ///< log posterior of the mode, without its constant
 
   /// Returns the prior: samples of the standard normal distribution.
   [[nodiscard]] static Belief prior(Eigen::Index size, Draws& draws);

@@ -61,20 +61,19 @@ std::vector<WeakDirection> weak_directions(const MatrixXd& data) {
 
 Estimate estimate(const MatrixXd& data, const MatrixXd& prior) {
   Estimate found{.data = data, .covariance = inverse(data + prior), .correlation = {}, .weak = {}};
-  const VectorXd deviations = found.covariance.diagonal().cwiseSqrt();
-  found.correlation = deviations.cwiseInverse().asDiagonal() * found.covariance * deviations.cwiseInverse().asDiagonal();
+  found.correlation = correlation_of(found.covariance);
   found.weak = weak_directions(data);
   return found;
 }
 
-Population population_of(const std::vector<KnownDevice>& devices, Population now) {
+NormalBelief population_of(const std::vector<KnownDevice>& devices, NormalBelief now) {
   constexpr int most_rounds = 2000;
   constexpr double enough = 1e-6, least = 1e-8;
   const Index n = now.mean.size();
   const auto count = static_cast<double>(devices.size());
   for (int round = 0; round < most_rounds; ++round) {
     const MatrixXd before = inverse(now.covariance);
-    Population next{.mean = VectorXd::Zero(n), .covariance = MatrixXd::Zero(n, n)};
+    NormalBelief next{.mean = VectorXd::Zero(n), .covariance = MatrixXd::Zero(n, n)};
     std::vector<VectorXd> means;
     for (const KnownDevice& device : devices) {
       const MatrixXd covariance = inverse(device.data + before);

@@ -12,6 +12,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "studies/inverse/posterior.h"
+
 namespace softland {
 
 struct WeakDirection {
@@ -37,18 +39,13 @@ struct Estimate {
 [[nodiscard]] std::vector<WeakDirection> weak_directions(const Eigen::MatrixXd& data);
 [[nodiscard]] Estimate estimate(const Eigen::MatrixXd& data, const Eigen::MatrixXd& prior);
 
-/// A population of devices. The data of device k have the information H_k about its z_k near the estimate m_k. Mean and
-/// covariance of the population are those of largest likelihood, by expectation and maximisation (Dempster, Laird and Rubin
-/// 1977; Laird and Ware 1982).
-struct Population {
-  Eigen::VectorXd mean;
-  Eigen::MatrixXd covariance;
-};
+/// A device of a population, known by data of information H_k about its z.
 struct KnownDevice {
   Eigen::MatrixXd data;    ///< H_k
   Eigen::VectorXd target;  ///< H_k m_k, where m_k is the estimate from the data alone
 };
-/// Iterates from the mean and covariance of `begin`; needs at least two devices.
-[[nodiscard]] Population population_of(const std::vector<KnownDevice>& devices, Population begin);
+/// Returns mean and covariance of z over a population with the largest likelihood, by expectation and maximisation (Dempster,
+/// Laird and Rubin 1977; Laird and Ware 1982). The iteration begins at `begin` and needs at least two devices.
+[[nodiscard]] NormalBelief population_of(const std::vector<KnownDevice>& devices, NormalBelief begin);
 
 }  // namespace softland

@@ -19,7 +19,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "base/watch.h"
@@ -117,17 +116,8 @@ struct Fit {
   [[nodiscard]] std::vector<FittedKey> keys(const std::string& device) const;
 };
 
-/// Sets the [spread] of the scene to normal distributions with the deviations and correlations of the fitted population, about
-/// the scene's values.
-void set_spread(SceneFile& file, const Fit& fit);
-
-/// Returns the text of a scene with the results for this device; `path` is the file of the text. For several devices it has the
-/// mean of their population and its spread. Comments, sources and units are kept. Throws InvalidInput for a text that is not a
-/// scene.
-[[nodiscard]] std::string fitted_text(const Fit& fit, std::string_view text, const std::string& path, const std::string& device);
-
-/// Fits the scene. Throws InvalidInput for unknowns that no device can have, for measurements that are impossible on the scene,
-/// and for a scene or a device of the bench file that cannot be read. Throws Interrupted if `watch` asks to stop.
+/// Throws InvalidInput for unknowns that no device can have, for measurements that the scene cannot have, and if the scene
+/// itself or a device of the bench file does not allow any of it. Throws Interrupted.
 [[nodiscard]] Fit fit(const SceneFile& file, const Bench& bench, const FitOptions& options, const Watch& watch = {});
 
 }  // namespace softland

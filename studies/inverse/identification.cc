@@ -154,7 +154,7 @@ Eigen::MatrixXd regressors(const std::vector<MeasurableFigure>& figures, const s
   for (std::size_t i = 0; i < used.size(); ++i) {
     const MeasurableFigure& f = figures[used[i]];
     for (Eigen::Index k = 0; k < devices; ++k) {
-      constexpr std::uint64_t room = 64;  // numbers reserved for the figures of a device
+      constexpr std::uint64_t room = 64;  // random numbers reserved for the figures of a device
       const double error = f.error * random_normal(seed, Stream::measurement, static_cast<std::uint64_t>(k) * room + used[i]);
       x(k, static_cast<Eigen::Index>(i) + 1) = std::log(f.values[static_cast<std::size_t>(k)] / f.nominal * (1 + error));
     }
@@ -162,7 +162,7 @@ Eigen::MatrixXd regressors(const std::vector<MeasurableFigure>& figures, const s
   return x;
 }
 
-// Predicts the factors of every device by a fit to the half that it is not in.
+// Predicts the factors of every device. The fit is to the half of the devices that it does not belong to.
 std::vector<DeviceUnits> told_factors(const Eigen::MatrixXd& x, const std::vector<DeviceUnits>& best,
                                       std::span<const Factor> factors) {
   const Eigen::Index devices = x.rows(), middle = devices / 2, count = static_cast<Eigen::Index>(factors.size());
@@ -224,7 +224,7 @@ Told fitted(const IdentificationStudy& study, std::uint64_t seed, std::string na
   return told;
 }
 
-// Returns the bounds of the predictions from below and above, and the units that recipes are given in.
+// Returns what the predictions are compared with: no factors, the best ones, those by all figures, and the device's own units.
 std::vector<Told> told_for_reference(const IdentificationStudy& study, std::uint64_t seed) {
   std::vector<Told> all;
   const auto given = [&](std::string name, std::vector<DeviceUnits> units) {

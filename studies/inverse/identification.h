@@ -5,16 +5,16 @@
 //                  under V(t) = s_V V_0(t / s_t), the recipe V_0 being the scene's own drive; searched by Nelder and Mead's
 //                  simplex from the device's own units (its Vdp, its period). If the recipe drives a piezo, its voltages have
 //                  a factor s_p of their own, from the device's own unit of it: what a volt deflects over the contact gap.
-//   told factors   ln s = a + sum_i b_i ln x_i, least squares over one half of the devices, used on the
-//                  other half, and vice versa
+//   predicted      ln s = a + sum_i b_i ln x_i, the figures of the device being x_i. Least squares over one half of the devices
+//   factors        give a and b_i for the other half, and vice versa.
 //
 // The score is flat if a device already lands softly, and the best factors would be arbitrary there. The squares choose the
 // smallest change of the waveform that lands it, and are too small to spoil a landing. All factors are fitted by the same
 // figures, so that the fit does not depend on the weight of either error. The fit is judged by closings alone: figures are
 // ranked by the 95th percentile of the scores of all devices, each with factors fitted to the other half.
 //
-// Closing times are those under steps to multiples of the nominal device's Vdp, the same volts for all devices. Figures are
-// measured with errors of their own, in fitting and in use.
+// Closing times are those under steps to multiples of the nominal device's Vdp, the same volts for all devices. Each measured
+// figure has its error, both in the fit and in the prediction.
 #pragma once
 
 #include <cstddef>

@@ -63,12 +63,12 @@ double loss_weight(Loss loss, double residual) {
   return 1;
 }
 
-double loss_value(Loss loss, double residual) {
+double loss_value(Loss loss, double residual, double scale) {
   switch (loss) {
     case Loss::huber:
-      return std::abs(residual) <= loss_scale ? square(residual) : loss_scale * (2 * std::abs(residual) - loss_scale);
+      return std::abs(residual) <= scale ? square(residual) : scale * (2 * std::abs(residual) - scale);
     case Loss::cauchy:
-      return square(loss_scale) * std::log1p(square(residual / loss_scale));
+      return square(scale) * std::log1p(square(residual / scale));
     case Loss::none:
       break;
   }

@@ -32,8 +32,8 @@ static_assert(is_complete<losses>());
 inline constexpr double loss_scale = 3;
 /// Returns rho'(r^2): the weight of the residual in the information.
 [[nodiscard]] double loss_weight(Loss loss, double residual);
-/// Returns rho(r^2).
-[[nodiscard]] double loss_value(Loss loss, double residual);
+/// rho(r^2), which deviates from squares from a residual of `scale` on.
+[[nodiscard]] double loss_value(Loss loss, double residual, double scale = loss_scale);
 
 struct LeastSquares {
   std::size_t unknowns = 0, residuals = 0;

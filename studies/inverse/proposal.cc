@@ -291,10 +291,11 @@ std::vector<Recipe> searched_recipes(const TunedScene& scene, const Shapes& shap
     for (Eigen::VectorXd& point : points) point += centre;
     const Outlook outlook(scene, points, draws, watch);
     const TunedScene::Units units = scene.units(centre);
-    const Shapes limited =
-        shapes.within(std::min(scene.safe_level(centre, narrow * narrow * Eigen::MatrixXd::Identity(scene.size(), scene.size())),
-                               headroom * units.volts * shapes.highest_level()),
-                      units.volts);
+    const Shapes limited = shapes.within(
+        std::min(scene.safe_level(
+                     {.mean = centre, .covariance = narrow * narrow * Eigen::MatrixXd::Identity(scene.size(), scene.size())}),
+                 headroom * units.volts * shapes.highest_level()),
+        units.volts);
     std::vector<Proposal> from;
     const auto add = [&](const std::vector<double>& x) {
       const std::vector<Waveform> waveforms = limited.waveforms(x);

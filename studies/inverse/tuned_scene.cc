@@ -265,8 +265,7 @@ void TunedScene::begin_with(const NormalBelief& prior) {
 }
 
 NormalBelief TunedScene::in_spread(const NormalBelief& belief) const {
-  if (!prior_) return belief;
-  return {.mean = spread_point(belief.mean), .covariance = prior_factor_ * belief.covariance * prior_factor_.transpose()};
+  return prior_ ? belief.mapped(prior_->mean, prior_factor_) : belief;
 }
 
 std::vector<double> TunedScene::values(const Eigen::VectorXd& point) const {
@@ -443,9 +442,9 @@ TunedScene::Units TunedScene::units(const Eigen::VectorXd& z) const {
   return {.volts = std::exp(volts_slope_.dot(own)), .time = std::exp(time_slope_.dot(own))};
 }
 
-double TunedScene::safe_level(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance) const {
+double TunedScene::safe_level(const NormalBelief& belief) const {
   constexpr double one_in_a_thousand = 3.0902;  // standard deviations
-  const NormalBelief own = in_spread({.mean = mean, .covariance = covariance});
+  const NormalBelief own = in_spread(belief);
   const double deviation = std::sqrt(std::max(0.0, pulled_through_slope_.dot(own.covariance * pulled_through_slope_)));
   return pulled_through_ * std::exp(pulled_through_slope_.dot(own.mean) - one_in_a_thousand * deviation);
 }

@@ -171,9 +171,9 @@ class TunedScene {
   [[nodiscard]] Units units(const Eigen::VectorXd& z) const;
   /// Returns the derivative of ln volts by the coordinates of the spread.
   [[nodiscard]] const Eigen::VectorXd& volts_slope() const { return volts_slope_; }
-  /// Returns the level of the closing electrode at which at most one in a thousand devices with this mean and covariance of z
-  /// collapses onto the electrode [V]; infinite if none collapses.
-  [[nodiscard]] double safe_level(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance) const;
+  /// The level of that electrode below which at most one in a thousand devices of this distribution of z collapses onto the
+  /// electrode [V]; infinite if none does.
+  [[nodiscard]] double safe_level(const NormalBelief& belief) const;
 
  private:
   [[nodiscard]] PreparedScene prepared(const SceneFile& given, const Watch& watch);

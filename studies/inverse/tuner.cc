@@ -41,30 +41,20 @@ constexpr double enough_devices = 8;                  // effective devices that 
 constexpr double certain = 3.5;                       // standard errors from which on the ratio of the gaps differs
 constexpr std::size_t first_ones = 4, last_ones = 8;  // numbers of records from which the belief is computed
 
-double weighted_mean(const std::vector<double>& weights, const std::vector<double>& values) {
-  double sum = 0;
-  for (std::size_t k = 0; k < values.size(); ++k) sum += weights[k] * values[k];
-  return sum;
-}
-
-double weighted_deviation(const std::vector<double>& weights, const std::vector<double>& values, double mean) {
-  double sum = 0;
-  for (std::size_t k = 0; k < values.size(); ++k) sum += weights[k] * (values[k] - mean) * (values[k] - mean);
-  return std::sqrt(sum);
-}
-
 std::optional<BelievedQuantity> believed_gap_ratio(const TunedScene& scene, const Belief& belief) {
-  std::vector<double> ratios;
+  std::vector<Eigen::VectorXd> ratios;
   for (const Eigen::VectorXd& z : belief.points) {
     const std::optional<double> ratio = scene.gap_ratio(scene.values(z));
     if (!ratio) return {};
-    ratios.push_back(*ratio);
+    ratios.push_back(Eigen::VectorXd::Constant(1, *ratio));
   }
-  BelievedQuantity one{
-      .name = scene.gap_ratio_name(), .unit = {}, .prior_mean = 1, .prior_deviation = TunedScene::gap_ratio_deviation};
-  one.mean = weighted_mean(belief.weights, ratios);
-  one.deviation = weighted_deviation(belief.weights, ratios, one.mean);
-  return one;
+  const NormalBelief of_ratio = moments_of(belief.weights, ratios);
+  return BelievedQuantity{.name = scene.gap_ratio_name(),
+                          .unit = {},
+                          .prior_mean = 1,
+                          .prior_deviation = TunedScene::gap_ratio_deviation,
+                          .mean = of_ratio.mean[0],
+                          .deviation = of_ratio.deviation(0)};
 }
 
 // Returns the position of the first random number of a closing.
@@ -133,7 +123,7 @@ struct Tuner::State {
     Draws draws(scene.options().seed, first_draw(0));
     now.belief = Belief::prior(scene.size(), draws);
     const Outlook outlook(scene, now.belief.resampled(proposal_devices, draws), draws, watch);
-    const TunedScene::Units units = scene.units(now.belief.mean);
+    const TunedScene::Units units = scene.units(now.belief.moments.mean);
     if (scene.prior()) now.hold = believed_hold(units);
     const Shapes limited = shapes_for(now);
     now.x = limited.in_units(recipes.front().x, {}, {});
@@ -152,7 +142,7 @@ struct Tuner::State {
     return all;
   }
   [[nodiscard]] Shapes shapes_for(const Learned& known) const {
-    return shapes.within(scene.safe_level(known.belief.mean, known.belief.covariance), known.hold);
+    return shapes.within(scene.safe_level(known.belief.moments), known.hold);
   }
   [[nodiscard]] TunerShot shot(int number, std::vector<Waveform> waveforms, const Outlook& outlook) const {
     TunerShot shot{.number = number, .waveforms = std::move(waveforms), .hold_time = scene.hold_time()};
@@ -263,7 +253,7 @@ void Tuner::State::propose_next(Learned& known, const Watch& watch) const {
         gap_ratio_misfit(scene, shots, known.belief, certain * certain, of_misfit, watch) < certain * certain)
       known.gap_ratio.reset();
   }
-  const TunedScene::Units units = scene.units(known.belief.mean);
+  const TunedScene::Units units = scene.units(known.belief.moments.mean);
   if (known.closings <= hold_is_fixed) known.hold = believed_hold(units);
   const Outlook outlook(scene, known.belief.resampled(proposal_devices, draws), draws, watch);
   const Shapes limited = shapes_for(known);
@@ -365,36 +355,34 @@ BeliefSummary Tuner::belief() const {
   const TunedScene& scene = state_->scene;
   const Belief& belief = state_->now.belief;
   const std::vector<SpreadVariable>& variables = scene.nominal().scene.spread.variables;
-  std::vector<std::vector<double>> columns(variables.size() + 1);
+  std::vector<Eigen::VectorXd> values;  // values of each device: the varied quantities, then the trigger delay
   for (const Eigen::VectorXd& z : belief.points) {
-    const std::vector<double> values = scene.values(z);
-    for (std::size_t i = 0; i < values.size(); ++i) columns[i].push_back(values[i]);
-    columns.back().push_back(scene.delay(z));
+    std::vector<double> own = scene.values(z);
+    own.push_back(scene.delay(z));
+    values.emplace_back(Eigen::Map<const Eigen::VectorXd>(own.data(), scene.size()));
   }
+  const NormalBelief of_values = moments_of(belief.weights, values);
   BeliefSummary summary{.quantities = {}, .effective_devices = belief.effective_devices, .correlated = {}};
-  for (std::size_t i = 0; i < columns.size(); ++i) {
+  for (std::size_t i = 0; i <= variables.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
     const bool is_delay = i == variables.size();
     BelievedQuantity one{.name = is_delay ? trigger_delay_name : variables[i].name,
                          .unit = is_delay ? "s" : (variables[i].is_factor ? std::string() : variables[i].keys.front().unit),
                          .prior_mean = is_delay ? 0 : variables[i].distribution.mean(),
-                         .prior_deviation = is_delay ? scene.delay_deviation() : variables[i].distribution.standard_deviation()};
-    one.mean = weighted_mean(belief.weights, columns[i]);
-    one.deviation = weighted_deviation(belief.weights, columns[i], one.mean);
-    summary.quantities.push_back(one);
+                         .prior_deviation = is_delay ? scene.delay_deviation() : variables[i].distribution.standard_deviation(),
+                         .mean = of_values.mean[k],
+                         .deviation = of_values.deviation(k)};
+    summary.quantities.push_back(std::move(one));
   }
   summary.touch_misfit = state_->now.misfit;
   summary.gap_ratio = believed_gap_ratio(scene, belief);
-  const NormalBelief standard{.mean = Eigen::VectorXd::Zero(scene.size()),
-                              .covariance = Eigen::MatrixXd::Identity(scene.size(), scene.size())};
-  summary.coordinates = {.prior = scene.in_spread(standard),
-                         .posterior = scene.in_spread({.mean = belief.mean, .covariance = belief.covariance})};
+  summary.coordinates = {.prior = scene.in_spread(NormalBelief::standard(scene.size())),
+                         .posterior = scene.in_spread(belief.moments)};
   constexpr double alike = 0.9;
-  for (std::size_t i = 0; i < columns.size() && state_->now.closings > 0; ++i) {
+  for (std::size_t i = 0; i < summary.quantities.size() && state_->now.closings > 0; ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       const BelievedQuantity &a = summary.quantities[j], &b = summary.quantities[i];
-      double covariance = 0;
-      for (std::size_t k = 0; k < belief.weights.size(); ++k)
-        covariance += belief.weights[k] * (columns[j][k] - a.mean) * (columns[i][k] - b.mean);
+      const double covariance = of_values.covariance(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(i));
       const double correlation = covariance / (a.deviation * b.deviation);
       if (!(std::abs(correlation) > alike)) continue;
       summary.correlated.push_back(

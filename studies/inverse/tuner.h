@@ -1,13 +1,14 @@
 // Tunes a waveform on one device, closing after closing, from the state of its contact alone. Every closing is open loop.
 //
-// The knowledge about the device is a belief: weighted devices of the scene's spread (or of the assumed one,
-// config/assumed_spread.h). They also vary in gain of the sources, viscosity of the film, stiffness of the contact, ratio of
-// contact to electrode gap, and delay of their records, as far as the scene has these. Two steps follow every closing:
+// The belief about the device is a set of weighted devices of the scene's spread (or the assumed one,
+// config/assumed_spread.h). They also differ in gain of the sources, viscosity of the film, stiffness of the contact, and the
+// ratio of contact to electrode gap, if a scene has such a thing. The time by which their records begin late differs, too. Two
+// steps follow every closing.
 //
-//   1. The belief is computed anew from all records: by Levenberg and Marquardt's method on the touch times from many starts,
-//      then by rounds of weighted samples with the likelihood of the whole record (belief.h).
+//   1. The posterior of all records is computed anew: Levenberg-Marquardt on the touch times from many starts, then rounds of
+//      weighted samples with the likelihood of the whole record (belief.h).
 //   2. The waveform with the least expected cost over the belief is searched (proposal.h). From the second closing on its hold
-//      level scales with the device's own unit of voltage.
+//      level is in the device's own unit of volts.
 //
 // The cost of a closing is
 //

@@ -1,6 +1,5 @@
 #include "studies/inverse/wafer.h"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -31,9 +30,7 @@ LinearMeasurement told_by(const TunedBelief& tuned) {
   // Largest variance of a measured direction, over that of the prior: a belief from samples scatters around 1.
   constexpr double is_told = 0.5;
   const Index n = tuned.prior.mean.size();
-  const MatrixXd factor = cholesky_factor(tuned.prior.covariance), identity = MatrixXd::Identity(n, n);
-  MatrixXd inverse(n, n);
-  for (Index k = 0; k < n; ++k) inverse.col(k) = solve_linear(factor, identity.col(k));
+  const MatrixXd inverse = whitening_of(tuned.prior.covariance);
   const VectorXd mean = inverse * (tuned.posterior.mean - tuned.prior.mean);
   const SymmetricEigen eigen = symmetric_eigen(inverse * tuned.posterior.covariance * inverse.transpose());
   std::vector<Index> told;
@@ -89,18 +86,9 @@ WaferBelief believed_of_wafer(std::span<const TunedBelief> tuned, Index size) {
     nexts.push_back({.mean = rho * whitened.transpose() * residual,
                      .covariance = MatrixXd::Identity(size, size) - rho * rho * whitened.transpose() * whitened});
   }
-  const double largest = *std::ranges::max_element(logarithms);
-  double sum = 0;
-  WaferBelief wafer{.next = {.mean = VectorXd::Zero(size), .covariance = MatrixXd::Zero(size, size)}};
-  for (std::size_t s = 0; s < nexts.size(); ++s) sum += logarithms[s] = std::exp(logarithms[s] - largest);
-  for (std::size_t s = 0; s < nexts.size(); ++s) {
-    wafer.share += logarithms[s] / sum * shares[s];
-    wafer.next.mean += logarithms[s] / sum * nexts[s].mean;
-  }
-  for (std::size_t s = 0; s < nexts.size(); ++s) {
-    const VectorXd off = nexts[s].mean - wafer.next.mean;
-    wafer.next.covariance += logarithms[s] / sum * (nexts[s].covariance + off * off.transpose());
-  }
+  const std::vector<double> weights = weights_of(logarithms).values;
+  WaferBelief wafer{.next = moments_of(weights, nexts)};
+  for (std::size_t s = 0; s < nexts.size(); ++s) wafer.share += weights[s] * shares[s];
   return wafer;
 }
 

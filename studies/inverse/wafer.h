@@ -17,13 +17,9 @@
 #include <Eigen/Core>
 #include <span>
 
-namespace softland {
+#include "studies/inverse/posterior.h"
 
-/// A normal distribution of z.
-struct NormalBelief {
-  Eigen::VectorXd mean;
-  Eigen::MatrixXd covariance;
-};
+namespace softland {
 
 /// The belief about a device before its tuning, and the one after it.
 struct TunedBelief {

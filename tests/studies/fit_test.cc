@@ -12,6 +12,7 @@
 #include "model/pull_in.h"
 #include "scenes.h"
 #include "studies/inverse/estimate.h"
+#include "studies/inverse/fitted_scene.h"
 #include "studies/inverse/trace_windows.h"
 
 namespace softland::fit_test {
@@ -451,7 +452,7 @@ TEST(Estimate, OfAPopulationFindsItsMomentsFromExactDevices) {
     const Eigen::Matrix2d information = 1e4 * Eigen::Matrix2d::Identity();
     all.push_back({.data = information, .target = information * drawn.back()});
   }
-  const Population found = population_of(all, {.mean = Eigen::Vector2d::Zero(), .covariance = Eigen::Matrix2d::Identity()});
+  const NormalBelief found = population_of(all, {.mean = Eigen::Vector2d::Zero(), .covariance = Eigen::Matrix2d::Identity()});
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
   for (const Eigen::Vector2d& one : drawn) covariance += (one - sum / devices) * (one - sum / devices).transpose() / devices;
   constexpr double of_errors = 1e-3;  // error since each device is not known exactly

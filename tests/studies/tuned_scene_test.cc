@@ -153,8 +153,9 @@ TEST(TunedScenes, UnitsFollowThePullInVoltageAndThePeriod) {
 
 TEST(TunedScenes, AtASafeLevelNoneOfAThousandDevicesCollapses) {
   const TunedScene scene(gold({"structure.modes=2", "contact.effective_modulus=1 GPa"}), {.vectors = Vectors::none}, {});
-  const double safe = scene.safe_level(VectorXd::Zero(scene.size()), Eigen::MatrixXd::Identity(scene.size(), scene.size()));
-  const double known = scene.safe_level(VectorXd::Zero(scene.size()), Eigen::MatrixXd::Zero(scene.size(), scene.size()));
+  const double safe = scene.safe_level(NormalBelief::standard(scene.size()));
+  const double known =
+      scene.safe_level({.mean = VectorXd::Zero(scene.size()), .covariance = Eigen::MatrixXd::Zero(scene.size(), scene.size())});
   const double nominal = pull_through_voltage(scene.nominal().model, 0, std::vector{scene.nominal().signals()[0].hold_level()});
   ASSERT_TRUE(std::isfinite(nominal));
   constexpr double precision = 5e-3;  // the median of a lognormal modulus is below the scene's value

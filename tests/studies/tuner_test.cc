@@ -136,8 +136,7 @@ TEST(Tuners, AClosingNarrowsTheBelief_optimized) {
 TEST(Tuners, AtNoLevelMoreThanOneDeviceInAThousandCollapses_optimized) {
   const SceneFile file = gold({"structure.modes=2", "contact.effective_modulus=0.01 GPa", "driver.main.max_voltage=60 V"});
   const TunedScene scene(file, cheap(), {});
-  const double safe =
-      scene.safe_level(Eigen::VectorXd::Zero(scene.size()), Eigen::MatrixXd::Identity(scene.size(), scene.size()));
+  const double safe = scene.safe_level(NormalBelief::standard(scene.size()));
   ASSERT_LT(safe, scene.nominal().limits(0).max_voltage);
   const Tuner tuner(file, cheap());
   constexpr double rounding = 1e-12;

@@ -1,0 +1,21 @@
+// Measurements that a laboratory could make next, with their usual errors.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "studies/devices/instruments.h"
+
+namespace softland {
+
+struct PossibleMeasurement {
+  std::string name;  ///< "closing time at 22 V"
+  Instrument instrument;
+  double error = 0;           ///< standard deviation [SI unit], or
+  double relative_error = 0;  ///< standard deviation over the value
+};
+
+/// Returns the possible measurements on devices of this scene.
+[[nodiscard]] std::vector<PossibleMeasurement> possible_measurements(const PreparedScene& scene);
+
+}  // namespace softland
