@@ -85,11 +85,11 @@ int run(int count, char** arguments) {
     const SearchSpace paced = own.space.paced(pace * aim.free.until);
     print_row(fmt::format("{} closed form", pace), fresh, aim, own, paced.waveforms(paced.starts().front()), of_step, 0, 0);
     begin = processor_seconds();
-    std::atomic<long> closings = 0;
-    const auto found = search_at_pace(own, {.of_step = pace, .family = 0}, cost, aim,
-                                      {.closings = std::lround(length * race_closings), .seed = seed, .jobs = 2}, closings);
+    SearchBudget budget({});
+    const auto found = search_at_pace(own, {.of_step = pace, .family = 0}, cost, aim, budget,
+                                      {.closings = std::lround(length * race_closings), .seed = seed, .jobs = 2});
     if (!found) continue;
-    print_row(fmt::format("{} searched", pace), fresh, aim, own, found->waveforms, of_step, closings,
+    print_row(fmt::format("{} searched", pace), fresh, aim, own, found->waveforms, of_step, budget.taken(),
               processor_seconds() - begin);
     const std::vector<Variable> variables = paced.variables();
     fmt::print("|");

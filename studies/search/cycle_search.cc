@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -14,6 +13,7 @@
 #include "base/require.h"
 #include "studies/search/brake_pulses.h"
 #include "studies/search/optimize.h"
+#include "studies/search/search_budget.h"
 #include "studies/search/search_setting.h"
 #include "waveforms/export.h"
 
@@ -29,6 +29,7 @@ class PairSearch {
       : setting_(setting),
         options_(options),
         watch_(watch),
+        budget_({.stop = watch.stop}),
         coarse_(setting.given),
         pulses_(setting.given, options.actuator, hold_levels(setting.given.told(setting.given.waveforms())), "optimize"),
         closing_(setting.space.variables().size()),
@@ -42,10 +43,10 @@ class PairSearch {
   }
   [[nodiscard]] std::size_t closing_parameters() const { return closing_; }
   [[nodiscard]] const BrakePulses& pulses() const { return pulses_; }
-  [[nodiscard]] long evaluations() const { return evaluations_; }
+  [[nodiscard]] long evaluations() const { return budget_.taken(); }
 
-  /// The pair of a point, of which the parameters of the closing come first; without those of the opening the drives then go to
-  /// 0 V at once. None where a drive leaves its limits, or a waveform does not fit into its part of a cycle.
+  /// Returns the pair of a point, in which the parameters of the closing come first. Without those of the opening the drives go
+  /// to 0 V at once. Returns nothing if a drive leaves its limits, or if a waveform does not fit into its part of a cycle.
   [[nodiscard]] std::optional<CycleWaveforms> pair(std::span<const double> x) const {
     std::optional<std::vector<Signal>> closing = setting_.allowed_told(setting_.space.waveforms(x.first(closing_)));
     if (!closing) return std::nullopt;
@@ -58,7 +59,7 @@ class PairSearch {
     return fits ? std::optional(std::move(waveforms)) : std::nullopt;
   }
 
-  /// Returns the cost of the worst of so many cycles; infinite where they cannot be followed.
+  /// Returns the cost of the worst of the first `cycles`; infinite if they cannot be simulated.
   [[nodiscard]] double cost(const CycleWaveforms& waveforms, std::size_t cycles = searched_cycles) const {
     const Cycles run = CycledSwitch(coarse_, coarse_.model, waveforms).run(times(cycles), false, {.stop = watch_.stop});
     if (run.cycles.size() < cycles) return std::numeric_limits<double>::infinity();
@@ -83,7 +84,6 @@ class PairSearch {
 
   using Price = double (PairSearch::*)(const CycleWaveforms& waveforms) const;
   [[nodiscard]] double price(Price by, std::span<const double> x) const {
-    ++evaluations_;
     const std::optional<CycleWaveforms> waveforms = pair(x);
     return waveforms ? (this->*by)(*waveforms) : std::numeric_limits<double>::infinity();
   }
@@ -91,25 +91,19 @@ class PairSearch {
 
   /// Improves the parameters from `first` on; those before stay those of `from`.
   [[nodiscard]] OptimizerResult improve(const char* what, Price by, std::size_t first, const std::vector<double>& from,
-                                        std::vector<std::vector<double>> starts) const {
-    Problem problem;
+                                        std::vector<std::vector<double>> starts) {
     const std::vector<Variable> all = variables();
-    problem.variables.assign(all.begin() + static_cast<std::ptrdiff_t>(first), all.end());
-    problem.starts = std::move(starts);
     const auto whole = [&](std::span<const double> x) {
       std::vector<double> point(from.begin(), from.begin() + static_cast<std::ptrdiff_t>(first));
       point.insert(point.end(), x.begin(), x.end());
       return point;
     };
-    problem.objective = [&](std::span<const double> x) { return price(by, whole(x)); };
-    OptimizerOptions how{
-        .max_evaluations = std::max(1L, options_.max_evaluations / 3), .seed = options_.seed, .jobs = options_.jobs};
-    how.stop = watch_.stop;
-    std::atomic<long> done = 0;
-    how.on_evaluation = [&](const Evaluation&) {
-      watch_.tell(what, static_cast<double>(++done) / static_cast<double>(how.max_evaluations));
-    };
-    OptimizerResult found = minimize(problem, how);
+    SearchBudget third(budget_, std::max(1L, options_.max_evaluations / 3));
+    OptimizerResult found = minimize_within(third,
+                                            {.variables = {all.begin() + static_cast<std::ptrdiff_t>(first), all.end()},
+                                             .objective = [&](std::span<const double> x) { return price(by, whole(x)); },
+                                             .starts = std::move(starts)},
+                                            options_.seed, options_.jobs, watch_, what);
     if (!found.x.empty()) found.x = whole(found.x);
     return found;
   }
@@ -126,14 +120,14 @@ class PairSearch {
   const SearchSetting& setting_;
   const CycleSearchOptions& options_;
   const Watch& watch_;
+  SearchBudget budget_;  // counts the evaluations of pairs
   PreparedScene coarse_;
   BrakePulses pulses_;
   std::size_t closing_;  // parameters
   CostScale scale_;
-  mutable std::atomic<long> evaluations_ = 0;
 };
 
-// One cycle of these waveforms, as a scene that opens on command.
+// Returns one cycle of these waveforms, as a scene that opens on command.
 SceneFile scene_of_cycle(const PreparedScene& given, const CycleWaveforms& waveforms, const CycleTimes& times) {
   const std::vector<Signal> signals = cycled(waveforms, times);
   const std::vector<std::string> names = given.drive_names();
@@ -154,7 +148,7 @@ SceneFile scene_of_cycle(const PreparedScene& given, const CycleWaveforms& wavef
   return file;
 }
 
-// The pair that a scene of one cycle says, to the last bit that its text keeps.
+// Reads the pair back from a scene of one cycle, whose text may round it.
 CycleWaveforms read_again(const SceneFile& file, const PreparedScene& given, const CycleTimes& times) {
   const PreparedScene read = read_back(file, "best.toml", given);
   CycleWaveforms waveforms{.name = "found", .closing = {}, .opening = {}};
@@ -165,7 +159,7 @@ CycleWaveforms read_again(const SceneFile& file, const PreparedScene& given, con
   return waveforms;
 }
 
-// The search for the closing alone.
+// Searches the closing alone.
 OptimizeResult closing_alone(const SceneFile& file, const CycleSearchOptions& options, const Watch& watch) {
   OptimizeOptions how = usual_options(file, options.target, options.actuator);
   if (!options.family.empty()) how.family = options.family;
@@ -188,9 +182,9 @@ CycleSearchResult search_cycle(const SceneFile& file, const CycleSearchOptions& 
   const SearchSetting setting = search_setting(file, options.target, options.actuator, alone.family, {.stop = watch.stop});
   const PreparedScene& given = setting.given;
   require(given.rest().has_value(), "with every drive at 0 V the switch has no stable open state: it cannot be opened");
-  const PairSearch search(setting, options, watch);
+  PairSearch search(setting, options, watch);
 
-  // Closings to begin with: the one that was found alone, and those of the family, as far as they fit.
+  // Begin with the closing that was found alone, and with those of the family, as far as they fit.
   std::vector<std::vector<double>> closings = setting.space.starts();
   if (alone.best_scene) {
     const DriveWaveforms found = setting.space.searched(alone.best_scene->drives.waveforms());
@@ -201,7 +195,7 @@ CycleSearchResult search_cycle(const SceneFile& file, const CycleSearchOptions& 
     return fmt::format("at {} and a duty of {:g} % no waveform of the family \"{}\" fits into its part of a cycle, or no opening",
                        engineering(options.rate, "Hz", 4), 100 * options.duty, alone.family);
   });
-  // The best of them from rest.
+  // Find the best of them in a cycle that begins at rest.
   std::vector<double> best = closings.front();
   double least = std::numeric_limits<double>::infinity();
   for (const std::vector<double>& x : closings) {

@@ -29,20 +29,20 @@ struct CycleSearchOptions {
   Actuator actuator = Actuator::electrostatic;  ///< drives that both waveforms may shape
   std::string family = {};                      ///< families of the closing: families_of(); empty: the usual ones
   long max_evaluations = 3000;                  ///< a third each for the closing, the opening, and both
-  std::size_t cycles = 10;                      ///< they are told of the pair that is found
+  std::size_t cycles = 10;                      ///< simulated cycles of the pair that is found
   std::uint64_t seed = 1;
   int jobs = 1;
 };
 
 struct CycleSearchResult {
   PreparedScene given;
-  Cycling cycling;                                         ///< the cycles of the plain pair, and of the best where there is one
-  std::string family;                                      ///< the closing is of this family
-  std::map<std::string, double> parameters;                ///< the best has these, by closing.drive.name and opening.drive.name
-  double cost = std::numeric_limits<double>::quiet_NaN();  ///< the best has this cost
-  double plain_cost = std::numeric_limits<double>::quiet_NaN();  ///< the plain pair has this cost
-  long evaluations = 0;                                          ///< of pairs
-  /// One cycle of the best: closes, and opens on command. The plain one where no pair was feasible.
+  Cycling cycling;                           ///< the cycles of the plain pair, and of the best where there is one
+  std::string family;                        ///< family of the closing waveform
+  std::map<std::string, double> parameters;  ///< parameters of the best, by closing.drive.name and opening.drive.name
+  double cost = std::numeric_limits<double>::quiet_NaN();        ///< cost of the best pair
+  double plain_cost = std::numeric_limits<double>::quiet_NaN();  ///< cost of the plain pair
+  long evaluations = 0;                                          ///< evaluations of pairs
+  /// The scene of one cycle of the best pair: it closes, and opens on command. It is the plain pair's if no pair was feasible.
   SceneFile scene;
   bool interrupted = false;
 

@@ -1,5 +1,6 @@
 #include "studies/search/device_chain.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <deque>
@@ -14,7 +15,8 @@ constexpr std::size_t fewest_remembered = 5;
 
 }  // namespace
 
-StagedCost::Tried StagedCost::tried(const std::vector<double>& x, std::size_t devices, double hopeless, int jobs) const {
+StagedCost::Tried StagedCost::tried(const std::vector<double>& x, std::size_t most, double hopeless, int jobs) const {
+  const std::size_t devices = std::min(most, cost_.devices());
   const DriveWaveforms searched = setting_.space.waveforms(x);
   if (!setting_.is_allowed(searched)) return {};
   const EvaluationKey key{.family = setting_.family, .x = x, .devices = devices, .seed = seed_, .hopeless = hopeless};
@@ -36,8 +38,8 @@ StagedCost::Tried StagedCost::tried(const std::vector<double>& x, std::size_t de
   return {.cost = found.cost, .closings = found.closings};
 }
 
-ChainEnd search_chain(const StagedCost& cost, const std::vector<Variable>& variables, const Chain& chain,
-                      const std::function<bool(const std::vector<double>& x, double cost, long closings)>& told) {
+ChainEnd search_chain(const StagedCost& cost, const Chain& chain, SearchBudget& budget,
+                      const std::function<void(const std::vector<double>& x, double cost)>& told) {
   ChainEnd best;
   std::deque<double> recent;
   std::atomic<bool> enough = false;
@@ -52,17 +54,19 @@ ChainEnd search_chain(const StagedCost& cost, const std::vector<Variable>& varia
     if (std::isfinite(tried.cost)) recent.push_back(tried.cost);
     if (recent.size() > remembered) recent.pop_front();
     if (tried.cost < best.cost) best.x = x, best.cost = tried.cost;
-    const bool ends = told(x, tried.cost, tried.closings);
-    if (ends || best.closings >= chain.closings) enough = true;
+    budget.took(tried.closings);
+    if (budget.over() || best.closings >= chain.closings) enough = true;
+    told(x, tried.cost);  // may throw after an interruption
+    if (budget.interrupted()) enough = true;
     return tried.cost;
   };
-  static_cast<void>(
-      minimize({.variables = variables, .objective = objective, .starts = {chain.start}}, {.optimizer = "cma-es",
-                                                                                           .max_evaluations = chain.closings,
-                                                                                           .seed = chain.seed,
-                                                                                           .step = chain.step,
-                                                                                           .population = chain.population,
-                                                                                           .stop = &enough}));
+  static_cast<void>(minimize({.variables = cost.variables(), .objective = objective, .starts = {chain.start}},
+                             {.optimizer = "cma-es",
+                              .max_evaluations = chain.closings,
+                              .seed = chain.seed,
+                              .step = chain.step,
+                              .population = chain.population,
+                              .stop = &enough}));
   return best;
 }
 

@@ -1,8 +1,8 @@
 // A search over devices from one start by CMA-ES. Candidates are tried on ever more devices. One that does worse on the first
 // of them than the median of the candidates before is given up.
 //
-// Source for the races: O. Maron & A. W. Moore, "Hoeffding races", NIPS 1993 (the idea; our test is the median of the candidates
-// before).
+// Source for giving up candidates: O. Maron & A. W. Moore, "Hoeffding races", NIPS 1993 (the idea; our test is the median of the
+// candidates before).
 #pragma once
 
 #include <array>
@@ -15,6 +15,7 @@
 #include "optimizers/problem.h"
 #include "studies/search/evaluation_memory.h"
 #include "studies/search/robust_cost.h"
+#include "studies/search/search_budget.h"
 
 namespace softland {
 
@@ -30,9 +31,10 @@ class StagedCost {
     double cost = std::numeric_limits<double>::infinity();  ///< infinite if a driver cannot give the waveform
     long closings = 0;
   };
-  /// Evaluates on the first `devices`, or on as many as it takes to see that the cost exceeds `hopeless`.
-  [[nodiscard]] Tried tried(const std::vector<double>& x, std::size_t devices,
+  /// Evaluates on the first `most` devices, or on as many as it takes to see that the cost exceeds `hopeless`.
+  [[nodiscard]] Tried tried(const std::vector<double>& x, std::size_t most,
                             double hopeless = std::numeric_limits<double>::infinity(), int jobs = 1) const;
+  [[nodiscard]] std::vector<Variable> variables() const { return setting_.space.variables(); }
 
  private:
   const SearchSetting& setting_;
@@ -46,11 +48,11 @@ class StagedCost {
 inline constexpr std::array<std::size_t, 2> stages{8, 32};
 
 struct Chain {
-  std::vector<double> start;
-  std::size_t devices = 0;
-  long closings = 0;      ///< most closings of the chain
-  double step = 0.1;      ///< first step size, as a part of the box
-  double population = 1;  ///< population of a generation, over the usual number
+  std::vector<double> start = {};
+  std::size_t devices = 0;  ///< first devices that candidates are tried on
+  long closings = 0;        ///< most closings of the chain
+  double step = 0.1;        ///< first step size, as a part of the box
+  double population = 1;    ///< population of a generation, over the usual number
   std::uint64_t seed = 1;
   int jobs = 1;  ///< threads for one candidate; does not change the result
 };
@@ -59,8 +61,9 @@ struct ChainEnd {
   double cost = std::numeric_limits<double>::infinity();  ///< cost of the best point
   long closings = 0;
 };
-/// Calls `told` with every candidate and the closings that it took. The chain ends when it returns true.
-[[nodiscard]] ChainEnd search_chain(const StagedCost& cost, const std::vector<Variable>& variables, const Chain& chain,
-                                    const std::function<bool(const std::vector<double>& x, double cost, long closings)>& told);
+/// Searches until the closings of the chain are taken or the budget is over. Calls `told` with every candidate, after its
+/// closings have been taken from the budget.
+[[nodiscard]] ChainEnd search_chain(const StagedCost& cost, const Chain& chain, SearchBudget& budget,
+                                    const std::function<void(const std::vector<double>& x, double cost)>& told);
 
 }  // namespace softland

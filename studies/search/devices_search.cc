@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <iterator>
 #include <span>
@@ -121,7 +122,10 @@ bool DevicesSearch::Bounds::keeps(const std::vector<DeviceOutcome>& own, double 
 
 DevicesSearch::DevicesSearch(const SceneFile& file, const OptimizeOptions& options, const ForDevicesOptions& devices,
                              std::function<void(std::string_view what, double part)> tell)
-    : options_(options), devices_(devices), watch_{.stop = options.stop, .progress = std::move(tell)} {
+    : options_(options),
+      devices_(devices),
+      watch_{.stop = options.stop, .progress = std::move(tell)},
+      budget_({.seconds = options.max_seconds, .stop = options.stop}) {
   SceneFile varied = file;
   spread_assumed_ = assume_spread(varied);
   auto [settings, families] = settings_of_race(varied, options, devices, watch_);
@@ -182,15 +186,13 @@ FamilyColumns DevicesSearch::columns() const {
   return all;
 }
 
-double DevicesSearch::seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
-
 void DevicesSearch::run(std::size_t before, std::function<void()> looked, double reserved) {
   for (std::size_t k = 0; k < settings_.size(); ++k) settings_[k].family = before + k;
   for (std::size_t k = 0; k < usual_room_.size(); ++k) usual_room_[k].family = before + settings_.size() + k;
   looked_ = std::move(looked);
   race_families(reserved);
   choose();
-  if (!gave_up_ && known_->calibration().is_empty()) measure_ahead();
+  if (!budget_.given_up() && known_->calibration().is_empty()) measure_ahead();
 }
 
 void DevicesSearch::race_families(double reserved) {
@@ -199,16 +201,16 @@ void DevicesSearch::race_families(double reserved) {
                 own_devices(first(), *known_, raced_devices, options_.seed, which_searched, options_.jobs, watch_));
   others_.emplace(first(), tail_aim_,
                   own_devices(first(), *known_, devices_of_choice, options_.seed, which_chosen, options_.jobs, watch_));
-  const double begun = seconds();
+  const double begun = budget_.elapsed();
   const std::vector<DeviceOutcome> step = closed(*cost_, {});
-  reserve_for_verdict((seconds() - begun) / static_cast<double>(step.size()), reserved);
+  reserve_for_verdict((budget_.elapsed() - begun) / static_cast<double>(step.size()), reserved);
   FreeTime free;
   if (!devices_.is_of_before) {
     std::vector<DeviceOutcome> all = cost_->close_by_step(options_.jobs);
     step_on_others_ = others_->close_by_step(options_.jobs);
     all.insert(all.end(), step_on_others_.begin(), step_on_others_.end());
     free = free_time(all);
-    closings_ += static_cast<long>(all.size());
+    budget_.took(static_cast<long>(all.size()));
   }
   make_aims(step, free);
   bounds_.emplace(closed(*others_, {}));
@@ -231,16 +233,14 @@ void DevicesSearch::race_all() {
   std::vector<DriveWaveforms> begun;
   if (!usual_room_.empty()) {
     RaceOptions first = own;
+    SearchBudget half(*before_verdict_, before_verdict_->left(), before_verdict_->seconds_left() / 2);
     own.closings /= 2;
     const bool has_room_for_both = static_cast<double>(own.closings) >= least_length_of_race * static_cast<double>(race_closings);
-    if (has_room_for_both) first.out_of_time = [this] { return gave_up_ || seconds() > race_end_ / 2; };
     if (has_room_for_both && devices_.are_a_budget) first.closings /= 2;
-    race_in_usual_room_ = race(usual_room_, *cost_, aims_, first);
-    closings_ += race_in_usual_room_.closings;
+    race_in_usual_room_ = race(usual_room_, *cost_, aims_, has_room_for_both ? half : *before_verdict_, first);
     if (!race_in_usual_room_.racers.empty()) begun.push_back(race_in_usual_room_.racers.front().waveforms);
   }
-  race_ = race(raced, *cost_, aims_, own, begun);
-  closings_ += race_.closings;
+  race_ = race(raced, *cost_, aims_, *before_verdict_, own, begun);
 }
 
 std::vector<Pace> DevicesSearch::paces_of_search() const {
@@ -266,22 +266,19 @@ void DevicesSearch::search_paces() {
   RobustAim aim = tail_aim_;
   aim.free = free_;
   std::vector<std::optional<Racer>> found(paces.size());
-  std::atomic<long> closings = 0;
   RaceOptions options = race_options();
   const double planned = static_cast<double>(paces.size()) * usual_closings_at_pace * static_cast<double>(options.closings) /
                          static_cast<double>(race_closings);
-  options.progress = [&](double) {
-    watch_.tell("searching a quasi-static approach", std::min(1.0, static_cast<double>(closings) / planned));
-  };
+  SearchBudget budget(*before_verdict_, std::lround(planned));
+  options.progress = [&](double) { watch_.tell("searching a quasi-static approach", budget.share_taken()); };
   run_tasks(
       paces.size(), options_.jobs,
       [&](std::size_t i) {
         RaceOptions own = options;
         if (i == 0) own.on_stage = [this](const Racer& leader) { look(leader); };
-        found[i] = search_at_pace(settings_[paces[i].family], paces[i], *cost_, aim, own, closings);
+        found[i] = search_at_pace(settings_[paces[i].family], paces[i], *cost_, aim, budget, own);
       },
       options_.stop);
-  closings_ += closings;
   watch_.throw_if_stopped();
   for (std::optional<Racer>& one : found) {
     if (one) paced_.push_back(*std::move(one));
@@ -319,7 +316,8 @@ bool DevicesSearch::says_when_to_close() const {
 void DevicesSearch::reserve_for_verdict(double closing, double reserved) {
   constexpr double rows = 20;  // work of the verdict in windows of a search: three whole ones, three calibrated rows, the front
   const double verdict = rows * static_cast<double>(verdict_) * closing, all = options_.max_seconds;
-  race_end_ = std::clamp(all - verdict, least_of_race * all, end_of_race * all) - reserved;
+  const double end = std::clamp(all - verdict, least_of_race * all, end_of_race * all) - reserved;
+  before_verdict_.emplace(budget_, budget_.left(), end - budget_.elapsed());
 }
 
 RaceOptions DevicesSearch::race_options() {
@@ -327,14 +325,12 @@ RaceOptions DevicesSearch::race_options() {
           .are_a_budget = devices_.are_a_budget,
           .seed = options_.seed,
           .jobs = options_.jobs,
-          .stop = options_.stop,
           .memory = options_.memory,
-          .out_of_time = [this] { return gave_up_ || seconds() > race_end_; },
           .progress = [this](double part) { watch_.tell("searching for the devices", part); }};
 }
 
 std::vector<DeviceOutcome> DevicesSearch::closed(const RobustCost& cost, const DriveWaveforms& waveforms) {
-  closings_ += static_cast<long>(cost.devices());
+  budget_.took(static_cast<long>(cost.devices()));
   return cost.close(first().drives(waveforms), 0, cost.devices(), options_.jobs);
 }
 
@@ -379,7 +375,7 @@ void DevicesSearch::choose() {
 
 // Judges an intermediate candidate on the devices of the choice. Reports it if it leads and is no harder than the plain step.
 void DevicesSearch::look(const Racer& racer) {
-  if (gave_up_ || devices_.is_of_before || watch_.stopped()) return;
+  if (budget_.given_up() || devices_.is_of_before || watch_.stopped()) return;
   std::vector<DeviceOutcome> outcomes = on_others(racer.waveforms);
   Placed placed = judged(candidate_of(racer), outcomes);
   looked_at_.push_back(placed);
@@ -421,7 +417,7 @@ void DevicesSearch::place(ChosenFrom one) {
 }
 
 std::vector<DeviceOutcome> DevicesSearch::on_others(const DriveWaveforms& waveforms) {
-  closings_ += static_cast<long>(others_->devices());
+  budget_.took(static_cast<long>(others_->devices()));
   return others_->close_until(first().drives(waveforms), free_.until, options_.jobs);
 }
 
@@ -544,7 +540,6 @@ std::array<DevicesSearch::Found, 2> DevicesSearch::searched_in(const ChosenFrom&
   const std::vector<KnownUnits> known = known_units(first().given, calibrations, options_.jobs, watch_);
   std::array<Found, 2> all;
   std::array<std::atomic<double>, 2> parts{};
-  std::array<long, 2> closings{};
   run_tasks(
       all.size(), options_.jobs,
       [&](std::size_t i) {
@@ -558,24 +553,21 @@ std::array<DevicesSearch::Found, 2> DevicesSearch::searched_in(const ChosenFrom&
           watch_.tell("searching for devices that are measured", (parts[0] + parts[1]) / 2);
         };
         const auto searched = [&](const RaceAims& aims) {
-          if (settings_[k].space.quasi_static() != nullptr) return searched_at_pace(cost, aims, k, own, closings[i]);
-          RaceResult found =
-              race_alone(settings_[k], k, cost, aims, winner.bounce_free >= ranked_by_share, {winner.waveforms, drawing}, own);
-          closings[i] += found.closings;
-          return found;
+          if (settings_[k].space.quasi_static() != nullptr) return searched_at_pace(cost, aims, k, own);
+          return race_alone(settings_[k], k, cost, aims, winner.bounce_free >= ranked_by_share, {winner.waveforms, drawing},
+                            *before_verdict_, own);
         };
         RaceResult found = searched(aims_);
         if (!found.racers.empty() && is_harder_than_step(cost, found.racers.front().waveforms)) found = searched(no_harder());
         if (!found.racers.empty()) all[i] = found.racers.front().waveforms;
       },
       options_.stop);
-  closings_ += closings[0] + closings[1];
   watch_.throw_if_stopped();
   return all;
 }
 
-RaceResult DevicesSearch::searched_at_pace(const RobustCost& cost, const RaceAims& aims, std::size_t family, RaceOptions options,
-                                           long& closings) const {
+RaceResult DevicesSearch::searched_at_pace(const RobustCost& cost, const RaceAims& aims, std::size_t family,
+                                           RaceOptions options) {
   constexpr long shorter = 3;  // divisor of the closings of a search in volts
   RobustAim aim = tail_aim_;
   aim.free = free_;
@@ -583,11 +575,9 @@ RaceResult DevicesSearch::searched_at_pace(const RobustCost& cost, const RaceAim
     if (one.figure.member != Figure::Member(&Metrics::initial_contact_time)) aim.conditions.push_back(one);
   }
   options.closings /= shorter;
-  std::atomic<long> taken = 0;
   RaceResult all;
-  if (auto found = search_at_pace(settings_[family], {.of_step = 1, .family = family}, cost, aim, options, taken))
+  if (auto found = search_at_pace(settings_[family], {.of_step = 1, .family = family}, cost, aim, *before_verdict_, options))
     all.racers.push_back(*std::move(found));
-  closings += taken;
   return all;
 }
 

@@ -3,8 +3,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -19,6 +17,7 @@
 #include "studies/search/paced_search.h"
 #include "studies/search/race.h"
 #include "studies/search/robust_optimize.h"
+#include "studies/search/search_budget.h"
 
 namespace softland {
 
@@ -107,8 +106,8 @@ class DevicesSearch {
   [[nodiscard]] bool spread_assumed() const { return spread_assumed_; }
   /// The parameters of all families, their names with raced_prefix.
   [[nodiscard]] FamilyColumns columns() const;
-  /// Seconds since the search was made.
-  [[nodiscard]] double seconds() const;
+  /// The time of everything, and the closings of devices that were taken. It begins with the construction of the search.
+  [[nodiscard]] SearchBudget& budget() { return budget_; }
   /// Adds the work of this search to the estimate `nominal` of the one on the nominal device.
   [[nodiscard]] SearchEstimate estimate(SearchEstimate nominal) const;
 
@@ -118,7 +117,7 @@ class DevicesSearch {
   /// Interrupted when it is asked to stop.
   void run(std::size_t before, std::function<void()> looked, double reserved);
   /// Makes run() end soon, without a usable result; from any thread.
-  void give_up() { gave_up_ = true; }
+  void give_up() { budget_.give_up(); }
 
   /// How the switch can be carried to its contact; none if that is not searched.
   [[nodiscard]] const std::optional<StableApproach>& approach() const { return approach_; }
@@ -151,7 +150,6 @@ class DevicesSearch {
   [[nodiscard]] std::vector<DeviceOutcome> closed(const RobustCost& cost, const DriveWaveforms& waveforms);
   /// The searched drives of a candidate, and the others as in the plain step.
   [[nodiscard]] DriveWaveforms all_drives(DriveWaveforms searched) const;
-  [[nodiscard]] long closings() const { return closings_; }
   /// Fresh devices of the verdict: as many as requested, or fewer if closings are slow.
   [[nodiscard]] std::uint64_t verdict() const { return verdict_; }
 
@@ -195,8 +193,8 @@ class DevicesSearch {
   [[nodiscard]] bool tells_time() const;
   [[nodiscard]] std::array<Found, 2> searched_in(const ChosenFrom& winner, const DriveWaveforms& drawing,
                                                  const std::array<Calibration, 2>& calibrations);
-  [[nodiscard]] RaceResult searched_at_pace(const RobustCost& cost, const RaceAims& aims, std::size_t family, RaceOptions options,
-                                            long& closings) const;
+  [[nodiscard]] RaceResult searched_at_pace(const RobustCost& cost, const RaceAims& aims, std::size_t family,
+                                            RaceOptions options);
   [[nodiscard]] bool is_harder_than_step(const RobustCost& cost, const DriveWaveforms& waveforms) const;
   [[nodiscard]] RaceAims no_harder() const;
   [[nodiscard]] DevicesRow row_of(const char* name, const DriveWaveforms& waveforms, const Calibration& knowledge,
@@ -208,7 +206,7 @@ class DevicesSearch {
   const OptimizeOptions& options_;
   const ForDevicesOptions& devices_;
   Watch watch_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  SearchBudget budget_;
   bool spread_assumed_ = false;
   std::vector<SearchSetting> settings_;
   std::size_t raced_ = 0;                  // number of raced settings; they come first
@@ -217,8 +215,7 @@ class DevicesSearch {
   std::optional<StableApproach> approach_;
   double share_with_path_ = Metrics::unset;
   std::optional<KnownUnits> known_;
-  std::atomic<bool> gave_up_ = false;
-  double race_end_ = 0;  // end of the race, since the beginning [s]
+  std::optional<SearchBudget> before_verdict_;  // the part of the budget for everything before the verdict
   long race_length_ = race_closings;
   std::uint64_t verdict_ = ForDevicesOptions{}.verdict;
   std::vector<Criterion> conditions_;  // conditions with limits of their own
@@ -237,7 +234,6 @@ class DevicesSearch {
   std::vector<Placed> placed_;                                        // candidates in the order of their placing
   std::optional<GaugedEnsemble> gauged_by_pull_in_, gauged_by_time_;  // the measured devices of the verdict
   std::optional<DeviceMeter> meter_;                                  // none if nothing can be measured
-  long closings_ = 0;
 };
 
 }  // namespace softland

@@ -62,21 +62,10 @@ Evaluation FamilySearch::numbered(Evaluation e) const {
   return e;
 }
 
-std::optional<SceneFile> FamilySearch::scene(const Evaluation& e) const {
-  const DriveWaveforms all = waveforms(e);
-  return can_be_written(all) ? std::optional(setting_.scene(all)) : std::nullopt;
-}
-
 std::map<std::string, double> FamilySearch::named(const Evaluation& e) const {
   std::map<std::string, double> parameters;
   for (std::size_t k = 0; k < e.x.size(); ++k) parameters[problem_.variables[k].name] = e.x[k];
   return parameters;
-}
-
-std::vector<Evaluation> FamilySearch::log() const {
-  std::vector<Evaluation> all;
-  for (const auto& [index, e] : stages_.log()) all.push_back(numbered(e));
-  return all;
 }
 
 std::optional<Evaluation> FamilySearch::surest_below(double own, const std::vector<Evaluation>& others) const {

@@ -42,12 +42,8 @@ class FamilySearch {
   [[nodiscard]] DriveWaveforms waveforms(const Evaluation& e) const { return setting_.space.waveforms(e.x); }
   /// The scene of an evaluation, ready to run.
   [[nodiscard]] PreparedScene prepared(const Evaluation& e) const { return setting_.prepared(waveforms(e)); }
-  /// None if a scene file cannot hold the waveforms.
-  [[nodiscard]] std::optional<SceneFile> scene(const Evaluation& e) const;
   /// The parameters by drive.name.
   [[nodiscard]] std::map<std::string, double> named(const Evaluation& e) const;
-  /// Every evaluation, in order.
-  [[nodiscard]] std::vector<Evaluation> log() const;
   /// See GuidedSearch::surest_below; `others` may be of other families, too.
   [[nodiscard]] std::optional<Evaluation> surest_below(double own, const std::vector<Evaluation>& others) const;
 

@@ -76,7 +76,7 @@ class DevicesStudy {
     OptimizeResult drawing = searched_for_drawing();
     result_.emplace(ForDevicesResult{.varied = first().given, .drawing = drawing, .best = std::move(drawing)});
     try {
-      if (result_->drawing.best_scene && !stopped()) {
+      if (result_->drawing.best_scene && !watch_.stopped()) {
         choose_of_all();
         judge();
       }
@@ -84,15 +84,14 @@ class DevicesStudy {
     }
     searched_.give_up();
     if (beside_.valid()) beside_.wait();  // its findings are read from here on
-    if (stopped() && result_->rows.empty()) take_leader();
-    result_->interrupted = stopped();
+    if (watch_.stopped() && result_->rows.empty()) take_leader();
+    result_->interrupted = watch_.stopped();
     if (!result_->rows.empty()) tell_findings();
     return *std::move(result_);
   }
 
  private:
   [[nodiscard]] const SearchSetting& first() const { return searched_.first(); }
-  [[nodiscard]] bool stopped() const { return options_.stop != nullptr && *options_.stop; }
   // Tells the progress of the search for the nominal design alone while that runs.
   void tell(std::string_view what, double part) const {
     if (options_.on_preparation && !searches_drawing_) options_.on_preparation(what, part);
@@ -115,7 +114,7 @@ class DevicesStudy {
   OptimizeOptions options_of_drawing() {
     OptimizeOptions own = options_;
     own.keep_tried = true;
-    if (std::isfinite(own.max_seconds)) own.max_seconds = end_of_drawing * own.max_seconds - searched_.seconds();
+    if (std::isfinite(own.max_seconds)) own.max_seconds = searched_.budget().seconds_left(end_of_drawing);
     own.max_seconds = std::max(own.max_seconds, 1e-3);
     own.on_improvement = {};  // best.toml is for devices
     own.on_estimate = [this](const SearchEstimate& of_drawing) {
@@ -217,7 +216,7 @@ class DevicesStudy {
         },
         options_.stop);
     watch_.throw_if_stopped();
-    closings_ += static_cast<long>(all.size() * devices);
+    searched_.budget().took(static_cast<long>(all.size() * devices));
     std::vector<ChosenFrom> best;
     std::vector<bool> taken(all.size(), false);
     for (const bool by_share : {false, true}) {
@@ -406,7 +405,7 @@ class DevicesStudy {
       worse_in.assign(keys.begin(), keys.end());
     };
     std::size_t n = 0;
-    for (compare(); !worse_in.empty() && n + 1 < std::min(searched_.good_enough(), most_judged) && !stopped(); compare()) {
+    for (compare(); !worse_in.empty() && n + 1 < std::min(searched_.good_enough(), most_judged) && !watch_.stopped(); compare()) {
       Robustness next = robustness(result_->varied, {of_candidate(++n)}, verdict_options(), watch_);
       result_->interrupted = next.interrupted;
       row_of_devices().judged = next.drives.back();
@@ -571,7 +570,7 @@ class DevicesStudy {
     d.spread_assumed = searched_.spread_assumed();
     d.count = static_cast<double>(result_->verdict.devices);
     d.seed = static_cast<double>(options_.seed);
-    d.closings = static_cast<double>(closings_ + searched_.closings());
+    d.closings = static_cast<double>(searched_.budget().taken());
     if (result_->chosen) d.measure = result_->chosen->measure, d.waveform = result_->chosen->family;
     d.better_than_plain_step = !result_->best.plain_step_wins;
     if (drawn) d.drawing = FigureValues(drawn->metrics), d.drawing_status = to_string(drawn->metrics.status);
@@ -617,7 +616,6 @@ class DevicesStudy {
   OptimizeOptions drawing_options_;
   std::optional<ForDevicesResult> result_;  // none before the search for the nominal design
   std::optional<ChosenFrom> undelayed_;     // the best whose electrode steps at t = 0, if others may step later
-  long closings_ = 0;                       // closings of devices beside those that searched_ counts
   std::future<void> beside_;                // the last member: what it uses outlives it
 };
 

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iterator>
+
+#include "studies/search/evaluation_log.h"
+#include "studies/search/search_budget.h"
 
 namespace softland {
 namespace {
@@ -109,7 +111,7 @@ std::optional<Evaluation> GuidedSearch::surest_below(double own, const std::vect
 }
 
 OptimizerResult GuidedSearch::run(Problem problem, OptimizerOptions options, Costs costs, long more, long first_index) {
-  const auto begin = std::chrono::steady_clock::now();
+  const SearchBudget budget({.seconds = options.max_seconds});
   options.on_improvement = {};
   first_index_ = first_index;
   if (!log_.empty()) {
@@ -133,7 +135,7 @@ OptimizerResult GuidedSearch::run(Problem problem, OptimizerOptions options, Cos
   const bool lands = std::any_of(known_.begin(), known_.end(), [](const auto& one) { return one.second.lands; });
   if (costs == Costs::leading || costs == Costs::own) second.max_evaluations = 0;
   if (costs == Costs::same) second.max_evaluations = lands || result.termination != Termination::evaluation_budget ? 0 : more;
-  second.max_seconds -= std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  second.max_seconds = budget.seconds_left();
   if (goes_on && second.max_evaluations > 0 && second.max_seconds > 0) {
     if (!log_.empty()) first_index_ = log_.rbegin()->first + 1;
     problem.starts = promising_points(problem.variables, Costs::own);
@@ -145,11 +147,7 @@ OptimizerResult GuidedSearch::run(Problem problem, OptimizerOptions options, Cos
     if (own.first_exception.empty()) own.first_exception = result.first_exception;
     result = std::move(own);
   }
-  result.improvements.clear();
-  for (const auto& [index, e] : log_) {
-    if (std::isfinite(e.value) && (result.improvements.empty() || e.value < result.improvements.back().value))
-      result.improvements.push_back(e);
-  }
+  result.improvements = improvements_of(log_);
   if (!result.improvements.empty()) {
     result.x = result.improvements.back().x;
     result.value = result.improvements.back().value;

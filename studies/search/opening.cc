@@ -22,6 +22,7 @@
 #include "studies/closing/simulate.h"
 #include "studies/devices/ensemble.h"
 #include "studies/search/brake_pulses.h"
+#include "studies/search/search_budget.h"
 #include "studies/search/search_setting.h"
 #include "studies/search/verification.h"
 
@@ -102,21 +103,12 @@ class ReleaseSearch {
   }
 
   [[nodiscard]] OptimizerResult run(std::span<const double> closed, const Watch& watch) const {
-    std::atomic<long> done = 0;
-    Problem problem;
-    problem.variables = pulses_.variables();
-    problem.starts = pulses_.starts();
-    problem.objective = [&](std::span<const double> x) {
-      const double value = cost(open(given_.model, closed, signals(x), opening_tolerance, OpeningFigures::unset, watch.stop));
-      ++done;
-      return value;
+    SearchBudget budget({.evaluations = options_.max_evaluations, .stop = watch.stop});
+    const auto objective = [&](std::span<const double> x) {
+      return cost(open(given_.model, closed, signals(x), opening_tolerance, OpeningFigures::unset, watch.stop));
     };
-    OptimizerOptions setting{.max_evaluations = options_.max_evaluations, .seed = options_.seed, .jobs = options_.jobs};
-    setting.stop = watch.stop;
-    setting.on_evaluation = [&](const Evaluation&) {
-      watch.tell("waveforms", static_cast<double>(done) / static_cast<double>(options_.max_evaluations));
-    };
-    return minimize(problem, setting);
+    return minimize_within(budget, {.variables = pulses_.variables(), .objective = objective, .starts = pulses_.starts()},
+                           options_.seed, options_.jobs, watch, "waveforms");
   }
 
   [[nodiscard]] std::map<std::string, double> named(const std::vector<double>& x) const {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <deque>
 #include <iterator>
@@ -11,10 +10,12 @@
 
 #include "base/random.h"
 #include "studies/closing/plain_step.h"
+#include "studies/search/evaluation_log.h"
 #include "studies/search/family_search.h"
 #include "studies/search/joint_swings.h"
 #include "studies/search/limit.h"
 #include "studies/search/modes_of_search.h"
+#include "studies/search/search_budget.h"
 #include "studies/search/search_setting.h"
 #include "studies/search/search_work.h"
 #include "studies/search/verification.h"
@@ -51,31 +52,23 @@ std::vector<Evaluation> candidates(const std::vector<Evaluation>& improvements) 
   return chosen;
 }
 
-// Returns the evaluations, in order, that are better than all before them.
-std::vector<Evaluation> improvements_of(std::vector<Evaluation> log) {
-  std::vector<Evaluation> improvements;
-  for (Evaluation& e : log) {
-    if (std::isfinite(e.value) && (improvements.empty() || e.value < improvements.back().value))
-      improvements.push_back(std::move(e));
-  }
-  return improvements;
-}
-
 // One search: its families, and its reports while it runs.
 class Search {
  public:
-  /// The family of each setting is its index. `options` may change until on_start has been called. `max_seconds` [s] takes the
-  /// place of theirs.
-  Search(const std::vector<SearchSetting>& settings, const OptimizeOptions& options, double max_seconds)
+  /// The family of each setting is its index. The search takes `seconds` [s] of the budget.
+  Search(const std::vector<SearchSetting>& settings, const OptimizeOptions& options, SearchBudget& whole, double seconds)
       : settings_(settings),
         options_(options),
-        max_seconds_(max_seconds),
-        names_(families_of(options.family)),
-        progress_{.baseline_cost = settings.front().baseline_cost, .planned = options.counts_work ? options.max_evaluations : 0} {
-    for (const SearchSetting& setting : settings)
-      families_.emplace_back(setting, options, [this](const Evaluation& e) { evaluated(e); });
-    if (options.on_start) options.on_start(searched_columns(settings, options.family));
-    begin_ = std::chrono::steady_clock::now();
+        budget_(whole, options.max_evaluations, seconds),
+        log_(options, budget_, settings.front().baseline_cost,
+             [this](const Evaluation& e) { return e.value < never_touched ? settings_[e.problem].scene_at(e.x) : std::nullopt; }),
+        names_(families_of(options.family)) {
+    for (const SearchSetting& setting : settings) {
+      families_.emplace_back(setting, options, [this](const Evaluation& e) {
+        budget_.took(1);
+        log_.note(e);
+      });
+    }
   }
 
   // Refines a landing that the scene holds already, and those that other searches have found. They are the first candidates,
@@ -111,7 +104,7 @@ class Search {
     const SearchSetting& setting = settings_.front();
     const std::vector<DriveSearch>& shaped = setting.space.drives();
     const bool can_rest = shaped.size() > 1 || shaped.front().drive == piezo_drive;
-    if (!can_rest || options_.max_evaluations < fewest_for_landings || max_seconds_ < least_for_landings) return {};
+    if (!can_rest || options_.max_evaluations < fewest_for_landings || budget_.seconds() < least_for_landings) return {};
     return softland::landings_at_rest(setting.within_limits(), options_.actuator,
                                       soft_touch * setting.scale.step.largest_impact_velocity,
                                       {.stop = options_.stop, .progress = options_.on_preparation});
@@ -137,7 +130,7 @@ class Search {
     // Candidates of other families: neighbours ring the same modes that the scene does not have.
     for (std::size_t k = 0; k < families_.size() && families_.size() > 1 && !all.confirmed(); ++k) {
       std::size_t added = 0;
-      for (const Evaluation& e : candidates(improvements_of(families_[k].log()))) {
+      for (const Evaluation& e : candidates(improvements_of(log_.evaluations(k)))) {
         if (added == most_of_family || all.decided(e.value)) break;
         if (std::ranges::find(tried, e.index, &Evaluation::index) != tried.end()) continue;
         add(e);
@@ -169,7 +162,7 @@ class Search {
     std::vector<Promising> all;
     for (std::size_t k = 0; k < families_.size(); ++k) {
       std::vector<std::pair<double, std::vector<double>>> own;
-      for (const Evaluation& e : candidates(improvements_of(families_[k].log()))) {
+      for (const Evaluation& e : candidates(improvements_of(log_.evaluations(k)))) {
         const DriveWaveforms waveforms = families_[k].waveforms(e);
         own.emplace_back(other.price(other.given.driven(other.drives(waveforms))).own, e.x);
       }
@@ -185,9 +178,9 @@ class Search {
   // Returns the best of all candidates that touch, a ladder of costlier ones, and the best of every family.
   [[nodiscard]] std::vector<TriedWaveform> tried() const {
     std::vector<Evaluation> all;
-    for (const FamilySearch& family : families_) {
-      for (Evaluation& e : family.log()) {
-        if (e.value < never_touched) all.push_back(std::move(e));
+    for (std::size_t k = 0; k < families_.size(); ++k) {
+      for (const auto& [index, e] : log_.evaluations(k)) {
+        if (e.value < never_touched) all.push_back(e);
       }
     }
     std::ranges::stable_sort(all, {}, &Evaluation::value);
@@ -209,7 +202,7 @@ class Search {
     for (std::size_t k = 0; k < families_.size(); ++k) {
       const std::optional<GuidedSearch::Best> best = families_[k].best(Costs::own);
       all.push_back({.family = names_[k],
-                     .evaluations = static_cast<long>(families_[k].log().size()),
+                     .evaluations = static_cast<long>(log_.evaluations(k).size()),
                      .cost = best ? best->cost : std::numeric_limits<double>::quiet_NaN()});
     }
     return all;
@@ -217,7 +210,7 @@ class Search {
 
  private:
   [[nodiscard]] bool is_divided(long evaluations) const {
-    return options_.begins_with_half && !std::isfinite(max_seconds_) && evaluations >= 2 * shortest_half;
+    return options_.begins_with_half && !std::isfinite(budget_.seconds()) && evaluations >= 2 * shortest_half;
   }
 
   // Divides the budget where that is asked for: the search with half of it runs first. Returns false if the search must end.
@@ -231,7 +224,7 @@ class Search {
 
   bool run_undivided(long evaluations) {
     const bool has_own = options_.target.has_own_cost();
-    const double all_seconds = std::max(max_seconds_ - seconds(), max_seconds_ / 4);
+    const double all_seconds = std::max(budget_.seconds_left(), budget_.seconds() / 4);
     const long before = all_.evaluations;
     if (families_.size() == 1)
       return go_on(0, evaluations, all_seconds, options_.more_evaluations, has_own ? Costs::both : Costs::same, before > 0);
@@ -241,7 +234,7 @@ class Search {
     if (!run_families(evaluations - own, bounce_seconds, has_own ? Costs::leading : Costs::same)) return false;
     // Search by the own cost next, from the best points of every family. The remaining budget counts gradients as well.
     const long rest = evaluations - (all_.evaluations - before);
-    return !has_own || rest <= 0 || run_families(rest, max_seconds_ - seconds(), Costs::own);
+    return !has_own || rest <= 0 || run_families(rest, budget_.seconds_left(), Costs::own);
   }
 
   // Computes the own cost with the modes of the scene alone.
@@ -263,7 +256,8 @@ class Search {
   // Gives each family a share of the budget, and the rest to the best. By the cost of bounce, each begins at what those before
   // it have found. By the own cost only the best does, as all would end in one valley. Returns false if the search must end.
   bool run_families(long all_evaluations, double all_seconds, Costs costs) {
-    const double share = opening / static_cast<double>(families_.size()), begun = seconds();
+    const SearchBudget all(budget_, all_evaluations, all_seconds);
+    const double share = opening / static_cast<double>(families_.size());
     const auto evaluations = static_cast<long>(share * static_cast<double>(all_evaluations));
     for (std::size_t k = 0; evaluations > 0 && k < families_.size(); ++k) {
       if (costs != Costs::own) begin_where_others_were(k, costs);
@@ -271,7 +265,7 @@ class Search {
     }
     const long rest = all_evaluations - static_cast<long>(families_.size()) * evaluations;
     if (costs == Costs::own) begin_where_others_were(leader(costs), costs);
-    return go_on(leader(costs), rest, all_seconds - (seconds() - begun), options_.more_evaluations, costs, true);
+    return go_on(leader(costs), rest, all.seconds_left(), options_.more_evaluations, costs, true);
   }
 
   // `prepared()` returns the scene under these waveforms.
@@ -292,18 +286,7 @@ class Search {
       landing.variables = settings_[k].space.variables();
       landing.parameters = families_[k].named(given);
     }
-    if (progress_.best_cost <= cost) return;
-    progress_.best_cost = cost;
-    if (options_.on_improvement && can_be_written(waveforms)) options_.on_improvement(given, landing.scene.scene.file);
-  }
-
-  void evaluated(const Evaluation& e) {
-    ++progress_.evaluations;
-    const bool improves = std::isfinite(e.value) && !(progress_.best_cost <= e.value);
-    if (improves) progress_.best_cost = e.value;
-    if (options_.on_evaluation) options_.on_evaluation(e, progress_);
-    if (!improves || !options_.on_improvement || !(e.value < never_touched)) return;
-    if (const std::optional<SceneFile> scene = families_[e.problem].scene(e)) options_.on_improvement(e, *scene);
+    log_.begin_with(given, can_be_written(waveforms) ? std::optional(landing.scene.scene.file) : std::nullopt);
   }
 
   // Returns the family of the least cost; of equals the first.
@@ -334,48 +317,34 @@ class Search {
                                .jobs = options_.jobs,
                                .goes_on = goes_on,
                                .stop = options_.stop},
-                              costs, more, next_index_);
+                              costs, more, log_.next_index());
     ++runs_;
     all_.termination = now.termination;
     all_.message = families_.size() > 1 ? fmt::format("{}: {}", names_[family], now.message) : now.message;
     all_.evaluations += now.evaluations;
     if (all_.first_exception.empty()) all_.first_exception = now.first_exception;
-    merge();
+    take_improvements();
     return now.termination != Termination::interrupted && now.termination != Termination::failure;
   }
 
-  // Merges the improvements of all families, in the order in which they ran.
-  void merge() {
-    std::vector<Evaluation> log;
-    for (const FamilySearch& family : families_) {
-      std::vector<Evaluation> own = family.log();
-      std::move(own.begin(), own.end(), std::back_inserter(log));
-    }
-    std::sort(log.begin(), log.end(), [](const Evaluation& a, const Evaluation& b) { return a.index < b.index; });
-    if (!log.empty()) next_index_ = log.back().index + 1;
-    all_.improvements = improvements_of(std::move(log));
+  // Takes the improvements of all families, in the order in which they ran.
+  void take_improvements() {
+    all_.improvements = improvements_of(log_.evaluations());
     if (all_.improvements.empty()) return;
     all_.x = all_.improvements.back().x;
     all_.value = all_.improvements.back().value;
     if (all_.termination == Termination::no_feasible_point) all_.termination = Termination::evaluation_budget;
   }
 
-  // Seconds since the search was made.
-  [[nodiscard]] double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-  }
-
   const std::vector<SearchSetting>& settings_;
   const OptimizeOptions& options_;
-  double max_seconds_;
+  SearchBudget budget_;
+  EvaluationLog log_;
   std::vector<std::string> names_;  // names of the families
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::deque<FamilySearch> families_;
   std::vector<FoundWaveform> landings_;
-  OptimizeProgress progress_;
   OptimizerResult all_;
   std::uint64_t runs_ = 0;
-  long next_index_ = 0;
 };
 
 // Continues a search whose result belongs to the modes of the scene: with gentle edges, then by the worst of beams. A search
@@ -383,15 +352,12 @@ class Search {
 // again.
 class SearchBeyondModes {
  public:
-  /// `seconds` returns the time since the search began.
-  SearchBeyondModes(const OptimizeOptions& options, std::function<double()> seconds, Verification& verified)
-      : options_(options), seconds_(std::move(seconds)), verified_(verified) {
+  SearchBeyondModes(const OptimizeOptions& options, SearchBudget& budget, Verification& verified)
+      : options_(options), budget_(budget), verified_(verified) {
     own_.starts.clear();
     own_.memory = nullptr;
     own_.more_evaluations = 0;
     own_.begins_with_half = false;
-    own_.on_start = {};
-    own_.on_progress = {};
     own_.on_improvement = {};
   }
 
@@ -400,7 +366,7 @@ class SearchBeyondModes {
     if (!verified_.belongs_to_modes()) return 0;
     if (gentle.empty()) return sift(search, settings);
     if (!begin("searching on with gentler edges", options_.max_evaluations / 2, end_of_gentle)) return 0;
-    Search other(gentle, own_, own_.max_seconds);
+    Search other(gentle, own_, budget_, own_.max_seconds);
     other.begin();
     (void)other.run();
     other.verify(verified_);
@@ -418,7 +384,7 @@ class SearchBeyondModes {
       std::vector<SearchSetting> worst{by_the_worst_of_modes(settings[k])};
       worst.front().family = 0;  // index of the only one
       own_.family = families_of(options_.family)[k];
-      Search other(worst, own_, own_.max_seconds);
+      Search other(worst, own_, budget_, own_.max_seconds);
       for (const std::vector<double>& point : points) other.begin_at_point(point);
       (void)other.run();
       other.verify(verified_);
@@ -430,18 +396,18 @@ class SearchBeyondModes {
   // Returns false if no time is left.
   bool begin(std::string what, long evaluations, double end) {
     own_.max_evaluations = std::max(evaluations, 1L);
-    own_.max_seconds = end * options_.max_seconds - seconds_();
+    own_.max_seconds = budget_.seconds_left(end);
     own_.on_evaluation = [this, what = std::move(what), begun = evaluations_](const Evaluation&, const OptimizeProgress&) {
       ++evaluations_;
       if (!options_.on_preparation) return;
       const double searched = static_cast<double>(evaluations_ - begun) / static_cast<double>(own_.max_evaluations);
-      options_.on_preparation(what, std::max(searched, seconds_() / (end_of_worst * options_.max_seconds)));
+      options_.on_preparation(what, std::max(searched, budget_.elapsed() / (end_of_worst * budget_.seconds())));
     };
-    return own_.max_seconds > 0 && (options_.stop == nullptr || !*options_.stop);
+    return own_.max_seconds > 0 && !budget_.interrupted();
   }
 
   const OptimizeOptions& options_;
-  std::function<double()> seconds_;
+  SearchBudget& budget_;
   OptimizeOptions own_ = options_;
   Verification& verified_;
   long evaluations_ = 0;
@@ -495,14 +461,8 @@ void fit_nominal_budget(const SearchSetting& setting, OptimizeOptions& options) 
 
 OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& asked) {
   OptimizeOptions options = asked;
-  // The caller's memory may exist only from now on.
-  options.on_start = [&](const FamilyColumns& columns) {
-    if (asked.on_start) asked.on_start(columns);
-    options.memory = asked.memory;
-  };
   static_cast<void>(optimizer_description(options.optimizer));  // throws for an unknown name
-  auto begin = std::chrono::steady_clock::now();
-  const auto seconds = [&begin] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
+  SearchBudget budget({.seconds = options.max_seconds, .stop = options.stop});
   const std::vector<SearchSetting> settings =
       search_settings(file, options.target, options.actuator, options.family,
                       {.stop = options.stop, .progress = options.on_preparation}, options.conditions, options.own_waveforms);
@@ -512,11 +472,13 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& asked) {
   const std::vector<SearchSetting> gentle = with_gentle_edges(settings, options.actuator, options.family, options.own_waveforms);
   const bool is_gentle = begins_gently(gentle, options.starts);
   const bool may_go_on = !with_more_modes(setting.given.scene.device).empty();
-  const double max_seconds =
-      std::max((may_go_on ? end_of_search : end_of_worst) * options.max_seconds - seconds(), options.max_seconds / 4);
-  const auto started = std::chrono::steady_clock::now();
-  Search search(is_gentle ? gentle : settings, options, max_seconds);
-  begin += std::chrono::steady_clock::now() - started;  // the budget excludes the time of on_start
+  const std::vector<SearchSetting>& searched = is_gentle ? gentle : settings;
+  budget.leave_out([&] {
+    if (options.on_start) options.on_start(searched_columns(searched, options.family));
+  });
+  options.memory = asked.memory;  // the caller's memory may exist only from now on
+  Search search(searched, options, budget,
+                std::max(budget.seconds_left(may_go_on ? end_of_search : end_of_worst), budget.seconds() / 4));
   search.begin();
   OptimizeResult result{.scene = setting.given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline};
   result.baseline_cost = setting.baseline_cost;
@@ -527,9 +489,9 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& asked) {
   if (options.keep_tried) result.tried = search.tried();
   result.family = result.families.front().family;  // name for a result without winner
   result.variables = setting.space.variables();
-  SearchBeyondModes beyond(options, seconds, verified);
+  SearchBeyondModes beyond(options, budget, verified);
   result.evaluations_of_modes = is_gentle ? beyond.sift(search, gentle) : beyond.go_on(search, settings, gentle);
-  if (options.stop != nullptr && *options.stop) result.search.termination = Termination::interrupted;
+  if (budget.interrupted()) result.search.termination = Termination::interrupted;
   verified.move_to(result);
   result.prefix = prefix_of(options.family, result.family);
   return result;

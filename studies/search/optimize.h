@@ -90,7 +90,7 @@ struct OptimizeOptions {
   std::function<void(const SearchEstimate&)> on_estimate = {};
   /// Called under a lock after every evaluation.
   std::function<void(const Evaluation&, const OptimizeProgress&)> on_evaluation = {};
-  /// Called under the same lock during a search that is not on record, as on a part of the devices.
+  /// Called under the same lock after an evaluation that on_evaluation does not report: one on a part of the devices.
   std::function<void(const OptimizeProgress&)> on_progress = {};
   /// Called under the same lock at every improvement that touches, with the scene file that gives it. The first may be the
   /// scene's own waveform, or one of `starts`, before the search. Their index is given_index, and x is empty if the searched

@@ -16,10 +16,9 @@ struct Pace {
 };
 
 /// Searches at a pace. `setting` is that of a quasi-static family; `aim` is the aim of the whole search, whose free time is
-/// that of the plain step. None if no such waveform is within the limits, or the search was stopped before it had tried one.
-/// Closings count as those of RaceOptions. Its memory, seed, jobs, stop, out_of_time, progress and on_stage are used, and
-/// `closings` over that of a usual race.
+/// that of the plain step. None if no such waveform is within the limits, or the budget was over before it had tried one. The
+/// closings of `options` scale those of the search, as those of a race.
 [[nodiscard]] std::optional<Racer> search_at_pace(const SearchSetting& setting, const Pace& pace, const RobustCost& cost,
-                                                  const RobustAim& aim, const RaceOptions& options, std::atomic<long>& closings);
+                                                  const RobustAim& aim, SearchBudget& budget, const RaceOptions& options);
 
 }  // namespace softland

@@ -1,281 +1,220 @@
 #include "studies/search/race.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <set>
 #include <utility>
 
 #include "base/executor.h"
 #include "base/random.h"
-#include "optimizers/sobol.h"
 #include "studies/devices/robustness.h"
-#include "studies/search/device_chain.h"
+#include "studies/search/tournament.h"
 
 namespace softland {
 namespace {
 
 using Point = std::vector<double>;
-constexpr double without_limit = std::numeric_limits<double>::infinity();
 
-struct Rung {
-  std::size_t devices;
-  long closings;  // closings of each search, for a race of the default length
-  double step;    // first step, as a part of the box
-};
-constexpr std::array rungs{Rung{32, 2000, 0.15}, Rung{64, 6000, 0.08}, Rung{128, 10'000, 0.03}};
-constexpr Rung last_again{128, 8000, 0.03};
-constexpr std::size_t most_again = 2;
-constexpr std::size_t finalists = 3;
+// Rounds, and their closings for each search of a race of the default length. The last two search the winner again.
+constexpr std::array race_rounds{Round{.devices = 32, .closings = 2000, .step = 0.15},
+                                 Round{.devices = 64, .closings = 6000, .step = 0.08},
+                                 Round{.contenders = 3, .devices = 128, .closings = 10'000, .step = 0.03},
+                                 Round{.contenders = 1, .devices = 128, .closings = 8000, .step = 0.03},
+                                 Round{.contenders = 1, .devices = 128, .closings = 8000, .step = 0.03}};
+constexpr std::size_t usual_rounds = 3;
 constexpr double enough_land = 0.25, many_land = 0.4;  // bounce-free shares that rank, and go on, by the share
 constexpr double worth_going_on = 0.01;                // least gain in the bounce-free share
 constexpr double population_by_share = 2, longer_where_many_land = 1.7;
-constexpr std::size_t scouting_devices = 16;
+constexpr std::size_t first_devices = 16;  // devices for which the starts are tried
 constexpr std::uint64_t box_points = 32;
 
-// One search of the race in progress.
-struct Runner {
-  std::size_t family = 0;
-  bool by_share = false;
-  Point x;
-  long closings = 0;
-  std::vector<DeviceOutcome> outcomes = {};  // outcomes on the devices of its judging
-  double bounce_free = 0, tail = without_limit, share = without_limit;
-};
+// Returns the closings of the rounds from `first` on, until before `last`.
+double closings_of_rounds(std::size_t first, std::size_t last) {
+  double all = 0;
+  for (std::size_t k = first; k < last; ++k) all += race_rounds[k].closings;
+  return all;
+}
 
 class Race {
  public:
-  Race(const std::vector<SearchSetting>& settings, std::size_t first_family, const RobustCost& cost, const RaceAims& aims,
+  Race(const std::vector<SearchSetting>& settings, const RobustCost& cost, const RaceAims& aims, SearchBudget& budget,
        const RaceOptions& options)
-      : settings_(settings), first_family_(first_family), cost_(cost), aims_(aims), options_(options) {}
+      : settings_(settings), cost_(cost), aims_(aims), options_(options), budget_(budget, options.closings) {}
 
-  RaceResult run(std::vector<Runner> runners, const std::vector<DriveWaveforms>& begun, bool all_rungs) {
-    const double length = static_cast<double>(options_.closings) / static_cast<double>(race_closings);
-    RaceResult result;
-    if (length < least_length_of_race) return result;
-    long planned = 0;
-    for (const Rung& rung : rungs) planned += rung.closings;
-    alone_ = all_rungs;
-    const double longer = alone_ || options_.are_a_budget ? length : longer_where_many_land * length;
-    planned_ = all_rungs ? length * static_cast<double>(planned) : static_cast<double>(options_.closings);
-    planned_ += static_cast<double>(scouting_of(runners, begun));
-    begin(runners, begun);
-    std::erase_if(runners, [](const Runner& r) { return r.x.empty(); });
-    bool many = false;
-    for (std::size_t k = 0; k < rungs.size() && !runners.empty() && !over(); ++k) {
-      search(runners, rungs[k], many ? longer : length, k);
-      many = judge(runners, rungs[std::min(k + 1, rungs.size() - 1)].devices, k == 0 ? enough_land : many_land);
-      if (k > 0) add(result, runners);
-      if (k == 0 && many) {
-        planned_ = static_cast<double>(closings_) + longer / length * (planned_ - static_cast<double>(closings_));
-        if (!all_rungs) planned_ += static_cast<double>(most_again * last_again.closings) * longer;
-      }
-      if (all_rungs) continue;
-      runners = k == 0 ? survivors(std::move(runners), many) : best(std::move(runners), many);
-      if (options_.on_stage && k + 1 < rungs.size() && !over()) options_.on_stage(racer(leading(runners, many)));
-      if (many) continue;
-      for (Runner& r : runners) r.by_share = false;
-    }
-    if (runners.empty() || all_rungs) return finished(std::move(result));
-    runners.resize(1);
-    for (std::size_t again = 0; many && again < most_again && !over(); ++again) {
-      const double before = runners[0].bounce_free;
-      search(runners, last_again, longer, rungs.size() + again);
-      judge(runners, last_again.devices, many_land);
-      add(result, runners);
-      if (!(runners[0].bounce_free > before + worth_going_on)) break;
-    }
-    return finished(std::move(result));
+  /// Races the searches, or runs a single one through all usual rounds.
+  RaceResult run(std::vector<Racer> racers, const std::vector<DriveWaveforms>& begun, bool alone) {
+    alone_ = alone;
+    length_ = static_cast<double>(options_.closings) / static_cast<double>(race_closings);
+    if (length_ < least_length_of_race) return {};
+    longer_ = alone || options_.are_a_budget ? length_ : longer_where_many_land * length_;
+    if (alone) budget_.allow(std::lround(length_ * closings_of_rounds(0, usual_rounds)));
+    begin(racers, begun);
+    std::erase_if(racers, [](const Racer& r) { return r.x.empty(); });
+    const auto share = [this](const Round& round, std::size_t) {
+      return RoundShare{static_cast<long>((many_ ? longer_ : length_) * round.closings), budget_.seconds_left()};
+    };
+    const Tournament<Racer> tournament{
+        .budget = budget_,
+        .jobs = options_.jobs,
+        .share = share,
+        .search = [this](Racer& r, Turn turn, const Chain& chain, SearchBudget& part) { search(r, turn.round, chain, part); },
+        .select = [this](std::vector<Racer> all, std::size_t k) { return select(std::move(all), k); }};
+    tournament.run(race_rounds, std::move(racers));
+    std::ranges::reverse(result_.racers);
+    result_.closings = budget_.taken();
+    return std::move(result_);
   }
 
  private:
-  [[nodiscard]] bool over() const {
-    return (options_.stop != nullptr && *options_.stop) || (options_.out_of_time && options_.out_of_time());
-  }
-  [[nodiscard]] const SearchSetting& setting(const Runner& r) const { return settings_[r.family]; }
-  [[nodiscard]] const RobustAim& aim(const Runner& r) const { return r.by_share ? aims_.share : aims_.tail; }
-  [[nodiscard]] std::uint64_t seed_of(std::size_t rung, const Runner& r) const {
-    return random_bits(options_.seed, Stream::race, 1000 * rung + 2 * r.family + (r.by_share ? 1 : 0));
-  }
+  [[nodiscard]] const SearchSetting& setting(const Racer& r) const { return settings_[r.family]; }
+  [[nodiscard]] const RobustAim& aim(const Racer& r) const { return r.by_share ? aims_.share : aims_.tail; }
   // Identifies the devices and the aim in the memory.
-  [[nodiscard]] std::uint64_t identity(const Runner& r) const {
+  [[nodiscard]] std::uint64_t identity(const Racer& r) const {
     return random_bits(options_.seed, Stream::race, r.by_share ? 1 : 0);
   }
 
-  void took(long closings) {
-    const long all = closings_ += closings;
-    if (options_.progress) options_.progress(std::min(1.0, static_cast<double>(all) / planned_));
-  }
-
-  // Returns the closings that the starts take.
-  [[nodiscard]] std::size_t scouting_of(const std::vector<Runner>& runners, const std::vector<DriveWaveforms>& begun) const {
-    std::set<std::size_t> families;
-    for (const Runner& r : runners) families.insert(r.family);
-    std::size_t starts = 0;
-    for (const std::size_t family : families) starts += starts_of(family, begun).size();
-    return scouting_devices * starts;
+  void tell() const {
+    if (options_.progress) options_.progress(budget_.share_taken());
   }
 
   // Begins every search at the best of many starts, by its measure.
-  void begin(std::vector<Runner>& runners, const std::vector<DriveWaveforms>& begun) {
-    std::set<std::size_t> families;
-    for (const Runner& r : runners) families.insert(r.family);
-    for (const std::size_t family : families) {
-      const std::vector<Point> starts = starts_of(family, begun);
-      std::vector<std::vector<DeviceOutcome>> outcomes(starts.size());
+  void begin(std::vector<Racer>& racers, const std::vector<DriveWaveforms>& begun) {
+    std::map<std::size_t, std::vector<Point>> starts;  // starts of each family
+    for (const Racer& r : racers) {
+      if (starts.contains(r.family)) continue;
+      std::vector<Point>& own = starts[r.family] = starting_points(setting(r), begun);
+      std::ranges::move(points_of_box(setting(r).space.variables(), options_.seed, box_points), std::back_inserter(own));
+      budget_.allow(budget_.left() + static_cast<long>(first_devices * own.size()));
+    }
+    for (const auto& [family, points] : starts) {
+      std::vector<std::vector<DeviceOutcome>> outcomes(points.size());
       run_tasks(
-          starts.size(), options_.jobs, [&](std::size_t i) { outcomes[i] = closed(family, starts[i], scouting_devices, 1); },
-          options_.stop);
-      for (Runner& r : runners) {
+          points.size(), options_.jobs,
+          [&](std::size_t i) { outcomes[i] = closed(settings_[family], points[i], first_devices, 1); }, budget_.stop());
+      for (Racer& r : racers) {
         if (r.family != family) continue;
-        double least = without_limit;
-        for (std::size_t i = 0; i < starts.size(); ++i) {
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < points.size(); ++i) {
           if (outcomes[i].empty()) continue;
           const double value = cost_.value(outcomes[i], aim(r));
-          if (value < least) least = value, r.x = starts[i];
+          if (value < least) least = value, r.x = points[i];
         }
       }
     }
   }
 
-  [[nodiscard]] std::vector<Point> starts_of(std::size_t family, const std::vector<DriveWaveforms>& begun) const {
-    const SearchSpace& space = settings_[family].space;
-    const std::vector<Variable> variables = space.variables();
-    std::vector<Point> all = space.starts();
-    if (const auto given = space.parameters(settings_[family].given.drives.waveforms())) all.push_back(*given);
-    for (const auto& waveforms : begun) {
-      if (space.misfit(waveforms).empty()) all.push_back(space.nearest(waveforms));
-    }
-    for (Point u : internal::sobol_points(options_.seed, variables.size(), 0, box_points)) {
-      for (std::size_t i = 0; i < u.size(); ++i) u[i] = variables[i].lower + u[i] * (variables[i].upper - variables[i].lower);
-      all.push_back(std::move(u));
-    }
-    return all;
-  }
-
   // Returns the outcomes; empty if a driver cannot give the waveform.
-  std::vector<DeviceOutcome> closed(std::size_t family, const Point& x, std::size_t devices, int jobs) {
-    const SearchSetting& own = settings_[family];
+  std::vector<DeviceOutcome> closed(const SearchSetting& own, const Point& x, std::size_t devices, int jobs) {
     const DriveWaveforms searched = own.space.waveforms(x);
     if (!own.is_allowed(searched)) return {};
     std::vector<DeviceOutcome> outcomes = cost_.close(own.drives(searched), 0, std::min(devices, cost_.devices()), jobs);
-    took(static_cast<long>(outcomes.size()));
+    budget_.took(static_cast<long>(outcomes.size()));
+    tell();
     return outcomes;
   }
 
-  void search(std::vector<Runner>& runners, const Rung& rung, double length, std::size_t number) {
-    run_tasks(
-        runners.size(), options_.jobs,
-        [&](std::size_t i) {
-          Runner& r = runners[i];
-          const StagedCost staged(setting(r), cost_, aim(r), options_.memory, identity(r));
-          const std::size_t devices = std::min(rung.devices, cost_.devices());
-          const double before = staged.tried(r.x, devices, without_limit, options_.jobs).cost;
-          const ChainEnd end = search_chain(staged, setting(r).space.variables(),
-                                            {.start = r.x,
-                                             .devices = devices,
-                                             .closings = static_cast<long>(length * static_cast<double>(rung.closings)),
-                                             .step = rung.step,
-                                             .population = r.by_share && !alone_ ? population_by_share : 1,
-                                             .seed = seed_of(number, r),
-                                             .jobs = options_.jobs},
-                                            [&](const Point&, double, long closings) {
-                                              if (over()) return true;  // the callback may throw from here on
-                                              took(closings);
-                                              return over();
-                                            });
-          r.closings += end.closings;
-          if (end.cost < before) r.x = end.x;
-        },
-        options_.stop);
+  void search(Racer& r, std::size_t round, Chain chain, SearchBudget& part) const {
+    const StagedCost staged(setting(r), cost_, aim(r), options_.memory, identity(r));
+    chain.population = r.by_share && !alone_ ? population_by_share : 1;
+    chain.seed = random_bits(options_.seed, Stream::race, 1000 * round + 2 * r.family + (r.by_share ? 1 : 0));
+    r.closings += improve(r.x, staged, chain, part, [this] { tell(); }).searched;
   }
 
-  // Judges every search on so many devices. Returns true if any lands at least `share` of them.
-  bool judge(std::vector<Runner>& runners, std::size_t devices, double share) {
-    run_tasks(
-        runners.size(), options_.jobs,
-        [&](std::size_t i) {
-          Runner& r = runners[i];
-          r.outcomes = closed(r.family, r.x, devices, options_.jobs);
-          r.bounce_free =
-              static_cast<double>(std::ranges::count_if(r.outcomes, is_bounce_free)) / static_cast<double>(r.outcomes.size());
-          r.tail = cost_.value(r.outcomes, aims_.tail);
-          r.share = cost_.value(r.outcomes, aims_.share);
-        },
-        options_.stop);
-    return std::ranges::any_of(runners, [&](const Runner& r) { return r.bounce_free >= share; });
+  // Judges the searches after round `k`, and returns those that go on.
+  std::vector<Racer> select(std::vector<Racer> racers, std::size_t k) {
+    const double before = racers.front().bounce_free;
+    judge(racers, race_rounds[std::min(k + 1, race_rounds.size() - 1)].devices);
+    if (k > 0)
+      std::ranges::transform(racers, std::back_inserter(result_.racers), [this](const Racer& r) { return described(r); });
+    if (k >= usual_rounds) return racers.front().bounce_free > before + worth_going_on ? racers : std::vector<Racer>();
+    many_ = std::ranges::any_of(racers, [&](const Racer& r) { return r.bounce_free >= (k == 0 ? enough_land : many_land); });
+    if (k == 0 && many_) plan_longer();
+    if (!alone_) racers = k == 0 ? survivors(std::move(racers)) : best(std::move(racers), race_rounds[k + 1].contenders);
+    if (k + 1 == usual_rounds) return many_ && !alone_ ? racers : std::vector<Racer>();
+    if (alone_) return racers;
+    if (options_.on_stage && !budget_.over()) options_.on_stage(described(*std::ranges::min_element(racers, {}, rank_by(many_))));
+    for (Racer& r : racers) r.by_share = r.by_share && many_;
+    return racers;
   }
+
+  // Plans the closings of longer rounds, and of those that search the winner again.
+  void plan_longer() {
+    const double again = alone_ ? 0 : closings_of_rounds(usual_rounds, race_rounds.size());
+    const double left = longer_ / length_ * static_cast<double>(budget_.left()) + longer_ * again;
+    budget_.allow(budget_.taken() + std::lround(left));
+  }
+
+  // Judges every search on so many devices.
+  void judge(std::vector<Racer>& racers, std::size_t devices) {
+    run_tasks(
+        racers.size(), options_.jobs,
+        [&](std::size_t i) {
+          Racer& r = racers[i];
+          const std::vector<DeviceOutcome> outcomes = closed(setting(r), r.x, devices, options_.jobs);
+          r.bounce_free =
+              static_cast<double>(std::ranges::count_if(outcomes, is_bounce_free)) / static_cast<double>(outcomes.size());
+          r.tail = cost_.value(outcomes, aims_.tail);
+          r.share = cost_.value(outcomes, aims_.share);
+        },
+        budget_.stop());
+  }
+
+  // Returns the cost that ranks the searches.
+  static double Racer::*rank_by(bool share) { return share ? &Racer::share : &Racer::tail; }
 
   // Returns the best search of every family, and the best of the others by the other criterion.
-  static std::vector<Runner> survivors(std::vector<Runner> runners, bool by_share) {
-    sort(runners, by_share);
-    std::vector<Runner> kept, others;
+  [[nodiscard]] std::vector<Racer> survivors(std::vector<Racer> racers) const {
+    std::ranges::stable_sort(racers, {}, rank_by(many_));
+    std::vector<Racer> kept, others;
     std::set<std::size_t> families;
-    for (Runner& r : runners) (families.insert(r.family).second ? kept : others).push_back(std::move(r));
-    sort(others, !by_share);
-    if (!others.empty()) kept.push_back(std::move(others.front()));
+    for (Racer& r : racers) (families.insert(r.family).second ? kept : others).push_back(std::move(r));
+    if (!others.empty()) kept.push_back(*std::ranges::min_element(others, {}, rank_by(!many_)));
     return kept;
   }
 
-  static std::vector<Runner> best(std::vector<Runner> runners, bool by_share) {
-    sort(runners, by_share);
-    runners.resize(std::min(runners.size(), finalists));
-    return runners;
+  [[nodiscard]] std::vector<Racer> best(std::vector<Racer> racers, std::size_t count) const {
+    std::ranges::stable_sort(racers, {}, rank_by(many_));
+    racers.resize(std::min(racers.size(), count));
+    return racers;
   }
 
-  static void sort(std::vector<Runner>& runners, bool by_share) {
-    std::ranges::stable_sort(runners, {}, [by_share](const Runner& r) { return by_share ? r.share : r.tail; });
-  }
-
-  [[nodiscard]] Racer racer(const Runner& r) const {
-    return {.family = first_family_ + r.family,
-            .measure = aim(r).measure.text,
-            .x = r.x,
-            .waveforms = setting(r).space.waveforms(r.x),
-            .closings = r.closings,
-            .bounce_free = r.bounce_free,
-            .tail = r.tail,
-            .share = r.share};
-  }
-
-  static const Runner& leading(const std::vector<Runner>& runners, bool by_share) {
-    return *std::ranges::min_element(runners, {}, [by_share](const Runner& r) { return by_share ? r.share : r.tail; });
-  }
-
-  void add(RaceResult& result, const std::vector<Runner>& runners) const {
-    for (const Runner& r : runners) result.racers.push_back(racer(r));
-  }
-
-  RaceResult finished(RaceResult result) {
-    std::ranges::reverse(result.racers);
-    result.closings = closings_;
-    return result;
+  [[nodiscard]] Racer described(Racer r) const {
+    r.measure = aim(r).measure.text;
+    r.waveforms = setting(r).space.waveforms(r.x);
+    return r;
   }
 
   const std::vector<SearchSetting>& settings_;
-  std::size_t first_family_;
   const RobustCost& cost_;
   const RaceAims& aims_;
   const RaceOptions& options_;
-  bool alone_ = false;  // a single search, not a race
-  std::atomic<long> closings_ = 0;
-  double planned_ = 1;
+  SearchBudget budget_;             // its closings are those that are planned
+  double length_ = 1, longer_ = 1;  // length over the default one, and where many devices land
+  bool alone_ = false;              // a single search, not a race
+  bool many_ = false;               // many devices land
+  RaceResult result_;
 };
 
 }  // namespace
 
-RaceResult race(const std::vector<SearchSetting>& settings, const RobustCost& cost, const RaceAims& aims,
+RaceResult race(const std::vector<SearchSetting>& settings, const RobustCost& cost, const RaceAims& aims, SearchBudget& budget,
                 const RaceOptions& options, const std::vector<DriveWaveforms>& begun) {
-  std::vector<Runner> runners;
+  std::vector<Racer> racers;
   for (std::size_t family = 0; family < settings.size(); ++family) {
-    for (const bool by_share : {false, true}) runners.push_back({.family = family, .by_share = by_share, .x = {}});
+    for (const bool by_share : {false, true}) racers.push_back({.family = family, .by_share = by_share});
   }
-  return Race(settings, 0, cost, aims, options).run(std::move(runners), begun, false);
+  return Race(settings, cost, aims, budget, options).run(std::move(racers), begun, false);
 }
 
 RaceResult race_alone(const SearchSetting& setting, std::size_t family, const RobustCost& cost, const RaceAims& aims,
-                      bool by_share, const std::vector<DriveWaveforms>& begun, const RaceOptions& options) {
+                      bool by_share, const std::vector<DriveWaveforms>& begun, SearchBudget& budget, const RaceOptions& options) {
   const std::vector<SearchSetting> settings{setting};
-  return Race(settings, family, cost, aims, options).run({{.by_share = by_share, .x = {}}}, begun, true);
+  RaceResult found = Race(settings, cost, aims, budget, options).run({{.by_share = by_share}}, begun, true);
+  for (Racer& r : found.racers) r.family = family;
+  return found;
 }
 
 }  // namespace softland

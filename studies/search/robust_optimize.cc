@@ -4,49 +4,42 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
-#include <mutex>
 #include <utility>
 
 #include "base/executor.h"
 #include "base/random.h"
 #include "base/require.h"
-#include "optimizers/sobol.h"
 #include "studies/closing/plain_step.h"
-#include "studies/search/device_chain.h"
+#include "studies/search/evaluation_log.h"
 #include "studies/search/search_work.h"
+#include "studies/search/tournament.h"
 
 namespace softland {
 namespace {
 
 constexpr int nominal_searches = 2;
 constexpr std::size_t winners_taken = 4;  // winners of each of these searches
-constexpr double scouting_time = 0.05;    // share of a budget of time, for each search on the nominal device
+constexpr double nominal_time = 0.05;     // share of a budget of time, for each search on the nominal device
 constexpr std::uint64_t selection_devices = 512;
 constexpr double apart = 0.08;  // least distance of starts, as a part of the box
 
-constexpr std::size_t all_devices = std::numeric_limits<std::size_t>::max();
-
-// Effort for finding starts, by the budget.
-struct Scouting {
+// The effort of finding starts, by the budget.
+struct StartRound {
   long nominal_evaluations;  // evaluations of each search on the nominal device
   std::uint64_t box_points;
-  std::size_t raced;  // starts that are tried on more than the first devices
+  std::size_t contenders;  // starts that are tried on more than the first devices
 };
-Scouting scouting(long budget) {
+StartRound start_round(long budget) {
   return {.nominal_evaluations = std::clamp(budget / 50, 1L, 1000L),
           .box_points = static_cast<std::uint64_t>(std::clamp(budget / 400, 0L, 64L)),
-          .raced = static_cast<std::size_t>(std::clamp(budget / 2000, 1L, 24L))};
+          .contenders = static_cast<std::size_t>(std::clamp(budget / 2000, 1L, 24L))};
 }
 
-struct Heat {
-  std::size_t searches;
-  std::size_t devices;  // most devices of a search
-  double share;         // share of the budget
-  double step;          // first step, as a part of the box
-};
-constexpr std::array heats{Heat{6, 32, 0.4, 0.15}, Heat{2, all_devices, 0.35, 0.06}, Heat{1, all_devices, 0.25, 0.025}};
+// Closings are shares of the budget that is left after the starts.
+constexpr std::array robust_rounds{Round{.contenders = 6, .devices = 32, .closings = 0.4, .step = 0.15},
+                                   Round{.contenders = 2, .closings = 0.35, .step = 0.06},
+                                   Round{.contenders = 1, .closings = 0.25, .step = 0.025}};
 
 using Point = std::vector<double>;
 
@@ -85,101 +78,67 @@ class RobustSearch {
  public:
   /// `step_cost` is that of the plain step, for the progress.
   RobustSearch(const SearchSetting& setting, const RobustCost& cost, const RobustAim& aim, const OptimizeOptions& options,
-               const std::function<double()>& clock, double step_cost)
+               std::function<double()> clock, double step_cost)
       : setting_(setting),
         cost_(cost),
         options_(options),
         staged_(setting, cost, aim, options.memory, options.seed),
-        scouting_(scouting(options.max_evaluations)),
+        starts_(start_round(options.max_evaluations)),
         variables_(setting.space.variables()),
-        clock_(clock),
-        begin_(clock()) {
-    progress_.baseline_cost = step_cost;
-  }
+        budget_({.evaluations = options.max_evaluations,
+                 .seconds = options.max_seconds,
+                 .stop = options.stop,
+                 .clock = std::move(clock)}),
+        log_(options, budget_, step_cost, [&setting](const Evaluation& e) { return setting.scene_at(e.x); }) {}
 
   // Returns the best points of all rounds, the best first; empty if nothing was feasible.
   std::vector<Candidate> run() {
-    std::vector<Candidate> leaders = first_leaders();
-    std::vector<Candidate> found = leaders;
-    const auto left = static_cast<double>(options_.max_evaluations - closings_);
-    double shares_left = 0;
-    for (const Heat& heat : heats) shares_left += heat.share;
-    for (const Heat& heat : heats) {
-      if (over() || leaders.empty()) break;
-      leaders.resize(std::min(leaders.size(), heat.searches));
-      if (static_cast<long>(heat.share * left) < static_cast<long>(leaders.size())) break;
-      heat_end_ = elapsed() + (options_.max_seconds - elapsed()) * heat.share / shares_left;
-      shares_left -= heat.share;
-      const std::vector<Candidate> ends = search_from(leaders, heat, static_cast<long>(heat.share * left));
-      found.insert(found.end(), ends.begin(), ends.end());
-      // The best go on, from whichever round.
-      std::vector<Candidate> all = ends;
-      all.insert(all.end(), leaders.begin(), leaders.end());
-      std::stable_sort(all.begin(), all.end(), is_better);
-      leaders = best_apart(all, heat.searches, variables_);
-    }
-    std::erase_if(found, [](const Candidate& c) { return !std::isfinite(c.value); });
-    std::stable_sort(found.begin(), found.end(), is_better);
-    return found;
+    leaders_ = found_ = first_leaders();
+    left_ = static_cast<double>(budget_.left());
+    for (const Round& round : robust_rounds) shares_left_ += round.closings;
+    const Tournament<Candidate> tournament{
+        .budget = budget_,
+        .jobs = options_.jobs,
+        .share = [this](const Round& round, std::size_t contenders) { return share(round, contenders); },
+        .search = [this](Candidate& c, Turn turn, const Chain& chain, SearchBudget& part) { search(c, turn, chain, part); },
+        .select = [this](const std::vector<Candidate>& ends, std::size_t k) { return select(ends, k); }};
+    tournament.run(robust_rounds, leaders_);
+    std::erase_if(found_, [](const Candidate& c) { return !std::isfinite(c.value); });
+    std::stable_sort(found_.begin(), found_.end(), is_better);
+    return found_;
   }
 
-  [[nodiscard]] long closings() const { return closings_; }
+  [[nodiscard]] long closings() const { return budget_.taken(); }
   /// Number of evaluations on all devices, or on as many of them as it took to give a candidate up.
-  [[nodiscard]] long evaluations() const { return static_cast<long>(log_.size()); }
-  [[nodiscard]] std::vector<Evaluation> improvements() const {
-    std::vector<Evaluation> all;
-    for (const auto& [index, e] : log_) {
-      if (all.empty() || e.value < all.back().value) all.push_back(e);
-    }
-    return all;
-  }
+  [[nodiscard]] long evaluations() const { return static_cast<long>(log_.evaluations().size()); }
+  [[nodiscard]] std::vector<Evaluation> improvements() const { return improvements_of(log_.evaluations()); }
   [[nodiscard]] Termination termination() const {
-    if (interrupted()) return Termination::interrupted;
-    if (out_of_time()) return Termination::time_budget;
-    return log_.empty() ? Termination::no_feasible_point : Termination::evaluation_budget;
+    if (budget_.interrupted()) return Termination::interrupted;
+    if (budget_.out_of_time()) return Termination::time_budget;
+    return evaluations() == 0 ? Termination::no_feasible_point : Termination::evaluation_budget;
   }
 
  private:
-  [[nodiscard]] bool interrupted() const { return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed); }
-  [[nodiscard]] double elapsed() const { return clock_() - begin_; }
-  [[nodiscard]] bool out_of_time() const { return elapsed() > options_.max_seconds; }
-  [[nodiscard]] bool over() const { return interrupted() || out_of_time(); }
-
-  // Notes an evaluation on all devices; `index` orders them whatever the threads.
-  void note(long index, const Point& x, double value) {
-    const std::scoped_lock lock(mutex_);
-    const Evaluation e{.index = index, .value = value, .x = x};
-    log_.emplace(index, e);
-    const bool improves = std::isfinite(value) && !(progress_.best_cost <= value);
-    if (improves) progress_.best_cost = value;
-    progress_.evaluations = closings_;
-    if (options_.on_evaluation) options_.on_evaluation(e, progress_);
-    if (!improves || !options_.on_improvement) return;
-    if (const auto waveforms = setting_.space.waveforms(x); can_be_written(waveforms))
-      options_.on_improvement(e, setting_.scene(waveforms));
-  }
-
-  void tell() {
-    if (!options_.on_progress) return;
-    const std::scoped_lock lock(mutex_);
-    progress_.evaluations = closings_;
-    options_.on_progress(progress_);
+  // Notes a candidate that was tried on all devices, and only tells that another one was tried.
+  void note(bool on_all, long index, const Point& x, double value) {
+    if (on_all) return log_.note({.index = index, .value = value, .x = x});
+    log_.tell();
   }
 
   // Finds waveforms that land the nominal device.
   std::vector<Point> nominal_winners() {
     std::vector<Point> all;
-    for (int k = 0; k < nominal_searches && !over(); ++k) {
+    for (int k = 0; k < nominal_searches && !budget_.over(); ++k) {
       const OptimizerResult found =
           minimize({.variables = variables_,
                     .objective = [&](std::span<const double> x) { return setting_.price_at(x, options_.memory).leading; },
                     .starts = setting_.space.starts()},
-                   {.max_evaluations = scouting_.nominal_evaluations,
-                    .max_seconds = std::max(1e-3, scouting_time * options_.max_seconds),
+                   {.max_evaluations = starts_.nominal_evaluations,
+                    .max_seconds = std::max(1e-3, nominal_time * options_.max_seconds),
                     .seed = fresh_seed(options_.seed, 10 + static_cast<std::uint64_t>(k)),
                     .jobs = options_.jobs,
                     .stop = options_.stop});
-      closings_ += found.evaluations;
+      budget_.took(found.evaluations);
       const std::vector<Evaluation>& best = found.improvements;
       for (std::size_t i = 0; i < std::min(winners_taken, best.size()); ++i) all.push_back(best[best.size() - 1 - i].x);
     }
@@ -188,16 +147,15 @@ class RobustSearch {
 
   // Finds starts for the first round: the best of many on ever more devices.
   std::vector<Candidate> first_leaders() {
+    std::vector<DriveWaveforms> given;
+    for (const StartingWaveforms& start : options_.starts) given.push_back(start.waveforms);
     std::vector<Candidate> all;
-    const auto add = [&](const Point& x) { all.push_back({.x = x}); };
-    for (const Point& x : setting_.space.starts()) add(x);
-    if (const auto given = setting_.space.parameters(setting_.given.drives.waveforms())) add(*given);
-    for (const StartingWaveforms& start : options_.starts) add(setting_.space.nearest(start.waveforms));
-    for (const Point& x : nominal_winners()) add(x);
-    for (Point u : internal::sobol_points(options_.seed, variables_.size(), 0, scouting_.box_points)) {
-      for (std::size_t i = 0; i < u.size(); ++i) u[i] = variables_[i].lower + u[i] * (variables_[i].upper - variables_[i].lower);
-      add(u);
-    }
+    const auto add = [&](const std::vector<Point>& points) {
+      for (const Point& x : points) all.push_back({.x = x});
+    };
+    add(starting_points(setting_, given));
+    add(nominal_winners());
+    add(points_of_box(variables_, options_.seed, starts_.box_points));
     for (const std::size_t devices :
          {std::min(stages[0], cost_.devices()), std::min(stages[1], cost_.devices()), cost_.devices()}) {
       const std::size_t begun = run_tasks(
@@ -205,82 +163,77 @@ class RobustSearch {
           [&](std::size_t i) {
             const StagedCost::Tried tried = staged_.tried(all[i].x, devices);
             all[i].value = tried.cost;
-            closings_ += tried.closings;
-            devices == cost_.devices() ? note(static_cast<long>(i), all[i].x, all[i].value) : tell();
+            budget_.took(tried.closings);
+            note(devices == cost_.devices(), static_cast<long>(i), all[i].x, all[i].value);
           },
           options_.stop);
       all.resize(begun);
       std::erase_if(all, [](const Candidate& c) { return !std::isfinite(c.value); });
-      const std::size_t kept = std::min(scouting_.raced, devices == stages[0] ? all.size() : 2 * heats[0].searches);
+      const std::size_t kept = std::min(starts_.contenders, devices == stages[0] ? all.size() : 2 * robust_rounds[0].contenders);
       all = best_apart(std::move(all), kept, variables_);
     }
     next_index_ = static_cast<long>(all.size());
-    return best_apart(std::move(all), heats[0].searches, variables_);
+    return best_apart(std::move(all), robust_rounds[0].contenders, variables_);
   }
 
-  // Runs one search from each of the starts, with its share of the closings.
-  std::vector<Candidate> search_from(const std::vector<Candidate>& starts, const Heat& heat, long closings) {
-    const long share = closings / static_cast<long>(starts.size()), block = share + 3;
-    const int inner = std::max(1, options_.jobs / static_cast<int>(starts.size()));
-    const long first_index = next_index_ + 1000;
-    std::vector<Candidate> ends = starts;
-    run_tasks(
-        starts.size(), options_.jobs,
-        [&](std::size_t i) {
-          ends[i] =
-              search_one(starts[i], heat, share, inner, first_index + static_cast<long>(i) * block, 100 + 10 * heats_run_ + i);
-        },
-        options_.stop);
-    next_index_ = first_index + static_cast<long>(starts.size()) * block;
-    ++heats_run_;
-    return ends;
+  // Gives a round its share of the closings and of the time that is left, and its searches an index each to begin with.
+  RoundShare share(const Round& round, std::size_t contenders) {
+    const auto count = static_cast<long>(contenders);
+    const RoundShare each{.closings = static_cast<long>(round.closings * left_) / count,
+                          .seconds = budget_.seconds_left() * round.closings / shares_left_};
+    shares_left_ -= round.closings;
+    first_index_ = next_index_ + 1000;
+    indices_of_search_ = each.closings + 3;
+    next_index_ = first_index_ + count * indices_of_search_;
+    return each;
   }
 
-  Candidate search_one(const Candidate& start, const Heat& heat, long share, int jobs, long index, std::uint64_t number) {
-    const std::size_t devices = std::min(heat.devices, cost_.devices());
-    const auto told = [&](const Point& x, double value, long closings) {
-      closings_ += closings;
-      devices == cost_.devices() ? note(index++, x, value) : tell();
-      return interrupted() || elapsed() > heat_end_;
-    };
-    const ChainEnd end = search_chain(staged_, variables_,
-                                      {.start = start.x,
-                                       .devices = devices,
-                                       .closings = share,
-                                       .step = heat.step,
-                                       .seed = fresh_seed(options_.seed, number),
-                                       .jobs = jobs},
-                                      told);
-    if (devices == cost_.devices()) return end.cost < start.value ? Candidate{.x = end.x, .value = end.cost} : start;
-    Candidate best{.x = end.x.empty() ? start.x : end.x};  // the cost on fewer devices differs
-    const StagedCost::Tried tried = staged_.tried(best.x, cost_.devices(), std::numeric_limits<double>::infinity(), jobs);
-    best.value = tried.cost;
-    closings_ += tried.closings;
-    note(index++, best.x, best.value);
-    return best;
+  // Searches from a candidate, which becomes the end of the search: the better of both, where both were tried on all devices.
+  void search(Candidate& candidate, Turn turn, Chain chain, SearchBudget& part) {
+    long index = first_index_ + static_cast<long>(turn.number) * indices_of_search_;
+    const bool on_all = chain.devices >= cost_.devices();
+    chain.start = candidate.x;
+    chain.seed = fresh_seed(options_.seed, 100 + 10 * turn.round + turn.number);
+    ChainEnd end = search_chain(staged_, chain, part,
+                                [&](const Point& x, double value) { note(on_all, on_all ? index++ : index, x, value); });
+    if (on_all) {
+      if (end.cost < candidate.value) candidate = {.x = std::move(end.x), .value = end.cost};
+      return;
+    }
+    if (!end.x.empty()) candidate.x = std::move(end.x);
+    const StagedCost::Tried tried =
+        staged_.tried(candidate.x, cost_.devices(), std::numeric_limits<double>::infinity(), chain.jobs);
+    candidate.value = tried.cost;
+    part.took(tried.closings);
+    note(true, index, candidate.x, candidate.value);
+  }
+
+  // Returns the best, from whichever round.
+  std::vector<Candidate> select(const std::vector<Candidate>& ends, std::size_t round) {
+    found_.insert(found_.end(), ends.begin(), ends.end());
+    leaders_.insert(leaders_.begin(), ends.begin(), ends.end());
+    leaders_ =
+        best_apart(std::move(leaders_), robust_rounds[std::min(round + 1, robust_rounds.size() - 1)].contenders, variables_);
+    return leaders_;
   }
 
   const SearchSetting& setting_;
   const RobustCost& cost_;
   const OptimizeOptions& options_;
   StagedCost staged_;
-  Scouting scouting_;
+  StartRound starts_;
   std::vector<Variable> variables_;
-  std::function<double()> clock_;
-  double begin_;  // time of the beginning [s]
-  std::atomic<long> closings_ = 0;
-  std::uint64_t heats_run_ = 0;
-  double heat_end_ = 0;  // end of the round in a budget of time, since the beginning [s]
-  long next_index_ = 0;
-
-  std::mutex mutex_;
-  std::map<long, Evaluation> log_;
-  OptimizeProgress progress_;
+  SearchBudget budget_;
+  EvaluationLog log_;
+  std::vector<Candidate> leaders_, found_;  // candidates that go on, and all of the rounds
+  double left_ = 0, shares_left_ = 0;       // closings after the starts, and the shares of the rounds to come
+  long next_index_ = 0;                     // least index that no round has
+  long first_index_ = 0, indices_of_search_ = 0;
 };
 
 // Returns the best of the candidates on devices that none of them was made for.
 Candidate compared(std::vector<Candidate> candidates, const SearchSetting& setting, const RobustCost& others, int jobs) {
-  candidates = best_apart(std::move(candidates), heats[0].searches + 1, setting.space.variables());
+  candidates = best_apart(std::move(candidates), robust_rounds[0].contenders + 1, setting.space.variables());
   Candidate winner = candidates.front();
   double least = std::numeric_limits<double>::infinity();
   for (const Candidate& candidate : candidates) {

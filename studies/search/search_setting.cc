@@ -111,6 +111,11 @@ PreparedScene read_back(const SceneFile& file, const std::string& name, const Pr
 
 SceneFile SearchSetting::scene(const DriveWaveforms& searched) const { return with_waveforms(baseline_scene, searched); }
 
+std::optional<SceneFile> SearchSetting::scene_at(std::span<const double> x) const {
+  const DriveWaveforms searched = space.waveforms(x);
+  return can_be_written(searched) ? std::optional(scene(searched)) : std::nullopt;
+}
+
 PreparedScene SearchSetting::prepared(const DriveWaveforms& searched) const {
   return prepared_with(baseline_scene, searched, given);
 }

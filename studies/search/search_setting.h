@@ -59,6 +59,8 @@ struct SearchSetting {
   /// The scene with these waveforms of the searched drives; the others stand as in the baseline. Throws InvalidInput if a scene
   /// file cannot hold one.
   [[nodiscard]] SceneFile scene(const DriveWaveforms& searched) const;
+  /// The scene at a point; none if a scene file cannot hold its waveforms.
+  [[nodiscard]] std::optional<SceneFile> scene_at(std::span<const double> x) const;
   /// The same ready to run: prepared_with().
   [[nodiscard]] PreparedScene prepared(const DriveWaveforms& searched) const;
   /// One waveform per drive of the switch, in its order.

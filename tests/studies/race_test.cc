@@ -12,6 +12,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/studies/scenes.h"
@@ -26,9 +27,12 @@ class Race : public testing::Test {
       : settings_(search_settings(file, Target::bounce, Actuator::electrostatic, "pulse+catch", {})),
         cost_(settings_.front(), aims_.tail, own_devices(settings_.front(), KnownUnits(), 32, 5, 0, 1, {})) {}
 
-  RaceResult run(RaceOptions options) {
+  RaceResult run(RaceOptions options, BudgetLimits limits = {}) {
     options.closings = race_closings / 4;
-    return race(settings_, cost_, aims_, options);
+    SearchBudget budget(std::move(limits));
+    RaceResult found = race(settings_, cost_, aims_, budget, options);
+    EXPECT_EQ(budget.taken(), found.closings);
+    return found;
   }
   [[nodiscard]] double cost_of(const Racer& racer) const {
     const SearchSetting& setting = settings_[racer.family];
@@ -108,12 +112,13 @@ TEST_F(Race, EndsBetterThanItBegins_optimized) {
 
 TEST_F(Race, EndsWhenItIsAskedTo) {
   std::atomic<bool> stop = true;
-  EXPECT_TRUE(run({.stop = &stop}).racers.empty());
-  EXPECT_TRUE(run({.out_of_time = [] { return true; }}).racers.empty());
+  EXPECT_TRUE(run({}, {.stop = &stop}).racers.empty());
+  EXPECT_TRUE(run({}, {.seconds = 0}).racers.empty());
 }
 
 TEST_F(Race, WithTooFewClosingsIsNotRun) {
-  const RaceResult none = race(settings_, cost_, aims_, {.closings = 1000});
+  SearchBudget budget({});
+  const RaceResult none = race(settings_, cost_, aims_, budget, {.closings = 1000});
   EXPECT_TRUE(none.racers.empty());
   EXPECT_EQ(none.closings, 0);
 }

@@ -116,7 +116,7 @@ TEST(RobustOptimize, OfACalibratedSwitchLandsWhatFixedVoltsCannot_slow) {
   EXPECT_EQ(log.result.verdict->by_knowledge.size(), 7U) << "nothing, each alone, both in 4, 8 and 16 classes, both";
 }
 
-TEST(RobustOptimize, SpendsABudgetOfTimeOnAllOfItsHeats_slow) {
+TEST(RobustOptimize, SpendsABudgetOfTimeOnAllOfItsRounds_slow) {
   // This clock counts its readings, one per evaluation, so that the time limit does not depend on the machine.
   double looks = 0;
   long on_all_devices = 0;
