@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "apps/interrupt.h"
-#include "base/watch.h"
+#include "base/progress.h"
 
 extern char** environ;
 
@@ -103,7 +103,7 @@ void ChildProcess::close_input() {
   pipes_.in = -1;
 }
 
-ChildProcess::Told ChildProcess::tell(std::string_view text, milliseconds patience) {
+ChildProcess::Delivery ChildProcess::tell(std::string_view text, milliseconds patience) {
   constexpr milliseconds check_interval{200};
   const steady_clock::time_point end = steady_clock::now() + patience;
   while (!text.empty()) {
@@ -113,13 +113,13 @@ ChildProcess::Told ChildProcess::tell(std::string_view text, milliseconds patien
       text.remove_prefix(static_cast<std::size_t>(written));
       continue;
     }
-    if (errno != EAGAIN && errno != EINTR) return Told::closed;
+    if (errno != EAGAIN && errno != EINTR) return Delivery::closed;
     const auto left = std::chrono::duration_cast<milliseconds>(end - steady_clock::now());
-    if (left.count() <= 0) return Told::late;
+    if (left.count() <= 0) return Delivery::late;
     pollfd input{.fd = pipes_.in, .events = POLLOUT, .revents = 0};
     ::poll(&input, 1, static_cast<int>(std::min(left, check_interval).count()));
   }
-  return Told::yes;
+  return Delivery::yes;
 }
 
 bool ChildProcess::has_ended(milliseconds patience) {

@@ -22,10 +22,10 @@ class ChildProcess {
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  enum class Told { yes, closed, late };
+  enum class Delivery { yes, closed, late };
   /// Writes to the standard input of the command. Returns `closed` if the pipe has no reader, and `late` if the command did not
   /// read the text within `patience`. Throws Interrupted after a signal to stop.
-  [[nodiscard]] Told tell(std::string_view text, std::chrono::milliseconds patience);
+  [[nodiscard]] Delivery tell(std::string_view text, std::chrono::milliseconds patience);
   /// Reads the next line from the standard output of the command, as LineReader::next() does.
   [[nodiscard]] LineReader::Line next_line(std::chrono::milliseconds patience) { return lines_.next(patience); }
   /// Returns how the command ended, such as "ended with status 3"; empty if it still runs after `patience`.

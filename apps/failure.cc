@@ -7,9 +7,9 @@
 
 #include "apps/exit_status.h"
 #include "base/output_lost.h"
+#include "base/progress.h"
 #include "base/require.h"
 #include "base/shortened.h"
-#include "base/watch.h"
 #include "version.h"
 
 namespace softland::apps {

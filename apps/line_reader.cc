@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "apps/interrupt.h"
-#include "base/watch.h"
+#include "base/progress.h"
 
 namespace softland::apps {
 

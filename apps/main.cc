@@ -120,7 +120,7 @@ int main(int argc, char** argv) {
     return run(argc, argv);
   } catch (...) {
     const Failure failure = failure_of(std::current_exception());
-    say(failure.message);
+    print_note(failure.message);
     return failure.status;
   }
 }

@@ -36,8 +36,8 @@ void check_json_place(const std::string& file, const fs::path& folder) {
   require(!is_output, fmt::format("--json {}: is the standard output of this run; use --json -", file));
 }
 
-std::optional<ResultFolder> claim_places(const Common& c, const std::vector<std::string>& files,
-                                         const std::vector<std::string>& kept) {
+std::optional<ResultFolder> reserve_outputs(const Common& c, const std::vector<std::string>& files,
+                                            const std::vector<std::string>& kept) {
   const bool has_file = !c.json.empty() && c.json != "-";
   std::optional<ResultFolder> folder;
   if (!c.out.empty()) folder.emplace(c.out, "--out " + c.out, c.command, files, kept);
@@ -52,7 +52,7 @@ std::optional<ResultFolder> claim_places(const Common& c, const std::vector<std:
   return folder;
 }
 
-std::string left_in(const fs::path& folder, const std::vector<std::string>& files) {
+std::string files_written(const fs::path& folder, const std::vector<std::string>& files) {
   return "\n" + wrapped(fmt::format("In {}: {}", folder.string(), fmt::join(files, ", "))) + "\n";
 }
 

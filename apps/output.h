@@ -16,11 +16,11 @@ namespace softland::apps {
 /// Reserves the file of --json and the folder of --out for the output of this run. Call it after reading the scene and before
 /// any long computation. The folder, if given, will hold `files`; `kept` are the files of an earlier run that this run
 /// continues. Throws InvalidInput if a file cannot be written, or would replace an input or another output of this run.
-[[nodiscard]] std::optional<ResultFolder> claim_places(const Common& common, const std::vector<std::string>& files,
-                                                       const std::vector<std::string>& kept = {});
+[[nodiscard]] std::optional<ResultFolder> reserve_outputs(const Common& common, const std::vector<std::string>& files,
+                                                          const std::vector<std::string>& kept = {});
 
 /// Returns the text "In FOLDER: FILE, FILE".
-[[nodiscard]] std::string left_in(const std::filesystem::path& folder, const std::vector<std::string>& files);
+[[nodiscard]] std::string files_written(const std::filesystem::path& folder, const std::vector<std::string>& files);
 
 /// Writes `data` as JSON where --json is given, and prints `text` unless the JSON goes to standard output.
 void print_json_or(const Common& common, const nlohmann::json& data, const std::string& text);

@@ -40,15 +40,15 @@ void Bar::print(const State& state) const {
     const auto full = static_cast<std::size_t>(std::clamp(static_cast<int>(part * cells), 0, cells));
     show_bar(fmt::format("[{}{}] {}", std::string(full, '#'), std::string(cells - full, '.'), words));
   } else {
-    say(words);
+    print_note(words);
   }
 }
 
-WatchedWork::WatchedWork(bool quiet, const std::atomic<bool>* stop) : bar_(quiet) {
-  watch_.stop = stop;
-  watch_.progress = [this](std::string_view told_of, double told_part) {
+ShownWork::ShownWork(bool quiet, const std::atomic<bool>* stop) : bar_(quiet) {
+  progress_.stop = stop;
+  progress_.report = [this](std::string_view told_of, double told_part) {
     const std::scoped_lock lock(mutex_);
-    const auto [what, part] = progress_.told(told_of, told_part);
+    const auto [what, part] = monotone_.updated(told_of, told_part);
     pace_.note(what, part, bar_.elapsed());
     if (!bar_.due()) return;
     const double done = part;
@@ -57,7 +57,7 @@ WatchedWork::WatchedWork(bool quiet, const std::atomic<bool>* stop) : bar_(quiet
   };
 }
 
-WatchedWork::~WatchedWork() {
+ShownWork::~ShownWork() {
   if (shown_ && bar_.terminal_) show_bar("");
 }
 

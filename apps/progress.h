@@ -10,7 +10,7 @@
 
 #include "apps/pace.h"
 #include "base/monotone_progress.h"
-#include "base/watch.h"
+#include "base/progress.h"
 #include "studies/search/optimize.h"
 
 namespace softland::apps {
@@ -27,7 +27,7 @@ class Bar {
   void close(const State& state);
 
  private:
-  friend class WatchedWork;
+  friend class ShownWork;
   [[nodiscard]] bool due() const;
   [[nodiscard]] double elapsed() const;  // time since the start [s]
   void print(const State& state) const;
@@ -37,22 +37,22 @@ class Bar {
 };
 
 /// Watches a computation: shows its progress, and stops it after a signal to stop. The destructor removes the bar.
-class WatchedWork {
+class ShownWork {
  public:
-  WatchedWork(bool quiet, const std::atomic<bool>* stop);
-  ~WatchedWork();
-  WatchedWork(const WatchedWork&) = delete;
-  WatchedWork& operator=(const WatchedWork&) = delete;
+  ShownWork(bool quiet, const std::atomic<bool>* stop);
+  ~ShownWork();
+  ShownWork(const ShownWork&) = delete;
+  ShownWork& operator=(const ShownWork&) = delete;
 
-  [[nodiscard]] const Watch& watch() const { return watch_; }
+  [[nodiscard]] const Progress& progress() const { return progress_; }
 
  private:
   std::mutex mutex_;  // guards the members below: several threads may report
   Bar bar_;
   bool shown_ = false;
-  MonotoneProgress progress_;
+  MonotoneProgress monotone_;
   WorkPace pace_;
-  Watch watch_;
+  Progress progress_;
 };
 
 /// The progress of a search.

@@ -55,7 +55,7 @@ std::vector<std::string> shaped_in(const std::vector<std::string>& variables) {
 
 }  // namespace
 
-StoredSearch asked_or_known(const Common& c, const verbs::OptimizeRequest& request, std::optional<KnownSearch>& known) {
+StoredSearch new_or_resumed(const Common& c, const verbs::OptimizeRequest& request, std::optional<KnownSearch>& known) {
   const std::vector<fs::path> stores = request.resume ? ResultFolder::places(c.out, evaluations_file) : std::vector<fs::path>();
   require(!stores.empty() || !c.scene.empty(), [&] {
     return fmt::format("--resume: {} holds no search to continue; name its folder by --out, or omit --resume", c.out);
@@ -67,7 +67,7 @@ SearchOutput output_of(const Common& c) {
   return {.folder = c.out,
           .command = c.command,
           .claim = [&c](const std::vector<std::string>& files, const std::vector<std::string>& kept) {
-            return *claim_places(c, files, kept);
+            return *reserve_outputs(c, files, kept);
           }};
 }
 
@@ -80,15 +80,15 @@ SearchRun::SearchRun(const Common& c, StoredSearch& search, const std::optional<
       session_(search, known, output, places) {
   OptimizeOptions& options = search.options;
   options.on_preparation = [this](std::string_view what, double part) {
-    if (preparation_) preparation_->watch().tell(what, part);
+    if (preparation_) preparation_->progress().tell(what, part);
   };
   options.on_start = [this, &search, is_told = places == nullptr && !c.quiet](const FamilyColumns& columns) {
     preparation_.emplace(common_.quiet, common_.stop);
     session_.begin(columns);
     if (is_told)
-      say(search_words(common_, search) + fmt::format("; shaped drives: {}; results go to {}{}",
-                                                      fmt::join(shaped_in(columns.names()), " and "), common_.out,
-                                                      duration_words(search.options.jobs, search.options.max_seconds)));
+      print_note(search_prose(common_, search) + fmt::format("; shaped drives: {}; results go to {}{}",
+                                                             fmt::join(shaped_in(columns.names()), " and "), common_.out,
+                                                             duration_prose(search.options.jobs, search.options.max_seconds)));
   };
   options.on_estimate = [this](const SearchEstimate& estimate) { estimate_ = estimate; };
   options.on_evaluation = [this](const Evaluation& e, const OptimizeProgress& p) {
@@ -106,7 +106,7 @@ SearchRun::SearchRun(const Common& c, StoredSearch& search, const std::optional<
 }
 
 // Estimates the duration of the search and its number of closings.
-std::string SearchRun::duration_words(int jobs, double max_seconds) const {
+std::string SearchRun::duration_prose(int jobs, double max_seconds) const {
   if (!estimate_) return {};
   const SearchEstimate& e = *estimate_;
   std::string text = "; a closing takes " + internal::quantity(e.closing, "s");
@@ -135,13 +135,14 @@ void SearchRun::tell(const Leading& leading) {
       text += internal::right_aligned(
           figure(quantile(outcomes, key, 0.95), unit) + " (" + figure(quantile(outcomes, key, 0.99), unit) + ")", 24);
     }
-    say(text + internal::right_aligned(figure(waited(outcomes, leading.waited_for), "s"), 14) + after);
+    print_note(text + internal::right_aligned(figure(waited(outcomes, leading.waited_for), "s"), 14) + after);
   };
   if (!std::exchange(has_table_, true)) {
-    say(fmt::format("Best waveforms so far, on {} simulated devices; the search continues. Columns: 95th (99th) percentile.",
+    print_note(
+        fmt::format("Best waveforms so far, on {} simulated devices; the search continues. Columns: 95th (99th) percentile.",
                     leading.own.size()));
-    say(fmt::format("  {:16}{:>24}{:>24}{:>14}   {}", "waveform", "impact velocity", "rebound height", "settled after",
-                    "found after"));
+    print_note(fmt::format("  {:16}{:>24}{:>24}{:>14}   {}", "waveform", "impact velocity", "rebound height", "settled after",
+                           "found after"));
     row("plain step", leading.of_step, "");
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin_;
@@ -154,7 +155,7 @@ void SearchRun::close() {
   session_.close();
 }
 
-std::string search_words(const Common& c, const StoredSearch& search) {
+std::string search_prose(const Common& c, const StoredSearch& search) {
   const OptimizeOptions& o = search.options;
   const std::string scene = c.scene.empty() ? c.out : c.scene;
   const std::string aim = fmt::format("actuator {}, target {}", name_of(actuators, o.actuator), o.target.text());

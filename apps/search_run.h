@@ -15,7 +15,7 @@ namespace softland::apps {
 
 /// Returns the search that the command line describes. With --resume, the search in the folder of --out is continued; its stores
 /// are then `known`. Throws InvalidInput with option, value and rule, or with the difference if the folder holds another search.
-[[nodiscard]] StoredSearch asked_or_known(const Common& common, const verbs::OptimizeRequest& request,
+[[nodiscard]] StoredSearch new_or_resumed(const Common& common, const verbs::OptimizeRequest& request,
                                           std::optional<KnownSearch>& known);
 
 /// Returns the folder of --out.
@@ -34,10 +34,10 @@ class SearchRun {
 
  private:
   void tell(const Leading& leading);
-  [[nodiscard]] std::string duration_words(int jobs, double max_seconds) const;
+  [[nodiscard]] std::string duration_prose(int jobs, double max_seconds) const;
 
   const Common& common_;
-  std::optional<WatchedWork> preparation_;
+  std::optional<ShownWork> preparation_;
   SearchProgress progress_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   bool has_table_ = false;
@@ -46,6 +46,6 @@ class SearchRun {
 };
 
 /// Returns "gold.toml: searching a pulse waveform, actuator electrostatic, target bounce".
-[[nodiscard]] std::string search_words(const Common& common, const StoredSearch& search);
+[[nodiscard]] std::string search_prose(const Common& common, const StoredSearch& search);
 
 }  // namespace softland::apps

@@ -19,13 +19,13 @@ void tell_of_other_programs(const std::string& store) {
   const auto is_other = [&](const StoredSession& s) { return s.program != ours.program || s.processor != ours.processor; };
   const auto other = std::find_if(sessions.begin(), sessions.end(), is_other);
   if (other == sessions.end()) return;
-  say(fmt::format("{}: some rows were computed by {} on {}: their last digits may differ from those of {}", store, other->program,
-                  other->host, ours.program));
+  print_note(fmt::format("{}: some rows were computed by {} on {}: their last digits may differ from those of {}", store,
+                         other->program, other->host, ours.program));
 }
 
 std::string whole(std::int64_t count) { return internal::whole(static_cast<double>(count)); }
 
-std::string duration_words(double seconds) {
+std::string duration_prose(double seconds) {
   constexpr double minute = 60, hour = 3600, day = 86400;
   if (seconds < 2 * minute) return fmt::format("{:.0f}\u00a0s", seconds);
   if (seconds < 2 * hour) return fmt::format("{:.0f}\u00a0min", seconds / minute);

@@ -17,6 +17,6 @@ void tell_of_other_programs(const std::string& store);
 [[nodiscard]] std::string whole(std::int64_t count);
 
 /// Returns "2 min" or "3.4 h".
-[[nodiscard]] std::string duration_words(double seconds);
+[[nodiscard]] std::string duration_prose(double seconds);
 
 }  // namespace softland::apps

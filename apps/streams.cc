@@ -60,7 +60,7 @@ void print(std::string_view text) {
   }
 }
 
-void say(std::string_view line) { write_to_standard_error("softland: " + printable_line(line) + "\n"); }
+void print_note(std::string_view line) { write_to_standard_error("softland: " + printable_line(line) + "\n"); }
 
 void end_bar() { write_to_standard_error("\n"); }
 

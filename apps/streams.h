@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-#include "base/watch.h"
+#include "base/progress.h"
 
 namespace softland::apps {
 
@@ -19,7 +19,7 @@ void open_standard_streams();
 void print(std::string_view text);
 
 /// Writes "softland: " and one line to standard error, as far as that is possible.
-void say(std::string_view line);
+void print_note(std::string_view line);
 
 /// Writes the progress bar over the last line of a terminal on standard error; empty text removes it.
 void show_bar(std::string_view line);

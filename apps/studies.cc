@@ -32,8 +32,8 @@ struct Given {
   std::map<std::string, bool> flags;
   std::map<std::string, std::vector<std::string>> repeated;
 
-  [[nodiscard]] verbs::Told told() const {
-    verbs::Told all;
+  [[nodiscard]] verbs::Arguments arguments() const {
+    verbs::Arguments all;
     for (const auto& [name, text] : texts) {
       if (!text.empty()) all[name] = {text};
     }
@@ -52,9 +52,9 @@ struct Given {
 
 std::string spelled(std::string_view name) { return "--" + std::string(name); }
 
-DriveWaveforms waveforms_of(const std::string& result, const PreparedScene& nominal, const Watch& watch) {
-  const Drives drives = prepare(scene_of_result(result), false, watch).drives;
-  const std::string elsewhere = begins_elsewhere(drives.waveforms(), drives.before(), nominal);
+DriveWaveforms waveforms_of(const std::string& result, const PreparedScene& nominal, const Progress& progress) {
+  const Drives drives = prepare(scene_of_result(result), false, progress).drives;
+  const std::string elsewhere = initial_state_difference(drives.waveforms(), drives.before(), nominal);
   require(elsewhere.empty(), [&] { return result + ": " + elsewhere; });
   return drives.waveforms();
 }
@@ -70,7 +70,7 @@ std::string leave(ResultFolder& folder, const verbs::Outcome& outcome) {
     if (file.name.ends_with(".toml")) scene = file.name;
   }
   const std::filesystem::path place = folder.destination(interrupted);
-  std::string text = left_in(place, listed);
+  std::string text = files_written(place, listed);
   if (!outcome.next.empty()) text += fmt::format(fmt::runtime(outcome.next), shell_word((place / scene).string()));
   folder.publish(interrupted);
   return text;
@@ -97,36 +97,37 @@ void declare(Verb& verb, const OptionRow& option, Given& given) {
 
 }  // namespace
 
-int run_study(const verbs::Study& study, const Common& c, const verbs::Told& told) {
-  const auto run = study.ask(told);
+int run_study(const verbs::Study& study, const Common& c, const verbs::Arguments& arguments) {
+  const auto run = study.ask(arguments);
   if (study.leaving != nullptr)
-    require(told.contains(study.leaving) == !c.out.empty(), [&] {
+    require(arguments.contains(study.leaving) == !c.out.empty(), [&] {
       return fmt::format("--{0} and --out must be given together: the {0} is written to the folder of --out", study.leaving);
     });
   const bool takes_results = study.scene != verbs::scene_alone;
   const SceneFile file = takes_results ? load_scene_or_result(c) : load_scene(c);
   static_cast<void>(read_scene(file));  // checks the scene; an output must not replace a table that the scene names
-  std::optional<ResultFolder> folder = claim_places(c, study.files);
-  std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  const Watch& watch = work->watch();
-  verbs::Outcome found = run({.scene = file,
-                              .name = c.scene,
-                              .command = c.command,
-                              .watch = watch,
-                              .prepared =
-                                  [&](bool default_limits) {
-                                    return std::make_shared<const PreparedScene>(prepare_and_choose(file, default_limits, watch));
-                                  },
-                              .load = scene_of_result,
-                              .waveforms_of = [&](const std::string& result,
-                                                  const PreparedScene& nominal) { return waveforms_of(result, nominal, watch); },
-                              .text = [&] { return c.set.empty() ? read_file(c.scene) : file.text(); },
-                              .note = c.quiet ? std::function<void(const std::string&)>()
-                                              : [](const std::string& line) { say(with_fields(line, "--")); }});
+  std::optional<ResultFolder> folder = reserve_outputs(c, study.files);
+  std::optional<ShownWork> work(std::in_place, c.quiet, c.stop);
+  const Progress& progress = work->progress();
+  verbs::Outcome found =
+      run({.scene = file,
+           .name = c.scene,
+           .command = c.command,
+           .progress = progress,
+           .prepared =
+               [&](bool default_limits) {
+                 return std::make_shared<const PreparedScene>(prepare_and_choose(file, default_limits, progress));
+               },
+           .load = scene_of_result,
+           .waveforms_of = [&](const std::string& result,
+                               const PreparedScene& nominal) { return waveforms_of(result, nominal, progress); },
+           .text = [&] { return c.set.empty() ? read_file(c.scene) : file.text(); },
+           .note = c.quiet ? std::function<void(const std::string&)>()
+                           : [](const std::string& line) { print_note(with_fields(line, "--")); }});
   work.reset();
   if (folder && !found.files.empty()) found.text += leave(*folder, found);
   print_json_or(c, found.json, found.text + found.last);
-  if (!found.fault.empty()) say(found.fault);
+  if (!found.fault.empty()) print_note(found.fault);
   return exit_status_of(found.ending);
 }
 
@@ -149,7 +150,7 @@ void add_study(Verb& verb, const verbs::Study& study, RunTold run) {
   verb.runs([&study, given, run](const Common& common) {
     Common c = common;
     if (c.out.empty() && study.place != nullptr) c.out = study.place;
-    return study.ask ? run_study(study, c, given->told()) : run(c, given->told());
+    return study.ask ? run_study(study, c, given->arguments()) : run(c, given->arguments());
   });
 }
 

@@ -37,10 +37,10 @@ class CommandLab final : public TuningLab {
   CommandLab(const std::string& command, milliseconds patience)
       : name_("--device " + shortened(command)), patience_(patience), child_(command, longest_line) {}
 
-  std::optional<ContactRecord> fire(const ToldShot& shot, const SentSignals&) override {
+  std::optional<ContactRecord> fire(const CommandedShot& shot, const SentSignals&) override {
     // A closed pipe is not an error yet: the answer may be buffered.
-    const ChildProcess::Told told = child_.tell(line_text(shot_json(shot)), patience_);
-    if (told == ChildProcess::Told::late) throw late(fmt::format("did not read shot {}", shot.number));
+    const ChildProcess::Delivery told = child_.tell(line_text(shot_json(shot)), patience_);
+    if (told == ChildProcess::Delivery::late) throw late(fmt::format("did not read shot {}", shot.number));
     const LineReader::Line line = child_.next_line(patience_);
     if (line.end == LineReader::End::closed) throw ended_before(shot.number);
     if (line.end == LineReader::End::late) throw late(fmt::format("did not answer shot {}", shot.number));
@@ -86,7 +86,7 @@ class HandLab final : public TuningLab {
     for (const std::filesystem::path& file : left) std::filesystem::remove(file);
   }
 
-  std::optional<ContactRecord> fire(const ToldShot& shot, const SentSignals& sent) override {
+  std::optional<ContactRecord> fire(const CommandedShot& shot, const SentSignals& sent) override {
     std::vector<std::string> files;
     for (const SentFile& file : sent_files(request_.format, scene_, sent, shot.duration())) {
       const std::filesystem::path path = request_.folder / fmt::format("shot-{}{}", shot.number, file.ending);
@@ -98,7 +98,7 @@ class HandLab final : public TuningLab {
       if (request_.format != "codes")
         before += fmt::format(", {} in volts at the input of an amplifier of gain {}", drive, plain_number(amplifier, 6));
     }
-    say(
+    print_note(
         fmt::format("shot {}: load {} into the generator{}, play the waveform once, "
                     "and record the contact for {} from the start of the waveform",
                     shot.number, fmt::join(files, " and "), before, quantity(shot.duration(), "s")));
@@ -118,7 +118,7 @@ class HandLab final : public TuningLab {
     const std::size_t digits = std::min(name.size(), name.find_first_not_of("0123456789"));
     return digits > 0 && std::ranges::find(endings, name.substr(digits)) != endings.end();
   }
-  [[nodiscard]] ContactRecord asked(const ToldShot& shot) {
+  [[nodiscard]] ContactRecord asked(const CommandedShot& shot) {
     ContactRecord record = answer<ContactRecord>(
         R"(at what time after the start of the waveform did the contact first close? Answer a time such as "36.1 us"; "never"; )"
         R"("file NAME" for a file with all edges; "failed" to repeat the shot; "stop" to end)",
@@ -154,14 +154,14 @@ class HandLab final : public TuningLab {
   template <class Answer>
   Answer answer(const std::string& question, const std::function<Answer(const std::string&)>& read) {
     for (;;) {
-      say(question);
+      print_note(question);
       const LineReader::Line line = lines_.next();
       const std::string text(trimmed(line.text));
       if (line.end == LineReader::End::closed || text == "stop") throw Stopped();
       try {
         return read(text);
       } catch (const InvalidInput& error) {
-        say(error.what());
+        print_note(error.what());
       }
     }
   }

@@ -20,7 +20,7 @@ class TuningLab {
   virtual ~TuningLab() = default;
   /// Fires a shot, whose signals are `sent`, and returns its record; none if the user wants no more shots. Throws InvalidInput
   /// if no record comes, and Interrupted after a signal to stop.
-  [[nodiscard]] virtual std::optional<ContactRecord> fire(const ToldShot& shot, const SentSignals& sent) = 0;
+  [[nodiscard]] virtual std::optional<ContactRecord> fire(const CommandedShot& shot, const SentSignals& sent) = 0;
   /// Ends the session; no shot follows.
   virtual void finish() {}
 

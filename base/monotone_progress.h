@@ -9,12 +9,13 @@
 
 namespace softland {
 
-/// Turns the reports to a Watch (base/watch.h) into progress that only grows. A smaller part, which another thread reports
-/// late, leaves the progress as it is. A computation that begins again becomes another round of the same name, "closing (2)".
+/// Turns the reports to a Progress (base/progress.h) into progress that only grows. A smaller part, which another thread
+/// reports late, leaves the progress as it is. A computation that begins again becomes another round of the same name, "closing
+/// (2)".
 class MonotoneProgress {
  public:
   /// Returns the name to show, and the completed part, 0 to 1.
-  [[nodiscard]] std::pair<std::string, double> told(std::string_view what, double part) {
+  [[nodiscard]] std::pair<std::string, double> updated(std::string_view what, double part) {
     constexpr double begins_again = 0.5;  // largest share of the reported part at which a computation counts as begun again
     Round& round = rounds_[std::string(what)];
     if (part < begins_again * round.part) {

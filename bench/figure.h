@@ -24,7 +24,7 @@ struct Panel {
   std::string x_label, x_unit;
   std::string y_label, y_unit;
   std::vector<Curve> curves;
-  internal::Scale scale = internal::Scale::linear;
+  internal::AxisScale scale = internal::AxisScale::linear;
 };
 
 /// Returns an SVG document: a headline, a subtitle, and the panels row by row.

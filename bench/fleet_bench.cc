@@ -27,8 +27,8 @@ constexpr std::string_view tight_accuracy = "1e-8";
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 /// The devices of a scene, and the window of a search.
-struct Fleet {
-  Fleet(const std::string& scene, const std::vector<std::string>& changes, std::uint64_t count)
+struct BenchEnsemble {
+  BenchEnsemble(const std::string& scene, const std::vector<std::string>& changes, std::uint64_t count)
       : nominal(prepared(scene, changes)), ensemble(nominal, count), signals(nominal.signals()) {
     build();
     window = std::max(0.6 * 2 * M_PI / nominal.model.basis().angular_frequencies()[0],
@@ -86,9 +86,9 @@ int main(int argc, char** argv) {
   const double tolerance = argc > 4 ? std::stod(argv[4]) : 1e-5;
   std::vector<std::string> changes(argv + std::min(argc, 5), argv + argc);
   changes.push_back("simulate.accuracy=" + accuracy);
-  Fleet fleet(scene, changes, devices);
+  BenchEnsemble ensemble(scene, changes, devices);
   changes.back() = "simulate.accuracy=" + std::string(tight_accuracy);
-  const Fleet judge(scene, changes, std::min(devices, judged_devices));
+  const BenchEnsemble judge(scene, changes, std::min(devices, judged_devices));
   const std::vector<DeviceOutcome> tight = judge.close(tight_tolerance, Vectors::none);
 
   std::vector<double> building;
@@ -96,12 +96,12 @@ int main(int argc, char** argv) {
   std::map<Vectors, std::vector<DeviceOutcome>> outcomes;
   for (int round = 0; round < rounds; ++round) {
     double begin = seconds();
-    fleet.build();
+    ensemble.build();
     building.push_back((seconds() - begin) / static_cast<double>(devices));
     for (const VectorsRow& row : vector_instructions) {
       if (row.value != Vectors::none && !has(row.value)) continue;
       begin = seconds();
-      outcomes[row.value] = fleet.close(tolerance, row.value);
+      outcomes[row.value] = ensemble.close(tolerance, row.value);
       closing[row.value].push_back((seconds() - begin) / static_cast<double>(devices));
     }
   }
@@ -110,7 +110,7 @@ int main(int argc, char** argv) {
                         {"accuracy", accuracy},
                         {"tolerance", tolerance},
                         {"building_s", median(building)},
-                        {"not_in_lanes", why_not_in_lanes(fleet.nominal.model)}};
+                        {"not_in_lanes", why_not_in_lanes(ensemble.nominal.model)}};
   for (const auto& [vectors, times] : closing) {
     const std::vector<double> errors = errors_of_height(outcomes.at(vectors), tight);
     result["paths"].push_back({{"vectors", row_of(vector_instructions, vectors).name},

@@ -60,7 +60,7 @@ void measure(const SearchSetting& s, std::size_t levels) {
   const auto signals_at = [&](std::span<const double> at) {
     BSpline spline{.levels = {at.begin(), at.end() - 1}, .duration = at.back()};
     spline.levels.insert(spline.levels.end(), 2, hold);
-    return s.given.driven(signals_of(s.drives({{drive, spline}})));
+    return s.given.applied(signals_of(s.drives({{drive, spline}})));
   };
   const std::vector<ParameterGroup> groups = SignalSlopes(signals_at, upper, lower, upper).groups();
   const std::vector<Signal> signals = signals_at(x);
@@ -177,7 +177,7 @@ void measure_search(const std::string& scene, const std::string& family) {
   const SearchSetting s = search_setting(SceneFile::load(scene), Target::bounce, Actuator::electrostatic, family, {});
   const std::vector<ParameterGroup> groups = s.parameter_groups();
   const std::vector<double> x = s.space.starts().front();
-  const std::vector<Signal> signals = s.given.driven(signals_of(s.drives(s.space.waveforms(x))));
+  const std::vector<Signal> signals = s.given.applied(signals_of(s.drives(s.space.waveforms(x))));
   const double closing = milliseconds([&] {
     MetricsObserver observer(s.scale.contact_gap, s.given.scene.metrics);
     (void)observe_closing(s.given.model, signals, s.run_of(signals), observer);

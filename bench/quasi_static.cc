@@ -15,9 +15,9 @@
 
 #include "base/executor.h"
 #include "config/assumed_spread.h"
-#include "config/criterion.h"
-#include "studies/search/devices_search.h"
+#include "config/condition.h"
 #include "studies/search/paced_search.h"
+#include "studies/search/robust_search.h"
 #include "studies/search/search_space.h"
 
 namespace {
@@ -68,7 +68,7 @@ int run(int count, char** arguments) {
   fmt::print("{:.1f} % of 512 devices have a stable path; {:.2f} s\n",
              100 * share_with_path(setting.given, approach, 512, seed, 2), processor_seconds() - begin);
   RobustAim aim{.measure = parse_robust_measure("cvar:0.9", device_figures), .conditions = {}};
-  const KnownUnits unknown;
+  const MeasuredUnits unknown;
   const RobustCost cost(setting, aim, own_devices(setting, unknown, 1024, seed, 0, 2, {}));
   begin = processor_seconds();
   aim.free = free_time(cost.close_by_step(2));
@@ -79,7 +79,7 @@ int run(int count, char** arguments) {
       "| | v95 mm/s | v99 | B95 nm | B99 | F95 uN | t_i us | t_F us | tau | cost | closings | s "
       "|\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   print_row("plain step", fresh, aim, setting, {}, of_step, 0, 0);
-  if (!setting.begins_plainly()) print_row("of the scene", fresh, aim, setting, setting.given.drives.waveforms(), of_step, 0, 0);
+  if (!setting.starts_as_step()) print_row("of the scene", fresh, aim, setting, setting.given.drives.waveforms(), of_step, 0, 0);
   for (const double pace : {0.5, 1.0, 2.0}) {
     const SearchSetting& own = pace < 0.75 ? fast : setting;
     const SearchSpace paced = own.space.paced(pace * aim.free.until);

@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "base/require.h"
-#include "config/criterion.h"
+#include "config/condition.h"
 #include "model/constants.h"
 #include "model/pull_in.h"
 #include "sampling/statistics.h"
@@ -50,7 +50,7 @@ struct Arguments {
   std::vector<std::string> sets, model_sets;
   // Returns the requested latest first touch [s].
   [[nodiscard]] double latest(double step_time) const {
-    return beside_step(parse_criterion(touch, all_figures), step_time).limit;
+    return beside_step(parse_condition(touch, all_figures), step_time).limit;
   }
 };
 
@@ -236,16 +236,16 @@ void shoot(Course& course, Laboratory& lab, Best& best, const std::vector<Wavefo
 Course by_one_knob(const Arguments& a, const PreparedScene& p, const std::vector<Waveform>& recipe, double limit,
                    Laboratory& lab) {
   Course course;
-  const DeviceMeter meter(p, {.closing_time = true});
+  const PullInMeter meter(p, {.closing_time = true});
   std::vector<Waveform> step(recipe.size(), Step{.level = 0});
   step[meter.electrode()] = Step{.level = closing_step * meter.pull_in()};
   ContactRecord record;
   Best best;
   shoot(course, lab, best, step, record);
-  double s = std::min(limit, first_touch(record) ? meter.told_by(*first_touch(record)).volts : 1);
+  double s = std::min(limit, first_touch(record) ? meter.units_by_time(*first_touch(record)).volts : 1);
   best = {.waveforms = in_volts(recipe, s)};
   mark(course, lab, 1, best.waveforms);
-  const Trajectory nominal = simulate_closing(p.model, p.driven(recipe), {.duration = p.duration, .after_contact = 0});
+  const Trajectory nominal = simulate_closing(p.model, p.applied(recipe), {.duration = p.duration, .after_contact = 0});
   const double due = nominal.touches.front().begin;
   double last_s = 0, last_time = 0;
   for (int k = 2; k <= a.closings; ++k) {
@@ -272,7 +272,7 @@ Course by_secant(const Arguments& a, const PreparedScene& p, const std::vector<W
   std::vector<Waveform> step(recipe.size(), Step{.level = 0});
   step[drive] = Step{.level = hold_step};
   const auto touch_of = [&](const std::vector<Waveform>& waveforms) {
-    return simulate_closing(p.model, p.driven(waveforms), {.duration = p.duration, .after_contact = 0}).touches.front().begin;
+    return simulate_closing(p.model, p.applied(waveforms), {.duration = p.duration, .after_contact = 0}).touches.front().begin;
   };
   const double step_time = touch_of(step), pulse = std::get<Pulse>(recipe[drive]).times[0],
                coast = std::get<Pulse>(recipe[drive]).times[1] - pulse, due = touch_of(recipe) - pulse - coast;
@@ -386,7 +386,7 @@ int main(int count, char** words) try {
   const auto since = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
   TunerOptions options{
       .actuator = actuator->value, .jobs = a.jobs, .laboratory = a.laboratory, .most_recipes = a.recipes, .effort = a.effort};
-  if (!a.touch.empty()) options.touch = parse_criterion(a.touch, all_figures);
+  if (!a.touch.empty()) options.touch = parse_condition(a.touch, all_figures);
   const Tuner fresh(file, options);
   const std::vector<Waveform> recipe = fresh.next().waveforms;
   fmt::print("ready after {:.1f} s; expected cost {:.3f}; step touches at {:.2f} us\n", since(), fresh.next().expected_cost,

@@ -273,7 +273,7 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
       std::string broken = violation(compiled, may_be_samples ? limits_of_samples(*limits, one.source) : *limits);
       if (!broken.empty()) {
         if (!driver.is_present())
-          broken += fmt::format("; without [{}] the limits are 0 V and {}", driver.path(), default_limit_words(known));
+          broken += fmt::format("; without [{}] the limits are 0 V and {}", driver.path(), default_limit_prose(known));
         broken += missing_rise(waveform, before, *limits);
         file.fail_section(in.path(), broken);
       }

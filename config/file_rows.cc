@@ -110,7 +110,7 @@ FileRows from_zero(const SectionReader& in, const Trace& trace) {
 
 // Thins a long record to the rows that a source needs: that of [driver], or one fast enough to resolve a two-thousandth of the
 // record.
-void thin(FileRows& rows, const SectionReader& driver) {
+void downsample(FileRows& rows, const SectionReader& driver) {
   constexpr std::size_t few = 4096;
   constexpr double relative_error = 1e-3, parts = 2000;
   Table& table = rows.table;
@@ -139,7 +139,7 @@ FileRows read_foreign(const SectionReader& in, std::string_view content, const s
   const double shift = from_first ? -trace.times.front() : in.is_given(file_keys::shift) ? in.number(file_keys::shift) : 0;
   shift_times(trace.times, shift);
   FileRows rows = from_zero(in, trace);
-  thin(rows, driver);
+  downsample(rows, driver);
   rows.told = fmt::format("{}: {}{}", in.written(file_key), trace.told, rows.told);
   return rows;
 }

@@ -304,7 +304,7 @@ Drives Scene::drives(const std::map<std::string, PullInVoltages>& pull_in) const
   return internal::read_drives(file.impl(), device, pull_in);
 }
 
-std::string default_limit_words(const PullInVoltages& pull_in) {
+std::string default_limit_prose(const PullInVoltages& pull_in) {
   return fmt::format("{} {}", default_max_voltage, pull_in.static_pull_in > pull_in.dynamic_pull_in ? "Vsp" : "Vdp");
 }
 

@@ -102,7 +102,7 @@ inline constexpr double default_max_voltage = 1.5;
   return default_max_voltage * std::max(pull_in.static_pull_in, pull_in.dynamic_pull_in);
 }
 /// Returns for example "1.5 Vsp".
-[[nodiscard]] std::string default_limit_words(const PullInVoltages& pull_in);
+[[nodiscard]] std::string default_limit_prose(const PullInVoltages& pull_in);
 
 /// The names of the piezo and of the dispersion force among the drives.
 inline constexpr std::string_view piezo_drive = "piezo", dispersion_drive = "dispersion";

@@ -200,9 +200,9 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
 }
 
 /// Converts the numbers of an entry to the unit of the variable: that of the one key, or of the factor.
-class Scale {
+class EntryUnits {
  public:
-  Scale(const SectionReader& in, const std::vector<FoundKey>& keys) : in_(in), keys_(keys) {
+  EntryUnits(const SectionReader& in, const std::vector<FoundKey>& keys) : in_(in), keys_(keys) {
     for (const std::string_view key :
          {"standard_deviation", "half_width", "low", "mode", "high", "truncate_low", "truncate_high"}) {
       if (in.is_given(key)) check(key, in.quantities(key).front().dimension);
@@ -303,7 +303,7 @@ std::vector<double> file_values(const SectionReader& in) {
   return values;
 }
 
-Distribution::Parameters parameters_of(const SectionReader& in, const Scale& scale) {
+Distribution::Parameters parameters_of(const SectionReader& in, const EntryUnits& scale) {
   const double mean = scale.nominal();
   const auto deviation = [&] {
     return in.is_given("cov") ? in.number("cov") * std::abs(mean) : scale.width("standard_deviation");
@@ -353,7 +353,7 @@ SpreadVariable read_variable(const SceneFile::Impl& file, Scene& scene, const st
   }
   std::vector<FoundKey> keys;
   for (const std::string& path : paths) keys.push_back(find_key(file, scene, in, path));
-  const Scale scale(in, keys);
+  const EntryUnits scale(in, keys);
   SpreadVariable variable{.name = name,
                           .keys = {},
                           .is_factor = scale.is_factor(),

@@ -141,21 +141,21 @@ const Name* find_name(const Dimension& dimension) {
 }
 
 /// The meaning of a unit: value [SI] = number * 10^exponent * factor.
-struct Scale {
+struct UnitScale {
   Dimension dimension;
   int exponent = 0;
   double factor = 1;
 };
 
-std::optional<Scale> look_up(std::string_view name) {
+std::optional<UnitScale> look_up(std::string_view name) {
   for (const Symbol& symbol : symbols) {
-    if (name == symbol.name) return Scale{symbol.dimension, symbol.exponent, symbol.factor};
+    if (name == symbol.name) return UnitScale{symbol.dimension, symbol.exponent, symbol.factor};
   }
   for (const Prefix& prefix : prefixes) {
     if (!name.starts_with(prefix.letter)) continue;
     for (const Symbol& symbol : symbols) {
       if (symbol.takes_prefix && name.substr(1) == symbol.name) {
-        return Scale{symbol.dimension, symbol.exponent + prefix.exponent, symbol.factor};
+        return UnitScale{symbol.dimension, symbol.exponent + prefix.exponent, symbol.factor};
       }
     }
   }
@@ -190,7 +190,7 @@ bool has_digit_power(std::string_view factor) {
 }
 
 /// Multiplies `scale` by one factor such as "um^2" or "um2", raised to `sign`.
-void apply_factor(Scale& scale, std::string_view factor, int sign) {
+void apply_factor(UnitScale& scale, std::string_view factor, int sign) {
   const auto caret = factor.find('^');
   const auto end = has_digit_power(factor) ? factor.size() - 1 : caret;
   const std::string_view name = factor.substr(0, end);
@@ -211,7 +211,7 @@ void apply_factor(Scale& scale, std::string_view factor, int sign) {
 }
 
 /// Multiplies `scale` by factors joined by blanks or single asterisks, each raised to `sign`.
-void apply_factors(Scale& scale, std::string_view text, int sign, std::string_view unit) {
+void apply_factors(UnitScale& scale, std::string_view text, int sign, std::string_view unit) {
   while (true) {
     const auto star = text.find('*');
     std::string_view group = trim(text.substr(0, star));
@@ -227,18 +227,18 @@ void apply_factors(Scale& scale, std::string_view text, int sign, std::string_vi
 }
 
 /// Reads S/s, samples per second. S alone is siemens, but no quantity is in siemens per second.
-std::optional<Scale> sample_rate(std::string_view unit) {
+std::optional<UnitScale> sample_rate(std::string_view unit) {
   const auto slash = unit.find('/');
   if (slash == std::string_view::npos || trim(unit.substr(slash + 1)) != "s") return std::nullopt;
   const std::string_view samples = trim(unit.substr(0, slash));
   const auto siemens = samples.ends_with('S') ? look_up(samples) : std::nullopt;
   if (!siemens) return std::nullopt;
-  return Scale{dimension::frequency, siemens->exponent};
+  return UnitScale{dimension::frequency, siemens->exponent};
 }
 
-Scale parse_unit(std::string_view unit) {
+UnitScale parse_unit(std::string_view unit) {
   if (const auto rate = sample_rate(unit)) return *rate;
-  Scale scale;
+  UnitScale scale;
   const auto slash = unit.find('/');
   if (slash == std::string_view::npos) {
     apply_factors(scale, unit, 1, unit);
@@ -318,7 +318,7 @@ Quantity parse_quantity(std::string_view given) {
     constexpr double zero_celsius = 273.15;  // [K]
     return {scaled_number(number, 0) + zero_celsius, dimension::temperature};
   }
-  const Scale scale = parse_unit(unit);
+  const UnitScale scale = parse_unit(unit);
   double value = scaled_number(number, scale.exponent);
   if (scale.factor != 1) value *= scale.factor;
   if (!std::isfinite(value)) throw InvalidInput(fmt::format("{} is outside the range of double precision", text));

@@ -12,14 +12,14 @@
 namespace softland {
 namespace {
 
-struct Range {
+struct VoltageRange {
   double low, high;
 };
 // Returns the range of the samples. The range of constant samples is extended to 0 V, that of zeros to 1 V.
-Range range_of(const std::vector<double>& volts) {
+VoltageRange range_of(const std::vector<double>& volts) {
   const auto [low, high] = std::ranges::minmax(volts);
   if (low < high) return {low, high};
-  return low == 0 ? Range{0, 1} : Range{std::min(0.0, low), std::max(0.0, low)};
+  return low == 0 ? VoltageRange{0, 1} : VoltageRange{std::min(0.0, low), std::max(0.0, low)};
 }
 
 // Source: Keysight 33500 Series Operating and Service Guide, "Arbitrary waveform file format": codes from -32767 to 32767 between

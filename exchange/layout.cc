@@ -99,7 +99,7 @@ char separator_of(const std::vector<Line>& lines) {
 
 std::vector<bool> numeric_columns(const std::vector<Line>& last, char separator) {
   std::vector<bool> is_numeric;
-  for (const bool without_words : {true, false}) {
+  for (const bool without_prose : {true, false}) {
     std::vector<int> excess;  // count of numbers in each column minus that of words and missing cells
     CellList cells;
     int lines = 0;
@@ -107,7 +107,7 @@ std::vector<bool> numeric_columns(const std::vector<Line>& last, char separator)
       split_row(line.text, separator, cells);
       if (numbers_in(cells) == 0) break;
       if (excess.size() < cells.size()) excess.resize(cells.size(), -lines);
-      const bool counts = !without_words || std::all_of(cells.begin(), cells.end(), may_be_value);
+      const bool counts = !without_prose || std::all_of(cells.begin(), cells.end(), may_be_value);
       for (std::size_t i = 0; i < excess.size(); ++i) {
         DecimalSign any;
         CellKind kind = i < cells.size() ? read_cell(cells[i], any).kind : CellKind::no_number;

@@ -54,19 +54,20 @@ class ModeCsvReader {
         if (name != fmt::format("{}{}", mode_name, made_.shapes.size() + 1))
           fail(k + 1, fmt::format("\"{}\" must be {}{}", shown_cell(name), mode_name, made_.shapes.size() + 1));
         made_.shapes.emplace_back();
-        columns_.push_back(Kind::mode);
+        columns_.push_back(ColumnKind::mode);
         continue;
       }
-      const Kind kind = name == position_name ? Kind::position
-                        : name == width_name  ? Kind::width
-                        : name == offset_name ? Kind::offset
-                                              : Kind::none;
-      if (kind == Kind::none || !made_.shapes.empty() || std::find(columns_.begin(), columns_.end(), kind) != columns_.end())
+      const ColumnKind kind = name == position_name ? ColumnKind::position
+                              : name == width_name  ? ColumnKind::width
+                              : name == offset_name ? ColumnKind::offset
+                                                    : ColumnKind::none;
+      if (kind == ColumnKind::none || !made_.shapes.empty() ||
+          std::find(columns_.begin(), columns_.end(), kind) != columns_.end())
         fail(k + 1, fmt::format("\"{}\": columns must be {}, {} and {}, then {}1, {}2 and so on, each once", shown_cell(name),
                                 position_name, width_name, offset_name, mode_name, mode_name));
       columns_.push_back(kind);
     }
-    if (columns_.empty() || columns_.front() != Kind::position || made_.shapes.empty())
+    if (columns_.empty() || columns_.front() != ColumnKind::position || made_.shapes.empty())
       fail(1, fmt::format("the columns must be {} first and {}1 after it", position_name, mode_name));
   }
 
@@ -86,7 +87,7 @@ class ModeCsvReader {
     if (cells_.front() != frequency_name)
       fail(1, fmt::format("\"{}\": expected the row {}", shown_cell(cells_.front()), frequency_name));
     for (std::size_t k = 1; k < columns_.size(); ++k) {
-      if (columns_[k] == Kind::mode) {
+      if (columns_[k] == ColumnKind::mode) {
         made_.frequencies.push_back(number(k));
       } else if (!cells_[k].empty()) {
         fail(k + 1, "must be empty");
@@ -100,19 +101,19 @@ class ModeCsvReader {
     double width = std::numeric_limits<double>::quiet_NaN(), offset = 0;
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       switch (columns_[k]) {
-        case Kind::position:
+        case ColumnKind::position:
           made_.positions.push_back(number(k));
           break;
-        case Kind::width:
+        case ColumnKind::width:
           if (!cells_[k].empty()) width = number(k);
           break;
-        case Kind::offset:
+        case ColumnKind::offset:
           if (!cells_[k].empty()) offset = number(k);
           break;
-        case Kind::mode:
+        case ColumnKind::mode:
           made_.shapes[mode++].push_back(number(k));
           break;
-        case Kind::none:
+        case ColumnKind::none:
           break;
       }
     }
@@ -123,11 +124,11 @@ class ModeCsvReader {
     made_.rest_offsets.push_back(offset);
   }
 
-  enum class Kind { none, position, width, offset, mode };
+  enum class ColumnKind { none, position, width, offset, mode };
   Lines lines_;
   Refusals refusals_;
   ModeTable made_;
-  std::vector<Kind> columns_;
+  std::vector<ColumnKind> columns_;
   std::vector<std::string_view> cells_;
 };
 

@@ -109,7 +109,7 @@ double real(const Reader& in, std::string_view text, std::string_view what) {
 }
 
 // Returns the label and the unit of an axis, in columns 27 to 46 and 48 to 67.
-std::pair<std::string, std::string> axis_words(std::string_view line) {
+std::pair<std::string, std::string> axis_prose(std::string_view line) {
   const auto field = [&](std::size_t from) {
     return from < line.size() ? std::string(trimmed(line.substr(from, 20))) : std::string();
   };
@@ -158,9 +158,9 @@ Header read_header(Reader& in, std::string_view first_line) {
       header.first = real(in, words[3], "the first abscissa");
       header.step = real(in, words[4], "the increment of the abscissa");
     } else if (taken == 7) {
-      header.time_unit = axis_words(header.lines[taken]).second;
+      header.time_unit = axis_prose(header.lines[taken]).second;
     } else if (taken == 8) {
-      std::tie(header.label, header.unit) = axis_words(header.lines[taken]);
+      std::tie(header.label, header.unit) = axis_prose(header.lines[taken]);
     }
   }
   if (taken < header_lines) in.fail("the file ends before the numbers of a data set 58");

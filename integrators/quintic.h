@@ -36,8 +36,8 @@ class Quintic {
     return (2 * c_[2] + s * (6 * c_[3] + s * (12 * c_[4] + s * 20 * c_[5]))) / (length_ * length_);
   }
   /// Returns the times in (begin, end) at which the velocity changes sign, in order.
-  [[nodiscard]] Places<4> turns() const {
-    Places<4> turns = sign_changes(std::array{c_[1], 2 * c_[2], 3 * c_[3], 4 * c_[4], 5 * c_[5]});
+  [[nodiscard]] SignChanges<4> turns() const {
+    SignChanges<4> turns = sign_changes(std::array{c_[1], 2 * c_[2], 3 * c_[3], 4 * c_[4], 5 * c_[5]});
     for (double& t : turns.at) t = begin_ + t * length_;
     return turns;
   }

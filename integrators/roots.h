@@ -27,7 +27,7 @@ double bracketed_zero(const F& f, double low, double high) {
 
 /// Places in (0, 1) in ascending order, at most N.
 template <std::size_t N>
-struct Places {
+struct SignChanges {
   std::array<double, N> at{};
   std::size_t count = 0;
   [[nodiscard]] const double* begin() const { return at.data(); }
@@ -37,9 +37,9 @@ struct Places {
 /// Returns the places at which the polynomial c[0] + c[1] s + ... + c[N] s^N changes sign in 0 < s < 1: between the zeros of
 /// its derivative it is monotone.
 template <std::size_t M>
-[[nodiscard]] Places<M - 1> sign_changes(const std::array<double, M>& c) {
+[[nodiscard]] SignChanges<M - 1> sign_changes(const std::array<double, M>& c) {
   constexpr std::size_t degree = M - 1;
-  Places<degree> places;
+  SignChanges<degree> places;
   if constexpr (degree > 0) {
     const auto value = [&](double s) {
       return std::accumulate(c.rbegin(), c.rend(), 0.0, [s](double v, double k) { return v * s + k; });

@@ -20,9 +20,9 @@ namespace {
 // Shares of the energy that bends the beam by the contact gap: see closing.h.
 constexpr double worth_warning = 0.01, not_credible = 0.2;
 
-class Run {
+class ClosingRun {
  public:
-  Run(const Switch& model, std::span<const Signal> signals, const ClosingOptions& options, ClosingObserver& observer)
+  ClosingRun(const Switch& model, std::span<const Signal> signals, const ClosingOptions& options, ClosingObserver& observer)
       : model_(model),
         options_(options),
         signals_(signals),
@@ -101,16 +101,16 @@ class Run {
     if (parts_.first().phase.phase() == Phase::rest) return stay();
     const std::optional<Stepping::Step> step = stepping_.advance(stop_, audit_);
     if (!step) return fail(stepping_.message());
-    if (step->event) pass(*step->event);
+    if (step->event) on_event(*step->event);
     parts_.hand_over();
     out_.smallest_gap = std::min(out_.smallest_gap, step->field.smallest_gap);
     check_interval(step->field);
   }
 
   // Handles an event: computes the energies, records the event, and enters the next phase.
-  void pass(const Event& event) {
+  void on_event(const Event& event) {
     FollowedContact& c = parts_.contacts[event.contact];
-    TrajectoryPoint& p = c.course.last_waiting();
+    TrajectoryPoint& p = c.pending_knots.last_waiting();
     if (event.edge) p.position = event.edge->level;  // equal up to rounding
     if (p.position == c.plane && !model_.has_spread_contact(event.contact)) p.contact_force = 0;
     audit_.settle(here());
@@ -133,7 +133,7 @@ class Run {
       c.phase.turn(p.position - c.plane - (p.acceleration < 0 ? p.velocity * p.velocity / (2 * p.acceleration) : 0));
     }
     change.after = c.phase.law();
-    if (event.contact == 0) parts_.observer.pass(here(), change);
+    if (event.contact == 0) parts_.observer.on_phase(here(), change);
     restart();
   }
 
@@ -145,10 +145,10 @@ class Run {
     touch.peak_energy = impact.energy;
     parts_.first().force.pass_maximum();
     if (!impact.rests) parts_.first().touches.end(here().time);
-    parts_.observer.pass(here(), {.kind = impact.rests ? PhaseChange::Kind::rests : PhaseChange::Kind::impact,
-                                  .level = plane_,
-                                  .before = parts_.first().phase.law(),
-                                  .after = {}});
+    parts_.observer.on_phase(here(), {.kind = impact.rests ? PhaseChange::Kind::rests : PhaseChange::Kind::impact,
+                                      .level = plane_,
+                                      .before = parts_.first().phase.law(),
+                                      .after = {}});
     parts_.first().phase.enter(impact.rests ? Phase::rest : Phase::flight);
     audit_.impact(impact.lost, model_.damped() ? parts_.equations.dissipation(here().state.data()) : 0);
     restart();
@@ -162,12 +162,12 @@ class Run {
     audit_.rest(here(), stay.until);
     here().time = stay.until;
     const FieldFigures field = parts_.equations.field(here().state.data());
-    const TrajectoryPoint before = parts_.first().course.last(), now = parts_.point(parts_.first(), here());
+    const TrajectoryPoint before = parts_.first().pending_knots.last(), now = parts_.point(parts_.first(), here());
     if (now.time > before.time && !parts_.closing_is_over) parts_.first().force.take_line(before, now);
     if (parts_.follows_state())
-      parts_.electrical->take_rest(before.time, now.time, [&](double t) { return parts_.plate.press(here(), t); });
-    parts_.first().course.push(now);
-    if (stay.leaves) pass({.time = stay.until, .edge = Edge{.level = plane_, .side = 1, .next = Phase::flight}});
+      parts_.electrical->take_rest(before.time, now.time, [&](double t) { return parts_.plate.load(here(), t); });
+    parts_.first().pending_knots.push(now);
+    if (stay.leaves) on_event({.time = stay.until, .edge = Edge{.level = plane_, .side = 1, .next = Phase::flight}});
     parts_.hand_over();
     check_interval(field);
   }
@@ -257,7 +257,8 @@ class Run {
           "energy balance: the residual is {:.2g} % of the bending energy: the tolerance {} is too loose for this closing",
           100 * error, engineering(options_.tolerance, "")));
     }
-    for (std::string& warning : gas_warnings(model_.device(), out_.smallest_gap, parts_.first().course.largest_squeeze())) {
+    for (std::string& warning :
+         gas_warnings(model_.device(), out_.smallest_gap, parts_.first().pending_knots.largest_squeeze())) {
       out_.warnings.push_back(std::move(warning));
     }
     for (std::size_t c = 0; c < model_.contacts(); ++c) {
@@ -349,7 +350,7 @@ Trajectory observe_closing(const Switch& model, std::span<const Signal> drives, 
   require(options.start == StartState::open || model.has_contact(), "start = closed: the switch has no contact to begin on");
   require(options.restart_at_contact || why_always_restarted(model).empty(),
           fmt::format("restart_at_contact = false: {}", why_always_restarted(model)));
-  return Run(model, drives, options, observer).run();
+  return ClosingRun(model, drives, options, observer).run();
 }
 
 Trajectory simulate_closing(const Switch& model, std::span<const Signal> drives, const ClosingOptions& options) {

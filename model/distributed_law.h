@@ -55,7 +55,7 @@ class DistributedLawOf final : public DistributedLaw {
   void add_load(const GapField& field, double drive, double* __restrict load) const override {
     const double* gap = field.gap.data();
     const double* velocity = field.velocity.data();
-    const double factor = Law::driven ? drive : 1;
+    const double factor = Law::drive_depends ? drive : 1;
     const Law law = law_;  // a local copy lets the compiler keep the parameters in registers
     if (field.smallest_gap >= floor_) {
       // Whole lanes let the compiler use vectors: the points left over at an end would take as long, one by one.
@@ -69,7 +69,7 @@ class DistributedLawOf final : public DistributedLaw {
       return;
     }
     for (Eigen::Index p = begin_; p < end_; ++p) {
-      if (!Law::driven && gap[p] >= floor_) {  // few points of a film are below the floor at a time
+      if (!Law::drive_depends && gap[p] >= floor_) {  // few points of a film are below the floor at a time
         load[p] += law.load(gap[p], velocity[p]);
         continue;
       }
@@ -83,12 +83,12 @@ class DistributedLawOf final : public DistributedLaw {
     const double* gap = field.gap.data();
     const double* velocity = field.velocity.data();
     const double* share = share_.data();
-    const double factor = Law::driven ? drive : 1;
+    const double factor = Law::drive_depends ? drive : 1;
     const Law law = law_;
     for (Eigen::Index p = begin_ / lanes * lanes; p < share_.size(); p += lanes) {
       double by_gap[lanes], by_rate[lanes];
       for (Eigen::Index k = 0; k < lanes; ++k) {
-        if constexpr (Law::driven) {
+        if constexpr (Law::drive_depends) {
           by_gap[k] = law.load(Dual(gap[p + k], 1), Dual(velocity[p + k])).slope;
         } else {
           const auto both = slopes(law, gap[p + k], velocity[p + k]);
@@ -97,14 +97,14 @@ class DistributedLawOf final : public DistributedLaw {
       }
       for (Eigen::Index k = 0; k < lanes; ++k) {
         by_deflection[p + k] -= factor * share[p + k] * by_gap[k];  // the gap shrinks as the beam deflects
-        if constexpr (!Law::driven) by_velocity[p + k] += share[p + k] * by_rate[k];
+        if constexpr (!Law::drive_depends) by_velocity[p + k] += share[p + k] * by_rate[k];
       }
     }
   }
 
   void add_curvatures(const GapField& field, double drive, double* by_deflections, double* by_both,
                       double* by_velocities) const override {
-    const double factor = Law::driven ? drive : 1;
+    const double factor = Law::drive_depends ? drive : 1;
     for (Eigen::Index p = begin_; p < end_; ++p) {
       const double gap = field.gap[p], velocity = field.velocity[p];
       if (gap < floor_) continue;
@@ -116,7 +116,7 @@ class DistributedLawOf final : public DistributedLaw {
             .slope.slope;
       };
       by_deflections[p] += factor * mixed(1, 1);
-      if constexpr (!Law::driven) {
+      if constexpr (!Law::drive_depends) {
         by_both[p] -= factor * mixed(1, 0);  // the gap shrinks as the beam deflects
         by_velocities[p] += factor * mixed(0, 0);
       }
@@ -145,9 +145,9 @@ class DistributedLawOf final : public DistributedLaw {
     return {along[0], along[1]};
   }
   void add_tangent_derivatives(const GapField& field, double drive, double* by_deflection, double* by_velocity) const {
-    const double factor = Law::driven ? drive : 1;
+    const double factor = Law::drive_depends ? drive : 1;
     for (Eigen::Index p = begin_; p < end_; ++p) {
-      if (!Law::driven && field.gap[p] >= floor_) {
+      if (!Law::drive_depends && field.gap[p] >= floor_) {
         const auto [by_gap, by_rate] = slopes(law_, field.gap[p], field.velocity[p]);
         by_deflection[p] -= by_gap, by_velocity[p] += by_rate;
         continue;

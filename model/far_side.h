@@ -18,7 +18,7 @@ struct FarSide {
   P floor = 0;      ///< [m]
   /// The law's tangent at the floor, for v = 1 m/s.
   DualOf<P> at_floor = law.load(DualOf<P>(floor, 1), DualOf<P>(1));
-  static constexpr bool driven = Law::driven;
+  static constexpr bool drive_depends = Law::drive_depends;
 
   /// Returns the load [N/m], per unit of the drive for a driven law.
   template <class S>
@@ -28,12 +28,12 @@ struct FarSide {
         far < floor,
         [&]() -> S {
           const S tangent = S(at_floor.value) + S(at_floor.slope) * (far - S(floor));
-          return driven ? -tangent : tangent * velocity;
+          return drive_depends ? -tangent : tangent * velocity;
         },
         [&]() -> S { return -law.load(far, -velocity); });
   }
   /// Returns the potential [J/m] per unit of the drive; below the floor the parabola that belongs to the tangent.
-  [[nodiscard]] double potential(double gap) const requires(Law::driven) {
+  [[nodiscard]] double potential(double gap) const requires(Law::drive_depends) {
     const double far = both_gaps - gap, below = far - floor;
     if (below >= 0) return law.potential(far);
     return law.potential(floor) + (at_floor.value + at_floor.slope * below / 2) * below;
@@ -45,7 +45,7 @@ template <class Law, class P = double>
 struct BothSides {
   Law near = {};
   FarSide<Law, P> far = {};
-  static constexpr bool driven = Law::driven;
+  static constexpr bool drive_depends = Law::drive_depends;
 
   template <class S>
   S load(S gap, S velocity) const {

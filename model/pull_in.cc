@@ -210,11 +210,11 @@ std::optional<StablePath> stable_path(const Switch& model, std::size_t drive, Bi
   return path;
 }
 
-bool step_closes(const Switch& model, std::size_t drive, double value, Bias bias, const Watch& watch, double tolerance) {
+bool step_closes(const Switch& model, std::size_t drive, double value, Bias bias, const Progress& progress, double tolerance) {
   const StaticPullIn statically = static_pull_in(model, drive, bias);
   if (statically.status != Status::done) return statically.status != Status::no_contact;
   if (value >= statically.voltage) return true;
-  return StepTrial(model, drive, statically, bias, tolerance).reaches(value, watch.stop, [](double) {});
+  return StepTrial(model, drive, statically, bias, tolerance).reaches(value, progress.stop, [](double) {});
 }
 
 namespace {
@@ -234,17 +234,17 @@ bool is_overdamped(const Switch& model) {
 }  // namespace
 
 DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const StaticPullIn& static_result, Bias bias,
-                              const Watch& watch, double tolerance, double precision) {
+                              const Progress& progress, double tolerance, double precision) {
   if (static_result.status != Status::done) return {.status = static_result.status};
   StepTrial steps(model, drive, static_result, bias, tolerance);
   if (!steps.has_rest()) return {.status = Status::collapsed_at_rest};
   const double halvings = 1 + std::log2(0.5 / precision);  // trials: the first, and those that halve the bracket
   double trials = halvings, done = 0, shown = 0;
   const auto reaches = [&](double value) {
-    return steps.reaches(value, watch.stop, [&](double part) {
+    return steps.reaches(value, progress.stop, [&](double part) {
       // A bracket that has to be extended downwards takes more trials than expected.
       shown = std::max(shown, std::min(1.0, (done + part) / trials));
-      watch.tell("dynamic pull-in voltage", shown);
+      progress.tell("dynamic pull-in voltage", shown);
     });
   };
 
@@ -256,20 +256,20 @@ DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const Stat
     trials = 1 + halvings;
     ++done;
   }
-  if (low == high) watch.tell("dynamic pull-in voltage", 1);
+  if (low == high) progress.tell("dynamic pull-in voltage", 1);
   while (low < high && reaches(low)) {
-    if (watch.stopped()) break;
+    if (progress.stopped()) break;
     high = low;
     low /= 2;
     if (low < 1e-9 * static_result.voltage) return {.status = Status::numerical_failure};
   }
   ++done;
-  while (high - low > precision * high && !watch.stopped()) {
+  while (high - low > precision * high && !progress.stopped()) {
     const double middle = (low + high) / 2;
     (reaches(middle) ? high : low) = middle;
     ++done;
   }
-  if (watch.stopped()) return {.status = Status::interrupted};
+  if (progress.stopped()) return {.status = Status::interrupted};
   return {.status = Status::done, .voltage = high};
 }
 

@@ -18,7 +18,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "model/status.h"
 #include "model/switch.h"
 
@@ -137,19 +137,19 @@ inline constexpr double dynamic_pull_in_precision = 1e-7;
 /// Dynamic pull-in voltage Vdp [V]: the smallest constant step from rest under the bias whose contact point reaches the contact
 /// plane within 100 periods of the first mode, whether or not it stays, to `precision`. Vdp is at most the static pull-in
 /// voltage, at which the switch closes whatever its damping. Vdp is NaN with a status when static pull-in under the same bias
-/// fails, or `watch` asks to stop. Throws as static_pull_in() does.
+/// fails, or `progress` asks to stop. Throws as static_pull_in() does.
 struct DynamicPullIn {
   Status status = Status::not_run;
   double voltage = std::numeric_limits<double>::quiet_NaN();  ///< [V]; for the dispersion force its factor minus 1
 };
 [[nodiscard]] DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const StaticPullIn& static_result,
-                                            Bias bias = {}, const Watch& watch = {}, double tolerance = 1e-8,
+                                            Bias bias = {}, const Progress& progress = {}, double tolerance = 1e-8,
                                             double precision = dynamic_pull_in_precision);
 
 /// Returns true when a constant step of `drive` to `value` from rest under the bias reaches the contact plane. One such trial
 /// decides whether `value` is at least the dynamic pull-in voltage. Returns true when the bias leaves no open state. Throws as
 /// static_pull_in() does.
-[[nodiscard]] bool step_closes(const Switch& model, std::size_t drive, double value, Bias bias = {}, const Watch& watch = {},
-                               double tolerance = 1e-8);
+[[nodiscard]] bool step_closes(const Switch& model, std::size_t drive, double value, Bias bias = {},
+                               const Progress& progress = {}, double tolerance = 1e-8);
 
 }  // namespace softland

@@ -90,7 +90,7 @@ Eigen::MatrixXd slope_products(const std::vector<BeamElement>& elements, const E
   return products;
 }
 
-bool Receptance::Kind::holds(const BeamElement& e) const {
+bool Receptance::ElementKind::holds(const BeamElement& e) const {
   return rigidity == e.rigidity && mass == e.mass && std::abs(half - e.half()) <= 1e-13 * half;
 }
 
@@ -100,7 +100,7 @@ Receptance::Receptance(const std::vector<BeamElement>& elements, double axial_fo
     const BeamElement& e = elements[i];
     if (kinds_.empty() || !kinds_.back().holds(e)) {
       kinds_.emplace_back();
-      Kind& kind = kinds_.back();
+      ElementKind& kind = kinds_.back();
       kind.half = e.half(), kind.mass = e.mass, kind.rigidity = e.rigidity;
       kind.reach = std::sqrt(std::pow(kind.half, 3) / e.rigidity);
     }
@@ -110,7 +110,7 @@ Receptance::Receptance(const std::vector<BeamElement>& elements, double axial_fo
   }
 }
 
-void Receptance::condense(Kind& kind, const Lane& lambda) const {
+void Receptance::condense(ElementKind& kind, const Lane& lambda) const {
   const ElementProducts& products = ElementProducts::get();
   const double pull = axial_force_ / kind.half;
   const Lane inertia = kind.mass * kind.half * lambda;
@@ -140,7 +140,7 @@ void Receptance::condense(Kind& kind, const Lane& lambda) const {
 void Receptance::load(double x) {
   const auto node = std::lower_bound(nodes_.begin(), std::prev(nodes_.end()), x);
   loaded_ = static_cast<std::size_t>(node - nodes_.begin());
-  const Kind& kind = kinds_[stages_[loaded_].kind];
+  const ElementKind& kind = kinds_[stages_[loaded_].kind];
   const ElementProducts::Row row = ElementProducts::row((x - *node) / kind.half + 1, 0);
   for (int i = 0; i < size; ++i) {
     probe_[i] = row[i] * (i < 2 ? 1 : kind.reach);
@@ -155,7 +155,7 @@ void Receptance::load(double x) {
 }
 
 // Adds the effects of the stiffness [deflection, both, slope] and the forces at the right end on the motions of an element.
-void Receptance::add_beyond(Stage& stage, const Kind& kind, const Lane* stiffness, const Lane* force) const {
+void Receptance::add_beyond(Stage& stage, const ElementKind& kind, const Lane* stiffness, const Lane* force) const {
   const double deflection[kept] = {1, 2, kind.reach * first_at_end, kind.reach * second_at_end};
   const double slope[kept] = {0, 1 / kind.half, kind.reach * first_turn / kind.half, 0};
   for (int i = 0; i < kept; ++i) {
@@ -168,7 +168,7 @@ void Receptance::add_beyond(Stage& stage, const Kind& kind, const Lane* stiffnes
 
 // Fixes the right end: its motion then depends on the left end, as the first two functions are linear in deflection and
 // rotation.
-void Receptance::fix_end(Stage& stage, const Kind& kind) const {
+void Receptance::fix_end(Stage& stage, const ElementKind& kind) const {
   const double first = -1 / (kind.reach * first_turn), second = -1 / (kind.reach * second_at_end);
   auto& f = stage.form;
   auto& p = stage.load;
@@ -186,7 +186,7 @@ void Receptance::sweep_to_clamp(Answer& answer) {
   Lane stiffness[3] = {Lane::Zero(), Lane::Zero(), Lane::Zero()}, force[2] = {Lane::Zero(), Lane::Zero()};
   for (std::size_t e = stages_.size(); e-- > 0;) {
     Stage& stage = stages_[e];
-    const Kind& kind = kinds_[stage.kind];
+    const ElementKind& kind = kinds_[stage.kind];
     for (int i = 0; i < kept; ++i) {
       stage.load[i] = e == loaded_ ? load_[i] : Lane::Zero();
       for (int j = 0; j <= i; ++j) stage.form[i][j] = kind.form[i][j];
@@ -227,7 +227,7 @@ void Receptance::sweep_to_end(Answer& answer) {
   Lane deflection = Lane::Zero(), slope = Lane::Zero();
   for (std::size_t e = 0; e < stages_.size(); ++e) {
     Stage& stage = stages_[e];
-    const Kind& kind = kinds_[stage.kind];
+    const ElementKind& kind = kinds_[stage.kind];
     auto& y = stage.motion;
     y[0] = deflection;
     y[1] = slope * kind.half;
@@ -268,7 +268,7 @@ Receptance::Answer Receptance::at(const Lane& lambda, double x) {
                 .inertia = Lane::Zero(),
                 .below = Lane::Zero(),
                 .least_pivot = Lane::Constant(std::numeric_limits<double>::infinity())};
-  for (Kind& kind : kinds_) {
+  for (ElementKind& kind : kinds_) {
     condense(kind, lambda);
     answer.least_pivot = answer.least_pivot.min(kind.least_pivot);
   }

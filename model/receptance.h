@@ -61,7 +61,7 @@ class Receptance {
   static constexpr int size = 2 + element_functions;  // deflection and rotation at an element's left end, then its functions
   static constexpr int kept = 4;                      // number of these motions that move the right end
   // A kind of equal elements with their quadratic form, a lower triangle. The part below the kept rows is eliminated.
-  struct Kind {
+  struct ElementKind {
     double half = 0, rigidity = 0, mass = 0;
     double reach = 0;  // deflection of a function of unit energy, over that of the universal function
     Lane form[size][size];
@@ -78,16 +78,16 @@ class Receptance {
     Lane motion[size];
   };
 
-  void condense(Kind& kind, const Lane& lambda) const;
+  void condense(ElementKind& kind, const Lane& lambda) const;
   void load(double x);
-  void add_beyond(Stage& stage, const Kind& kind, const Lane* stiffness, const Lane* force) const;
-  void fix_end(Stage& stage, const Kind& kind) const;
+  void add_beyond(Stage& stage, const ElementKind& kind, const Lane* stiffness, const Lane* force) const;
+  void fix_end(Stage& stage, const ElementKind& kind) const;
   void sweep_to_clamp(Answer& answer);
   void sweep_to_end(Answer& answer);
 
   double axial_force_;
   bool far_clamp_;
-  std::vector<Kind> kinds_;
+  std::vector<ElementKind> kinds_;
   std::vector<Stage> stages_;
   std::vector<double> nodes_;  // ends of the elements
   std::size_t loaded_ = 0;     // index of the element at x

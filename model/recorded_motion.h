@@ -46,7 +46,7 @@ class RecordedMotion final : public ClosingObserver {
       numbers_.insert(numbers_.end(), knot->rates.data(), knot->rates.data() + modes_);
     }
   }
-  void pass(const Knot& here, const PhaseChange& change) override { passages_.push_back({arcs_.size(), here.time, change}); }
+  void on_phase(const Knot& here, const PhaseChange& change) override { passages_.push_back({arcs_.size(), here.time, change}); }
 
   [[nodiscard]] const std::vector<Arc>& arcs() const { return arcs_; }
   [[nodiscard]] Motion begin(std::size_t arc) const { return motion(arcs_[arc].begin, 2 * arc); }

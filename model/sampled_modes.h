@@ -21,14 +21,14 @@
 namespace softland {
 
 struct SampledModes {
-  struct Places {
+  struct PanelPlaces {
     std::vector<double> corners;                         // ends of the panels [m]
     double contact = 0, piezo_begin = 0, piezo_end = 0;  // [m]
     std::vector<double> further_contacts;                // places of the contacts after the first one [m]
     double points_per_length = 0;
     int fewest_points = 0;  // least number of points of a panel
 
-    [[nodiscard]] static Places of(const Device& d, double points_per_length, int fewest_points) {
+    [[nodiscard]] static PanelPlaces of(const Device& d, double points_per_length, int fewest_points) {
       std::set<double> corners{0, d.structure.length};
       const double length = d.structure.length, piezo_begin = d.piezo ? d.piezo->begin.on(length) : 0,
                    piezo_end = d.piezo ? d.piezo->end.on(length) : 0;
@@ -53,9 +53,9 @@ struct SampledModes {
               .points_per_length = points_per_length,
               .fewest_points = fewest_points};
     }
-    [[nodiscard]] bool operator==(const Places&) const = default;
+    [[nodiscard]] bool operator==(const PanelPlaces&) const = default;
   };
-  Places places;
+  PanelPlaces places;
   std::vector<GaussRule> rules;                  // rules of the panels
   std::shared_ptr<const NormalisedModes> modes;  // null for other structures than beams
   TabulatedModes::Shapes table = {};             // empty for other structures than tables
@@ -66,7 +66,7 @@ struct SampledModes {
   double pinned_inverse_square = 0;  // value for the beam held at its contact
 
   template <class Modes>
-  SampledModes(const Modes& normalised, double length, Places at, const SampledModes* near) : places(std::move(at)) {
+  SampledModes(const Modes& normalised, double length, PanelPlaces at, const SampledModes* near) : places(std::move(at)) {
     const double end = places.corners.back();
     std::vector<double> x, w;
     for (auto corner = places.corners.begin(); std::next(corner) != places.corners.end(); ++corner) {

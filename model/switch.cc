@@ -115,7 +115,7 @@ std::shared_ptr<const DistributedLaw> dispersion_force(const Dispersion& d, doub
 
 template <class Modes>
 void Switch::set_modes(const Modes& structure, double points_per_length, int fewest_points, const Switch* like) {
-  SampledModes::Places places = SampledModes::Places::of(device_, points_per_length, fewest_points);
+  SampledModes::PanelPlaces places = SampledModes::PanelPlaces::of(device_, points_per_length, fewest_points);
   const auto is_in = [&]([[maybe_unused]] const SampledModes& sampled) {
     if constexpr (std::same_as<Modes, BeamModes>) return sampled.modes == structure.normalised();
     if constexpr (std::same_as<Modes, TabulatedModes>) return sampled.table == *structure.normalised();

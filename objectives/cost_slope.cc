@@ -103,14 +103,15 @@ class SlopeFinder {
         slopes_.of[&Metrics::closest] = position(i, -1);
       }
     } else if (touching_) {
-      if (at - plane_ > (1 + 1e-9) * depth_ && (arc(i).turns || i + 1 == motion_.arcs().size())) deepen(i, at - plane_);
+      if (at - plane_ > (1 + 1e-9) * depth_ && (arc(i).turns || i + 1 == motion_.arcs().size()))
+        update_plastic_depth(i, at - plane_);
     } else if (plane_ - at > height_) {
       height_ = plane_ - at;
       height_slope_ = position(i, -1);
     }
   }
 
-  void deepen(std::size_t i, double depth) {
+  void update_plastic_depth(std::size_t i, double depth) {
     depth_ = depth;
     const ContactState& law = arc(i).contact;
     if (!law.active || model_.has_spread_contact()) return;
@@ -256,22 +257,22 @@ std::optional<FigureSlope> cost_slope(const Aim& aim, const Metrics& figures, co
     return row.no_gradient.empty() && slopes.why_none[row.figure].empty();
   });
   if (!has_slope || !std::isfinite(cost(aim, figures, scale, options))) return std::nullopt;
-  struct Part {
+  struct CostTerm {
     double Metrics::*figure;
     double scale;
   };
   const Metrics& step = scale.step;
-  const Part parts[] = {{&Metrics::closest, scale.contact_gap},
-                        {&Metrics::initial_contact_time, step.initial_contact_time},
-                        {&Metrics::largest_impact_velocity, step.largest_impact_velocity},
-                        {&Metrics::major_bounce_height, options.significant_rebound},
-                        {&Metrics::separated, scale.score_window},
-                        {&Metrics::last_rebound_end, step.initial_contact_time},
-                        {&Metrics::impact_energy, step.impact_energy},
-                        {&Metrics::landing_excess, step.landing_excess},
-                        {&Metrics::peak_contact_force, step.peak_contact_force}};
+  const CostTerm parts[] = {{&Metrics::closest, scale.contact_gap},
+                            {&Metrics::initial_contact_time, step.initial_contact_time},
+                            {&Metrics::largest_impact_velocity, step.largest_impact_velocity},
+                            {&Metrics::major_bounce_height, options.significant_rebound},
+                            {&Metrics::separated, scale.score_window},
+                            {&Metrics::last_rebound_end, step.initial_contact_time},
+                            {&Metrics::impact_energy, step.impact_energy},
+                            {&Metrics::landing_excess, step.landing_excess},
+                            {&Metrics::peak_contact_force, step.peak_contact_force}};
   FigureSlope sum;  // summed in the order of the parts, which decides its last bits
-  for (const Part& part : parts) {
+  for (const CostTerm& part : parts) {
     const double value = figures.*part.figure;
     if (!std::isfinite(value)) continue;
     // The cost is a closed form of its figures, so that differences are accurate to about 1e-10.

@@ -36,14 +36,14 @@ constexpr double largest_separation = 0.15;
 constexpr double first_step = 0.25;
 constexpr double polishing_step = 0.02;
 
-struct Search {
+struct LocalSearch {
   const Method* method;
-  Run run;
+  RunOptions run;
   Point best_point;
   double best = std::numeric_limits<double>::infinity();
   bool converged = false;
 
-  Search(const Method& of, const Point& start, double step, std::uint64_t seed)
+  LocalSearch(const Method& of, const Point& start, double step, std::uint64_t seed)
       : method(&of), run{.start = start, .step = step, .seed = seed}, best_point(start) {}
 };
 
@@ -91,9 +91,9 @@ void sample(EvaluationRecord& record, std::uint64_t first, std::size_t count) {
 }
 
 /// Continues each search that has not converged for `budget` evaluations.
-void advance(EvaluationRecord& record, std::vector<Search>& searches, long budget) {
+void advance(EvaluationRecord& record, std::vector<LocalSearch>& searches, long budget) {
   std::vector<EvaluationRecord::Task> tasks;
-  for (Search& search : searches) {
+  for (LocalSearch& search : searches) {
     if (search.converged) continue;
     tasks.push_back({.budget = budget, .body = [&search](BudgetedObjective& budgeted) {
                        search.converged = run_method(*search.method, search.run, budgeted).converged;
@@ -121,7 +121,7 @@ void hop(EvaluationRecord& record, const Method& method, long budget) {
     const Point best = best_point(record);
     if (best.empty()) return;
     const auto affordable = static_cast<std::size_t>((record.remaining() - end) / each);
-    std::vector<Search> beside;
+    std::vector<LocalSearch> beside;
     for (const double size : hop_sizes) {
       if (beside.size() == affordable) break;
       Point start = best;
@@ -142,7 +142,7 @@ void search(EvaluationRecord& record, const std::array<const Method*, searches_a
   std::uint64_t points_sampled = 0;
   std::uint64_t searches_begun = 0;
   const auto begin_search = [&](const Method& method, const Point& start, double step) {
-    return Search(method, start, step, random_bits(record.seed(), Stream::library_seed, searches_begun++));
+    return LocalSearch(method, start, step, random_bits(record.seed(), Stream::library_seed, searches_begun++));
   };
   std::vector<Point> explored;
   // A search with a gradient ends sooner, and more searches find more valleys.
@@ -155,11 +155,11 @@ void search(EvaluationRecord& record, const std::array<const Method*, searches_a
     const long budget = std::min(record.remaining(), longest_epoch);
     std::vector<Point> starts = promising_points(record.known(), explored);
     starts.resize(std::min(starts.size(), starts_refined));
-    std::vector<Search> refined;  // empty when the search was stopped before its first evaluation
+    std::vector<LocalSearch> refined;  // empty when the search was stopped before its first evaluation
     const auto go_on = [&] {
       if (refined.empty()) return;
       advance(record, refined, std::max(share_of(budget, refining, refined.size()), shortest_refinement));
-      for (const Search& search : refined) explored.push_back(search.best_point);
+      for (const LocalSearch& search : refined) explored.push_back(search.best_point);
     };
     const bool by_values = finisher == nullptr || !(record.has_gradient() && record.smooth());
     const Method& first = by_values ? find_method("sbplx") : *finisher;
@@ -167,7 +167,7 @@ void search(EvaluationRecord& record, const std::array<const Method*, searches_a
     go_on();
     if (finisher != nullptr) {
       if (by_values) {
-        for (Search& each : refined) each = begin_search(*finisher, each.best_point, polishing_step);
+        for (LocalSearch& each : refined) each = begin_search(*finisher, each.best_point, polishing_step);
         go_on();
       }
       if (record.has_gradient() && record.goes_on() && record.dimension() >= fewest_hopping)
@@ -182,25 +182,26 @@ void search(EvaluationRecord& record, const std::array<const Method*, searches_a
     sample(record, points_sampled, samples);
     points_sampled += samples;
 
-    std::vector<Search> running;
+    std::vector<LocalSearch> running;
     for (const Point& start : promising_points(record.known(), explored)) {
       running.push_back(begin_search(*methods[running.size()], start, first_step));
     }
     double share = first_heat;
     while (!running.empty() && !record.over()) {
       advance(record, running, share_of(budget, share, running.size()));
-      for (const Search& search : running) explored.push_back(search.best_point);
+      for (const LocalSearch& search : running) explored.push_back(search.best_point);
       if (running.size() == 1) break;
-      std::stable_sort(running.begin(), running.end(), [](const Search& a, const Search& b) { return a.best < b.best; });
+      std::stable_sort(running.begin(), running.end(),
+                       [](const LocalSearch& a, const LocalSearch& b) { return a.best < b.best; });
       running.erase(running.begin() + static_cast<std::ptrdiff_t>((running.size() + 1) / 2), running.end());
       if (finisher != nullptr && share == first_heat) {
-        for (Search& each : running) each = begin_search(*finisher, each.best_point, polishing_step);
+        for (LocalSearch& each : running) each = begin_search(*finisher, each.best_point, polishing_step);
       }
       share = later_heat;
     }
 
     if (const Point best = best_point(record); !best.empty()) {
-      std::vector<Search> polish{begin_search(polisher, best, polishing_step)};
+      std::vector<LocalSearch> polish{begin_search(polisher, best, polishing_step)};
       advance(record, polish, budget);
     }
     if (record.remaining() == before) return;

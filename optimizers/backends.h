@@ -26,7 +26,7 @@ struct Method {
 /// Throws InvalidInput for a name that is unknown or refused; the message gives the reason and the known names.
 [[nodiscard]] const Method& find_method(std::string_view name);
 
-struct Run {
+struct RunOptions {
   Point start;
   double step = 0.25;      ///< first step as a fraction of the box
   double population = 1;   ///< points of a generation, as a multiple of the usual number
@@ -41,9 +41,9 @@ struct RunReport {
 /// run_nlopt() and run_ipopt() always return, whatever the objective does. Repeated with the same arguments they evaluate the
 /// same points in the same order. So a search that ran out of budget is continued by repeating its run: the evaluations made
 /// before are answered from memory.
-[[nodiscard]] RunReport run_nlopt(const Method& method, const Run& run, BudgetedObjective& budgeted);
-[[nodiscard]] RunReport run_cma_es(const Run& run, BudgetedObjective& budgeted);
-[[nodiscard]] RunReport run_ipopt(const Run& run, BudgetedObjective& budgeted);
-[[nodiscard]] RunReport run_method(const Method& method, const Run& run, BudgetedObjective& budgeted);
+[[nodiscard]] RunReport run_nlopt(const Method& method, const RunOptions& run, BudgetedObjective& budgeted);
+[[nodiscard]] RunReport run_cma_es(const RunOptions& run, BudgetedObjective& budgeted);
+[[nodiscard]] RunReport run_ipopt(const RunOptions& run, BudgetedObjective& budgeted);
+[[nodiscard]] RunReport run_method(const Method& method, const RunOptions& run, BudgetedObjective& budgeted);
 
 }  // namespace softland::internal

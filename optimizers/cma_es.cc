@@ -120,7 +120,7 @@ class Distribution {
 
 }  // namespace
 
-RunReport run_cma_es(const Run& run, BudgetedObjective& budgeted) {
+RunReport run_cma_es(const RunOptions& run, BudgetedObjective& budgeted) {
   const auto n = static_cast<Eigen::Index>(run.start.size());
   const Strategy strategy(n, run.population);
   Distribution points(strategy, VectorXd::Map(run.start.data(), n), run.step);

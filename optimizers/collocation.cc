@@ -53,7 +53,7 @@ const Radau& radau() {
 }
 
 // The weight of one variable of the program in the value of a control at a point.
-struct Part {
+struct ControlWeight {
   Index column;  // column of the controls
   double weight;
 };
@@ -62,7 +62,7 @@ struct Place {
   Index piece, stage;
   double length;  // length of the piece, a fraction of T
   double at;      // place in the piece, a fraction of T
-  std::vector<Part> parts;
+  std::vector<ControlWeight> parts;
 };
 
 // The nonlinear program. Variables: T, the controls column by column, the states point by point.
@@ -87,7 +87,7 @@ class Program final : public Ipopt::TNLP {
         for (Index s = 0; s < stages; ++s) {
           const double inside =
               (static_cast<double>(m) + radau().points[static_cast<std::size_t>(s) + 1]) / static_cast<double>(count);
-          std::vector<Part> parts{{k, 1}};
+          std::vector<ControlWeight> parts{{k, 1}};
           if (ramps_) parts = {{k, 1 - inside}, {k + 1, inside}};
           points_.push_back({piece, s, length, begin + (end - begin) * inside, std::move(parts)});
         }
@@ -275,7 +275,8 @@ class Program final : public Ipopt::TNLP {
   }
   [[nodiscard]] VectorXd control_of(const double* x, const Place& point) const {
     VectorXd value = VectorXd::Zero(nc_);
-    for (const Part& part : point.parts) value += part.weight * Eigen::Map<const VectorXd>(x + control(part.column, 0), nc_);
+    for (const ControlWeight& part : point.parts)
+      value += part.weight * Eigen::Map<const VectorXd>(x + control(part.column, 0), nc_);
     return value;
   }
   [[nodiscard]] bool depends(Index r, Index k) const { return depends_[static_cast<std::size_t>(r * (n_ + nc_) + k)]; }
@@ -309,7 +310,7 @@ class Program final : public Ipopt::TNLP {
       const auto slope = [&](Index r, Index k) { return rates.empty() ? 0.0 : -span * rates[p].slope(r, k); };
       for (Index r = 0; r < n_; ++r, ++row) {
         entry(row, 0, rates.empty() ? 0.0 : -point.length * rates[p].value[r]);
-        for (const Part& part : point.parts) {
+        for (const ControlWeight& part : point.parts) {
           for (Index k = 0; k < nc_; ++k) {
             if (depends(r, n_ + k)) entry(row, control(part.column, k), part.weight * slope(r, n_ + k));
           }
@@ -363,14 +364,14 @@ class Program final : public Ipopt::TNLP {
       for (Index r = 0; r < n_; ++r) {
         entry(state(at, r), 0, by_time[r]);
         for (Index k = 0; k <= r; ++k) entry(state(at, r), state(at, k), curvature(r, k));
-        for (const Part& part : point.parts) {
+        for (const ControlWeight& part : point.parts) {
           for (Index k = 0; k < nc_; ++k) entry(state(at, r), control(part.column, k), part.weight * curvature(r, n_ + k));
         }
       }
-      for (const Part& part : point.parts) {
+      for (const ControlWeight& part : point.parts) {
         for (Index k = 0; k < nc_; ++k) {
           entry(control(part.column, k), 0, part.weight * by_time[n_ + k]);
-          for (const Part& other : point.parts) {
+          for (const ControlWeight& other : point.parts) {
             for (Index j = 0; j < nc_; ++j) {
               if (control(other.column, j) > control(part.column, k)) continue;
               entry(control(part.column, k), control(other.column, j), part.weight * other.weight * curvature(n_ + k, n_ + j));

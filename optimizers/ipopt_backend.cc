@@ -108,7 +108,7 @@ RunReport report_of(Ipopt::ApplicationReturnStatus status) {
 
 }  // namespace
 
-RunReport run_ipopt(const Run& run, BudgetedObjective& budgeted) {
+RunReport run_ipopt(const RunOptions& run, BudgetedObjective& budgeted) {
   const auto turn = ipopt_turn([&] { return budgeted.over(); });
   if (!turn) return {.converged = false, .message = "Ipopt: stopped by softland while waiting for another solve"};
   budgeted.begin_search();

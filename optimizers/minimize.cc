@@ -13,7 +13,7 @@
 namespace softland {
 namespace internal {
 
-RunReport run_method(const Method& method, const Run& run, BudgetedObjective& budgeted) {
+RunReport run_method(const Method& method, const RunOptions& run, BudgetedObjective& budgeted) {
   if (method.backend == Backend::cma_es) return run_cma_es(run, budgeted);
   return method.backend == Backend::ipopt ? run_ipopt(run, budgeted) : run_nlopt(method, run, budgeted);
 }
@@ -59,7 +59,7 @@ RunReport search_single_method(EvaluationRecord& record, const Method& method, c
     std::uint64_t skipped = 0;
     const std::size_t given = record.starts().size();
     for (std::uint64_t k = 0; !budgeted.over() && idle_runs < idle_runs_allowed; ++k) {
-      const Run run{
+      const RunOptions run{
           .start = k < given ? record.starts()[k] : sobol_points(record.seed(), record.dimension(), k - given, 1).front(),
           .step = options.step,
           .population = options.population,

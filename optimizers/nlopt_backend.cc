@@ -84,7 +84,7 @@ std::string_view name_of(nlopt::result result) {
 
 }  // namespace
 
-RunReport run_nlopt(const Method& method, const Run& run, BudgetedObjective& budgeted) {
+RunReport run_nlopt(const Method& method, const RunOptions& run, BudgetedObjective& budgeted) {
   const auto algorithm = static_cast<nlopt::algorithm>(method.nlopt_algorithm);
   const bool is_mlsl = algorithm == nlopt::G_MLSL;
   const std::size_t conditions = method.uses_gradient ? budgeted.conditions() : 0;

@@ -36,21 +36,21 @@ Figure figure_named(const std::string& name) {
 
 std::unique_ptr<Evaluator> made_evaluator(const PyScene& scene, const std::vector<std::string>& keys,
                                           const std::vector<std::string>& names, const std::string& vdp, double tolerance,
-                                          const py::object& progress) {
+                                          const py::object& on_progress) {
   require(vdp == "nominal" || vdp == "each", [&] { return fmt::format("vdp {}: must be nominal or each", vdp); });
   std::vector<Figure> figures;
   for (const std::string& name : names) figures.push_back(figure_named(name));
   const SceneFile file = scene.file;
-  Run run(progress);
-  return run([&](const Watch& watch) {
+  InterruptibleRun run(on_progress);
+  return run([&](const Progress& progress) {
     return std::make_unique<Evaluator>(
         file, keys, figures, EvaluatorOptions{.volts = vdp == "each" ? VoltsOf::each : VoltsOf::nominal, .tolerance = tolerance},
-        watch);
+        progress);
   });
 }
 
 // Returns (figures, status, reasons), with a row for each device.
-py::tuple evaluate(const Evaluator& evaluator, const Rows& rows, int jobs, const py::object& progress) {
+py::tuple evaluate(const Evaluator& evaluator, const Rows& rows, int jobs, const py::object& on_progress) {
   const auto keys = static_cast<py::ssize_t>(evaluator.keys().size()),
              figures = static_cast<py::ssize_t>(evaluator.figures().size());
   require(rows.ndim() == 2 && rows.shape(1) == keys,
@@ -60,9 +60,9 @@ py::tuple evaluate(const Evaluator& evaluator, const Rows& rows, int jobs, const
   std::vector<RowEnd> ends(count);
   const std::span<const double> in(rows.data(), static_cast<std::size_t>(rows.size()));
   const std::span<double> out(values.mutable_data(), static_cast<std::size_t>(values.size()));
-  Run run(progress);
-  run([&](const Watch& watch) {
-    evaluator.evaluate(in, out, ends, jobs, watch);
+  InterruptibleRun run(on_progress);
+  run([&](const Progress& progress) {
+    evaluator.evaluate(in, out, ends, jobs, progress);
     return true;
   });
   // Each of the few different statuses is converted to a Python text once.
@@ -96,8 +96,10 @@ void bind_evaluator(py::module_& m) {
       .def("evaluate", &evaluate)
       .def("jacobian", [](const Evaluator& e, const Rows& row) {
         require(row.ndim() == 1, "jacobian: must be a single row, of shape (keys,)");
-        Run run;
-        return run([&](const Watch& watch) { return e.jacobian({row.data(), static_cast<std::size_t>(row.size())}, watch); });
+        InterruptibleRun run;
+        return run([&](const Progress& progress) {
+          return e.jacobian({row.data(), static_cast<std::size_t>(row.size())}, progress);
+        });
       });
 }
 

@@ -9,7 +9,7 @@
 #include "base/require.h"
 #include "python/scene.h"
 #include "reports/origin.h"
-#include "studies/exploration/exploring.h"
+#include "studies/exploration/exploration_runner.h"
 #include "studies/exploration/front_search.h"
 #include "verbs/explore.h"
 #include "verbs/points.h"
@@ -23,38 +23,39 @@ namespace {
 using verbs::ExploreRequest;
 
 void search_the_front(Exploration& exploration, const ExploreRequest& request, const std::vector<ExploredAim>& aims,
-                      StudyStore& store, KnownRows known, Run& run) {
+                      StudyStore& store, KnownRows known, InterruptibleRun& run) {
   static_cast<void>(search_front(exploration, store, std::move(known), aims,
                                  {.jobs = request.jobs, .stop = run.stop(), .on_point = [&run](const FrontFound& found) {
-                                    run.watch().tell("searching the Pareto front",
-                                                     static_cast<double>(found.asked) / static_cast<double>(found.points));
+                                    run.progress().tell("searching the Pareto front",
+                                                        static_cast<double>(found.asked) / static_cast<double>(found.points));
                                   }}));
 }
 
-void explore_part(Exploration& exploration, const ExploreRequest& request, const Shard& shard, StudyStore& store, Run& run) {
-  Exploring(exploration, store,
-            {.shard = shard,
-             .jobs = request.jobs,
-             .stop = run.stop(),
-             .on_point =
-                 [&run](const Explored& e) {
-                   run.watch().tell("exploring", static_cast<double>(e.there()) / static_cast<double>(e.points));
-                 }})
+void explore_part(Exploration& exploration, const ExploreRequest& request, const Shard& shard, StudyStore& store,
+                  InterruptibleRun& run) {
+  ExplorationRunner(exploration, store,
+                    {.shard = shard,
+                     .jobs = request.jobs,
+                     .stop = run.stop(),
+                     .on_point =
+                         [&run](const ExplorationProgress& e) {
+                           run.progress().tell("exploring", static_cast<double>(e.there()) / static_cast<double>(e.points));
+                         }})
       .run();
 }
 
 // Explores a design space into a store. After Ctrl-C the store keeps the rows that are done.
-void explore(const PyScene& scene, const verbs::Told& told, const std::string& command, const py::object& progress) {
+void explore(const PyScene& scene, const verbs::Arguments& arguments, const std::string& command, const py::object& on_progress) {
   const verbs::Study& verb = verbs::study_named("explore");
   const auto [request, shard, plan] = in_keywords("explore", [&] {
-    ExploreRequest asked = verbs::explore_request(told);
+    ExploreRequest asked = verbs::explore_request(arguments);
     PlanRequest words = asked.plan(scene.file, [&](std::string_view option) { return verb.keyword(option); });
     complete(words, verbs::studies_of_points());
     return std::tuple(asked, asked.part(), words);
   });
-  Run run(progress);
-  run([&](const Watch& watch) {
-    Exploration exploration = exploration_for(Plan(plan), request.out, watch, verbs::studies_of_points());
+  InterruptibleRun run(on_progress);
+  run([&](const Progress& progress) {
+    Exploration exploration = exploration_for(Plan(plan), request.out, progress, verbs::studies_of_points());
     const bool is_search = exploration.plan().is_search();
     require_part(exploration, shard);
     std::vector<ExploredAim> aims;
@@ -68,7 +69,7 @@ void explore(const PyScene& scene, const verbs::Told& told, const std::string& c
       explore_part(exploration, request, shard, store, run);
     }
     store.close();
-    watch.throw_if_stopped();
+    progress.throw_if_stopped();
     return true;
   });
 }

@@ -28,8 +28,8 @@ std::vector<double> numbers(const Column& column) { return {column.data(), colum
 
 Recording read(const std::filesystem::path& file, const std::vector<std::string>& assignments) {
   const ReadKeys keys = read_keys(assignments);
-  Run run;
-  return run([&](const Watch&) {
+  InterruptibleRun run;
+  return run([&](const Progress&) {
     Recording found = read_recording(file.string(), keys);
     if (!keys.column.empty() || keys.column_number > 0) found.channels = {channel_of(found, keys, "")};
     return found;

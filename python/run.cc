@@ -53,14 +53,14 @@ StoppedByInterrupt::~StoppedByInterrupt() {
   --depth;
 }
 
-Run::Run(py::object progress) : progress_(std::move(progress)) {
-  watch_.stop = &stop_;
-  if (progress_.is_none()) return;
-  watch_.progress = [this](std::string_view told_of, double told_part) {
+InterruptibleRun::InterruptibleRun(py::object on_progress) : on_progress_(std::move(on_progress)) {
+  progress_.stop = &stop_;
+  if (on_progress_.is_none()) return;
+  progress_.report = [this](std::string_view told_of, double told_part) {
     using namespace std::chrono;
     const auto [what, part] = [&] {
       const std::scoped_lock lock(progress_lock_);
-      return shown_.told(told_of, told_part);
+      return shown_.updated(told_of, told_part);
     }();
     constexpr auto least = milliseconds(100);
     const auto now = steady_clock::now().time_since_epoch();
@@ -68,17 +68,17 @@ Run::Run(py::object progress) : progress_(std::move(progress)) {
     if (given_up() || (now - steady_clock::duration(told) < least && part < 1) ||
         !told_.compare_exchange_strong(told, now.count()))
       return;
-    call([&, name = what, done = part] { progress_(py::str(name), done); });
+    call([&, name = what, done = part] { on_progress_(py::str(name), done); });
   };
 }
 
-void Run::keep(std::exception_ptr error) {
+void InterruptibleRun::keep(std::exception_ptr error) {
   const std::scoped_lock lock(lock_);
   if (!first_) first_ = std::move(error);
   stop_ = true;
 }
 
-void Run::finish(const std::exception_ptr& error) {
+void InterruptibleRun::finish(const std::exception_ptr& error) {
   if (first_) std::rethrow_exception(first_);
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
   if (!error) return;

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "base/monotone_progress.h"
-#include "base/watch.h"
+#include "base/progress.h"
 
 namespace softland::python {
 
@@ -30,24 +30,24 @@ class StoppedByInterrupt {
 };
 
 /// One call from Python into the library.
-class Run {
+class InterruptibleRun {
  public:
   /// `progress` is called with the name of the current stage and its done share, at most ten times a second; None: not called.
-  explicit Run(pybind11::object progress = pybind11::none());
-  Run(const Run&) = delete;
-  Run& operator=(const Run&) = delete;
+  explicit InterruptibleRun(pybind11::object on_progress = pybind11::none());
+  InterruptibleRun(const InterruptibleRun&) = delete;
+  InterruptibleRun& operator=(const InterruptibleRun&) = delete;
 
-  /// Returns the result of work(watch), run without the GIL. Raises an exception of a Python callback, KeyboardInterrupt after
-  /// Ctrl-C, and exceptions of the work.
+  /// Returns the result of work(progress), run without the GIL. Raises an exception of a Python callback, KeyboardInterrupt
+  /// after Ctrl-C, and exceptions of the work.
   template <class Work>
   auto operator()(Work&& work) {
-    std::optional<std::invoke_result_t<Work, const Watch&>> result;
+    std::optional<std::invoke_result_t<Work, const Progress&>> result;
     std::exception_ptr error;
     {
       const StoppedByInterrupt guard(stop_);
       const pybind11::gil_scoped_release free;
       try {
-        result.emplace(work(watch_));
+        result.emplace(work(progress_));
       } catch (...) {
         error = std::current_exception();
       }
@@ -56,7 +56,7 @@ class Run {
     return std::move(*result);
   }
 
-  [[nodiscard]] const Watch& watch() const { return watch_; }
+  [[nodiscard]] const Progress& progress() const { return progress_; }
   [[nodiscard]] const std::atomic<bool>* stop() const { return &stop_; }
   /// Returns true if the run was asked to stop in another way than by end_by_wish().
   [[nodiscard]] bool given_up() const { return stop_.load(std::memory_order_relaxed) && !ended_by_wish_; }
@@ -83,11 +83,11 @@ class Run {
   std::atomic<bool> stop_ = false, ended_by_wish_ = false;
   std::mutex lock_;
   std::exception_ptr first_;
-  pybind11::object progress_;
+  pybind11::object on_progress_;
   std::atomic<std::chrono::steady_clock::rep> told_ = 0;
   std::mutex progress_lock_;  // guards the members below
   MonotoneProgress shown_;
-  Watch watch_;
+  Progress progress_;
 
  public:
   /// Ends the work because a callback returned True; the result is the best one so far.

@@ -25,12 +25,12 @@ namespace softland::python {
 
 namespace py = pybind11;
 
-std::shared_ptr<const PreparedScene> PyScene::ready(bool default_limits, Run& run) {
+std::shared_ptr<const PreparedScene> PyScene::ready(bool default_limits, InterruptibleRun& run) {
   std::shared_ptr<const PreparedScene>& kept = default_limits ? limited : plain;
   if (!kept) {
     const SceneFile copy = file;  // another Python thread may change it meanwhile
-    kept = run([&](const Watch& watch) {
-      return std::make_shared<const PreparedScene>(prepare_and_choose(copy, default_limits, watch));
+    kept = run([&](const Progress& progress) {
+      return std::make_shared<const PreparedScene>(prepare_and_choose(copy, default_limits, progress));
     });
   }
   return kept;
@@ -44,12 +44,12 @@ std::shared_ptr<const PreparedScene> driven_by(const std::shared_ptr<const Prepa
     require(own->drives.find(drive) != nullptr, [&] { return fmt::format("waveforms: unknown drive '{}'", drive); });
     Drive& driven = own->drives.at(drive);
     if (driven.limits) {
-      const Signal told = own->told(own->drives.place(drive), waveform);
+      const Signal commanded = own->commanded(own->drives.place(drive), waveform);
       // The cubics that approximate an own waveform may exceed a limit by this error.
-      const double missed = std::holds_alternative<Own>(waveform) ? own_waveform_accuracy * told.peak() : 0;
-      const std::string why = violation(told, {.min_voltage = driven.limits->min_voltage - missed,
-                                               .max_voltage = driven.limits->max_voltage + missed,
-                                               .max_slew = driven.limits->max_slew});
+      const double missed = std::holds_alternative<Own>(waveform) ? own_waveform_accuracy * commanded.peak() : 0;
+      const std::string why = violation(commanded, {.min_voltage = driven.limits->min_voltage - missed,
+                                                    .max_voltage = driven.limits->max_voltage + missed,
+                                                    .max_slew = driven.limits->max_slew});
       require(why.empty(), [&] { return fmt::format("waveforms: {}: {}", drive, why); });
     }
     driven.waveform = waveform;
@@ -111,7 +111,7 @@ struct Motion {
   RecordedMotion tape;
   std::size_t modes = 0;
 };
-Motion motion_of(const PyClosing& c, const Watch& watch) {
+Motion motion_of(const PyClosing& c, const Progress& progress) {
   const Switch model(c.prepared->scene.device, c.closing.quadrature);
   const std::vector<Signal> signals = c.prepared->signals();
   const Hold hold = hold_of(model, signals);
@@ -121,9 +121,9 @@ Motion motion_of(const PyClosing& c, const Watch& watch) {
                                           .tolerance = c.closing.tolerance,
                                           .steady_force = hold.steady_force(c.prepared->scene.metrics),
                                           .start = c.prepared->start(),
-                                          .stop = watch.stop},
+                                          .stop = progress.stop},
                                          motion.tape);
-  watch.throw_if_stopped();
+  progress.throw_if_stopped();
   return motion;
 }
 
@@ -162,15 +162,15 @@ py::dict figures_of(const Closing& closing) {
   return all;
 }
 
-PyClosing simulate(PyScene& scene, const verbs::Told& told, const py::dict& waveforms, std::string command,
-                   const py::object& progress) {
+PyClosing simulate(PyScene& scene, const verbs::Arguments& arguments, const py::dict& waveforms, std::string command,
+                   const py::object& on_progress) {
   return in_keywords("simulate", [&] {
-    const verbs::SimulateRequest request = verbs::simulate_request(told);
-    Run run(progress);
+    const verbs::SimulateRequest request = verbs::simulate_request(arguments);
+    InterruptibleRun run(on_progress);
     const auto prepared = driven_by(scene.ready(false, run), waveforms_of(waveforms, run));
-    return run([&](const Watch& watch) {
-      PyClosing found{{verbs::simulated(prepared, request, watch)}, std::move(command)};
-      watch.throw_if_stopped();
+    return run([&](const Progress& progress) {
+      PyClosing found{{verbs::simulated(prepared, request, progress)}, std::move(command)};
+      progress.throw_if_stopped();
       return found;
     });
   });
@@ -213,8 +213,8 @@ void bind_scene(py::module_& m) {
            })
       .def("motion",
            [](const PyClosing& c) {
-             Run run;
-             return arrays_of(run([&](const Watch& watch) { return motion_of(c, watch); }));
+             InterruptibleRun run;
+             return arrays_of(run([&](const Progress& progress) { return motion_of(c, progress); }));
            })
       .def("shapes", [](const PyClosing& c, int places) { return shapes_of(*c.prepared, places); })
       .def("outcome", [](const PyClosing& c) {

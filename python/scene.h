@@ -24,9 +24,9 @@ struct PyScene {
   std::shared_ptr<const PreparedScene> plain = {}, limited = {};  ///< prepare_and_choose() without and with default limits
 
   /// Returns the prepared scene; it is prepared at the first call.
-  [[nodiscard]] std::shared_ptr<const PreparedScene> ready(bool default_limits, Run& run);
+  [[nodiscard]] std::shared_ptr<const PreparedScene> ready(bool default_limits, InterruptibleRun& run);
   [[nodiscard]] std::shared_ptr<const PreparedScene> ready(bool default_limits = false) {
-    Run run;
+    InterruptibleRun run;
     return ready(default_limits, run);
   }
 };
@@ -60,7 +60,7 @@ struct PyWaveform {
 };
 
 /// Returns the waveforms by drive of a Python dict of softland._softland.Waveform; they replace those of a scene.
-[[nodiscard]] DriveWaveforms waveforms_of(const pybind11::dict& given, Run& run);
+[[nodiscard]] DriveWaveforms waveforms_of(const pybind11::dict& given, InterruptibleRun& run);
 
 /// Returns the result of `work`. Messages about a request name options by their Python keywords.
 template <class Work>
@@ -74,8 +74,8 @@ auto in_keywords(const char* verb, Work&& work) {
 }
 
 /// Runs a verb of verbs/study.h on a scene. `waveforms` are further waveforms to evaluate, by name and drive.
-[[nodiscard]] Outcome study(PyScene& scene, const std::string& verb, const verbs::Told& told, const pybind11::dict& waveforms,
-                            std::string command, const pybind11::object& progress);
+[[nodiscard]] Outcome study(PyScene& scene, const std::string& verb, const verbs::Arguments& arguments,
+                            const pybind11::dict& waveforms, std::string command, const pybind11::object& on_progress);
 
 /// Returns the scene with other waveforms. Throws InvalidInput for an unknown drive, and for a waveform beyond the limits.
 [[nodiscard]] std::shared_ptr<const PreparedScene> driven_by(const std::shared_ptr<const PreparedScene>& prepared,

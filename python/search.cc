@@ -28,12 +28,12 @@ struct Request {
   std::shared_ptr<PythonObjective> objective;
   std::vector<std::shared_ptr<PythonWaveform>> own_waveforms;
   std::vector<py::dict> starts;
-  py::object callback, progress;
+  py::object callback, on_progress;
   std::string command;
   std::string out;  // folder of the search; empty: nothing is stored
 };
 
-PlannedSearch planned_search(const Request& request, const SceneFile& file, Run& run) {
+PlannedSearch planned_search(const Request& request, const SceneFile& file, InterruptibleRun& run) {
   PlannedSearch search =
       planned(completed(request.words, file), file, request.words.waveform,
               {.objective = request.objective, .waveforms = {request.own_waveforms.begin(), request.own_waveforms.end()}});
@@ -51,7 +51,7 @@ PlannedSearch planned_search(const Request& request, const SceneFile& file, Run&
 
 // Returns the search as one that is stored in a folder. Its start waveforms become part of its plan; a file must be able to hold
 // them.
-StoredSearch kept_search(const Request& request, const PyScene& scene, std::optional<KnownSearch>& known, Run& run) {
+StoredSearch kept_search(const Request& request, const PyScene& scene, std::optional<KnownSearch>& known, InterruptibleRun& run) {
   require(!request.objective && request.own_waveforms.empty(),
           "out: must not be given for a search with Python functions, which cannot be stored in a file");
   AskedSearch asked{.request = request.words,
@@ -71,11 +71,11 @@ StoredSearch kept_search(const Request& request, const PyScene& scene, std::opti
 
 // Sets callbacks that report to Python, which may end the search. During the search they throw nothing, because the search would
 // treat that as an infeasible candidate; run.stop() ends it.
-void listen(PlannedSearch& search, const Request& request, Run& run, SearchSession* session = nullptr) {
+void listen(PlannedSearch& search, const Request& request, InterruptibleRun& run, SearchSession* session = nullptr) {
   OptimizeOptions& options = search.options;
   options.on_preparation = [&run](std::string_view what, double part) {
     run.throw_if_given_up();
-    run.watch().tell(what, part);
+    run.progress().tell(what, part);
   };
   if (session != nullptr) {
     options.on_start = [session](const FamilyColumns& columns) { session->begin(columns); };
@@ -90,7 +90,7 @@ void listen(PlannedSearch& search, const Request& request, Run& run, SearchSessi
                                     [](const auto& one) { return one->first_error().is_there(); });
     if (failed) run.keep(std::make_exception_ptr(Interrupted()));
     const long planned = std::max(1L, progress.planned > 0 ? progress.planned : budget);
-    run.watch().tell("search", static_cast<double>(progress.evaluations) / static_cast<double>(planned));
+    run.progress().tell("search", static_cast<double>(progress.evaluations) / static_cast<double>(planned));
     if (request.callback.is_none()) return;
     run.call([&] {
       const py::object wish =
@@ -99,13 +99,13 @@ void listen(PlannedSearch& search, const Request& request, Run& run, SearchSessi
     });
   };
   options.on_progress = [&run](const OptimizeProgress& progress) {
-    run.watch().tell(fmt::format("search, {} evaluations", progress.evaluations), 0);
+    run.progress().tell(fmt::format("search, {} evaluations", progress.evaluations), 0);
   };
 }
 
 // Runs `work`; an error of a Python function takes precedence over the error that the library reports for it.
 template <class Work>
-auto searched(const Request& request, Run& run, Work&& work) {
+auto searched(const Request& request, InterruptibleRun& run, Work&& work) {
   const auto raise = [&] {
     if (request.objective) request.objective->first_error().rethrow();
     for (const auto& one : request.own_waveforms) one->first_error().rethrow();
@@ -146,12 +146,12 @@ bool is_own(const OptimizeResult& found) {
 }
 
 // Runs a search; a session, if any, stores it in a folder.
-Outcome run_search(PlannedSearch& search, const Request& request, Run& running, SearchSession* session = nullptr) {
+Outcome run_search(PlannedSearch& search, const Request& request, InterruptibleRun& running, SearchSession* session = nullptr) {
   listen(search, request, running, session);
-  return searched(request, running, [&](const Watch& watch) {
+  return searched(request, running, [&](const Progress& progress) {
     const auto report = std::make_shared<SearchReport>(run(search));
     const bool own = is_own(report->found.best());
-    if (!own && !running.given_up()) add_devices(*report, search, request.command, watch);
+    if (!own && !running.given_up()) add_devices(*report, search, request.command, progress);
     if (session != nullptr) session->close();
     running.throw_if_given_up();
     if (own) return outcome_of_own(report->found.best());
@@ -165,13 +165,13 @@ Outcome run_search(PlannedSearch& search, const Request& request, Run& running, 
 }
 
 Outcome search(PyScene& scene, const Request& request) {
-  Run running(request.progress);
+  InterruptibleRun running(request.on_progress);
   PlannedSearch search = planned_search(request, scene.file, running);
   return run_search(search, request, running);
 }
 
 Outcome search_in_folder(PyScene& scene, const Request& request) {
-  Run running(request.progress);
+  InterruptibleRun running(request.on_progress);
   std::optional<KnownSearch> known;
   StoredSearch search = kept_search(request, scene, known, running);
   const SearchOutput output{.folder = request.out,
@@ -186,14 +186,14 @@ Outcome search_in_folder(PyScene& scene, const Request& request) {
 }  // namespace
 
 void bind_search(py::module_& m) {
-  m.def("optimize", [](PyScene& scene, const verbs::Told& told, const py::dict& given) {
+  m.def("optimize", [](PyScene& scene, const verbs::Arguments& arguments, const py::dict& given) {
     return in_keywords("optimize", [&] {
-      const Request request{.words = verbs::optimize_request(told),
+      const Request request{.words = verbs::optimize_request(arguments),
                             .objective = given["objective"].cast<std::shared_ptr<PythonObjective>>(),
                             .own_waveforms = given["own_waveforms"].cast<std::vector<std::shared_ptr<PythonWaveform>>>(),
                             .starts = given["starts"].cast<std::vector<py::dict>>(),
                             .callback = given["callback"],
-                            .progress = given["progress"],
+                            .on_progress = given["progress"],
                             .command = given["command"].cast<std::string>(),
                             .out = given["out"].cast<std::string>()};
       require(!request.words.resume || !request.out.empty(), "resume: requires `out`, the folder of the search to continue");

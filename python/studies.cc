@@ -18,7 +18,7 @@ namespace py = pybind11;
 namespace {
 
 // Returns the further waveforms to evaluate, by the names that the user gives.
-std::map<std::string, DriveWaveforms> others_of(const py::dict& given, Run& run) {
+std::map<std::string, DriveWaveforms> others_of(const py::dict& given, InterruptibleRun& run) {
   std::map<std::string, DriveWaveforms> others;
   for (const auto& [name, waveforms] : given)
     others.emplace(name.cast<std::string>(), waveforms_of(waveforms.cast<py::dict>(), run));
@@ -33,23 +33,23 @@ Outcome python_outcome(const nlohmann::json& data, const std::vector<verbs::Outc
   return outcome;
 }
 
-Outcome study(PyScene& scene, const std::string& verb, const verbs::Told& told, const py::dict& waveforms, std::string command,
-              const py::object& progress) {
+Outcome study(PyScene& scene, const std::string& verb, const verbs::Arguments& arguments, const py::dict& waveforms,
+              std::string command, const py::object& on_progress) {
   const verbs::Study& asked = verbs::study_named(verb);
-  const auto ask = in_keywords(verb.c_str(), [&] { return asked.ask(told); });
+  const auto ask = in_keywords(verb.c_str(), [&] { return asked.ask(arguments); });
   std::vector<std::string> notes;
   const auto note = [&](const std::string& line) {
     notes.push_back(verbs::spelled(line, [&](std::string_view option) { return asked.keyword(option); }));
   };
-  Run run(progress);
+  InterruptibleRun run(on_progress);
   const std::map<std::string, DriveWaveforms> others = others_of(waveforms, run);
   const SceneFile file = scene.file;  // another Python thread may change it meanwhile
   std::shared_ptr<const PreparedScene> plain = scene.plain, limited = scene.limited;
   const auto outcome = in_keywords(verb.c_str(), [&] {
-    return run([&](const Watch& watch) {
+    return run([&](const Progress& progress) {
       const auto prepared = [&](bool default_limits) {
         std::shared_ptr<const PreparedScene>& kept = default_limits ? limited : plain;
-        if (!kept) kept = std::make_shared<const PreparedScene>(prepare_and_choose(file, default_limits, watch));
+        if (!kept) kept = std::make_shared<const PreparedScene>(prepare_and_choose(file, default_limits, progress));
         return kept;
       };
       const auto driven = [&](const std::string& name, const PreparedScene& nominal) {
@@ -61,13 +61,13 @@ Outcome study(PyScene& scene, const std::string& verb, const verbs::Told& told, 
       verbs::Outcome all_of_it = ask({.scene = file,
                                       .name = file.name(),
                                       .command = command,
-                                      .watch = watch,
+                                      .progress = progress,
                                       .prepared = prepared,
                                       .load = [](const std::string& path) { return SceneFile::load(path); },
                                       .waveforms_of = driven,
                                       .text = [&] { return file.text(); },
                                       .note = note});
-      watch.throw_if_stopped();
+      progress.throw_if_stopped();
       return all_of_it;
     });
   });

@@ -26,15 +26,15 @@ struct PyTuning {
   std::string command;
 };
 
-std::unique_ptr<PyTuning> made_tuning(const PyScene& scene, const verbs::Told& told, const std::string& log, std::string command,
-                                      const py::object& progress) {
-  const verbs::TuneRequest request = in_keywords("tune", [&] { return verbs::tune_request(told); });
+std::unique_ptr<PyTuning> made_tuning(const PyScene& scene, const verbs::Arguments& arguments, const std::string& log,
+                                      std::string command, const py::object& on_progress) {
+  const verbs::TuneRequest request = in_keywords("tune", [&] { return verbs::tune_request(arguments); });
   auto tuning = std::make_unique<PyTuning>(PyTuning{.session = request.session(scene.file), .command = std::move(command)});
   if (!log.empty()) static_cast<void>(tuning->session.keep(log, request.resume));
-  Run run(progress);
-  run([&](const Watch& watch) {
-    tuning->session.begin(watch);
-    while (tuning->session.learn_kept(watch)) {
+  InterruptibleRun run(on_progress);
+  run([&](const Progress& progress) {
+    tuning->session.begin(progress);
+    while (tuning->session.learn_kept(progress)) {
     }
     return true;
   });
@@ -43,17 +43,18 @@ std::unique_ptr<PyTuning> made_tuning(const PyScene& scene, const verbs::Told& t
 
 // Returns (number, duration of the hold [s], (times, volts) by drive, line for a command) of a shot.
 py::tuple shot_of(const PyTuning& tuning) {
-  const ToldShot shot = tuning.session.told();
+  const CommandedShot shot = tuning.session.commanded();
   py::dict drives;
   for (const auto& [name, table] : shot.drives) drives[py::str(name)] = PyWaveform{table};
   return py::make_tuple(shot.number, shot.hold_time, shot.duration(), drives, json_text(shot_json(shot)));
 }
 
-void learn(PyTuning& tuning, const std::string& answer, const py::object& progress) {
-  const ContactRecord record = read_record(read_line(answer), tuning.session.told().number, tuning.session.told().duration());
-  Run run(progress);
-  run([&](const Watch& watch) {
-    tuning.session.learn(record, watch);
+void learn(PyTuning& tuning, const std::string& answer, const py::object& on_progress) {
+  const ContactRecord record =
+      read_record(read_line(answer), tuning.session.commanded().number, tuning.session.commanded().duration());
+  InterruptibleRun run(on_progress);
+  run([&](const Progress& progress) {
+    tuning.session.learn(record, progress);
     return true;
   });
 }
@@ -67,19 +68,19 @@ Outcome outcome_of(const PyTuning& tuning, const std::string& name) {
   return outcome;
 }
 
-std::unique_ptr<PracticeDevice> practice(const PyScene& scene, const verbs::Told& told, const py::object& progress) {
+std::unique_ptr<PracticeDevice> practice(const PyScene& scene, const verbs::Arguments& arguments, const py::object& on_progress) {
   const SceneFile file = scene.file;
-  const PracticeOptions options = in_keywords("device", [&] { return verbs::device_request(told).options(file); });
-  Run run(progress);
-  return run([&](const Watch&) { return std::make_unique<PracticeDevice>(file, options); });
+  const PracticeOptions options = in_keywords("device", [&] { return verbs::device_request(arguments).options(file); });
+  InterruptibleRun run(on_progress);
+  return run([&](const Progress&) { return std::make_unique<PracticeDevice>(file, options); });
 }
 
 // Returns the answer of a simulated device to a line, as `softland device` gives it.
 std::string answered(const PracticeDevice& device, const std::string& line) {
-  const ToldShot shot = read_shot(read_line(line));
+  const CommandedShot shot = read_shot(read_line(line));
   const std::vector<Waveform> waveforms = shot.waveforms(device.nominal());
-  Run run;
-  return run([&](const Watch&) {
+  InterruptibleRun run;
+  return run([&](const Progress&) {
     return json_text(
         record_json(shot.number, device.close(static_cast<std::uint64_t>(shot.number), waveforms, shot.duration()).record));
   });
@@ -94,7 +95,7 @@ void bind_tuning(py::module_& m) {
       .def("learn", &learn)
       .def_property_readonly("is_done", [](const PyTuning& t) { return t.session.tuner().is_done(); })
       .def_property_readonly("closings", [](const PyTuning& t) { return t.session.tuner().closings(); })
-      .def_property_readonly("words", [](const PyTuning& t) { return closing_words(t.session.report(TuningEnd::under_way)); })
+      .def_property_readonly("words", [](const PyTuning& t) { return closing_prose(t.session.report(TuningEnd::under_way)); })
       .def("ends",
            [](PyTuning& t, int closings) {
              const std::optional<TuningEnd> end = t.session.ends(closings);

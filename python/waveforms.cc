@@ -16,7 +16,7 @@ namespace softland::python {
 
 namespace py = pybind11;
 
-DriveWaveforms waveforms_of(const py::dict& given, Run&) {
+DriveWaveforms waveforms_of(const py::dict& given, InterruptibleRun&) {
   DriveWaveforms all;
   for (const auto& [drive, waveform] : given) all[drive.cast<std::string>()] = waveform.cast<const PyWaveform&>().value;
   return all;

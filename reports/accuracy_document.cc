@@ -13,8 +13,8 @@
 #include "document/chart.h"
 #include "document/quantity.h"
 #include "document/svg.h"
+#include "reports/accuracy_prose.h"
 #include "reports/accuracy_report.h"
-#include "reports/accuracy_words.h"
 #include "reports/closing_captions.h"
 #include "reports/origin.h"
 
@@ -45,7 +45,7 @@ Chart logarithmic_chart(std::string id, std::string title, std::string x_label, 
   chart.x_label = std::move(x_label);
   chart.x_unit = std::move(x_unit);
   chart.y_label = "Relative error";
-  chart.scale = chart.x_scale = internal::Scale::logarithmic;
+  chart.scale = chart.x_scale = internal::AxisScale::logarithmic;
   chart.height = height;
   return chart;
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/require.h"
-#include "reports/accuracy_words.h"
+#include "reports/accuracy_prose.h"
 #include "reports/study_members.h"
 
 namespace softland {

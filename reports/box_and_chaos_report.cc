@@ -7,15 +7,15 @@
 #include <vector>
 
 #include "document/quantity.h"
+#include "reports/robustness_prose.h"
 #include "reports/robustness_report.h"
-#include "reports/robustness_words.h"
 
 namespace softland::internal {
 namespace {
 
 using DriveRecord = RobustnessRecord::Drive;
-using OtherWays = RobustnessRecord::OtherWays;
-using RangeRecord = OtherWays::Range;
+using BoxAndChaosRecord = RobustnessRecord::BoxAndChaosRecord;
+using RangeRecord = BoxAndChaosRecord::Range;
 
 constexpr double predicted_well = 0.1;  // largest share of the variance that may be missed
 
@@ -32,7 +32,7 @@ double missed(const FigureChaos& chaos) { return 1 - (std::isfinite(chaos.q2_uns
 std::string missed_share(double share) { return share >= 1 ? "all" : percent(std::max(0.0, share)); }
 std::string missed_text(double q2) { return std::isfinite(q2) ? missed_share(1 - q2) : "—"; }
 
-ReportTable compared(const OtherWays& ways, const DriveRecord& drive) {
+ReportTable compared(const BoxAndChaosRecord& ways, const DriveRecord& drive) {
   ReportTable table{.head = {"Cross-checks, under " + shown_drive(drive.name)}, .rows = {}};
   for (const RangeRecord& r : ways.ranges) table.head.emplace_back(figure_of(r.key).symbol);
   const auto add = [&](TableCell name, auto&& cell) {
@@ -60,7 +60,7 @@ ReportTable compared(const OtherWays& ways, const DriveRecord& drive) {
   return table;
 }
 
-std::string box_words(const OtherWays& ways, std::size_t devices) {
+std::string box_prose(const BoxAndChaosRecord& ways, std::size_t devices) {
   return fmt::format(
       "The box holds every quantity within ± {:.2f} standard deviations of its underlying normal variable. It covers {:.0f} % of "
       "all devices, and {} of the {} sampled ones. Its worst value is therefore at least the {:.0f}th percentile of the devices. "
@@ -69,7 +69,7 @@ std::string box_words(const OtherWays& ways, std::size_t devices) {
 }
 
 /// Says which figures polynomial chaos describes well.
-std::string chaos_words(const OtherWays& ways) {
+std::string chaos_prose(const BoxAndChaosRecord& ways) {
   std::vector<std::string> good, bad, none;
   for (const FigureChaos& c : ways.chaos) {
     const std::string name(figure_of(c.key).symbol);
@@ -82,14 +82,13 @@ std::string chaos_words(const OtherWays& ways) {
     }
   }
   std::string words = fmt::format("Polynomial chaos is fitted to the first {} devices of the sample, without a further closing.",
-                                  ways.chaos.front().taught + ways.left_out);
+                                  ways.chaos.front().fitted + ways.left_out);
   if (ways.left_out > 0) {
     words +=
         fmt::format(" {} of them do not close; its mean, standard deviation and percentile treat such devices as if they closed.",
                     ways.left_out);
   }
-  if (!good.empty())
-    words += fmt::format(" It predicts {}{}.", in_words(good), ways.left_out > 0 ? " of those that close" : "");
+  if (!good.empty()) words += fmt::format(" It predicts {}{}.", in_words(good), ways.left_out > 0 ? " of those that close" : "");
   if (!bad.empty()) {
     words += fmt::format(
         " It fails for {}: a figure jumps where a small change of a quantity adds or removes a touch, and polynomials cannot "
@@ -103,11 +102,11 @@ std::string chaos_words(const OtherWays& ways) {
 }
 
 // Makes a record of the device with the quantities of robustness_report.h.
-OtherWays::InBox in_box(const BoxDevice& device, const PreparedScene& nominal) {
-  OtherWays::InBox record{.figure = device.figure,
-                          .values = {},
-                          .status = std::string(to_string(device.outcome.metrics.status)),
-                          .failure = device.outcome.failure};
+BoxAndChaosRecord::InBox in_box(const BoxDevice& device, const PreparedScene& nominal) {
+  BoxAndChaosRecord::InBox record{.figure = device.figure,
+                                  .values = {},
+                                  .status = std::string(to_string(device.outcome.metrics.status)),
+                                  .failure = device.outcome.failure};
   const std::vector<double> shown = device.values.empty() ? device.values : DeviceDrives(nominal).shown(device.values);
   for (std::size_t i = 0; i < shown.size(); ++i) record.values[nominal.scene.spread.variables[i].name] = shown[i];
   return record;
@@ -115,16 +114,16 @@ OtherWays::InBox in_box(const BoxDevice& device, const PreparedScene& nominal) {
 
 }  // namespace
 
-OtherWays record_of(const BoxAndChaos& ways, const DriveRobustness& drive, const PreparedScene& nominal) {
-  OtherWays record{.drive = drive.name,
-                   .why_none = ways.why_none,
-                   .share = box_share,
-                   .half_width = ways.half_width,
-                   .sampled_inside = ways.sampled_inside,
-                   .left_out = ways.left_out,
-                   .closings = ways.closings,
-                   .ranges = {},
-                   .chaos = ways.chaos};
+BoxAndChaosRecord record_of(const BoxAndChaos& ways, const DriveRobustness& drive, const PreparedScene& nominal) {
+  BoxAndChaosRecord record{.drive = drive.name,
+                           .why_none = ways.why_none,
+                           .share = box_share,
+                           .half_width = ways.half_width,
+                           .sampled_inside = ways.sampled_inside,
+                           .left_out = ways.left_out,
+                           .closings = ways.closings,
+                           .ranges = {},
+                           .chaos = ways.chaos};
   for (const FigureRange& r : ways.ranges)
     record.ranges.push_back({r.key, in_box(r.least, nominal), in_box(r.most, nominal), r.of_sample});
   return record;
@@ -134,8 +133,8 @@ std::string value_text(const RobustnessRecord::Varied& variable, double value) {
   return variable.is_factor ? fmt::format("× {:.4f}", value) : quantity(value, variable.unit, 5);
 }
 
-ReportSection other_ways_section(const RobustnessRecord& record) {
-  const OtherWays& ways = *record.other_ways;
+ReportSection box_and_chaos_section(const RobustnessRecord& record) {
+  const BoxAndChaosRecord& ways = *record.box_and_chaos;
   ReportSection section{.id = "ways", .heading = "Cross-checks: worst case and polynomial chaos", .parts = {}};
   if (ways.ranges.empty()) return section;
   ReportTable figures = compared(ways, record.drives.back()), devices{.head = {"In the box", "Found"}, .rows = {}};
@@ -150,7 +149,7 @@ ReportSection other_ways_section(const RobustnessRecord& record) {
       }
     }
   }
-  section.parts = {Paragraph{box_words(ways, record.devices)}, Paragraph{chaos_words(ways)}, std::move(figures),
+  section.parts = {Paragraph{box_prose(ways, record.devices)}, Paragraph{chaos_prose(ways)}, std::move(figures),
                    SubHeading{"Worst and best devices of the box"}, std::move(devices)};
   return section;
 }

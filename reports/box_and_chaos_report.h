@@ -6,10 +6,10 @@
 
 namespace softland::internal {
 
-[[nodiscard]] RobustnessRecord::OtherWays record_of(const BoxAndChaos& ways, const DriveRobustness& drive,
-                                                    const PreparedScene& nominal);
+[[nodiscard]] RobustnessRecord::BoxAndChaosRecord record_of(const BoxAndChaos& ways, const DriveRobustness& drive,
+                                                            const PreparedScene& nominal);
 /// Makes the section; the record must hold these figures.
-[[nodiscard]] ReportSection other_ways_section(const RobustnessRecord& record);
+[[nodiscard]] ReportSection box_and_chaos_section(const RobustnessRecord& record);
 /// Returns "× 1.0213" or "2.013 µm".
 [[nodiscard]] std::string value_text(const RobustnessRecord::Varied& variable, double value);
 

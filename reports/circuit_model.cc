@@ -71,9 +71,10 @@ std::string sum_of(const Dialect& d, char letter, const Eigen::VectorXd& factors
   return sum.text();
 }
 
-class Maker {
+class SubcircuitWriter {
  public:
-  Maker(const PreparedScene& p, const Dialect& dialect) : p_(p), model_(p.model), device_(p.model.device()), d_(dialect) {}
+  SubcircuitWriter(const PreparedScene& p, const Dialect& dialect)
+      : p_(p), model_(p.model), device_(p.model.device()), d_(dialect) {}
 
   Circuit make() {
     const std::string why = why_no_circuit(model_);
@@ -105,11 +106,11 @@ class Maker {
  private:
   void find_drives() {
     const std::vector<std::string> pins = circuit_pins(p_.drive_names());
-    const std::vector<Signal> told = p_.told(p_.waveforms());
+    const std::vector<Signal> commanded = p_.commanded(p_.waveforms());
     for (std::size_t k = 0; k < pins.size(); ++k) {
       const std::string& pin = pins[k];
       const DriveKind kind = model_.drive_kind(k);
-      const bool connected = kind != DriveKind::dispersion || !told[k].is_zero();
+      const bool connected = kind != DriveKind::dispersion || !commanded[k].is_zero();
       if (connected) c_.drives.push_back(pin);
       if (kind == DriveKind::electrode) strengths_.push_back(d_.between(pin) * d_.between(pin));
       if (kind == DriveKind::dispersion) strengths_.push_back(connected ? Formula(1) + d_.between(pin) : Formula(1));
@@ -389,11 +390,11 @@ std::string why_no_circuit(const Switch& model) {
 
 std::string spice_model(const PreparedScene& p) {
   return fmt::format("* {}\n* pins: drives, their ground g, contact s and d, y [um], vel [m/s], force [uN]\n{}{}", title(p),
-                     renamed_in(p, "*"), subcircuit(Maker(p, spice).make()));
+                     renamed_in(p, "*"), subcircuit(SubcircuitWriter(p, spice).make()));
 }
 
 std::string spice_bench(const PreparedScene& p) {
-  const Circuit c = Maker(p, spice).make();
+  const Circuit c = SubcircuitWriter(p, spice).make();
   std::map<std::string, Signal> driven;  // signals as their sources give them
   const std::vector<std::string> names = circuit_pins(p.drive_names());
   const std::vector<Signal> signals = p.signals();
@@ -422,7 +423,7 @@ std::string spice_bench(const PreparedScene& p) {
 }
 
 std::string verilog_a(const PreparedScene& p) {
-  const Circuit c = Maker(p, verilog).make();
+  const Circuit c = SubcircuitWriter(p, verilog).make();
   const std::size_t modes = c.stiffness.size(), points = c.points.size();
   std::string text = fmt::format("// {}\n// y [um], vel [m/s], force [uN] as volts\n{}`include \"disciplines.vams\"\n\n",
                                  title(p), renamed_in(p, "//"));

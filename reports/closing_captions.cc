@@ -9,7 +9,7 @@
 
 #include "document/axis.h"
 #include "document/quantity.h"
-#include "reports/closing_words.h"
+#include "reports/closing_prose.h"
 #include "reports/devices_report.h"
 #include "reports/drive_demand.h"
 #include "reports/figure_text.h"
@@ -25,7 +25,7 @@ bool bounces(const RunRecord& run) { return figure_of_run(run, &Metrics::bounce_
 bool is_clean_run(const ConfirmationRecord& check) { return check.figures && is_clean(*check.figures); }
 
 /// Describes a drive in a run: "runs between 0 V and 30 V, with a jump"; `both` is for two runs with the same drive.
-std::string range_words(const Points& waveform, const DriveScale& scale, bool both) {
+std::string range_prose(const Points& waveform, const DriveScale& scale, bool both) {
   const DriveDemand demand = drive_demand(waveform, scale.rest);
   if (!std::isfinite(demand.lowest)) return {};
   if (demand.lowest == demand.highest)
@@ -280,9 +280,9 @@ std::string waveform_caption(const ClosingRecord& result, const std::string& dri
                         given_quantity(std::isfinite(limits.lowest) ? limits.lowest : 0, "V"),
                         given_quantity(limits.highest, "V"),
                         std::isfinite(limits.slew) ? " with a slew rate of at most " + given_quantity(limits.slew, "V/s") : "");
-  const std::string own = range_words(shape, scale, equal);
+  const std::string own = range_prose(shape, scale, equal);
   if (equal && !own.empty()) return fmt::format("{} of the drive “{}”. Both waveforms {}.{}", scale.name, drive, own, driver);
-  const std::string step = range_words(waveform(result.baseline(), drive), scale, equal);
+  const std::string step = range_prose(waveform(result.baseline(), drive), scale, equal);
   const std::string name = result.search ? own_subject : "the waveform";
   const std::string found =
       joined(own.empty() ? "" : name + " " + own, step.empty() ? "" : std::string(step_subject) + " " + step);
@@ -379,7 +379,7 @@ std::string robust_caption(const ClosingRecord& result) {
   return words;
 }
 
-std::string limit_words(const ClosingRecord& result) {
+std::string limit_prose(const ClosingRecord& result) {
   const double touch = figure_of_run(result.best, &Metrics::initial_contact_time);
   const std::optional<TouchLimit> limit = result.search ? result.search->limit : std::nullopt;
   if (!limit || !std::isfinite(limit->least_time) || !std::isfinite(touch)) return {};

@@ -40,7 +40,7 @@ struct Headline {
 /// Gives the result of a search under process variation; empty for any other search.
 [[nodiscard]] std::string robust_caption(const ClosingRecord& result);
 /// Compares the winner with the least time of any waveform; empty where that is not known.
-[[nodiscard]] std::string limit_words(const ClosingRecord& result);
+[[nodiscard]] std::string limit_prose(const ClosingRecord& result);
 /// Returns false when the winner is bounce-free but one of its confirmations under its own gas law is not.
 [[nodiscard]] bool checks_agree(const ClosingRecord& result);
 /// Tells whether the winner closes bounce-free in all confirmations.

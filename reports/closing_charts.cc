@@ -11,7 +11,7 @@
 #include "document/axis.h"
 #include "document/quantity.h"
 #include "reports/closing_captions.h"
-#include "reports/closing_words.h"
+#include "reports/closing_prose.h"
 #include "reports/drive_demand.h"
 
 namespace softland::internal {
@@ -277,7 +277,7 @@ class TimeCharts {
                                  "Resistance of the contacts that make the connection. An open connection has no value.");
     resistance.y_label = "Resistance";
     resistance.y_unit = "ohm";
-    resistance.scale = Scale::logarithmic;
+    resistance.scale = AxisScale::logarithmic;
     resistance.height = 230;
     add_series(resistance, "", "contact_resistance_ohm");
     if (!resistance.series.empty()) keep(std::move(resistance));
@@ -351,7 +351,7 @@ void add_search_chart(const ClosingRecord& result, const SearchRecord& search, P
   chart.x_label = "Evaluations";
   chart.x_home = chart.x_whole = {0, std::max(1.0, last)};
   chart.y_label = capitalised(search.course.value_name.empty() ? "cost" : search.course.value_name);
-  chart.scale = positive ? Scale::logarithmic : Scale::linear;
+  chart.scale = positive ? AxisScale::logarithmic : AxisScale::linear;
   chart.height = 260;
   if (!tried.empty()) {
     add_columns(out.tables["tried"], "evaluation", "value", tried);

@@ -13,14 +13,14 @@
 #include "document/quantity.h"
 #include "reports/closing_captions.h"
 #include "reports/closing_charts.h"
-#include "reports/closing_words.h"
+#include "reports/closing_prose.h"
+#include "reports/device_picture.h"
 #include "reports/devices_report.h"
 #include "reports/drive_demand.h"
 #include "reports/figure_text.h"
 #include "reports/motion_figure.h"
 #include "reports/record.h"
 #include "reports/seeds_report.h"
-#include "reports/sketch.h"
 #include "studies/closing/summits_at_hold.h"
 
 namespace softland {
@@ -168,7 +168,7 @@ ReportSection figures_section(const ClosingRecord& result) {
   if (result.search && result.search->goal_met && !result.search->devices)
     section.parts.emplace_back(Paragraph{fmt::format("The goal is {}.", *result.search->goal_met ? "met" : "not met")});
   for (const std::string& words :
-       {uncounted_layer_caption(result), limit_words(result), certificate_caption(result), robust_caption(result)})
+       {uncounted_layer_caption(result), limit_prose(result), certificate_caption(result), robust_caption(result)})
     section.parts.emplace_back(Paragraph{words});
   return section;
 }
@@ -208,7 +208,7 @@ ReportSection search_section(const ClosingRecord& result) {
 
 /// Draws the switch from the side.
 std::string drawn_switch(const ClosingRecord& result) {
-  const std::string drawing = sketch(result.scene);
+  const std::string drawing = device_picture(result.scene);
   if (drawing.empty()) return {};
   return drawing + "<p class=\"below\">Side view, to scale along the beam; heights are exaggerated.</p>\n";
 }
@@ -334,7 +334,7 @@ ReportSection facts(const ClosingRecord& result) {
   }
   if (result.pull_in.size() == 1) {  // several do not fit here
     const PullInOfElectrode& voltages = result.pull_in.begin()->second;
-    const std::string shift = voltages.static_by_modes ? shift_words(*voltages.static_by_modes) : "";
+    const std::string shift = voltages.static_by_modes ? shift_prose(*voltages.static_by_modes) : "";
     fact("Static pull-in", measured(voltages.static_pull_in, "V", 5) +
                                (shift.empty() ? shift : fmt::format(" (more modes change it by {})", shift)));
     fact("Dynamic pull-in", measured(voltages.dynamic_pull_in, "V", 5));

@@ -299,19 +299,19 @@ void members(A& a, FrontPoint& point) {
 }
 
 template <class A>
-void members(A& a, KnownVdp& known) {
+void members(A& a, CalibrationError& known) {
   a("error", known.error);
   a("bounce_free", known.bounce_free);
   a(key_of(&Metrics::largest_impact_velocity), internal::OrInfinite{known.impact_speed});
 }
 
 template <class A>
-void members(A& a, RaceEntry& racer) {
-  a("measure", racer.measure);
-  a("waveform", racer.waveform);
-  a("closings", racer.closings);
-  a("cost", racer.cost);
-  a("bounce_free", racer.bounce_free);
+void members(A& a, RaceEntry& contender) {
+  a("measure", contender.measure);
+  a("waveform", contender.waveform);
+  a("closings", contender.closings);
+  a("cost", contender.cost);
+  a("bounce_free", contender.bounce_free);
 }
 
 template <class A>

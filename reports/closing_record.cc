@@ -13,7 +13,7 @@
 #include "document/downsample.h"
 #include "integrators/quintic.h"
 #include "reports/closing_record.h"
-#include "reports/robustness_words.h"
+#include "reports/robustness_prose.h"
 #include "studies/closing/effect_ablation.h"
 #include "studies/closing/resistance_course.h"
 #include "waveforms/export.h"
@@ -259,7 +259,7 @@ ClosingRecord record_of(const OptimizeResult& found, const OptimizeOptions& opti
   s.parameters = found.parameters;
   for (const Variable& v : found.variables) s.bounds[v.name] = {v.lower, v.upper};
   s.evaluations_of_modes = static_cast<double>(found.evaluations_of_modes);
-  for (const ConfirmingRun& c : found.checks) {
+  for (const CheckingRun& c : found.checks) {
     s.checks.push_back(
         {.name = c.name, .status = std::string(to_string(c.metrics.status)), .figures = finite(FigureValues(c.metrics))});
   }
@@ -275,13 +275,13 @@ ClosingRecord record_of(const RobustResult& found, const OptimizeOptions& option
   return r;
 }
 
-ClosingRecord record_of(const ForDevicesResult& found, const OptimizeOptions& options, std::string next_command,
+ClosingRecord record_of(const RobustSearchResult& found, const OptimizeOptions& options, std::string next_command,
                         const std::string& command) {
   ClosingRecord r = record_of(found.best, options, command);
   SearchRecord& s = *r.search;
   if (!found.rows.empty()) {
     s.devices = found.findings;
-    s.devices->spread = spread_words(found.varied.scene.spread);
+    s.devices->spread = spread_prose(found.varied.scene.spread);
     s.devices->next_command = std::move(next_command);
   }
   if (found.interrupted) r.status = "interrupted";

@@ -18,7 +18,7 @@
 #include "studies/closing/certify.h"
 #include "studies/closing/closed_state.h"
 #include "studies/closing/simulate.h"
-#include "studies/search/for_devices.h"
+#include "studies/search/robust_search_study.h"
 
 namespace softland {
 
@@ -86,7 +86,7 @@ struct ClosingRecord {
 [[nodiscard]] ClosingRecord record_of(const RobustResult& found, const OptimizeOptions& options, const std::string& command);
 
 /// Makes the record of a search for devices: that of the waveform that wins.
-[[nodiscard]] ClosingRecord record_of(const ForDevicesResult& found, const OptimizeOptions& options, std::string next_command,
+[[nodiscard]] ClosingRecord record_of(const RobustSearchResult& found, const OptimizeOptions& options, std::string next_command,
                                       const std::string& command);
 
 /// Returns JSON for programs: SI units in the names, non-finite numbers as null.

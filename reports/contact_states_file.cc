@@ -238,8 +238,8 @@ std::string contact_states_pwl(const StateRecord& record) {
                    "ohm, for R='V(plus,minus)'");
 }
 
-std::string contact_states_text(const SceneFile& file, const ContactStatesRequest& request, const Watch& watch,
-                                const SayLine& say) {
+std::string contact_states_text(const SceneFile& file, const ContactStatesRequest& request, const Progress& progress,
+                                const NoteSink& note) {
   struct Writer {
     std::string_view name;
     std::string (*write)(const StateRecord&);
@@ -250,11 +250,11 @@ std::string contact_states_text(const SceneFile& file, const ContactStatesReques
   require_field(writer != writers.end(), "contact-record", visible(request.format), [] { return "must be csv, vcd or pwl"; });
   require_request(!request.seed || request.devices,
                   [] { return fmt::format("{}: chooses devices: give {} as well", requested("seed"), requested("devices")); });
-  if (!request.devices) return writer->write(contact_states(prepare_and_choose(file, false, watch), watch, say));
+  if (!request.devices) return writer->write(contact_states(prepare_and_choose(file, false, progress), progress, note));
   SceneFile varied = file;
-  if (assume_spread(varied)) say(std::string(assumed_words));
-  return writer->write(contact_states_of_devices(prepare_and_choose(varied, false, watch), *request.devices,
-                                                 request.seed.value_or(1), request.jobs, watch, say));
+  if (assume_spread(varied)) note(std::string(assumed_prose));
+  return writer->write(contact_states_of_devices(prepare_and_choose(varied, false, progress), *request.devices,
+                                                 request.seed.value_or(1), request.jobs, progress, note));
 }
 
 }  // namespace softland

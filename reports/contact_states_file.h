@@ -30,9 +30,9 @@ struct ContactStatesRequest {
   std::optional<std::uint64_t> seed = {};
   int jobs = 1;
 };
-/// Returns the text of the file for a scene. A scene without [spread] whose devices are asked for gets the usual one. `say`
+/// Returns the text of the file for a scene. A scene without [spread] whose devices are asked for gets the usual one. `note`
 /// receives remarks about it, in lines. Throws InvalidRequest, Interrupted.
-[[nodiscard]] std::string contact_states_text(const SceneFile& file, const ContactStatesRequest& request, const Watch& watch,
-                                              const SayLine& say);
+[[nodiscard]] std::string contact_states_text(const SceneFile& file, const ContactStatesRequest& request,
+                                              const Progress& progress, const NoteSink& note);
 
 }  // namespace softland

@@ -72,7 +72,7 @@ CycleRecord::Course course_of(const Cycles& cycles) {
 
 const CycleRecord::Drive& found_of(const CycleRecord& r) { return r.drives.back(); }
 
-std::string rate_words(double rate) { return std::isfinite(rate) ? quantity(rate, "Hz") : std::string("none"); }
+std::string rate_prose(double rate) { return std::isfinite(rate) ? quantity(rate, "Hz") : std::string("none"); }
 
 // Returns the worst value of the reported cycles.
 double hardest(const CycleRecord::Drive& drive, double Metrics::*figure) {
@@ -133,11 +133,11 @@ ReportTable rates_table(const CycleRecord& r) {
     for (const auto& [low, high] : d.windows)
       windows += (windows.empty() ? "" : ", ") +
                  (low == high ? quantity(low, "Hz") : quantity(low, "Hz") + " to " + quantity(high, "Hz"));
-    table.rows[0].push_back(rate_words(d.largest));
+    table.rows[0].push_back(rate_prose(d.largest));
     table.rows[1].push_back(windows.empty() ? "—" : windows);
     if (!has_devices) continue;
-    table.rows[2].push_back(d.devices ? rate_words(d.devices->at_5) : "—");
-    table.rows[3].push_back(d.devices ? rate_words(d.devices->at_50) : "—");
+    table.rows[2].push_back(d.devices ? rate_prose(d.devices->at_5) : "—");
+    table.rows[3].push_back(d.devices ? rate_prose(d.devices->at_50) : "—");
     if (has_rate) table.rows[4].push_back(d.devices ? percent(d.devices->steady) : "—");
   }
   return table;
@@ -375,7 +375,7 @@ std::string cycle_charts(const internal::Picture& drawn) {
 // Draws the rates that were tried, a row for each drive: a dot is steady, a ring is not.
 std::string drawn_rates(const CycleRecord& r) {
   constexpr double left = 110, right = 780, row = 26;
-  internal::Axis axis{.scale = internal::Scale::logarithmic, .low = 1e300, .high = 0, .pixel_low = left, .pixel_high = right};
+  internal::Axis axis{.scale = internal::AxisScale::logarithmic, .low = 1e300, .high = 0, .pixel_low = left, .pixel_high = right};
   for (const CycleRecord::Drive& d : r.drives) {
     for (const std::vector<double>* rates : {&d.steady_rates, &d.other_rates}) {
       for (const double rate : *rates) axis.low = std::fmin(axis.low, rate / 1.1), axis.high = std::fmax(axis.high, 1.1 * rate);
@@ -410,7 +410,7 @@ std::vector<KeyNumber> keys_of(const CycleRecord& r) {
     keys.push_back({.name = name, .value = value, .before = r.drives.size() > 1 ? before : ""});
   };
   if (!found.steady_rates.empty() || !found.other_rates.empty())
-    add("Largest steady rate", rate_words(plain.largest), rate_words(found.largest));
+    add("Largest steady rate", rate_prose(plain.largest), rate_prose(found.largest));
   const auto largest = [](const CycleRecord::Drive& drive, double Metrics::*member, std::string_view unit) {
     double most = Metrics::unset;
     for (const CycleRecord::Cycle& cycle : drive.cycles) most = std::fmax(most, cycle.metrics.*member);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "document/quantity.h"
-#include "reports/robustness_words.h"
+#include "reports/robustness_prose.h"
 
 namespace softland::internal {
 namespace {

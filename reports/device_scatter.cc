@@ -11,7 +11,7 @@
 
 #include "document/escape.h"
 #include "document/page.h"
-#include "reports/robustness_words.h"
+#include "reports/robustness_prose.h"
 #include "sampling/statistics.h"
 
 namespace softland {

@@ -14,10 +14,10 @@
 #include "document/escape.h"
 #include "document/page.h"
 #include "document/quantity.h"
-#include "reports/closing_words.h"
+#include "reports/closing_prose.h"
 #include "reports/device_gaps.h"
 #include "reports/figure_text.h"
-#include "reports/robustness_words.h"
+#include "reports/robustness_prose.h"
 
 namespace softland {
 
@@ -127,7 +127,7 @@ std::string choices_picture(const DevicesFindings& d) {
               .x_unit = "s",
               .y_label = "Impact velocity, 95th percentile",
               .y_unit = "m/s",
-              .scale = Scale::logarithmic,
+              .scale = AxisScale::logarithmic,
               .height = 260,
               .series = {{.table = "choices", .column = "speed", .label = "", .role = Role::best}}};
   double last = 0, softest = std::numeric_limits<double>::infinity(), hardest = 0;
@@ -169,7 +169,7 @@ std::string error_curve(const DevicesFindings& d) {
   if (d.by_error.size() < 2) return {};
   CurveTables tables;
   CurveTable& table = tables["by-error"];
-  for (const KnownVdp& known : d.by_error) {
+  for (const CalibrationError& known : d.by_error) {
     table["error"].push_back(100 * known.error);
     table["share"].push_back(100 * known.bounce_free);
     table["speed"].push_back(known.impact_speed);
@@ -185,7 +185,7 @@ std::string error_curve(const DevicesFindings& d) {
               .x_unit = "%",
               .y_label = "Devices",
               .y_unit = "%",
-              .x_scale = Scale::logarithmic,
+              .x_scale = AxisScale::logarithmic,
               .x_home = ends,
               .x_whole = ends,
               .y_home = std::array{0.0, 100.0},
@@ -206,7 +206,7 @@ std::string error_curve(const DevicesFindings& d) {
 
 }  // namespace
 
-std::string internal::drawing_words(const DevicesFindings& d) {
+std::string internal::drawing_prose(const DevicesFindings& d) {
   const double closed = d.drawing[&Metrics::permanent_contact_time], height = d.drawing[&Metrics::major_bounce_height];
   if (d.drawing_goal_met && std::isfinite(closed)) {
     const DevicesFindings::Row* row = d.row(for_the_drawing);
@@ -317,7 +317,7 @@ ReportTable all_rows(const DevicesFindings& d) {
 }
 
 // Says which drive carries the switch to its contact: "The piezo carries 96.3 % of the devices to their contact ..."
-std::string path_words(const DevicesFindings& d) {
+std::string path_prose(const DevicesFindings& d) {
   if (!d.stable_path) return {};
   const DevicesFindings::StablePath& path = *d.stable_path;
   const std::string drive = path.drives.front() == piezo_drive ? "piezo" : "electrode " + path.drives.front();
@@ -330,7 +330,7 @@ std::string path_words(const DevicesFindings& d) {
   return words;
 }
 
-std::string delay_words(const DevicesFindings& d) {
+std::string delay_prose(const DevicesFindings& d) {
   if (!std::isfinite(d.step_delay)) return {};
   return fmt::format(
       "The plain step of the electrode is delayed to {}, when the piezo has closed the contact; --hold-step fixed keeps it at t "
@@ -339,7 +339,7 @@ std::string delay_words(const DevicesFindings& d) {
 }
 
 // Tells how much per-device calibration would improve.
-std::string measuring_words(const DevicesFindings& d) {
+std::string measuring_prose(const DevicesFindings& d) {
   const DevicesFindings::Row *own = d.row(for_the_devices), *measured = d.row(d.measured);
   const bool were_judged =
       std::ranges::any_of(d.rows, [](const DevicesFindings::Row& row) { return std::isfinite(row.pull_in_error); });
@@ -365,7 +365,7 @@ ReportSection internal::choices_section(const DevicesFindings& d) {
   if (d.rows.empty()) return section;
   section.parts.emplace_back(choices_table(d));
   std::string words = fmt::format("Process variation: {}.", d.spread);
-  for (const std::string& more : {path_words(d), delay_words(d), measuring_words(d), drawing_words(d)})
+  for (const std::string& more : {path_prose(d), delay_prose(d), measuring_prose(d), drawing_prose(d)})
     words += (more.empty() ? "" : " ") + more;
   section.parts.emplace_back(Paragraph{std::move(words)});
   if (!d.next_command.empty()) section.parts.emplace_back(ReportList{{d.next_command}});
@@ -379,7 +379,7 @@ ReportSection internal::devices_section(const DevicesFindings& d) {
   section.parts.emplace_back(Drawing{[&d](const Picture&) { return gaps_html(d); }});
   section.parts.emplace_back(all_rows(d));
   section.parts.emplace_back(Drawing{[&d](const Picture&) { return choices_picture(d); }});
-  for (const std::string& words : {path_words(d), delay_words(d), measuring_words(d)}) {
+  for (const std::string& words : {path_prose(d), delay_prose(d), measuring_prose(d)}) {
     if (!words.empty()) note(words);
   }
   if (!d.measure.empty())
@@ -392,7 +392,7 @@ ReportSection internal::devices_section(const DevicesFindings& d) {
                      cell_of(columns[1].key, value_in(d.row(for_the_devices)->at_95, columns[1].key)),
                      quantity(d.missed_by, "m")));
   section.parts.emplace_back(Drawing{[&d](const Picture&) { return error_curve(d); }});
-  note(window_words(d.windows));
+  note(window_prose(d.windows));
   for (const FulfilledCondition& c : d.conditions)
     note(fmt::format("The condition {} {}: {} of the devices fulfil it.", c.text, c.holds ? "holds" : "does not hold",
                      percent(c.share.value)));

@@ -14,7 +14,7 @@ namespace softland {
 namespace internal {
 
 /// Says how the waveform for the nominal design closes it.
-[[nodiscard]] std::string drawing_words(const DevicesFindings& devices);
+[[nodiscard]] std::string drawing_prose(const DevicesFindings& devices);
 /// Says in a sentence how the waveform of best.toml closes the devices.
 [[nodiscard]] std::string devices_headline(const ClosingRecord& result);
 /// Returns the key numbers at the top of a page: shares and 95th percentiles of the devices, from plain step to winner.

@@ -48,7 +48,7 @@ ReportTable omissions_table(const Effects& effects) {
   ReportTable table{.head = {"left out", {"", "words"}}, .rows = {}};
   for (const Figure& f : compared_figures) table.head.emplace_back(f.symbol);
   table.head.insert(table.head.end(), {"rhs", {"size", "words"}});
-  for (const EffectAblation& o : effects.omissions) {
+  for (const EffectAblation& o : effects.ablations) {
     TableRow& row = table.rows.emplace_back(TableRow{o.what.effect, internal::with_true_minus(o.what.choice)});
     for (const Figure& f : compared_figures) row.emplace_back(internal::relative_change(change(f, o.metrics, own.metrics)));
     const std::string group = size_of(o.what.group);
@@ -104,7 +104,7 @@ std::vector<std::string> bounds_of(const Effects& effects) {
     lines.push_back(fmt::format("{} is simulated for {} only, because it costs far more than that of the scene: {}.", closing,
                                 internal::quantity(*end, "s"), closes));
   };
-  for (const EffectAblation& o : effects.omissions) tell(fmt::format("The closing without {}", o.what.effect), o.metrics, o.end);
+  for (const EffectAblation& o : effects.ablations) tell(fmt::format("The closing without {}", o.what.effect), o.metrics, o.end);
   for (const Effect& e : effects.list) {
     tell(e.choice == "none" ? "The closing without gas" : fmt::format("The closing under {}", e.choice), e.metrics, e.end);
   }
@@ -172,7 +172,7 @@ void members(A& a, EffectsRecord& record) {
   a.custom("effects", found.list, compared, internal::JsonReader::read<std::vector<Effect>>);
   require(std::ranges::any_of(found.list, [](const Effect& e) { return e.in_scene && e.section == "gas"; }),
           "\"effects\" lacks the gas of the scene");
-  a.custom("left_out", found.omissions, compared, internal::JsonReader::read<std::vector<EffectAblation>>);
+  a.custom("left_out", found.ablations, compared, internal::JsonReader::read<std::vector<EffectAblation>>);
   a("not_compared", found.not_compared);
   a("duration_s", found.window);
   a.custom(
@@ -200,7 +200,7 @@ std::string text_of(const EffectsRecord& record) {
     document.headline_rest = " There are no figures to compare; the table has the size and the cost of each effect.";
   }
   ReportSection left_out{.id = "left-out", .heading = "Each effect left out", .parts = {}};
-  if (effects.omissions.empty())
+  if (effects.ablations.empty())
     left_out.parts.emplace_back(Paragraph{"Nothing is left out: the scene has no effect that can be left out."});
   left_out.parts.emplace_back(omissions_table(effects));
   left_out.parts.emplace_back(

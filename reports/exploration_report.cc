@@ -20,7 +20,7 @@
 #include "document/quantity.h"
 #include "document/svg.h"
 #include "optimizers/pareto.h"
-#include "reports/exploration_view.h"
+#include "reports/exploration_page.h"
 #include "version.h"
 
 namespace softland {
@@ -154,7 +154,7 @@ ReportSection outcome_section(const ExplorationReport& report) {
   return {.id = "outcomes", .heading = "Status of the points", .parts = {std::move(table)}};
 }
 
-std::string front_words(const ExplorationReport& report, const ExploredFront& front) {
+std::string front_prose(const ExplorationReport& report, const ExploredFront& front) {
   std::vector<std::string> names;
   for (const ExploredAim& aim : report.aims) names.push_back(aim_name(report, aim));
   std::string words =
@@ -204,7 +204,7 @@ ReportSection front_section(const ExplorationReport& report, const ExploredFront
   }
   const std::size_t stride = (front.members.size() + most_front_rows - 1) / most_front_rows;
   section.parts = {
-      Paragraph{"Pareto front: " + front_words(report, front)},
+      Paragraph{"Pareto front: " + front_prose(report, front)},
       drawing_of("<p>To read a point, move over the picture, or focus it and press ← →. Grey dots are the other points.</p>\n"),
       drawn(),
       front_table(report, front, stride),

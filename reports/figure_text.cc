@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "document/quantity.h"
-#include "reports/closing_words.h"
+#include "reports/closing_prose.h"
 #include "studies/search/optimize.h"
 
 namespace softland::internal {
@@ -16,17 +16,17 @@ constexpr int figure_digits = 4;  // digits of the tables, where the error does 
 
 }  // namespace
 
-Change change(double before, double after, bool lower_is_better, Kind kind) {
+Change change(double before, double after, bool lower_is_better, ChangeKind kind) {
   if (!std::isfinite(before) || !std::isfinite(after)) return {};
   constexpr double visible = 0.005;  // a ratio nearer to 1 than half a per cent counts as unchanged
   if (std::abs(after - before) <= visible * std::abs(before)) return {"unchanged", Verdict::same};
   const bool lower = after < before;
   const Verdict verdict = !lower_is_better ? Verdict::neutral : lower ? Verdict::better : Verdict::worse;
   if (after == 0 && before > 0) return {"none left", verdict};
-  const char* word = kind == Kind::time    ? (lower ? "shorter" : "longer")
-                     : kind == Kind::count ? (lower ? "fewer" : "more")
-                     : lower               ? "lower"
-                                           : "higher";
+  const char* word = kind == ChangeKind::time    ? (lower ? "shorter" : "longer")
+                     : kind == ChangeKind::count ? (lower ? "fewer" : "more")
+                     : lower                     ? "lower"
+                                                 : "higher";
   if (!(before > 0) || !(after > 0)) return {word, verdict};
   const double ratio = lower ? before / after : after / before;
   if (ratio < 1.095) return {fmt::format("{:.1f} % {}", 100 * std::abs(after / before - 1), word), verdict};
@@ -35,7 +35,7 @@ Change change(double before, double after, bool lower_is_better, Kind kind) {
 
 Change figure_change(const RunRecord& before, const RunRecord& after, const Figure& figure) {
   if (figure.is_yes_or_no()) return {};
-  const Kind kind = figure.unit == "s" ? Kind::time : figure.is_count() ? Kind::count : Kind::size;
+  const ChangeKind kind = figure.unit == "s" ? ChangeKind::time : figure.is_count() ? ChangeKind::count : ChangeKind::size;
   return change(figure_of_run(before, figure.member), figure_of_run(after, figure.member), figure.better == Better::lower, kind);
 }
 

@@ -17,9 +17,9 @@ struct Change {
   std::string words;
   Verdict verdict = Verdict::neutral;
 };
-enum class Kind { size, time, count };
+enum class ChangeKind { size, time, count };
 /// The change is neither good nor bad unless `lower_is_better` is set.
-[[nodiscard]] Change change(double before, double after, bool lower_is_better, Kind kind = Kind::size);
+[[nodiscard]] Change change(double before, double after, bool lower_is_better, ChangeKind kind = ChangeKind::size);
 [[nodiscard]] Change figure_change(const RunRecord& before, const RunRecord& after, const Figure& figure);
 
 /// Returns the value of a figure as text, rounded to its error where that is known; an em dash when not available; `beside` is

@@ -73,7 +73,7 @@ std::string what_text(const FitResidual& r) {
 }
 
 // Returns "+1 % of a with −2.1 % of b".
-std::string direction_words(const Fit& fit, const WeakDirection& weak) {
+std::string direction_prose(const Fit& fit, const WeakDirection& weak) {
   std::vector<std::string> words;
   for (const std::size_t i : weak.unknowns) {
     const FittedUnknown& u = fit.unknowns[i];
@@ -85,8 +85,8 @@ std::string direction_words(const Fit& fit, const WeakDirection& weak) {
   return fmt::format("{}", fmt::join(words, " with "));
 }
 
-std::string weak_words(const Fit& fit, const WeakDirection& weak) {
-  const std::string seen = plain_number(weak.seen, 2), direction = direction_words(fit, weak);
+std::string weak_prose(const Fit& fit, const WeakDirection& weak) {
+  const std::string seen = plain_number(weak.seen, 2), direction = direction_prose(fit, weak);
   const char* const data = fit.devices.size() > 1 ? "all data of a device" : "all data";
   std::vector<std::string> names;
   for (const std::size_t i : weak.unknowns) names.push_back(fit.unknowns[i].name);
@@ -101,7 +101,7 @@ std::size_t freedom(const Fit& fit) {
   return fit.residuals.size() > fit.unknowns.size() ? fit.residuals.size() - fit.unknowns.size() : 0;
 }
 
-std::vector<std::string> fit_words(const Fit& fit) {
+std::vector<std::string> fit_prose(const Fit& fit) {
   std::vector<std::string> all;
   if (!fit.found) {
     all.emplace_back(
@@ -135,7 +135,7 @@ std::vector<std::string> fit_words(const Fit& fit) {
     all.push_back(fmt::format("Residuals above {} sigma: {}{}.{}", unlikely, fmt::join(outliers, ", "), rest,
                               fit.loss == Loss::none ? "" : " The robust loss gives them less weight."));
   }
-  for (const WeakDirection& weak : fit.estimate.weak) all.push_back(weak_words(fit, weak));
+  for (const WeakDirection& weak : fit.estimate.weak) all.push_back(weak_prose(fit, weak));
   if (!fit.next.empty() && fit.next.front().reduction > 0.01) {
     const NextMeasurement& best = fit.next.front();
     all.push_back(fmt::format("The best next measurement is the {} to {}, which reduces the standard errors by {}.", best.name,
@@ -443,7 +443,7 @@ FitRecord record_of(const Fit& fit, const std::string& command) {
                    .converged = fit.converged,
                    .residuals = fit.residuals,
                    .traces = fit.traces,
-                   .words = fit_words(fit),
+                   .words = fit_prose(fit),
                    .spread_assumed = fit.spread_assumed,
                    .loss = fit.loss,
                    .seed = fit.seed,

@@ -10,8 +10,8 @@
 #include "base/require.h"
 #include "config/told_quantity.h"
 #include "document/quantity.h"
+#include "reports/closing_prose.h"
 #include "reports/closing_record.h"
-#include "reports/closing_words.h"
 #include "studies/closing/simulate.h"
 
 namespace softland {
@@ -41,12 +41,12 @@ bool is_worse(const Metrics& sampled, const Metrics& drawn) {
 
 std::vector<std::string> exported_drives(const PreparedScene& p, const std::string& named) {
   const std::vector<std::string> names = p.drive_names();
-  const std::vector<Signal> told = p.told(p.waveforms());
+  const std::vector<Signal> commanded = p.commanded(p.waveforms());
   std::vector<std::string> driven, all;
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (names[k] == dispersion_drive) continue;
     all.push_back(names[k]);
-    if (!told[k].is_zero()) driven.push_back(names[k]);
+    if (!commanded[k].is_zero()) driven.push_back(names[k]);
   }
   if (named.empty()) return driven;
   require_field(std::ranges::find(all, named) != all.end(), "drive", named,
@@ -61,7 +61,7 @@ double amplification(const Drive& drive, const Sampling& sampling) {
   return factor;
 }
 
-std::string amplifier_words(const Drive& drive, double factor) {
+std::string amplifier_prose(const Drive& drive, double factor) {
   if (factor == 1 && drive.amplifier.value_or(1) == 1) return {};
   const bool is_other = drive.amplifier && *drive.amplifier != factor;
   return fmt::format(
@@ -98,15 +98,15 @@ void require_samples(std::string_view format, const std::string& drive, const Dr
   });
 }
 
-std::string generator_text(const GeneratorFormat& format, const PreparedScene& p, const std::string& drive, const Signal& told,
-                           const Sampling& sampling) {
+std::string generator_text(const GeneratorFormat& format, const PreparedScene& p, const std::string& drive,
+                           const Signal& commanded, const Sampling& sampling) {
   const DriverModel& source = p.drives.at(drive).source;
   require_samples(format.name, drive, source);
   const double rate = *source.sample_rate;
   const double factor = amplification(p.drives.at(drive), sampling);
   GeneratorSamples samples{.name = drive, .rate = rate};
-  const double last = std::round(told.pieces().back().begin * rate);
-  for (double k = 0; k <= last; ++k) samples.volts.push_back(told.voltage(k / rate) / factor);
+  const double last = std::round(commanded.pieces().back().begin * rate);
+  for (double k = 0; k <= last; ++k) samples.volts.push_back(commanded.voltage(k / rate) / factor);
   if (sampling.marker) {
     const double at = std::round(told_quantity(requested("marker"), *sampling.marker, dimension::time) * rate);
     require_field(at >= 0 && at <= last, "marker", *sampling.marker,
@@ -116,13 +116,13 @@ std::string generator_text(const GeneratorFormat& format, const PreparedScene& p
   return generator_file(format, std::move(samples));
 }
 
-std::vector<std::string> sampled_words(const PreparedScene& sampled, const PreparedScene* drawn, const std::string& drive,
-                                       const Watch& watch) {
-  const Closing as_sampled = simulate(sampled, false, watch);
+std::vector<std::string> sampled_prose(const PreparedScene& sampled, const PreparedScene* drawn, const std::string& drive,
+                                       const Progress& progress) {
+  const Closing as_sampled = simulate(sampled, false, progress);
   std::vector<std::string> all{fmt::format("as sampled ({}), the nominal design behaves as follows: {}",
                                            words(sampled.drives.at(drive).source), clause(sampled, as_sampled))};
   if (drawn == nullptr) return all;
-  const Closing as_drawn = simulate(*drawn, false, watch);
+  const Closing as_drawn = simulate(*drawn, false, progress);
   if (is_worse(as_sampled.metrics, as_drawn.metrics))
     all.push_back(
         fmt::format("warning: without sampling, {}. To keep that, use a higher rate, more bits, or a search with this [driver]",

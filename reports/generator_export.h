@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "config/scene.h"
 #include "exchange/generator.h"
 #include "studies/closing/prepared.h"
@@ -31,7 +31,7 @@ struct Sampling {
 /// 1. Throws InvalidInput where it is not above 0.
 [[nodiscard]] double amplification(const Drive& drive, const Sampling& sampling);
 /// Returns this factor in words; empty where it is 1.
-[[nodiscard]] std::string amplifier_words(const Drive& drive, double factor);
+[[nodiscard]] std::string amplifier_prose(const Drive& drive, double factor);
 
 /// Puts sample rate and bits into [driver] of these drives.
 void set_sampling(SceneFile& file, const std::vector<std::string>& drives, const Sampling& sampling);
@@ -46,7 +46,7 @@ void require_samples(std::string_view format, const std::string& drive, const Dr
 
 /// Says how the nominal design closes under the samples of a drive. Adds a warning where it closes worse than under the
 /// original waveform `drawn`; null: no comparison.
-[[nodiscard]] std::vector<std::string> sampled_words(const PreparedScene& sampled, const PreparedScene* drawn,
-                                                     const std::string& drive, const Watch& watch);
+[[nodiscard]] std::vector<std::string> sampled_prose(const PreparedScene& sampled, const PreparedScene* drawn,
+                                                     const std::string& drive, const Progress& progress);
 
 }  // namespace softland

@@ -128,7 +128,7 @@ internal::Chart curve(const std::string& table, const std::string& title, const 
 }
 
 // States the lowest impact velocity of one slow waveform for all devices.
-std::string quasi_static_words(const LimitRecord& limit) {
+std::string quasi_static_prose(const LimitRecord& limit) {
   if (!limit.quasi_static || !std::isfinite(limit.quasi_static->speed)) return {};
   const auto& [name, touch_places, steady, speed] = *limit.quasi_static;
   const std::string drive = name == piezo_drive ? "piezo" : "electrode " + name;
@@ -152,7 +152,7 @@ void members(A& a, LeastTime& least) {
   a("peak_voltage_V", least.peak);
   a("simulated_time_s", least.simulated_time);
   a("simulated_impact_velocity_m_s", least.simulated_velocity);
-  a("distance_from_rest", least.room);
+  a("distance_from_rest", least.distance);
 }
 
 template <class A>
@@ -171,7 +171,7 @@ void members(A& a, LimitRecord::Check& check) {
 
 template <class A>
 void members(A& a, LimitRecord::Landing& landing) {
-  a("way", landing.way);
+  a("way", landing.path);
   a("at_rest", landing.at_rest);
   a("catch_delay_s", landing.catch_delay);
   a("catch_s", landing.catch_time);
@@ -233,15 +233,15 @@ LimitRecord record_of(const Limit& limit, const std::string& command) {
     record.warnings.push_back(std::move(few));
   if (const auto& found = limit.landing) {
     record.landed = record_of(found->scene, found->closing, {});
-    record.landing = {found->way,
-                      std::isfinite(found->way.room),
+    record.landing = {found->path,
+                      std::isfinite(found->path.distance),
                       found->catch_delay,
                       found->catch_time,
                       found->bounce_free,
                       found->closing.metrics,
                       {},
                       found->scene.scene.file.json()};
-    for (const ConfirmingRun& c : found->checks) {
+    for (const CheckingRun& c : found->checks) {
       if (c.varied != Varied::gas) record.landing->checks.push_back({c.name, c.metrics});
     }
   }
@@ -272,7 +272,7 @@ std::string text_of(const LimitRecord& limit) {
                   std::string(!limit.has_start ? "" : " or with the waveform of --start") +
                   (model.empty() ? "." : ". A beam has more modes, which may allow a faster waveform.") +
                   " A beam whose modes still vibrate may bounce after a soft touch, so the landing was simulated."});
-  if (const std::string words = quasi_static_words(limit); !words.empty()) section.parts.emplace_back(Paragraph{words});
+  if (const std::string words = quasi_static_prose(limit); !words.empty()) section.parts.emplace_back(Paragraph{words});
   return terminal_text(
       {.headline = fmt::format("Least times in which {} can close the switch{}", drives_of(limit.actuator), peak),
        .doubt = limit.status == "interrupted" ? "Interrupted: the results are incomplete." : "",
@@ -290,7 +290,7 @@ std::string svg_of(const LimitRecord& limit) {
   if (drawn.tables.contains("speed")) {
     drawn.charts.push_back(curve("speed", "Least time against the permitted impact velocity", "permitted impact velocity", "m/s",
                                  drawn.tables.at("speed")));
-    drawn.charts.back().x_scale = internal::Scale::logarithmic;
+    drawn.charts.back().x_scale = internal::AxisScale::logarithmic;
   }
   const bool found = limit.touch.status == Status::done;
   const std::string model = model_of(limit);

@@ -24,7 +24,7 @@ struct LimitRecord {
     Metrics metrics;
   };
   struct Landing {
-    LeastTime way;
+    LeastTime path;
     bool at_rest = false;
     double catch_delay = Metrics::unset, catch_time = Metrics::unset;  ///< [s]
     bool bounce_free = false;

@@ -12,7 +12,7 @@
 
 #include "base/read_file.h"
 #include "base/require.h"
-#include "model/ensemble/fleet.h"
+#include "model/ensemble/ensemble_closings.h"
 #include "reports/closing_members.h"
 #include "version.h"
 

@@ -12,8 +12,8 @@ struct MadeWith {
   std::string program, compiler, options, instruction_set, vectors, c_library, processor;
 };
 
-/// Describes this program on this machine, and the vector instructions that close ensembles (model/ensemble/fleet.h); empty
-/// where the machine does not tell.
+/// Describes this program on this machine, and the vector instructions that close ensembles
+/// (model/ensemble/ensemble_closings.h); empty where the machine does not tell.
 [[nodiscard]] const MadeWith& made_with();
 /// Returns {"program": ..., "compiler": ...}; null for unknown members.
 [[nodiscard]] nlohmann::json made_with_json(const MadeWith& all = made_with());

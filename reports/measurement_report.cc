@@ -152,7 +152,7 @@ std::string text_of(const MeasurementsRecord& study, std::size_t most) {
            "{}{} devices under process variation. The waveform of the scene is scaled for each device by a factor of voltage and "
            "one of time. The best factors of each device were searched. They were then predicted from the measurements, by a fit "
            "to the other half of the devices, and the devices closed with the predicted factors.",
-           study.spread_assumed ? std::string(assumed_words) + " " : "", study.devices),
+           study.spread_assumed ? std::string(assumed_prose) + " " : "", study.devices),
        .doubt = study.interrupted ? "Interrupted: not all measurements are judged." : "",
        .sections = {
            {.id = "measured",

@@ -73,13 +73,13 @@ internal::Chart sweep_chart(const std::string& column, const std::string& title,
 }
 
 // Describes the kind of static pull-in; empty without pull-in.
-std::string kind_words(const std::string& kind) {
+std::string kind_prose(const std::string& kind) {
   if (kind.empty()) return {};
   return kind == to_string(StaticKind::fold) ? " (fold of the static branch)" : " (the contact point reaches the contact first)";
 }
 
 std::string shift_clause(const std::optional<VoltagesByModes>& found, ByModes VoltagesByModes::*voltage) {
-  const std::string shift = found ? shift_words(*found.*voltage) : std::string();
+  const std::string shift = found ? shift_prose(*found.*voltage) : std::string();
   return shift.empty() ? shift : "; more modes change it by " + shift;
 }
 
@@ -91,11 +91,11 @@ bool makes_contact(const json& scene) {
          });
 }
 
-std::string electrode_words(const std::string& name, const ElectrodeRecord& electrode, bool is_far, bool has_contact) {
+std::string electrode_prose(const std::string& name, const ElectrodeRecord& electrode, bool is_far, bool has_contact) {
   constexpr int digits = 4;
   std::string text = fmt::format("electrode {}\n", name);
   if (is_far) return text + "  on the far side: pulls away from the contact\n";
-  if (const std::string bias = bias_words(electrode); !bias.empty()) text += fmt::format("  under            {}\n", bias);
+  if (const std::string bias = bias_prose(electrode); !bias.empty()) text += fmt::format("  under            {}\n", bias);
   if (electrode.status == Status::no_contact)
     return text + "  pulls away from the contact where the switch rests: no pull-in voltage\n";
   const PullInRecord& found = electrode.volts;
@@ -103,12 +103,12 @@ std::string electrode_words(const std::string& name, const ElectrodeRecord& elec
       electrode.status == Status::collapsed_at_rest
           ? fmt::format("  {}\n", no_open_state)
           : fmt::format("  static pull-in   {}{}{}\n  pull-in position {}\n  dynamic pull-in  {}\n", volts(found.static_pull_in),
-                        kind_words(found.static_kind), shift_clause(found.by_modes, &VoltagesByModes::static_pull_in),
+                        kind_prose(found.static_kind), shift_clause(found.by_modes, &VoltagesByModes::static_pull_in),
                         std::isfinite(found.deflection) ? quantity(found.deflection, "m", digits) : "none",
                         electrode.status == Status::interrupted ? std::string("not known: the search for it was interrupted")
-                                                                : dynamic_words(found));
+                                                                : dynamic_prose(found));
   const std::string of_charge =
-      std::isfinite(found.neutral) ? fmt::format("  charge           {}\n", charge_words(found)) : std::string();
+      std::isfinite(found.neutral) ? fmt::format("  charge           {}\n", charge_prose(found)) : std::string();
   if (!has_contact) return text + of_charge;
   text += fmt::format("  release          {}{}\n", volts(found.release), shift_clause(found.by_modes, &VoltagesByModes::release));
   if (std::isfinite(found.pulled_through))
@@ -208,7 +208,7 @@ std::string volts(double value) {
   return std::isfinite(value) ? quantity(value, "V", digits) : "none";
 }
 
-std::string bias_words(const ElectrodeRecord& electrode) {
+std::string bias_prose(const ElectrodeRecord& electrode) {
   std::vector<std::string> drives;
   for (const auto& [name, level] : electrode.bias) drives.push_back(fmt::format("{} {}", name, volts(level)));
   for (const auto& [name, factor] : electrode.bias_factor)
@@ -216,7 +216,7 @@ std::string bias_words(const ElectrodeRecord& electrode) {
   return fmt::format("{}", fmt::join(drives, ", "));
 }
 
-std::string dynamic_words(const PullInRecord& found) {
+std::string dynamic_prose(const PullInRecord& found) {
   return volts(found.dynamic_pull_in) +
          (found.dynamic_kind == "unstable_rest"
               ? " (equal to the static one: no lower step moves the beam, and from there on its rest position is unstable)"
@@ -228,7 +228,7 @@ bool sticks_by_charge(const PullInRecord& found) {
   return std::isfinite(found.neutral) && std::abs(found.neutral) >= found.release - found.neutral;
 }
 
-std::string charge_words(const PullInRecord& found) {
+std::string charge_prose(const PullInRecord& found) {
   if (!std::isfinite(found.neutral)) return {};
   const auto mirrored = [&](double value) { return volts(2 * found.neutral - value); };
   std::string words = fmt::format("leaves no field at {}", volts(found.neutral));
@@ -241,7 +241,7 @@ std::string charge_words(const PullInRecord& found) {
   return words;
 }
 
-std::optional<StablePathRecord> stable_path_of(const PreparedScene& p, const Watch& watch) {
+std::optional<StablePathRecord> stable_path_of(const PreparedScene& p, const Progress& progress) {
   constexpr std::uint64_t devices = 256, seed = 1;
   if (!p.model.has_contact()) return std::nullopt;
   std::optional<StableApproach> found;
@@ -249,7 +249,7 @@ std::optional<StablePathRecord> stable_path_of(const PreparedScene& p, const Wat
   if (!found && has_pulling_electrode(p.scene.device)) found = stable_approach(p, Actuator::electrostatic);
   if (!found) return std::nullopt;
   StablePathRecord path{.drive = found->drive, .reaches = found->reaches, .limit = found->limit};
-  if (!p.scene.spread.empty()) path.share = share_with_path(p, *found, devices, seed, 1, watch);
+  if (!p.scene.spread.empty()) path.share = share_with_path(p, *found, devices, seed, 1, progress);
   return path;
 }
 
@@ -278,7 +278,7 @@ std::string text_of(const PullInsRecord& record) {
   std::string text;
   for (const auto& [name, electrode] : record.electrodes) {
     const bool is_far = std::ranges::any_of(all, [&](const auto& one) { return one.name == name && one.far_side; });
-    text += electrode_words(name, electrode, is_far, has_contact);
+    text += electrode_prose(name, electrode, is_far, has_contact);
   }
   const bool is_known = std::ranges::find(record.left_out, stable_path_left_out) == record.left_out.end();
   if (has_contact && is_known) text += wrapped("Stable path: " + words_of(record.stable_path) + ".") + "\n";
@@ -298,7 +298,7 @@ std::string sweep_svg(const PullInsRecord& record) {
   const ElectrodeRecord& electrode = record.electrodes.at(record.swept);
   const auto& [pull_in, release] = std::pair(electrode.volts.static_pull_in, electrode.volts.release);
   std::string of = fmt::format("Electrode {}, swept up and down", record.swept);
-  if (const std::string others = bias_words(electrode); !others.empty()) of += ", with " + others;
+  if (const std::string others = bias_prose(electrode); !others.empty()) of += ", with " + others;
   const auto [least, most] = std::minmax_element(points.begin(), points.end(),
                                                  [](const SweepPoint& a, const SweepPoint& b) { return a.voltage < b.voltage; });
   internal::Picture picture{.tables = {{"up", branch_of(points, true)}, {"down", branch_of(points, false)}}, .charts = {}};

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "reports/origin.h"
 #include "studies/closing/by_modes.h"
 #include "studies/closing/prepared.h"
@@ -40,15 +40,15 @@ struct ElectrodeRecord {
 /// Returns "22.469 V" or "none".
 [[nodiscard]] std::string volts(double value);
 /// Returns "piezo -1.5 V": the other drives that are not at 0; empty where all are.
-[[nodiscard]] std::string bias_words(const ElectrodeRecord& electrode);
+[[nodiscard]] std::string bias_prose(const ElectrodeRecord& electrode);
 /// Returns the dynamic pull-in voltage in words. A step without overshoot, because of damping, needs no less than the static
 /// one; nor does one that leaves the switch where it rests.
-[[nodiscard]] std::string dynamic_words(const PullInRecord& found);
+[[nodiscard]] std::string dynamic_prose(const PullInRecord& found);
 
 /// Tells whether the charge keeps the switch closed at 0 V once it is.
 [[nodiscard]] bool sticks_by_charge(const PullInRecord& found);
 /// Says how the charge on the dielectric shifts both polarities; empty without charge.
-[[nodiscard]] std::string charge_words(const PullInRecord& found);
+[[nodiscard]] std::string charge_prose(const PullInRecord& found);
 
 /// The path of a drive that alone carries the switch to its contact through stable equilibria.
 struct StablePathRecord {
@@ -57,7 +57,7 @@ struct StablePathRecord {
   std::optional<double> share;                              ///< share of the devices of [spread]
 };
 /// Returns none where no drive does, or there is no contact.
-[[nodiscard]] std::optional<StablePathRecord> stable_path_of(const PreparedScene& prepared, const Watch& watch);
+[[nodiscard]] std::optional<StablePathRecord> stable_path_of(const PreparedScene& prepared, const Progress& progress);
 /// Returns "the piezo alone reaches the contact at -0.9483 V through stable equilibria; 96.5 % of devices do within -1 V".
 [[nodiscard]] std::string words_of(const std::optional<StablePathRecord>& path);
 

@@ -14,7 +14,7 @@
 #include "document/quantity.h"
 #include "document/svg.h"
 #include "reports/closing_record.h"
-#include "reports/robustness_words.h"
+#include "reports/robustness_prose.h"
 #include "reports/study_members.h"
 #include "studies/closing/summits_at_hold.h"
 #include "waveforms/export.h"
@@ -24,10 +24,10 @@ namespace {
 
 using internal::percent;
 using internal::quantity;
-using internal::spread_words;
+using internal::spread_prose;
 using nlohmann::json;
 
-constexpr const char* plain_words = "plain opening";
+constexpr const char* plain_prose = "plain opening";
 constexpr double curve_tolerance = 1e-4;  // share of the largest voltage, where a drive is not piecewise linear
 
 // Returns the drives that are voltages, with their signals.
@@ -123,7 +123,7 @@ double shown_until(const ReleaseRecord& r, double window) {
 
 // Shows the 95th percentiles of the devices under either opening.
 ReportSection devices_section(const ReleaseRecord::Devices& found) {
-  ReportTable table{.head = {"", plain_words, "found"}, .rows = {}};
+  ReportTable table{.head = {"", plain_prose, "found"}, .rows = {}};
   table.rows = {{"come to rest in the open position", percent(found.plain.open), percent(found.best.open)},
                 {"at rest as soon as the drives stand at 0 V", percent(found.plain.in_band), percent(found.best.in_band)}};
   const auto add = [&](const char* name, double DeviceOpenings::*figure, const char* unit) {
@@ -142,7 +142,7 @@ ReportSection devices_section(const ReleaseRecord::Devices& found) {
 }
 
 ReportTable openings_table(const ReleaseRecord& r) {
-  ReportTable table{.head = {"", plain_words, r.best ? "found" : "", {"", "words"}}, .rows = {}};
+  ReportTable table{.head = {"", plain_prose, r.best ? "found" : "", {"", "words"}}, .rows = {}};
   table.rows = {quantity_row(r, "leaves its contact after", &OpeningFigures::release_time, "s", false),
                 quantity_row(r, "settling time in the open position", &OpeningFigures::settling_time, "s", true),
                 quantity_row(r, "residual vibration", &OpeningFigures::residual_vibration, "m", true),
@@ -258,7 +258,7 @@ ReleaseRecord record_of(const OpeningResult& r, const std::string& command) {
   const std::vector<std::string> names = r.given.drive_names();
   for (std::size_t k = 0; k < names.size(); ++k) record.hold_levels[names[k]] = r.holds[k];
   if (r.best) record.best = run_of(r, *r.best), record.gaps["best"] = gap_of(r, *r.best);
-  if (const auto& d = r.on_devices) record.devices = {d->devices, d->spread_assumed, spread_words(d->spread), d->plain, d->best};
+  if (const auto& d = r.on_devices) record.devices = {d->devices, d->spread_assumed, spread_prose(d->spread), d->plain, d->best};
   if (std::string few = few_summits_warning(r.given.model, r.given.signals()); !few.empty())
     record.warnings.push_back(std::move(few));
   return record;
@@ -294,7 +294,7 @@ std::string svg_of(const ReleaseRecord& r) {
     const char *name, *words;
     internal::Role role;
   };
-  std::vector<Drawn> runs{{&r.plain, "plain", plain_words, internal::Role::baseline}};
+  std::vector<Drawn> runs{{&r.plain, "plain", plain_prose, internal::Role::baseline}};
   if (r.best) runs.push_back({&*r.best, "best", "found", internal::Role::best});
   internal::Picture drawn;
   internal::Chart gap = internal::chart_over_time("gap", "Gap: the opening", "Gap", "m", shown, 320);

@@ -14,7 +14,7 @@
 namespace softland {
 namespace {
 
-const ForDevicesResult& raced(const SearchReport& report) { return std::get<ForDevicesResult>(report.found.result); }
+const RobustSearchResult& raced(const SearchReport& report) { return std::get<RobustSearchResult>(report.found.result); }
 
 // Adds the files of a part of the report.
 template <class Part>
@@ -62,7 +62,7 @@ std::vector<ReportFile<SearchReport>> files_of(const SearchReport& report) {
     files.push_back({"best.toml", [](const SearchReport& r) { return scene_text(*r.found.best().best_scene); }});
     files.push_back({"best.csv", [](const SearchReport& r) { return told_csv(*r.found.best().best_scene); }});
   }
-  const auto* devices = std::get_if<ForDevicesResult>(&report.found.result);
+  const auto* devices = std::get_if<RobustSearchResult>(&report.found.result);
   if (devices != nullptr && devices->drawing.best_scene) {
     files.push_back({for_devices_files[0], [](const SearchReport& r) { return scene_text(*raced(r).drawing.best_scene); }});
     files.push_back({for_devices_files[1], [](const SearchReport& r) { return told_csv(*raced(r).drawing.best_scene); }});

@@ -20,14 +20,14 @@
 #include "reports/device_scatter.h"
 #include "reports/estimates.h"
 #include "reports/origin.h"
+#include "reports/robustness_prose.h"
 #include "reports/robustness_report.h"
-#include "reports/robustness_words.h"
 #include "sampling/statistics.h"
 
 namespace softland {
 namespace {
 
-using internal::calibration_words;
+using internal::calibration_prose;
 using internal::escaped;
 using internal::is_erring;
 using internal::is_had;
@@ -37,7 +37,7 @@ using internal::quantile_text;
 using internal::quantity;
 using internal::shown_drive;
 using internal::some_collapse;
-using internal::worst_words;
+using internal::worst_prose;
 using internal::yield_text;
 
 using DriveRecord = RobustnessRecord::Drive;
@@ -245,9 +245,9 @@ ReportSection statistics_section(const RobustnessRecord& found) {
                     Paragraph{.text = fmt::format(
                                   "In brackets: 95 % confidence. Seed {}, {} points, window {}, integrator tolerance {}. {}",
                                   found.seed, name_of(point_sets, found.points), quantity(found.duration, "s", 4),
-                                  internal::scientific(found.tolerance), worst_words),
+                                  internal::scientific(found.tolerance), worst_prose),
                               .is_note = true},
-                    Paragraph{.text = internal::window_words(found.windows), .is_note = true}}};
+                    Paragraph{.text = internal::window_prose(found.windows), .is_note = true}}};
 }
 
 // Shows the value of measurements: the last drive with more and more measured on every device.
@@ -263,7 +263,7 @@ ReportSection knowledge_section(const RobustnessRecord& found) {
   };
   for (const DriveRecord& d : found.by_knowledge) add(d.name, d);
   const Calibration& c = found.drives.back().calibration;
-  if (is_erring(c)) add(calibration_words(c), found.drives.back());
+  if (is_erring(c)) add(calibration_prose(c), found.drives.back());
   section.parts = {std::move(table)};
   return section;
 }
@@ -382,7 +382,7 @@ Document document_of(const RobustnessRecord& found) {
   for (ReportSection& section :
        std::array{knowledge_section(found), statistics_section(found), sensitivity_section(found),
                   internal::derivatives_section(found.derivatives, found.drives.back()),
-                  found.other_ways ? internal::other_ways_section(found) : ReportSection(), worst_section(found)})
+                  found.box_and_chaos ? internal::box_and_chaos_section(found) : ReportSection(), worst_section(found)})
     document.sections.push_back(std::move(section));
   return document;
 }

@@ -14,7 +14,7 @@
 #include "document/json_number.h"
 #include "reports/box_and_chaos_report.h"
 #include "reports/derivatives_report.h"
-#include "reports/robustness_words.h"
+#include "reports/robustness_prose.h"
 #include "reports/study_members.h"
 #include "studies/closing/closed_state.h"
 #include "studies/closing/simulate.h"
@@ -48,7 +48,7 @@ std::map<std::string, Points> waveforms_of(const PreparedScene& nominal, const D
   const std::vector<std::string> names = nominal.drive_names();
   for (const auto& [name, waveform] : drive.waveforms) {
     const auto k = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-    const Signal s = nominal.driven(k, nominal.told(k, waveform));
+    const Signal s = nominal.applied(k, nominal.commanded(k, waveform));
     const bool is_factor = name == dispersion_drive;
     Points& points = all[name];
     for (const auto& [t, v] : polyline(s, duration, 1e-3 * (s.maximum(duration) - s.minimum(duration)), 0))
@@ -64,7 +64,7 @@ std::vector<std::string> warnings(const RobustnessReport& report) {
   if (!report.found.drives.empty()) {
     const DriveRobustness& last = report.found.drives.back();
     const std::vector<Signal> signals =
-        until_command(report.nominal, report.nominal.driven(report.nominal.in_drive_order(last.waveforms)));
+        until_command(report.nominal, report.nominal.applied(report.nominal.in_drive_order(last.waveforms)));
     if (std::string few = few_summits_warning(report.nominal.model, signals); !few.empty()) all.push_back(std::move(few));
   }
   return all;
@@ -84,7 +84,7 @@ RobustnessRecord::Drive drive_of(const RobustnessReport& report, const Ensemble&
                                 .failures = {},
                                 .worst = {}};
   if (nominal.model.has_contact())
-    drive.closed_state = closed_state(nominal, until_command(nominal, nominal.driven(nominal.in_drive_order(d.waveforms))));
+    drive.closed_state = closed_state(nominal, until_command(nominal, nominal.applied(nominal.in_drive_order(d.waveforms))));
   for (const std::size_t k : d.worst) drive.worst.push_back(device_of(ensemble, d, k));
   for (const DeviceOutcome& o : d.outcomes) {
     if (!o.closed()) ++drive.failures[o.failure.empty() ? std::string(to_string(o.metrics.status)) : o.failure];
@@ -117,19 +117,19 @@ std::vector<RobustnessRecord::Sensitive> sensitive(const Sensitivity& sensitivit
   return all;
 }
 
-std::string about_words(const RobustnessReport& report) {
+std::string about_prose(const RobustnessReport& report) {
   const Robustness& found = report.found;
   const DeviceSpread& spread = report.nominal.scene.spread;
   const Calibration calibration = found.drives.empty() ? Calibration{} : found.drives.back().known.calibration();
   return fmt::format(
       "{}{} devices under process variation ({} points): {}. {}{}{}",
-      report.spread_assumed ? std::string(assumed_words) + " " : "", found.devices, name_of(point_sets, report.options.points),
-      internal::spread_words(spread),
+      report.spread_assumed ? std::string(assumed_prose) + " " : "", found.devices, name_of(point_sets, report.options.points),
+      internal::spread_prose(spread),
       calibration.is_empty()
           ? "All are driven with the voltages of the nominal design."
           : "The plain step has the voltages of the nominal design; every other drive is scaled by per-device calibration: " +
-                internal::calibration_words(calibration) + ".",
-      internal::error_words(spread), internal::outside_words(found));
+                internal::calibration_prose(calibration) + ".",
+      internal::error_prose(spread), internal::outside_prose(found));
 }
 
 // Writes parts by figure, in the order of `keys`.
@@ -189,7 +189,7 @@ void members(A& a, Calibration& c) {
 }
 
 template <class A>
-void members(A& a, KnownUnits::Class& c) {
+void members(A& a, MeasuredUnits::Class& c) {
   a("volts_factor", c.centre.volts);
   a("time_factor", c.centre.time);
   a("piezo_factor", c.centre.piezo);
@@ -294,7 +294,7 @@ void members(A& a, RobustnessRecord::Derived& d) {
 }
 
 template <class A>
-void members(A& a, RobustnessRecord::OtherWays::InBox& device) {
+void members(A& a, RobustnessRecord::BoxAndChaosRecord::InBox& device) {
   a("value", device.figure);
   a("values", device.values);
   a("status", device.status);
@@ -302,7 +302,7 @@ void members(A& a, RobustnessRecord::OtherWays::InBox& device) {
 }
 
 template <class A>
-void members(A& a, RobustnessRecord::OtherWays::Range& range) {
+void members(A& a, RobustnessRecord::BoxAndChaosRecord::Range& range) {
   a("least", range.least);
   a("most", range.most);
   a.pair("sampled", range.of_sample.low, range.of_sample.high);
@@ -310,7 +310,7 @@ void members(A& a, RobustnessRecord::OtherWays::Range& range) {
 
 template <class A>
 void members(A& a, FigureChaos& c) {
-  a("devices", c.taught);
+  a("devices", c.fitted);
   a("other_devices", c.unseen);
   a("degree", c.degree);
   a("terms", c.terms);
@@ -322,7 +322,7 @@ void members(A& a, FigureChaos& c) {
 }
 
 template <class A>
-void members(A& a, RobustnessRecord::OtherWays& ways) {
+void members(A& a, RobustnessRecord::BoxAndChaosRecord& ways) {
   a("drive", ways.drive);
   a.object("box", [&](auto& box) {
     box("share_of_devices", ways.share);
@@ -357,27 +357,27 @@ void members(A& a, RobustnessRecord& r) {
     if (sensitivity.has(!r.why_no_sensitivity.empty())) sensitivity("why_none", r.why_no_sensitivity);
   });
   a("derivatives", r.derivatives);
-  a("other_ways", internal::OrNull{r.other_ways});
+  a("other_ways", internal::OrNull{r.box_and_chaos});
   a("warnings", r.warnings);
 }
 
-void add_details(RobustnessReport& report, bool other_ways_too, const Watch& watch) {
+void add_details(RobustnessReport& report, bool other_ways_too, const Progress& progress) {
   if (report.found.interrupted || report.found.devices == 0) return;
   constexpr std::uint64_t devices_per_row = 4, most_rows = 1024;
   const DriveRobustness& last = report.found.drives.back();
   report.sensitivity =
       sensitivity(report.nominal, last, std::clamp<std::uint64_t>(report.options.samples / devices_per_row, 8, most_rows),
-                  report.options, watch);
-  report.derivatives = derivatives(report.nominal, internal::exactly_measured(report.nominal, last), {}, watch);
-  report.windows = hold_windows(report.nominal, report.options, watch);
+                  report.options, progress);
+  report.derivatives = derivatives(report.nominal, internal::exactly_measured(report.nominal, last), {}, progress);
+  report.windows = hold_windows(report.nominal, report.options, progress);
   if (report.nominal.model.has_contact()) {
     const std::vector<Signal> signals =
-        until_command(report.nominal, report.nominal.driven(report.nominal.in_drive_order(last.waveforms)));
+        until_command(report.nominal, report.nominal.applied(report.nominal.in_drive_order(last.waveforms)));
     report.unheld = hold_warning(report.nominal.model, signals, closed_state(report.nominal, signals));
   }
   report.courses = device_courses(report.nominal, last, report.found, report.options);
-  if (other_ways_too) report.box_and_chaos = box_and_chaos(report.nominal, last, report.options, {}, watch);
-  report.interrupted = watch.stopped();
+  if (other_ways_too) report.box_and_chaos = box_and_chaos(report.nominal, last, report.options, {}, progress);
+  report.interrupted = progress.stopped();
 }
 
 RobustnessRecord record_of(const RobustnessReport& report) {
@@ -391,7 +391,7 @@ RobustnessRecord record_of(const RobustnessReport& report) {
                           .points = options.points,
                           .duration = found.duration,
                           .tolerance = found.tolerance,
-                          .about = {about_words(report)},
+                          .about = {about_prose(report)},
                           .spread = varied(nominal.scene.spread),
                           .windows = windows,
                           .drives = {},
@@ -399,13 +399,13 @@ RobustnessRecord record_of(const RobustnessReport& report) {
                           .sensitivity = sensitive(sensitivity),
                           .why_no_sensitivity = sensitivity.why_none,
                           .derivatives = internal::record_of(derivatives, found.drives.back()),
-                          .other_ways = {},
+                          .box_and_chaos = {},
                           .warnings = warnings(report)};
   if (found.interrupted) record.about.emplace_back("Interrupted: the devices are incomplete.");
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   for (const DriveRobustness& d : found.drives) record.drives.push_back(drive_of(report, ensemble, d));
   for (const DriveRobustness& d : found.by_knowledge) record.by_knowledge.push_back(drive_of(report, ensemble, d));
-  if (ways) record.other_ways = internal::record_of(*ways, found.drives.back(), nominal);
+  if (ways) record.box_and_chaos = internal::record_of(*ways, found.drives.back(), nominal);
   return record;
 }
 
@@ -415,14 +415,14 @@ json json_of(const RobustnessRecord& record) { return internal::record_json(reco
 RobustnessRecord read_robustness(const json& from) {
   RobustnessRecord record = internal::whole_record<RobustnessRecord>(from);
   require(!record.drives.empty(), "\"drives\" is empty");
-  if (!record.other_ways) return record;
-  RobustnessRecord::OtherWays& ways = *record.other_ways;
+  if (!record.box_and_chaos) return record;
+  RobustnessRecord::BoxAndChaosRecord& ways = *record.box_and_chaos;
   require(ways.chaos.size() == ways.ranges.size(), "\"polynomial_chaos\" has other figures than \"box\"");
   const auto set_infinite = [](double& value) {
     if (std::isnan(value)) value = std::numeric_limits<double>::infinity();
   };
-  for (RobustnessRecord::OtherWays::Range& range : ways.ranges) {
-    for (RobustnessRecord::OtherWays::InBox* device : {&range.least, &range.most}) {
+  for (RobustnessRecord::BoxAndChaosRecord::Range& range : ways.ranges) {
+    for (RobustnessRecord::BoxAndChaosRecord::InBox* device : {&range.least, &range.most}) {
       if (!device->values.empty()) set_infinite(device->figure);
     }
     if (ways.sampled_inside > 0) set_infinite(range.of_sample.low), set_infinite(range.of_sample.high);

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "document/document.h"
 #include "reports/closing_record.h"
 #include "reports/origin.h"
@@ -39,7 +39,7 @@ struct RobustnessReport {
 
 /// Adds the details of the last drive beside its figures, with `other_ways_too` at the cost of further searches; it adds
 /// nothing where the work was interrupted.
-void add_details(RobustnessReport& report, bool other_ways_too, const Watch& watch);
+void add_details(RobustnessReport& report, bool other_ways_too, const Progress& progress);
 
 /// JSON, text and tables are made from this record.
 struct RobustnessRecord {
@@ -61,7 +61,7 @@ struct RobustnessRecord {
     std::string name;
     std::optional<ClosedState> closed_state;
     Calibration calibration;
-    std::vector<KnownUnits::Class> classes;
+    std::vector<MeasuredUnits::Class> classes;
     std::map<std::string, Points> waveforms;
     Yield closing, collapsed, bounce_free;
     PerFigure<FigureStatistics> figures;
@@ -99,7 +99,7 @@ struct RobustnessRecord {
     std::map<std::string, Variable> variables;
     std::vector<Of> figures;
   };
-  struct OtherWays {
+  struct BoxAndChaosRecord {
     struct InBox {
       double figure = Metrics::unset;
       std::map<std::string, double> values;
@@ -130,7 +130,7 @@ struct RobustnessRecord {
   std::vector<Sensitive> sensitivity;
   std::string why_no_sensitivity;
   Derived derivatives;
-  std::optional<OtherWays> other_ways;
+  std::optional<BoxAndChaosRecord> box_and_chaos;
   std::vector<std::string> warnings;
 };
 [[nodiscard]] RobustnessRecord record_of(const RobustnessReport& report);

@@ -31,7 +31,7 @@ namespace softland {
 namespace {
 
 using internal::plain_number;
-using Say = std::function<void(const std::string&)>;
+using NoteSink = std::function<void(const std::string&)>;
 
 constexpr double usual_error = 0.01;  // relative error of a measurement whose error nobody gives
 
@@ -53,7 +53,7 @@ struct SentRow {
   Sent value;
   std::string_view name;
 };
-constexpr auto sent_names = std::to_array<SentRow>({{Sent::told, "told"}, {Sent::output, "output"}});
+constexpr auto sent_names = std::to_array<SentRow>({{Sent::commanded, "told"}, {Sent::output, "output"}});
 static_assert(is_complete<sent_names>());
 
 // A quantity that was measured on a device.
@@ -116,21 +116,21 @@ struct Measurements {
 };
 
 // Returns the relative error of a measurement: that of [calibration], or the usual one, with a remark.
-double error_of(const Measured& measured, const std::optional<double>& given, const Say& say) {
+double error_of(const Measured& measured, const std::optional<double>& given, const NoteSink& note) {
   if (given && *given > 0) return *given;
-  say(fmt::format("{}: its error is taken to be {}, because [calibration] gives none for {}", measured.said,
-                  plain_number(100 * usual_error) + " %", measured.name));
+  note(fmt::format("{}: its error is taken to be {}, because [calibration] gives none for {}", measured.said,
+                   plain_number(100 * usual_error) + " %", measured.name));
   return usual_error;
 }
 
 // Warns of a device that hardly any device of the spread is like. The argument `deviation` is that of the spread; `ratio` is
 // the measured unit over that of the nominal device; `own` is the measured value over the nominal one.
 void warn_if_strange(const Measured& measured, double own, double ratio, double deviation, const std::optional<double>& error,
-                     const Say& say) {
+                     const NoteSink& note) {
   constexpr double strange = 4;
-  const double off = std::abs(ratio - 1), sigma = std::hypot(deviation, error_of(measured, error, say));
+  const double off = std::abs(ratio - 1), sigma = std::hypot(deviation, error_of(measured, error, note));
   if (off <= strange * sigma) return;
-  say(
+  note(
       fmt::format("warning: {}: it differs from the nominal device by {} %, {} times the standard deviation of devices and "
                   "measurement; check that it was measured on this switch",
                   measured.said, plain_number(100 * std::abs(own - 1), 3), plain_number(off / sigma, 2)));
@@ -143,8 +143,9 @@ PreparedScene with_spread(const PreparedScene& p) {
 }
 
 // Returns the units of the device on which this was measured.
-DeviceUnits units_of(const PreparedScene& p, const Measurements& measured, int jobs, const Watch& watch, const Say& say) {
-  const DeviceMeter meter(p, {.pull_in = measured.pull_in.value.has_value(),
+DeviceUnits units_of(const PreparedScene& p, const Measurements& measured, int jobs, const Progress& progress,
+                     const NoteSink& note) {
+  const PullInMeter meter(p, {.pull_in = measured.pull_in.value.has_value(),
                               .closing_time = measured.time.value.has_value(),
                               .piezo = measured.piezo.value.has_value()});
   const Calibration& calibration = p.scene.calibration;
@@ -157,31 +158,31 @@ DeviceUnits units_of(const PreparedScene& p, const Measurements& measured, int j
                         "{}, {}, {}: the scene sorts devices into classes; give the measurements that [calibration] names",
                         requested("measured"), requested("device-vdp"), requested("device-frequency"));
                   });
-  const DeviceUnits told = measured.time.value ? meter.told_by(*measured.time.value) : DeviceUnits{};
+  const DeviceUnits told = measured.time.value ? meter.units_by_time(*measured.time.value) : DeviceUnits{};
   const double volts = measured.pull_in.value ? *measured.pull_in.value / meter.pull_in() : told.volts,
                time = meter.frequency() / measured.frequency.value.value_or(meter.frequency()),
-               piezo = measured.piezo.value ? DeviceMeter::piezo_unit(p.model) / *measured.piezo.value : 1;
+               piezo = measured.piezo.value ? PullInMeter::piezo_unit(p.model) / *measured.piezo.value : 1;
   const bool by_volts = measured.pull_in.value || measured.time.value;
-  const DeviceUnits deviation = deviation_of_units(with_spread(p), by_volts, jobs, watch);
+  const DeviceUnits deviation = deviation_of_units(with_spread(p), by_volts, jobs, progress);
   if (measured.time.value)
     warn_if_strange(measured.time, *measured.time.value / meter.closing_time(), volts, deviation.volts,
-                    told.volts_by_time * calibration.time_error.value_or(usual_time_error), say);
-  if (measured.pull_in.value) warn_if_strange(measured.pull_in, volts, volts, deviation.volts, calibration.pull_in_error, say);
+                    told.volts_by_time * calibration.time_error.value_or(usual_time_error), note);
+  if (measured.pull_in.value) warn_if_strange(measured.pull_in, volts, volts, deviation.volts, calibration.pull_in_error, note);
   if (measured.frequency.value)
-    warn_if_strange(measured.frequency, 1 / time, 1 / time, deviation.time, calibration.frequency_error, say);
-  if (measured.piezo.value) warn_if_strange(measured.piezo, 1 / piezo, 1 / piezo, deviation.piezo, calibration.piezo_error, say);
-  const KnownUnits known = known_units(p, std::array{calibration}, jobs, watch).front();
+    warn_if_strange(measured.frequency, 1 / time, 1 / time, deviation.time, calibration.frequency_error, note);
+  if (measured.piezo.value) warn_if_strange(measured.piezo, 1 / piezo, 1 / piezo, deviation.piezo, calibration.piezo_error, note);
+  const MeasuredUnits known = measured_units(p, std::array{calibration}, jobs, progress).front();
   return known.of({.volts = volts, .time = time, .piezo = piezo, .volts_by_time = told.volts_by_time});
 }
 
 // Returns the waveforms of that device. Throws InvalidInput where a source cannot give them.
-std::vector<Waveform> waveforms_of(const PreparedScene& p, const Measurements& measured, int jobs, const Watch& watch,
-                                   const Say& say) {
-  const std::vector<Waveform> own = in_units(p.waveforms(), p.scene.device, units_of(p, measured, jobs, watch, say));
+std::vector<Waveform> waveforms_of(const PreparedScene& p, const Measurements& measured, int jobs, const Progress& progress,
+                                   const NoteSink& note) {
+  const std::vector<Waveform> own = in_units(p.waveforms(), p.scene.device, units_of(p, measured, jobs, progress, note));
   const std::vector<std::string> names = p.drive_names();
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (!p.drives[k].limits) continue;
-    const std::string broken = violation(p.told(k, own[k]), p.limits(k));
+    const std::string broken = violation(p.commanded(k, own[k]), p.limits(k));
     const std::string& said = measured.said();
     require_request(broken.empty(),
                     [&] { return fmt::format("{}: the waveform of this device: drive '{}': {}", said, names[k], broken); });
@@ -189,8 +190,8 @@ std::vector<Waveform> waveforms_of(const PreparedScene& p, const Measurements& m
   return own;
 }
 
-// Returns the drives whose samples have a number of bits; `say` names the others.
-std::map<std::string, Coded> coded(const PreparedScene& p, const SentSignals& sent, const Say& say) {
+// Returns the drives whose samples have a number of bits; `note` names the others.
+std::map<std::string, Coded> coded(const PreparedScene& p, const SentSignals& sent, const NoteSink& note) {
   std::map<std::string, Coded> all;
   const std::vector<std::string> names = p.drive_names();
   for (std::size_t k = 0; k < names.size(); ++k) {
@@ -198,7 +199,7 @@ std::map<std::string, Coded> coded(const PreparedScene& p, const SentSignals& se
     if (signal == sent.signals.end()) continue;
     const DriverModel& source = p.drives[k].source;
     if (!source.bits) {
-      say(fmt::format("drive '{}' is left out: [driver.{}] has no sample_rate and bits", names[k], names[k]));
+      note(fmt::format("drive '{}' is left out: [driver.{}] has no sample_rate and bits", names[k], names[k]));
       continue;
     }
     const DriverLimits limits = p.limits(k);
@@ -225,21 +226,21 @@ struct Exported {
   std::optional<PreparedScene> drawn;  // set where the samples are not those of the scene
   std::vector<std::string> drives;
 };
-Exported exported(SceneFile file, const ExportRequest& request, bool need_pull_in, const Watch& watch) {
-  PreparedScene drawn = prepare_and_choose(file, need_pull_in, watch);
+Exported exported(SceneFile file, const ExportRequest& request, bool need_pull_in, const Progress& progress) {
+  PreparedScene drawn = prepare_and_choose(file, need_pull_in, progress);
   std::vector<std::string> drives = exported_drives(drawn, request.sampling.drive);
   if (!request.sampling.rate && !request.sampling.bits) return {std::move(drawn), std::nullopt, std::move(drives)};
   set_sampling(file, drives, request.sampling);
-  return {prepare_and_choose(file, need_pull_in, watch), std::move(drawn), std::move(drives)};
+  return {prepare_and_choose(file, need_pull_in, progress), std::move(drawn), std::move(drives)};
 }
 
 // Writes these drives, one alone for the file of a generator, as a file of that format.
 std::string sent_text(const std::string& format, const PreparedScene& p, const std::vector<std::string>& drives,
-                      const SentSignals& sent, double end, const Sampling& sampling, const Say& say) {
+                      const SentSignals& sent, double end, const Sampling& sampling, const NoteSink& note) {
   if (format == "csv") return csv(sent.signals, end, sent.sample_rates);
   if (format == "spice-pwl") return spice_pwl(sent.signals, end);
   const GeneratorFormat* const generator = generator_format(format);
-  if (generator == nullptr) return codes(coded(p, sent, say));
+  if (generator == nullptr) return codes(coded(p, sent, note));
   require_field(drives.size() == 1, "format", format, [&] {
     return fmt::format("a file holds one drive: choose it with {}, one of {}", requested("drive"), fmt::join(drives, ", "));
   });
@@ -263,15 +264,15 @@ std::optional<std::string> circuit(const std::string& format, const PreparedScen
 
 }  // namespace
 
-std::string exported_text(const SceneFile& file, const ExportRequest& request, const Watch& watch, const Say& told) {
-  const Say say = [&](const std::string& line) {
+std::string exported_text(const SceneFile& file, const ExportRequest& request, const Progress& progress, const NoteSink& told) {
+  const NoteSink note = [&](const std::string& line) {
     if (told) told(line);
   };
   const GeneratorFormat* const generator = generator_format(request.format);
   const SentRow* const row = find_named(sent_names, request.signal);
   require_field(row != nullptr, "signal", visible(request.signal), [] { return "must be told or output"; });
   const Sent sent_as = row->value;
-  require_request((request.format != "codes" && generator == nullptr) || sent_as == Sent::told, [&] {
+  require_request((request.format != "codes" && generator == nullptr) || sent_as == Sent::commanded, [&] {
     return fmt::format("{} {} {} output: a generator takes the commanded samples, not the output of its source",
                        requested("format"), request.format, requested("signal"));
   });
@@ -280,16 +281,16 @@ std::string exported_text(const SceneFile& file, const ExportRequest& request, c
                        requested("marker"), requested("format"), request.format);
   });
   const Measurements measured(request);
-  const Exported what = exported(file, request, !measured.are_none(), watch);
+  const Exported what = exported(file, request, !measured.are_none(), progress);
   const PreparedScene& p = what.sampled;
   if (std::optional<std::string> model = circuit(request.format, p)) {
     require_field(measured.are_none(), "format", request.format,
                   [] { return "belongs to the nominal design, not to a measured device"; });
-    for (const std::string& line : renamed_pins(p.drive_names())) say(line);
+    for (const std::string& line : renamed_pins(p.drive_names())) note(line);
     return *std::move(model);
   }
   SentSignals sent =
-      sent_signals(p, measured.are_none() ? p.waveforms() : waveforms_of(p, measured, request.jobs, watch, say), sent_as);
+      sent_signals(p, measured.are_none() ? p.waveforms() : waveforms_of(p, measured, request.jobs, progress, note), sent_as);
   if (const SceneFile& scene = p.scene.file; sent.signals.empty()) {
     constexpr std::string_view none = "there is no waveform to export";
     for (const std::string& drive : scene.keys("waveform"))
@@ -301,18 +302,19 @@ std::string exported_text(const SceneFile& file, const ExportRequest& request, c
   if (generator == nullptr && request.format != "codes") {
     for (const auto& [name, amplifier] : sent.amplifiers) {
       if (sent.signals.contains(name))
-        say(fmt::format(
+        note(fmt::format(
             "amplifier of drive '{}': voltages are those at the switch, {} V for each volt of its source ([driver.{}])", name,
             plain_number(amplifier, 6), name));
     }
   }
   const double end = std::max(p.duration, last_breakpoint(sent.signals));  // the hold level belongs to the waveform
-  std::string text = sent_text(request.format, p, what.drives, sent, end, request.sampling, say);
+  std::string text = sent_text(request.format, p, what.drives, sent, end, request.sampling, note);
   if (generator == nullptr) return text;
   const Drive& drive = p.drives.at(what.drives.front());
-  if (const std::string words = amplifier_words(drive, amplification(drive, request.sampling)); !words.empty()) say(words);
+  if (const std::string words = amplifier_prose(drive, amplification(drive, request.sampling)); !words.empty()) note(words);
   if (measured.are_none()) {
-    for (const std::string& line : sampled_words(p, what.drawn ? &*what.drawn : nullptr, what.drives.front(), watch)) say(line);
+    for (const std::string& line : sampled_prose(p, what.drawn ? &*what.drawn : nullptr, what.drives.front(), progress))
+      note(line);
   }
   return text;
 }

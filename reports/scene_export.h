@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "config/scene.h"
 #include "reports/generator_export.h"
 #include "studies/closing/sent_signals.h"
@@ -23,10 +23,10 @@ struct ExportRequest {
   int jobs = 1;
 };
 
-/// Returns the text of the file. `say` receives remarks about it, in lines, such as how the switch closes under the samples;
+/// Returns the text of the file. `note` receives remarks about it, in lines, such as how the switch closes under the samples;
 /// they name fields as requested() does. Throws InvalidRequest, Interrupted.
-[[nodiscard]] std::string exported_text(const SceneFile& scene, const ExportRequest& request, const Watch& watch = {},
-                                        const std::function<void(const std::string&)>& say = {});
+[[nodiscard]] std::string exported_text(const SceneFile& scene, const ExportRequest& request, const Progress& progress = {},
+                                        const std::function<void(const std::string&)>& note = {});
 
 /// A file that a generator loads.
 struct SentFile {

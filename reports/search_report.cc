@@ -12,7 +12,7 @@ namespace {
 
 // Writes the waveform of a measured device, or that of every device where measuring wins nothing; empty where neither was
 // found.
-std::string next_command(const ForDevicesResult& found, const std::filesystem::path& folder) {
+std::string next_command(const RobustSearchResult& found, const std::filesystem::path& folder) {
   if (!found.calibrated && !found.chosen) return {};
   if (!found.calibrated) return fmt::format("softland export {} --format spice-pwl", shell_word(folder.string()));
   const bool by_time = found.calibrated->written("calibration.time").has_value();
@@ -27,8 +27,8 @@ RobustnessOptions options_of(const PlannedSearch& search, std::uint64_t devices)
 
 }  // namespace
 
-void add_devices(SearchReport& report, const PlannedSearch& search, const std::string& command, const Watch& watch) {
-  if (const auto* raced = std::get_if<ForDevicesResult>(&report.found.result); raced != nullptr && !raced->rows.empty()) {
+void add_devices(SearchReport& report, const PlannedSearch& search, const std::string& command, const Progress& progress) {
+  if (const auto* raced = std::get_if<RobustSearchResult>(&report.found.result); raced != nullptr && !raced->rows.empty()) {
     report.devices.emplace(RobustnessReport{.nominal = raced->varied,
                                             .found = raced->verdict,
                                             .options = options_of(search, search.for_devices->verdict),
@@ -41,7 +41,7 @@ void add_devices(SearchReport& report, const PlannedSearch& search, const std::s
                                           .found = *robust->verdict,
                                           .options = options_of(search, search.robust->verdict),
                                           .command = command});
-  add_details(*report.devices, false, watch);
+  add_details(*report.devices, false, progress);
   if (report.devices->interrupted) report.found.best().search.termination = Termination::interrupted;
 }
 
@@ -53,7 +53,7 @@ void add_result(SearchReport& report, const PlannedSearch& search, const std::fi
   } else if (const auto* robust = std::get_if<RobustResult>(&found)) {
     report.result = record_of(*robust, search.options, command);
   } else {
-    const auto& raced = std::get<ForDevicesResult>(found);
+    const auto& raced = std::get<RobustSearchResult>(found);
     report.result = record_of(raced, search.options, next_command(raced, folder), command);
   }
 }

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "reports/closing_record.h"
 #include "reports/robustness_report.h"
 #include "studies/search/found_search.h"
@@ -24,9 +24,9 @@ struct SearchReport {
   ClosingRecord result = {};
 };
 
-/// Adds the report on the devices that were judged. It is further work for a search by one measure, and `watch` follows it; an
-/// interruption marks the search as interrupted.
-void add_devices(SearchReport& report, const PlannedSearch& search, const std::string& command, const Watch& watch);
+/// Adds the report on the devices that were judged. It is further work for a search by one measure, and `progress` follows it;
+/// an interruption marks the search as interrupted.
+void add_devices(SearchReport& report, const PlannedSearch& search, const std::string& command, const Progress& progress);
 
 /// Adds the result. `folder` is the final place of the search's files, for the command that says how a device is measured.
 void add_result(SearchReport& report, const PlannedSearch& search, const std::filesystem::path& folder,

@@ -88,13 +88,13 @@ void read_count(const json& line, ContactRecord& record) {
 
 }  // namespace
 
-double ToldShot::last_row() const {
+double CommandedShot::last_row() const {
   double last = 0;
   for (const auto& [name, table] : drives) last = std::max(last, table.time.back());
   return last;
 }
 
-std::vector<Waveform> ToldShot::waveforms(const PreparedScene& nominal) const {
+std::vector<Waveform> CommandedShot::waveforms(const PreparedScene& nominal) const {
   std::vector<std::string> names = nominal.drive_names();
   std::erase(names, std::string(dispersion_drive));
   DriveWaveforms all;
@@ -109,9 +109,9 @@ std::vector<Waveform> ToldShot::waveforms(const PreparedScene& nominal) const {
   return nominal.in_drive_order(all);
 }
 
-ToldShot told_shot(int number, double hold_time, const SentSignals& sent) {
+CommandedShot commanded_shot(int number, double hold_time, const SentSignals& sent) {
   constexpr double tolerance = 1e-4;  // share of the peak
-  ToldShot shot{.number = number, .hold_time = hold_time, .drives = {}, .amplifiers = sent.amplifiers};
+  CommandedShot shot{.number = number, .hold_time = hold_time, .drives = {}, .amplifiers = sent.amplifiers};
   for (const auto& [name, signal] : sent.signals) {
     Table& table = shot.drives[name];
     for (const auto& [time, voltage] : polyline(signal, signal.pieces().back().begin, tolerance * signal.peak(), 0)) {
@@ -145,11 +145,11 @@ int shot_number(const json& line) {
   return value.get<int>();
 }
 
-ToldShot read_shot(const json& line) {
+CommandedShot read_shot(const json& line) {
   require_known(line, "", {"shot", "hold_s", "drives"});
-  ToldShot shot{.number = shot_number(line),
-                .hold_time = finite_number(needed(line, "hold_s"), "hold_s", "must be a time in seconds"),
-                .drives = {}};
+  CommandedShot shot{.number = shot_number(line),
+                     .hold_time = finite_number(needed(line, "hold_s"), "hold_s", "must be a time in seconds"),
+                     .drives = {}};
   require_value(shot.hold_time > 0, "hold_s", line["hold_s"], "must be above 0");
   const json& drives = needed(line, "drives");
   require_value(drives.is_object() && !drives.empty(), "drives", drives, R"(must be {"NAME":{"time_s":[...],"V":[...]}})");
@@ -190,7 +190,7 @@ ContactRecord read_record(const json& line, int shot, double duration) {
   return record;
 }
 
-json shot_json(const ToldShot& shot) {
+json shot_json(const CommandedShot& shot) {
   json drives = json::object();
   for (const auto& [name, table] : shot.drives) drives[name] = {{"time_s", table.time}, {"V", table.voltage}};
   for (const auto& [name, amplifier] : shot.amplifiers) drives[name]["amplifier"] = amplifier;
@@ -214,9 +214,9 @@ json record_json(int shot, const ContactRecord& record) {
   return line;
 }
 
-json recipes_json(const std::vector<Recipe>& recipes) {
+json recipes_json(const std::vector<CandidateWaveform>& recipes) {
   json all = json::array();
-  for (const Recipe& recipe : recipes)
+  for (const CandidateWaveform& recipe : recipes)
     all.push_back({{"approach", name_of(approaches, recipe.approach)},
                    {"x", recipe.x},
                    {"volts", recipe.volts},
@@ -225,10 +225,10 @@ json recipes_json(const std::vector<Recipe>& recipes) {
   return {{"recipes", std::move(all)}};
 }
 
-std::vector<Recipe> read_recipes(const json& line) {
+std::vector<CandidateWaveform> read_recipes(const json& line) {
   const json& value = needed(line, "recipes");
   require_value(value.is_array() && !value.empty(), "recipes", value, "must be a list of recipes");
-  std::vector<Recipe> all;
+  std::vector<CandidateWaveform> all;
   for (const json& one : value) {
     require_value(one.is_object(), "recipes", one, R"(must be {"x":[...],"volts":1,"time":1,"cost":0})");
     require_known(one, "recipes.", {"approach", "x", "volts", "time", "cost"});

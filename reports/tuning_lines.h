@@ -27,7 +27,7 @@
 namespace softland {
 
 /// A shot as it is sent to a device.
-struct ToldShot {
+struct CommandedShot {
   int number = 0;                                 ///< number, counted from 1
   double hold_time = 0;                           ///< time for which the last levels are held and recorded [s]
   std::map<std::string, Table> drives;            ///< waveforms by drive, in volts at the switch
@@ -43,7 +43,7 @@ struct ToldShot {
 };
 
 /// Returns the signals at the switch in rows: straight pieces exactly, curves within 1e-4 of their peak.
-[[nodiscard]] ToldShot told_shot(int number, double hold_time, const SentSignals& sent);
+[[nodiscard]] CommandedShot commanded_shot(int number, double hold_time, const SentSignals& sent);
 
 /// The longest line that is read [byte].
 inline constexpr std::size_t longest_line = std::size_t{16} << 20;
@@ -55,17 +55,17 @@ inline constexpr std::size_t longest_line = std::size_t{16} << 20;
 /// Returns the number of a shot: a whole number from 1 on.
 [[nodiscard]] int shot_number(const nlohmann::json& line);
 /// Reads a shot. Messages begin with the key at fault: "drives.main.V: must be a list of numbers".
-[[nodiscard]] ToldShot read_shot(const nlohmann::json& line);
+[[nodiscard]] CommandedShot read_shot(const nlohmann::json& line);
 /// Reads the record of shot number `shot`, which lasts `duration` [s].
 [[nodiscard]] ContactRecord read_record(const nlohmann::json& line, int shot,
                                         double duration = std::numeric_limits<double>::infinity());
 
-[[nodiscard]] nlohmann::json shot_json(const ToldShot& shot);
+[[nodiscard]] nlohmann::json shot_json(const CommandedShot& shot);
 [[nodiscard]] nlohmann::json record_json(int shot, const ContactRecord& record);
 [[nodiscard]] nlohmann::json end_json();
 /// Returns the recipes for the log of a tuning: {"recipes":[{"x":[...],"volts":1,"time":1,"cost":0.8}]}, to the last bit.
-[[nodiscard]] nlohmann::json recipes_json(const std::vector<Recipe>& recipes);
-[[nodiscard]] std::vector<Recipe> read_recipes(const nlohmann::json& line);
+[[nodiscard]] nlohmann::json recipes_json(const std::vector<CandidateWaveform>& recipes);
+[[nodiscard]] std::vector<CandidateWaveform> read_recipes(const nlohmann::json& line);
 /// Returns the line with its line feed; bytes that are not UTF-8 become U+FFFD.
 [[nodiscard]] std::string line_text(const nlohmann::json& line);
 

@@ -79,7 +79,7 @@ std::size_t TuningLog::read(const json& origin) {
         continue;
       }
       require(line.contains("shot") && line.contains("record"), "must have shot and record");
-      const ToldShot shot = read_shot(line["shot"]);
+      const CommandedShot shot = read_shot(line["shot"]);
       closings_.push_back(
           {.shot = line["shot"], .record = read_record(line["record"], shot.number, shot.duration()), .line = number});
     } catch (const InvalidInput& error) {
@@ -111,9 +111,9 @@ void TuningLog::write(const json& line) {
   if (::fsync(descriptor_) != 0) throw lost();
 }
 
-void TuningLog::append(const std::vector<Recipe>& recipes) { write(recipes_json(recipes)); }
+void TuningLog::append(const std::vector<CandidateWaveform>& recipes) { write(recipes_json(recipes)); }
 
-void TuningLog::append(const ToldShot& shot, const ContactRecord& record) {
+void TuningLog::append(const CommandedShot& shot, const ContactRecord& record) {
   write({{"shot", shot_json(shot)}, {"record", record_json(shot.number, record)}});
 }
 

@@ -34,12 +34,12 @@ class TuningLog {
   /// Returns the closings that the file held when it was opened.
   [[nodiscard]] const std::vector<Closing>& closings() const { return closings_; }
   /// Returns the recipes of the file; empty where it ended before they were found.
-  [[nodiscard]] const std::vector<Recipe>& recipes() const { return recipes_; }
+  [[nodiscard]] const std::vector<CandidateWaveform>& recipes() const { return recipes_; }
   /// Returns the new name of an earlier file that was not continued; empty where there was none.
-  [[nodiscard]] const std::filesystem::path& kept_aside() const { return kept_aside_; }
+  [[nodiscard]] const std::filesystem::path& moved_to() const { return kept_aside_; }
   /// Both throw OutputLost where the line is not on the disk.
-  void append(const std::vector<Recipe>& recipes);
-  void append(const ToldShot& shot, const ContactRecord& record);
+  void append(const std::vector<CandidateWaveform>& recipes);
+  void append(const CommandedShot& shot, const ContactRecord& record);
   /// Returns "OUT/closings.jsonl:4".
   [[nodiscard]] std::string place(const Closing& closing) const;
 
@@ -50,7 +50,7 @@ class TuningLog {
 
   std::filesystem::path file_, kept_aside_;
   std::vector<Closing> closings_;
-  std::vector<Recipe> recipes_;
+  std::vector<CandidateWaveform> recipes_;
   int descriptor_ = -1;
 };
 

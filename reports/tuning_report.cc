@@ -53,21 +53,21 @@ TunedBelief read_belief(const json& coordinates) {
   }
 }
 
-std::string bounces_words(int count) {
+std::string bounces_prose(int count) {
   return count == 0 ? "without a bounce" : count == 1 ? "with one bounce" : fmt::format("with {} bounces", count);
 }
 
 // Returns "touched at 41.2 µs with 3 bounces".
-std::string record_words(const ContactRecord& record) {
+std::string record_prose(const ContactRecord& record) {
   if (!record.error.empty()) return "gave no record: " + record.error;
   const std::optional<double> touch = first_touch(record);
   if (!touch) return "stayed open";
   const std::optional<int> count = bounce_count(record);
-  return fmt::format("touched at {}{}", quantity(*touch, "s", 4), count ? " " + bounces_words(*count) : "");
+  return fmt::format("touched at {}{}", quantity(*touch, "s", 4), count ? " " + bounces_prose(*count) : "");
 }
 
 // Returns "41.0 to 41.4 µs".
-std::string range_words(double low, double high) {
+std::string range_prose(double low, double high) {
   if (!std::isfinite(low) || !std::isfinite(high)) return "—";
   const std::string from = quantity(low, "s", 4), to = quantity(high, "s", 4);
   const std::size_t space = from.find("\u00a0");
@@ -75,13 +75,13 @@ std::string range_words(double low, double high) {
   return fmt::format("{} to {}", same_unit ? from.substr(0, space) : from, to);
 }
 
-std::string rebound_words(const PredictedRecord& p) {
+std::string rebound_prose(const PredictedRecord& p) {
   if (!std::isfinite(p.rebound_high)) return "rebounds unknown";
   return p.rebound_high > 0 ? fmt::format("95th percentile of the rebound {}", quantity(p.rebound_high, "m", 2)) : "no rebound";
 }
 
-std::string expected_words(const PredictedRecord& p) {
-  return fmt::format("touch at {}, {}", range_words(p.touch_low, p.touch_high), rebound_words(p));
+std::string expected_prose(const PredictedRecord& p) {
+  return fmt::format("touch at {}, {}", range_prose(p.touch_low, p.touch_high), rebound_prose(p));
 }
 
 const TuningReport::Closing* recorded(const TuningReport& report, int shot) {
@@ -95,10 +95,10 @@ std::size_t learned(const TuningReport& report) {
       std::count_if(report.closings.begin(), report.closings.end(), [](const auto& one) { return one.record.error.empty(); }));
 }
 
-std::string closings_words(std::size_t count) { return count == 1 ? "one closing" : fmt::format("{} closings", count); }
+std::string closings_prose(std::size_t count) { return count == 1 ? "one closing" : fmt::format("{} closings", count); }
 
 std::pair<std::string, std::string> headline_of(const TuningReport& report) {
-  const std::string after = closings_words(learned(report));
+  const std::string after = closings_prose(learned(report));
   const bool is_slow = report.approach == Approach::quasi_static;
   if (report.closings.empty()) return {"No closing yet.", ""};
   if (report.bounce_free_in_a_row > 0) {
@@ -230,16 +230,16 @@ TableRow record_row(const TuningReport::Closing& one, const Shown& shown) {
                               : count                   ? fmt::format("{}", *count)
                                                         : "?";
   return {fmt::format("{}", one.shot.number),
-          range_words(one.shot.predicted.touch_low, one.shot.predicted.touch_high),
+          range_prose(one.shot.predicted.touch_low, one.shot.predicted.touch_high),
           {touch ? quantity(*touch, "s", 4) : "—", "own"},
           bounces,
           drawn_cell(strip(expected_bar(one.shot.predicted, shown) + record_bars(one.record, shown),
-                           "closing " + std::to_string(one.shot.number) + " " + record_words(one.record)),
+                           "closing " + std::to_string(one.shot.number) + " " + record_prose(one.record)),
                      "picture")};
 }
 
 // Describes the delay; empty where the records may begin with the drives, as far as is known.
-std::string delay_words(const BeliefSummary& belief) {
+std::string delay_prose(const BeliefSummary& belief) {
   constexpr double certain = 2;  // least number of standard errors
   const auto delay = std::find_if(belief.quantities.begin(), belief.quantities.end(),
                                   [](const BelievedQuantity& one) { return one.name == trigger_delay_name; });
@@ -257,7 +257,7 @@ ReportSection records_section(const TuningReport& report) {
   ReportTable table{.head = {"Closing", "Predicted touch", "Touch", "Bounces", ""}, .rows = {}};
   for (std::size_t i = first; i < report.closings.size(); ++i) table.rows.push_back(record_row(report.closings[i], shown));
   table.rows.push_back({fmt::format("{}, next", report.next.number),
-                        range_words(report.next.predicted.touch_low, report.next.predicted.touch_high), "", "",
+                        range_prose(report.next.predicted.touch_low, report.next.predicted.touch_high), "", "",
                         drawn_cell(strip(expected_bar(report.next.predicted, shown), "the next closing"), "picture")});
   return {
       .id = "records",
@@ -265,10 +265,10 @@ ReportSection records_section(const TuningReport& report) {
       .parts = {std::move(table),
                 drawing_of(fmt::format("<p class=\"below\">Grey: predicted time of the touch, with 95 % confidence. Blue: the "
                                        "contact was closed. The bars span {}.</p>\n",
-                                       escaped(range_words(shown.from, shown.to)))),
-                Paragraph{.text = delay_words(report.belief), .is_note = true},
+                                       escaped(range_prose(shown.from, shown.to)))),
+                Paragraph{.text = delay_prose(report.belief), .is_note = true},
                 Paragraph{.text = first > 0 ? fmt::format("The first {} closings are not shown.", first) : "", .is_note = true},
-                Paragraph{.text = "Prediction for the best waveform so far: " + expected_words(report.kept.predicted) + ".",
+                Paragraph{.text = "Prediction for the best waveform so far: " + expected_prose(report.kept.predicted) + ".",
                           .is_note = true}}};
 }
 
@@ -370,8 +370,8 @@ TuningReport::Shot shot_of(const PreparedScene& scene, const TunerShot& shot) {
   const std::vector<std::string> names = scene.drive_names();
   for (std::size_t k = 0; k < names.size() && k < shot.waveforms.size(); ++k) {
     if (names[k] == dispersion_drive) continue;
-    const Signal told = scene.told(k, shot.waveforms[k]);
-    for (const auto& [time, voltage] : polyline(told, told.pieces().back().begin, 1e-4 * told.peak(), 0))
+    const Signal commanded = scene.commanded(k, shot.waveforms[k]);
+    for (const auto& [time, voltage] : polyline(commanded, commanded.pieces().back().begin, 1e-4 * commanded.peak(), 0))
       found.waveforms[names[k]].push_back({time, voltage});
   }
   return found;
@@ -499,10 +499,10 @@ TunedBelief tuned_belief(const json& written) {
   return read_belief(internal::JsonReader(tuning.at("belief")).at("coordinates"));
 }
 
-std::string closing_words(const TuningReport& report) {
+std::string closing_prose(const TuningReport& report) {
   const TuningReport::Closing& last = report.closings.back();
-  return fmt::format("closing {} {}; prediction for the next: {}", last.shot.number, record_words(last.record),
-                     expected_words(report.next.predicted));
+  return fmt::format("closing {} {}; prediction for the next: {}", last.shot.number, record_prose(last.record),
+                     expected_prose(report.next.predicted));
 }
 
 Document tuning_document(const TuningReport& report) {

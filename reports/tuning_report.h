@@ -77,7 +77,7 @@ struct TuningReport {
 /// Reads the belief about the device from the JSON of a tuning. Throws InvalidInput with the rule: "holds no belief ...".
 [[nodiscard]] TunedBelief tuned_belief(const nlohmann::json& written);
 /// Returns one line on the last closing and the expectation for the next.
-[[nodiscard]] std::string closing_words(const TuningReport& report);
+[[nodiscard]] std::string closing_prose(const TuningReport& report);
 /// Shows the knowledge of the device, every closing's record under the predicted one, and the voltages that are kept and
 /// proposed.
 [[nodiscard]] Document tuning_document(const TuningReport& report);

@@ -67,9 +67,9 @@ struct TuningSession::State {
   std::optional<Tuner> tuner = {};
   std::vector<TunedClosing> closings = {};
 
-  void learn(const ContactRecord& record, const Watch& watch) {
+  void learn(const ContactRecord& record, const Progress& progress) {
     const TunerShot shot = tuner->next();
-    tuner->learn(record, watch);
+    tuner->learn(record, progress);
     closings.push_back({.shot = shot, .record = record});
   }
 };
@@ -95,13 +95,13 @@ std::filesystem::path TuningSession::keep(const std::filesystem::path& log, bool
   state_->log = std::make_unique<TuningLog>(log, state_->origin, resume);
   state_->log_file = log;
   state_->options.recipes = state_->log->recipes();
-  return state_->log->kept_aside();
+  return state_->log->moved_to();
 }
 
-void TuningSession::begin(const Watch& watch) {
+void TuningSession::begin(const Progress& progress) {
   State& s = *state_;
   try {
-    s.tuner.emplace(s.file, s.options, watch);
+    s.tuner.emplace(s.file, s.options, progress);
   } catch (const InvalidInput& error) {
     if (s.options.recipes.empty()) throw;
     throw InvalidInput(fmt::format("{}: {}", s.log_file.string(), error.what()));
@@ -111,16 +111,16 @@ void TuningSession::begin(const Watch& watch) {
 
 // Check that the same shot is proposed again, or that the kept waveform was fired once more; otherwise the closings belong to
 // something else.
-bool TuningSession::learn_kept(const Watch& watch) {
+bool TuningSession::learn_kept(const Progress& progress) {
   State& s = *state_;
   if (!s.log || s.behind == s.log->closings().size()) return false;
   const TuningLog::Closing& closing = s.log->closings()[s.behind];
-  if (shot_json(told()) != closing.shot) s.tuner->fire_kept_again();
-  require(shot_json(told()) == closing.shot, [&] {
+  if (shot_json(commanded()) != closing.shot) s.tuner->fire_kept_again();
+  require(shot_json(commanded()) == closing.shot, [&] {
     return fmt::format("{}: this program proposes another shot after the closings before it; name another folder with --out",
                        s.log->place(closing));
   });
-  s.learn(closing.record, watch);
+  s.learn(closing.record, progress);
   ++s.behind;
   return true;
 }
@@ -128,17 +128,17 @@ bool TuningSession::learn_kept(const Watch& watch) {
 const Tuner& TuningSession::tuner() const { return *state_->tuner; }
 const std::vector<TunedClosing>& TuningSession::closings() const { return state_->closings; }
 
-ToldShot TuningSession::told() const {
+CommandedShot TuningSession::commanded() const {
   const TunerShot& shot = tuner().next();
-  return told_shot(shot.number, shot.hold_time, sent_signals(tuner().scene(), shot.waveforms));
+  return commanded_shot(shot.number, shot.hold_time, sent_signals(tuner().scene(), shot.waveforms));
 }
 
-void TuningSession::learn(const ContactRecord& record, const Watch& watch) {
-  const std::string fault = record_fault(record, told().duration());
+void TuningSession::learn(const ContactRecord& record, const Progress& progress) {
+  const std::string fault = record_fault(record, commanded().duration());
   require(fault.empty(), fault);
-  if (state_->log && !state_->is_on_record) state_->log->append(told(), record);
+  if (state_->log && !state_->is_on_record) state_->log->append(commanded(), record);
   state_->is_on_record = true;
-  state_->learn(record, watch);
+  state_->learn(record, progress);
   state_->is_on_record = false;
 }
 

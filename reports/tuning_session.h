@@ -5,7 +5,7 @@
 //   tuning.keep("closings.jsonl", false);                  // each closing is on the disk before the next is fired
 //   tuning.begin();
 //   while (tuning.learn_kept()) {}                         // continues an earlier tuning
-//   while (!tuning.ends(usual_closings)) tuning.learn(fired(tuning.told()));
+//   while (!tuning.ends(usual_closings)) tuning.learn(fired(tuning.commanded()));
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@
 #include <span>
 #include <string>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "reports/tuning_lines.h"
 #include "reports/tuning_report.h"
 #include "studies/inverse/tuner.h"
@@ -38,18 +38,18 @@ class TuningSession {
   /// Returns the new name of an earlier file; empty without one. Call it before begin().
   std::filesystem::path keep(const std::filesystem::path& log, bool resume);
   /// Searches the recipes, or takes those of the log. Throws what Tuner throws.
-  void begin(const Watch& watch = {});
+  void begin(const Progress& progress = {});
   /// Learns the next closing that the log held when it was opened; returns false after the last one. Throws InvalidInput where
   /// another shot would have been proposed.
-  bool learn_kept(const Watch& watch = {});
+  bool learn_kept(const Progress& progress = {});
 
   [[nodiscard]] const Tuner& tuner() const;
   [[nodiscard]] const std::vector<TunedClosing>& closings() const;
   /// Returns the next shot as it is sent to a device.
-  [[nodiscard]] ToldShot told() const;
+  [[nodiscard]] CommandedShot commanded() const;
   /// Puts the record of the next shot on the disk, and learns it. Throws InvalidInput for an impossible record, and OutputLost.
   /// It throws Interrupted when the record is on the disk but not learned; give it again then.
-  void learn(const ContactRecord& record, const Watch& watch = {});
+  void learn(const ContactRecord& record, const Progress& progress = {});
   /// Returns how the tuning ends at this shot, with success or with `most` closings used; none if it continues. Makes the best
   /// waveform the next shot when that is the last one, or when other waveforms have closed the switch bounce-free often enough.
   [[nodiscard]] std::optional<TuningEnd> ends(int most);

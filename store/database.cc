@@ -231,9 +231,10 @@ std::span<const unsigned char> Statement::blob(int column) const {
   return {bytes, static_cast<std::size_t>(sqlite3_column_bytes(handle_.get(), column))};
 }
 
-StopWatched::StopWatched(const Database& database, const Watch& watch) : database_(database), watch_(watch) {
+InterruptibleQuery::InterruptibleQuery(const Database& database, const Progress& progress)
+    : database_(database), progress_(progress) {
   constexpr int operations = 10'000;  // operations of the virtual machine of SQLite between two checks, less than 1 ms
-  const auto stopped = [](void* self) { return static_cast<const StopWatched*>(self)->watch_.stopped() ? 1 : 0; };
+  const auto stopped = [](void* self) { return static_cast<const InterruptibleQuery*>(self)->progress_.stopped() ? 1 : 0; };
   sqlite3_progress_handler(database.handle(), operations, stopped, this);
 }
 

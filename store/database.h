@@ -13,8 +13,8 @@
 #include <string_view>
 #include <utility>
 
+#include "base/progress.h"
 #include "base/require.h"
-#include "base/watch.h"
 
 namespace softland::internal {
 
@@ -136,17 +136,17 @@ class Statement {
   std::unique_ptr<sqlite3_stmt, Finalize> handle_;
 };
 
-/// During its lifetime, statements throw Interrupted when the watch is asked to stop.
-class StopWatched {
+/// During its lifetime, statements throw Interrupted when `progress` is asked to stop.
+class InterruptibleQuery {
  public:
-  StopWatched(const Database& database, const Watch& watch);
-  StopWatched(const StopWatched&) = delete;
-  StopWatched& operator=(const StopWatched&) = delete;
-  ~StopWatched() { sqlite3_progress_handler(database_.handle(), 0, nullptr, nullptr); }
+  InterruptibleQuery(const Database& database, const Progress& progress);
+  InterruptibleQuery(const InterruptibleQuery&) = delete;
+  InterruptibleQuery& operator=(const InterruptibleQuery&) = delete;
+  ~InterruptibleQuery() { sqlite3_progress_handler(database_.handle(), 0, nullptr, nullptr); }
 
  private:
   const Database& database_;
-  const Watch& watch_;
+  const Progress& progress_;
 };
 
 /// A transaction. Its destructor rolls back changes that were not committed.

@@ -22,9 +22,9 @@ namespace fs = std::filesystem;
 namespace {
 
 // The rows of one part in the order of their points.
-class Part {
+class StorePart {
  public:
-  explicit Part(const fs::path& path) : database_(open_to_read(path)) {
+  explicit StorePart(const fs::path& path) : database_(open_to_read(path)) {
     check_schema(*database_);
     current_ = current_plan(*database_);
     database_->run("PRAGMA cache_size = -64");  // a small cache, because there may be a thousand parts
@@ -44,7 +44,7 @@ class Part {
   std::optional<RowReader> rows_;
 };
 
-using Parts = std::vector<std::unique_ptr<Part>>;
+using Parts = std::vector<std::unique_ptr<StorePart>>;
 
 // Raises the limit of open files. Every part needs one file, or three if its writer was killed.
 void allow_files(std::size_t parts) {
@@ -60,7 +60,7 @@ Parts opened(const std::vector<fs::path>& paths) {
   Parts parts;
   std::set<fs::path> seen;
   for (const fs::path& path : paths) {
-    parts.push_back(std::make_unique<Part>(path));
+    parts.push_back(std::make_unique<StorePart>(path));
     require(seen.insert(fs::canonical(path)).second, fmt::format("{}: must not be given twice", path.string()));
     const StoredPlan &first = parts.front()->plan(), &plan = parts.back()->plan();
     require(plan.text == first.text && plan.columns == first.columns && plan.points == first.points,
@@ -108,7 +108,7 @@ std::vector<std::string> notes_on(const Parts& parts, const StoredPlan& plan, st
 
 // Writes the rows of all parts in the order of their points.
 std::int64_t write_rows(const Database& database, std::int64_t number, Parts& parts, const StoredPlan& plan, std::int64_t session,
-                        const Watch& watch) {
+                        const Progress& progress) {
   // Rows of the same point are read in the order in which the parts are given.
   const auto later = [&](std::size_t a, std::size_t b) {
     return std::pair(parts[a]->row().point, a) > std::pair(parts[b]->row().point, b);
@@ -124,12 +124,12 @@ std::int64_t write_rows(const Database& database, std::int64_t number, Parts& pa
   std::string last_name;
   while (!next.empty()) {
     if (rows % 1000 == 0) {
-      watch.throw_if_stopped();
-      watch.tell("merging", static_cast<double>(rows) / static_cast<double>(plan.points));
+      progress.throw_if_stopped();
+      progress.tell("merging", static_cast<double>(rows) / static_cast<double>(plan.points));
     }
     const std::size_t first = next.top();
     next.pop();
-    Part& part = *parts[first];
+    StorePart& part = *parts[first];
     const StoredRow& row = part.row();
     const bool again = last && last->point == row.point;
     const std::string other = again ? difference(*last, row, plan.columns) : "";
@@ -171,7 +171,7 @@ Merged merge_studies(const std::vector<fs::path>& paths, const fs::path& out, co
       for (const StoredSession& session : sessions_in(part->database())) insert_session(database, number, session);
     }
     const std::int64_t session = insert_session(database, number, origin);
-    merged.rows = write_rows(database, number, parts, merged.plan, session, options.watch);
+    merged.rows = write_rows(database, number, parts, merged.plan, session, options.progress);
     transaction.commit();
   }
   merged.written = !options.complete || merged.rows == merged.plan.points;

@@ -123,12 +123,13 @@ std::map<std::string, std::int64_t> StudyReader::by_status() const {
   return tally_of(*implementation_->database_, implementation_->current_.number);
 }
 
-void StudyReader::read(const std::function<void(const StoredRow&)>& row, const StudyQuery& query, const Watch& watch) const {
+void StudyReader::read(const std::function<void(const StoredRow&)>& row, const StudyQuery& query,
+                       const Progress& progress) const {
   const Database& database = *implementation_->database_;
   if (!query.where.empty()) check_where(database, plan(), query.where);
   try {
     RowReader rows(database, implementation_->current_, RowReader::Of::rows, query.where);
-    const StopWatched watched(database, watch);
+    const InterruptibleQuery interruptible(database, progress);
     while (rows.next()) row(rows.row());
   } catch (const StatementFailed& error) {
     require_where(query.where.empty(), query.where, error.reason());

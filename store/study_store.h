@@ -28,7 +28,7 @@
 #include <vector>
 
 #include "base/content_key.h"
-#include "base/watch.h"
+#include "base/progress.h"
 
 namespace softland {
 
@@ -171,7 +171,7 @@ class StudyReader {
 
   /// Calls row(...) for the rows of the plan that the query selects, in the order of their points. Throws InvalidInput with
   /// --where and the expression if it is invalid or not a plain expression of columns; Interrupted after a request to stop.
-  void read(const std::function<void(const StoredRow&)>& row, const StudyQuery& query = {}, const Watch& watch = {}) const;
+  void read(const std::function<void(const StoredRow&)>& row, const StudyQuery& query = {}, const Progress& progress = {}) const;
 
  private:
   class Implementation;
@@ -180,7 +180,7 @@ class StudyReader {
 
 struct MergeOptions {
   bool complete = false;  ///< true to write nothing while points are missing
-  Watch watch = {};
+  Progress progress = {};
 };
 
 /// The result of a merge.

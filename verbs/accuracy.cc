@@ -39,9 +39,9 @@ void options(Archive&, AccuracyRequest&) {}
 Outcome run(const Setting& setting, const AccuracyRequest&) {
   const auto scene = setting.prepared(false);
   const auto tell = [&](std::size_t done, std::size_t of) {
-    setting.watch.tell("settings", static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, of)));
+    setting.progress.tell("settings", static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, of)));
   };
-  const AccuracyStudy found = study_accuracy(*scene, {.on_progress = tell, .stop = setting.watch.stop});
+  const AccuracyStudy found = study_accuracy(*scene, {.on_progress = tell, .stop = setting.progress.stop});
   Outcome outcome = shown({.origin = whole_origin_of("accuracy", *scene, setting.command), .found = found});
   outcome.ending = ending_of(found.status);
   return outcome;

@@ -109,7 +109,7 @@ void options(Archive& a, CalibrateRequest& r) {
 }
 
 Outcome run(const Setting& setting, const CalibrateRequest& request) {
-  const IdentificationStudy found = identify(setting.scene, request.options, setting.watch);
+  const IdentificationStudy found = identify(setting.scene, request.options, setting.progress);
   Outcome outcome = shown(record_of(found, request.options, setting.command));
   outcome.ending = found.interrupted ? Ending::interrupted : Ending::done;
   return outcome;

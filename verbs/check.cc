@@ -36,7 +36,7 @@ using internal::quantity;
 using internal::scientific;
 
 // Returns the strength of the dispersion force, relative to its nominal strength, at which it closes the switch.
-std::string dispersion_words(const PreparedScene& p, const Watch& watch) {
+std::string dispersion_prose(const PreparedScene& p, const Progress& progress) {
   const std::size_t k = p.scene.device.electrodes.size();
   const std::vector<double> bias = bias_of(p.scene, k);
   const StaticPullIn statically = static_pull_in(p.model, k, bias);
@@ -51,7 +51,7 @@ std::string dispersion_words(const PreparedScene& p, const Watch& watch) {
   const std::string rest =
       fmt::format("the tip rests {} lower; ", quantity(p.model.contact_deflection(p.model.rest()->data()), "m"));
   if (!known) return rest + "no strength of the force was found at which the switch closes by itself";
-  const DynamicPullIn dynamically = dynamic_pull_in(p.model, k, statically, bias, watch);
+  const DynamicPullIn dynamically = dynamic_pull_in(p.model, k, statically, bias, progress);
   const std::string step =
       std::isfinite(dynamically.voltage) ? fmt::format(", or after a step to {} (dynamic)", factor(dynamically.voltage)) : "";
   return fmt::format("{}the switch closes by itself if the force rises to {} (static){} of its nominal strength", rest,
@@ -59,7 +59,7 @@ std::string dispersion_words(const PreparedScene& p, const Watch& watch) {
 }
 
 // Describes the closed state at the hold voltages, and the voltage up to which it exists.
-std::string closed_state_words(const ClosedState& state) {
+std::string closed_state_prose(const ClosedState& state) {
   std::string words =
       !state.exists ? "no equilibrium at the hold voltages"
       : !state.stable
@@ -73,24 +73,24 @@ std::string closed_state_words(const ClosedState& state) {
                  : fmt::format("; the beam collapses onto electrode {} at no voltage tried", electrode);
     const auto more = state.pulled_through_by_modes.find(electrode);
     if (more == state.pulled_through_by_modes.end()) continue;
-    if (const std::string shift = shift_words(more->second); !shift.empty())
+    if (const std::string shift = shift_prose(more->second); !shift.empty())
       words += fmt::format(" (more modes shift this voltage by {})", shift);
   }
   return words;
 }
 
 // Returns the capacitance of the closed state of a switch that lands on a dielectric, and its change with more modes.
-std::string capacitance_words(const PreparedScene& p) {
+std::string capacitance_prose(const PreparedScene& p) {
   const ModeLadder ladder(p);
   const ByModes found = closed_capacitance_by_modes(ladder, hold_levels(p.signals()));
   const double own = found.values.begin()->second;
   if (std::isnan(own)) return "its capacitance is not known";
   return "its capacitance is " + engineering(own, "F", 4) +
-         (ladder.exists() ? "; more modes shift it by " + shift_words(found, "F") : "");
+         (ladder.exists() ? "; more modes shift it by " + shift_prose(found, "F") : "");
 }
 
 // Returns a message about a key with its file and line.
-std::string said_of(const SceneFile& file, const std::string& key, std::string_view words) {
+std::string scene_note(const SceneFile& file, const std::string& key, std::string_view words) {
   try {
     file.refuse(key, words);
   } catch (const InvalidInput& said) {
@@ -104,15 +104,15 @@ constexpr double film_precision = 1e-3;
 
 double precision_of(const Switch& model) { return model.film_states() > 0 ? film_precision : dynamic_pull_in_precision; }
 
-ElectrodePullIn quick_pull_in(const Switch& model, std::size_t electrode, Bias bias, const Watch& watch) {
-  if (model.film_states() == 0) return electrode_pull_in(model, electrode, bias, watch);
+ElectrodePullIn quick_pull_in(const Switch& model, std::size_t electrode, Bias bias, const Progress& progress) {
+  if (model.film_states() == 0) return electrode_pull_in(model, electrode, bias, progress);
   constexpr double tolerance = 1e-4;  // tolerance of the integrator
   ElectrodePullIn found{.statically = static_pull_in(model, electrode, bias)};
-  found.dynamically = dynamic_pull_in(model, electrode, found.statically, bias, watch, tolerance, film_precision);
+  found.dynamically = dynamic_pull_in(model, electrode, found.statically, bias, progress, tolerance, film_precision);
   return found;
 }
 
-std::string end_words(const Anchor& anchor) {
+std::string end_prose(const Anchor& anchor) {
   if (anchor.is_clamp()) return "clamped";
   if (anchor.is_free()) return "free";
   const auto stiffness = [](double value, const char* unit) {
@@ -147,7 +147,7 @@ void add_parts(CheckRecord& record, const Device& device) {
                                         layer.stress == 0 ? "stress-free" : given_quantity(layer.stress, "Pa", 4))});
   if (beam->anchor || beam->far_anchor)
     record.lines.push_back(
-        {"anchors", fmt::format("near end {}; far end {}", end_words(s.near_hold()), end_words(s.far_hold()))});
+        {"anchors", fmt::format("near end {}; far end {}", end_prose(s.near_hold()), end_prose(s.far_hold()))});
 }
 
 // Adds lines on the rest shape of a structure that is not straight at rest.
@@ -207,8 +207,8 @@ template <class Archive>
 void options(Archive&, CheckRequest&) {}
 
 Outcome run(const Setting& setting, const CheckRequest&) {
-  const Watch& watch = setting.watch;
-  const PreparedScene p = choose(prepare(setting.scene, false, watch, quick_pull_in), false, watch);
+  const Progress& progress = setting.progress;
+  const PreparedScene p = choose(prepare(setting.scene, false, progress, quick_pull_in), false, progress);
   const Structure& s = p.scene.device.structure;
   CheckRecord record{.file = setting.name,
                      .title = p.scene.title,
@@ -236,34 +236,34 @@ Outcome run(const Setting& setting, const CheckRequest&) {
     }
     const auto known = p.pull_in.find(name);
     const ElectrodeRecord found =
-        record_of(p, k, known != p.pull_in.end() ? known->second : quick_pull_in(p.model, k, bias_of(p.scene, k), watch));
+        record_of(p, k, known != p.pull_in.end() ? known->second : quick_pull_in(p.model, k, bias_of(p.scene, k), progress));
     const PullInRecord& v = found.volts;
     if (std::isfinite(v.static_pull_in) && std::isfinite(v.dynamic_pull_in))
       searched_to[name] = {.static_pull_in = v.static_pull_in, .dynamic_pull_in = v.dynamic_pull_in};
     if (found.status == Status::no_contact) {
       add("electrode " + name, "pulls away from the contact in the rest position: no pull-in voltage");
-      warnings.push_back(said_of(setting.scene, "electrode." + name + ".gap", pulls_away));
+      warnings.push_back(scene_note(setting.scene, "electrode." + name + ".gap", pulls_away));
       continue;
     }
     record.pull_in[name] = v;
     if (std::isfinite(v.release)) record.hold_windows[name] = {v.release, v.pulled_through};
-    const std::string bias = bias_words(found);
+    const std::string bias = bias_prose(found);
     const std::string roughly =
         p.model.film_states() > 0 && std::isfinite(v.static_pull_in) && v.dynamic_pull_in != v.static_pull_in
             ? " (known to 0.1 %, as are levels in Vdp below)"
             : "";
     add("electrode " + name, (found.status == Status::collapsed_at_rest
                                   ? no_open_state
-                                  : fmt::format("Vsp {}, Vdp {}", volts(v.static_pull_in), dynamic_words(v)) + roughly) +
+                                  : fmt::format("Vsp {}, Vdp {}", volts(v.static_pull_in), dynamic_prose(v)) + roughly) +
                                  (p.model.has_contact() ? ", release " + volts(v.release) : "") +
                                  (bias.empty() ? "" : ", under " + bias));
-    if (const std::string charge = charge_words(v); !charge.empty()) add("", "its charge " + charge);
+    if (const std::string charge = charge_prose(v); !charge.empty()) add("", "its charge " + charge);
     if (sticks_by_charge(v))
       warnings.push_back(
-          said_of(setting.scene, "electrode." + name + ".dielectric.charge", "keeps a closed switch closed at 0 V"));
+          scene_note(setting.scene, "electrode." + name + ".dielectric.charge", "keeps a closed switch closed at 0 V"));
     if (v.by_modes) {
-      std::string shifts = "more modes shift Vsp by " + shift_words(v.by_modes->static_pull_in);
-      if (std::isfinite(v.release)) shifts += ", release by " + shift_words(v.by_modes->release);
+      std::string shifts = "more modes shift Vsp by " + shift_prose(v.by_modes->static_pull_in);
+      if (std::isfinite(v.release)) shifts += ", release by " + shift_prose(v.by_modes->release);
       add("", shifts);
     }
     if (const std::optional<Dielectric>& dielectric = p.scene.device.electrodes[k].dielectric)
@@ -273,7 +273,7 @@ Outcome run(const Setting& setting, const CheckRequest&) {
                                                                 : "; the beam lands on it"));
   }
   if (p.scene.device.dispersion) {
-    add("dispersion force", dispersion_words(p, watch));
+    add("dispersion force", dispersion_prose(p, progress));
     add("drive dispersion", "hold level " + plain_number(1 + p.signals()[p.scene.device.electrodes.size()].hold_level(), 5));
   }
   if (const FilmState* const film = p.scene.device.gas ? film_of(*p.scene.device.gas) : nullptr) {
@@ -299,7 +299,7 @@ Outcome run(const Setting& setting, const CheckRequest&) {
                            given_quantity(drive.limits->max_voltage, "V"));
     } else if (searched != searched_to.end()) {
       driver = fmt::format("no [driver.{}]: a search limits the voltage to 0 V to {}, {}", name,
-                           default_limit_words(searched->second), quantity(default_limit(searched->second), "V", 5));
+                           default_limit_prose(searched->second), quantity(default_limit(searched->second), "V", 5));
       if (signal.peak() > default_limit(searched->second))
         warnings.push_back(
             fmt::format("[waveform.{0}] reaches {1}, above the voltage limit of a search without [driver.{2}]. "
@@ -323,9 +323,9 @@ Outcome run(const Setting& setting, const CheckRequest&) {
   }
   const double closed_gap = p.scene.device.closed_gap();
   for (std::string& warning : gas_warnings(p.scene.device, closed_gap, 0)) warnings.push_back(std::move(warning));
-  if (const std::string start = start_words(p); !start.empty()) add("start", start);
+  if (const std::string start = start_prose(p); !start.empty()) add("start", start);
   if (!p.start_equilibrium() && (p.scene.begins_closed || p.model.rest()))
-    warnings.push_back("the simulation cannot start: " + start_words(p));
+    warnings.push_back("the simulation cannot start: " + start_prose(p));
   if (!p.model.has_contact()) add("contact", "none: the simulation ends at first touch");
   if (p.model.contacts() > 1) {
     std::vector<std::string> connecting;
@@ -347,7 +347,7 @@ Outcome run(const Setting& setting, const CheckRequest&) {
   }
   add("window", fmt::format("{}, integrator tolerance {}", given_quantity(p.duration, "s", 4), scientific(p.tolerance)));
   if (p.model.has_contact()) {
-    record.stable_path = stable_path_of(p, watch);
+    record.stable_path = stable_path_of(p, progress);
     add("stable path", words_of(record.stable_path));
     if (const auto command = open_command(p, p.signals()))
       add("command to open", fmt::format("at {}{}", given_quantity(command->time, "s", 4),
@@ -355,16 +355,16 @@ Outcome run(const Setting& setting, const CheckRequest&) {
     const std::vector<Signal> held = until_command(p, p.signals());
     const ClosedState state = closed_state(p, held);
     record.closed_state = state;
-    add("closed state", closed_state_words(state));
-    if (p.scene.device.lands_along_face()) add("", capacitance_words(p));
+    add("closed state", closed_state_prose(state));
+    if (p.scene.device.lands_along_face()) add("", capacitance_prose(p));
     const Hold hold = hold_of(p.model, held);
     if (const auto summits = hold.closed ? summits_at_hold(p.model, *hold.closed) : std::nullopt)
-      add("contact", summits_words(*summits));
+      add("contact", summits_prose(*summits));
     if (std::string few = few_summits_warning(p.model, held); !few.empty()) few_summits.push_back(std::move(few));
     if (std::string lost = hold_warning(p.model, held, state); !lost.empty() && !p.scene.begins_closed)
       warnings.push_back(std::move(lost));
   }
-  watch.throw_if_stopped();
+  progress.throw_if_stopped();
   warnings.insert(warnings.end(), few_summits.begin(), few_summits.end());
   record.origin = origin_of("check", p, setting.command);
   Outcome outcome = shown(record);

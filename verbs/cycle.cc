@@ -83,15 +83,15 @@ void options(Archive& a, CycleRequest& r) {
 // Takes the waveforms of a scene: the opening waveform if the scene begins closed, both waveforms if it opens on command, else
 // the closing waveform.
 void take(CycleWaveforms& waveforms, const PreparedScene& scene) {
-  std::vector<Signal> told = scene.told(scene.waveforms());
+  std::vector<Signal> commanded = scene.commanded(scene.waveforms());
   if (scene.start() == StartState::closed) {
-    waveforms.opening = std::move(told);
-  } else if (const auto command = open_command(scene, told)) {
+    waveforms.opening = std::move(commanded);
+  } else if (const auto command = open_command(scene, commanded)) {
     waveforms.closing = command->held;
     waveforms.opening.clear();
-    for (const Signal& s : told) waveforms.opening.push_back(part_from(s, command->time, s.voltage_before(command->time)));
+    for (const Signal& s : commanded) waveforms.opening.push_back(part_from(s, command->time, s.voltage_before(command->time)));
   } else {
-    waveforms.closing = std::move(told);
+    waveforms.closing = std::move(commanded);
   }
 }
 
@@ -112,7 +112,7 @@ Outcome searched(const Setting& setting, const CycleRequest& request) {
                                    .cycles = request.options.cycles,
                                    .seed = request.options.seed,
                                    .jobs = request.options.jobs};
-  const auto found = std::make_shared<const CycleSearchResult>(search_cycle(setting.scene, options, setting.watch));
+  const auto found = std::make_shared<const CycleSearchResult>(search_cycle(setting.scene, options, setting.progress));
   Outcome outcome = shown(record_of(*found, options, setting.command));
   outcome.files.push_back({"best.csv", [found] { return cycle_csv(*found); }, "best.csv"});
   outcome.files.push_back({"best.toml", [found] { return found->scene.text(); }, "best.toml"});
@@ -139,14 +139,14 @@ Outcome run(const Setting& setting, const CycleRequest& request) {
   CycleWaveforms waveforms{.name = setting.name, .closing = {}, .opening = {}};
   take(waveforms, *given);
   for (const std::string& result : request.results) {
-    const PreparedScene other = prepare(setting.load(result), false, {.stop = setting.watch.stop});
+    const PreparedScene other = prepare(setting.load(result), false, {.stop = setting.progress.stop});
     require(other.drive_names() == given->drive_names(),
             [&] { return result + ": must have the same drives as " + setting.name; });
     take(waveforms, other);
     waveforms.name += " and " + result;
   }
   complete(waveforms, *given);
-  const Cycling found = cycling(*given, waveforms, request.options, setting.watch);
+  const Cycling found = cycling(*given, waveforms, request.options, setting.progress);
   Outcome outcome = shown(record_of(*given, found, setting.command));
   outcome.ending = found.interrupted ? Ending::interrupted : found.rate > 0 ? Ending::done : Ending::no_success;
   return outcome;

@@ -109,7 +109,7 @@ PracticeOptions DeviceRequest::options(const SceneFile& file) const {
   return options;
 }
 
-DeviceRequest device_request(const Told& told) { return read_options<DeviceVerb>(told); }
+DeviceRequest device_request(const Arguments& arguments) { return read_options<DeviceVerb>(arguments); }
 
 Study device_study() { return described<DeviceVerb>(); }
 

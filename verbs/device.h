@@ -14,6 +14,6 @@ struct DeviceRequest {
   [[nodiscard]] PracticeOptions options(const SceneFile& file) const;
 };
 /// Reads the request. Throws InvalidRequest.
-[[nodiscard]] DeviceRequest device_request(const Told& told);
+[[nodiscard]] DeviceRequest device_request(const Arguments& arguments);
 
 }  // namespace softland::verbs

@@ -24,7 +24,7 @@ void options(Archive&, EffectsRequest&) {}
 Outcome run(const Setting& setting, const EffectsRequest&) {
   const auto scene = setting.prepared(false);
   const EffectsRecord record{.origin = origin_of("effects", *scene, setting.command),
-                             .found = compare_effects(*scene, setting.watch)};
+                             .found = compare_effects(*scene, setting.progress)};
   Outcome outcome = shown(record);
   outcome.ending = record.found.interrupted ? Ending::interrupted : ending_of(record.found.own("gas").metrics.status);
   return outcome;

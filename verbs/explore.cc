@@ -156,7 +156,7 @@ Shard ExploreRequest::part() const {
   }
 }
 
-ExploreRequest explore_request(const Told& told) { return read_options<ExploreVerb>(told); }
+ExploreRequest explore_request(const Arguments& arguments) { return read_options<ExploreVerb>(arguments); }
 
 Study explore_study() { return described<ExploreVerb>(); }
 

@@ -30,6 +30,6 @@ struct ExploreRequest {
   [[nodiscard]] Shard part() const;
 };
 /// Reads the request. Throws InvalidRequest.
-[[nodiscard]] ExploreRequest explore_request(const Told& told);
+[[nodiscard]] ExploreRequest explore_request(const Arguments& arguments);
 
 }  // namespace softland::verbs

@@ -94,7 +94,7 @@ Outcome contact_record(const Setting& setting, const ExportVerb& request) {
   ContactStatesRequest record = request.record;
   record.jobs = request.jobs;
   return {.text = contact_states_text(
-              setting.scene, record, setting.watch, setting.note ? setting.note : [](const std::string&) {})};
+              setting.scene, record, setting.progress, setting.note ? setting.note : [](const std::string&) {})};
 }
 
 Outcome run(const Setting& setting, const ExportVerb& request) {
@@ -107,7 +107,7 @@ Outcome run(const Setting& setting, const ExportVerb& request) {
   if (setting.note && std::filesystem::exists(std::filesystem::path(setting.name) / "tune.json", ignored))
     setting.note(
         "this waveform was tuned on one device (tune.json holds its expected figures); the nominal design may bounce under it");
-  return {.text = exported_text(setting.scene, request, setting.watch, setting.note)};
+  return {.text = exported_text(setting.scene, request, setting.progress, setting.note)};
 }
 
 }  // namespace

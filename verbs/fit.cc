@@ -1,6 +1,5 @@
 // Verb `fit`: fits a scene to measurements.
 #include "studies/inverse/fit.h"
-#include "studies/inverse/fitted_scene.h"
 
 #include <fmt/format.h>
 
@@ -12,6 +11,7 @@
 #include "config/assumed_spread.h"
 #include "reports/fit_report.h"
 #include "reports/record_file.h"
+#include "studies/inverse/fitted_scene.h"
 #include "verbs/study.h"
 
 namespace softland::verbs {
@@ -67,7 +67,7 @@ void options(Archive& a, FitRequest& r) {
 
 Outcome run(const Setting& setting, const FitRequest& request) {
   const Bench bench = load_bench(request.data);
-  const auto found = std::make_shared<const Fit>(fit(setting.scene, bench, request.options, setting.watch));
+  const auto found = std::make_shared<const Fit>(fit(setting.scene, bench, request.options, setting.progress));
   Outcome outcome = shown(record_of(*found, setting.command));
   if (found->found) {
     const auto text = [found, written = setting.text(), name = setting.name] {
@@ -75,7 +75,7 @@ Outcome run(const Setting& setting, const FitRequest& request) {
     };
     outcome.files.insert(outcome.files.begin(), {"fitted.toml", text, "fitted.toml"});
   }
-  if (found->spread_assumed && setting.note) setting.note(std::string(assumed_words));
+  if (found->spread_assumed && setting.note) setting.note(std::string(assumed_prose));
   outcome.ending = !found->found ? Ending::numerical_failure : found->doubts.empty() ? Ending::done : Ending::no_success;
   return outcome;
 }

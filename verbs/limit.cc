@@ -57,11 +57,11 @@ void options(Archive& a, LimitRequest& r) {
 Outcome run(const Setting& setting, const LimitRequest& request) {
   LimitOptions options = request.options;
   if (request.start) {
-    const Drives drives = prepare(setting.load(*request.start), false, {.stop = setting.watch.stop}).drives;
+    const Drives drives = prepare(setting.load(*request.start), false, {.stop = setting.progress.stop}).drives;
     options.start = drives.waveforms();
     options.before = drives.before();
   }
-  const auto found = std::make_shared<const Limit>(limit(setting.scene, options, setting.watch));
+  const auto found = std::make_shared<const Limit>(limit(setting.scene, options, setting.progress));
   Outcome outcome = shown(record_of(*found, setting.command));
   if (found->landing) {
     outcome.files.push_back({"best.toml", [found] { return found->landing->scene.scene.file.text(); },

@@ -161,7 +161,7 @@ void options(Archive& a, OptimizeVerb& r) {
 
 }  // namespace
 
-OptimizeRequest optimize_request(const Told& told) { return read_options<OptimizeVerb>(told); }
+OptimizeRequest optimize_request(const Arguments& arguments) { return read_options<OptimizeVerb>(arguments); }
 
 Study optimize_study() { return described<OptimizeVerb>(); }
 

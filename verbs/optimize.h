@@ -23,6 +23,6 @@ struct OptimizeRequest : SearchRequest {
   bool limit = false;  ///< true: compare the winner with the least time of any waveform, however long that takes
 };
 /// Reads the request. Throws InvalidRequest for invalid options; those of SearchRequest are checked later (search_request.h).
-[[nodiscard]] OptimizeRequest optimize_request(const Told& told);
+[[nodiscard]] OptimizeRequest optimize_request(const Arguments& arguments);
 
 }  // namespace softland::verbs

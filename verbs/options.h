@@ -29,7 +29,7 @@
 namespace softland::verbs {
 
 /// The texts that the user gave, by name of the option, in their order. A flag has one empty text.
-using Told = std::map<std::string, std::vector<std::string>, std::less<>>;
+using Arguments = std::map<std::string, std::vector<std::string>, std::less<>>;
 
 /// The quantity that an option accepts; `rule` completes the sentence "must be ...". Without a range and a rule it is at least 0.
 struct Wanted {
@@ -59,7 +59,7 @@ struct OptionRow {
   std::string type = {};     ///< type in Python, "float | str | None"
   std::string value = {};    ///< default, "None"
   std::string note = {};     ///< text in front of `about`, such as the unit of a number
-  std::string told = {};     ///< Python expression that returns the texts of Told, such as "_quantity(impact_velocity, 'm/s')"
+  std::string told = {};  ///< Python expression that returns the texts of Arguments, such as "_quantity(impact_velocity, 'm/s')"
   bool is_positional = false;
 };
 
@@ -226,7 +226,7 @@ template <class Number>
 /// with option, value and rule.
 class OptionReader {
  public:
-  explicit OptionReader(const Told& told) : told_(told) {}
+  explicit OptionReader(const Arguments& arguments) : arguments_(arguments) {}
 
   OptionReader& program() { return *this; }
   OptionReader& python() { return *this; }
@@ -276,21 +276,21 @@ class OptionReader {
                     [&] { return fmt::format("{}: must name the file of measurements, such as bench.toml", requested(name)); });
     value = *text;
   }
-  void flag(const char* name, bool& value, const std::string&) { value = value || told_.contains(name); }
+  void flag(const char* name, bool& value, const std::string&) { value = value || arguments_.contains(name); }
   void object(const char*, const char*, const char*, const std::string&) {}
-  void unless(const char* name, bool& value, const std::string&) { value = value && !told_.contains(name); }
+  void unless(const char* name, bool& value, const std::string&) { value = value && !arguments_.contains(name); }
 
  private:
   [[nodiscard]] const std::string* find(const char* name) const {
-    const auto at = told_.find(name);
-    return at == told_.end() || at->second.empty() ? nullptr : &at->second.back();
+    const auto at = arguments_.find(name);
+    return at == arguments_.end() || at->second.empty() ? nullptr : &at->second.back();
   }
   void all(const char* name, std::vector<std::string>& values) const {
-    if (const auto at = told_.find(name); at != told_.end()) values = at->second;
+    if (const auto at = arguments_.find(name); at != arguments_.end()) values = at->second;
   }
   [[nodiscard]] double quantity_of(const char* name, const std::string& text, const Wanted& wanted) const;
 
-  const Told& told_;
+  const Arguments& arguments_;
 };
 
 // Options that several verbs have.

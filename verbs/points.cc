@@ -49,8 +49,8 @@ bool has(const Study& study, std::string_view option) {
   return std::ranges::find(study.options, option, &OptionRow::name) != study.options.end();
 }
 
-Told told_of(const Study& study, const OtherStudy::Options& options) {
-  Told told;
+Arguments arguments_of(const Study& study, const OtherStudy::Options& options) {
+  Arguments arguments;
   for (const auto& [name, value] : options) {
     const auto option = std::ranges::find(study.options, name, &OptionRow::name);
     require(option != study.options.end() && name != "seed" && name != "jobs",
@@ -58,29 +58,29 @@ Told told_of(const Study& study, const OtherStudy::Options& options) {
     const bool is_flag = option->kind == OptionRow::Kind::flag;
     require(!is_flag || value == "true" || value == "false",
             [&] { return fmt::format("{}={}: must be true or false", name, value); });
-    if (!is_flag || value == "true") told[name] = {is_flag ? "" : value};
+    if (!is_flag || value == "true") arguments[name] = {is_flag ? "" : value};
   }
-  return told;
+  return arguments;
 }
 
 OtherStudy::Record record_of(const Study& study, const SceneFile& scene, const OtherStudy::Options& options, std::uint64_t seed,
-                             int jobs, const Watch& watch) {
-  Told told = told_of(study, options);
-  if (has(study, "seed")) told["seed"] = {std::to_string(seed)};
-  if (has(study, "jobs")) told["jobs"] = {std::to_string(jobs)};
-  const Watch silent{.stop = watch.stop};
+                             int jobs, const Progress& progress) {
+  Arguments arguments = arguments_of(study, options);
+  if (has(study, "seed")) arguments["seed"] = {std::to_string(seed)};
+  if (has(study, "jobs")) arguments["jobs"] = {std::to_string(jobs)};
+  const Progress silent{.stop = progress.stop};
   const Outcome found =
-      study.ask(told)({.scene = scene,
-                       .name = scene.name(),
-                       .command = {},
-                       .watch = silent,
-                       .prepared =
-                           [&](bool default_limits) {
-                             return std::make_shared<const PreparedScene>(prepare_and_choose(scene, default_limits, silent));
-                           },
-                       .load = [](const std::string& path) { return SceneFile::load(path); },
-                       .waveforms_of = {},
-                       .text = [&] { return scene.text(); }});
+      study.ask(arguments)({.scene = scene,
+                            .name = scene.name(),
+                            .command = {},
+                            .progress = silent,
+                            .prepared =
+                                [&](bool default_limits) {
+                                  return std::make_shared<const PreparedScene>(prepare_and_choose(scene, default_limits, silent));
+                                },
+                            .load = [](const std::string& path) { return SceneFile::load(path); },
+                            .waveforms_of = {},
+                            .text = [&] { return scene.text(); }});
   if (found.ending == Ending::interrupted) throw Interrupted();
   OtherStudy::Record record{.status = found.json.value("status", std::string("done")), .numbers = {}};
   add_numbers(record.numbers, "", found.json);
@@ -96,9 +96,9 @@ const OtherStudies& studies_of_points() {
       if (!study.is_explorable) continue;
       others.push_back(
           {.name = study.name,
-           .check = [&study](const OtherStudy::Options& options) { static_cast<void>(study.ask(told_of(study, options))); },
+           .check = [&study](const OtherStudy::Options& options) { static_cast<void>(study.ask(arguments_of(study, options))); },
            .record = [&study](const SceneFile& scene, const OtherStudy::Options& options, std::uint64_t seed, int jobs,
-                              const Watch& watch) { return record_of(study, scene, options, seed, jobs, watch); }});
+                              const Progress& progress) { return record_of(study, scene, options, seed, jobs, progress); }});
     }
     return others;
   }();

@@ -87,7 +87,7 @@ void set_bias(PreparedScene& p, const std::string& assignment) {
 }
 
 // Returns a sentence with the results that are missing because the verb was asked to stop.
-std::string left_out_words(const std::vector<std::string>& left_out) {
+std::string left_out_prose(const std::vector<std::string>& left_out) {
   return wrapped(fmt::format("interrupted before these results were found: {}.", fmt::join(left_out, "; "))) + "\n";
 }
 
@@ -97,7 +97,7 @@ Outcome shown(PullInsRecord found) {
   if (!record->sweep.empty())
     outcome.files = {{"sweep.csv", [record] { return sweep_csv(record->sweep); }, "sweep.csv"},
                      {"sweep.svg", [record] { return sweep_svg(*record); }, "sweep.svg"}};
-  if (!record->left_out.empty()) outcome.last = left_out_words(record->left_out);
+  if (!record->left_out.empty()) outcome.last = left_out_prose(record->left_out);
   return outcome;
 }
 
@@ -129,12 +129,12 @@ void options(Archive& a, PullInRequest& r) {
 }
 
 // Sweeps the electrode that closes the switch.
-void add_sweep(PullInsRecord& record, const PreparedScene& p, const SweepRange& range, const Watch& watch) {
+void add_sweep(PullInsRecord& record, const PreparedScene& p, const SweepRange& range, const Progress& progress) {
   require_request(has_pulling_electrode(p.scene.device),
                   [] { return requested("sweep") + ": requires an electrode that pulls towards the contact"; });
   const std::size_t drive = searched_drive(p.scene.device);
   record.swept = p.scene.device.electrodes[drive].name;
-  record.sweep = static_sweep(p.model, drive, bias_of(p.scene, drive), range, watch);
+  record.sweep = static_sweep(p.model, drive, bias_of(p.scene, drive), range, progress);
 }
 
 // Returns `done`, or the status of the first electrode that pulls and has no voltage; a single electrode gives its own.
@@ -160,14 +160,14 @@ Ending worst_ending(const PreparedScene& p, const PullInsRecord& record) {
   return ending;
 }
 
-void add_electrodes(PullInsRecord& record, const PreparedScene& p, const PullInFinder& find_pull_in, const Watch& watch) {
+void add_electrodes(PullInsRecord& record, const PreparedScene& p, const PullInFinder& find_pull_in, const Progress& progress) {
   const auto& electrodes = p.scene.device.electrodes;
   for (std::size_t k = 0; k < electrodes.size(); ++k) {
-    if (watch.stopped()) {
+    if (progress.stopped()) {
       record.left_out.push_back("electrode " + electrodes[k].name);
       continue;
     }
-    const ElectrodeRecord found = record_of(p, k, find_pull_in(p.model, k, bias_of(p.scene, k), watch));
+    const ElectrodeRecord found = record_of(p, k, find_pull_in(p.model, k, bias_of(p.scene, k), progress));
     if (found.status == Status::interrupted) record.left_out.push_back("dynamic pull-in of electrode " + electrodes[k].name);
     record.electrodes.emplace(electrodes[k].name, found);
   }
@@ -175,36 +175,36 @@ void add_electrodes(PullInsRecord& record, const PreparedScene& p, const PullInF
 
 Outcome run(const Setting& setting, const PullInRequest& request) {
   const SceneFile& file = setting.scene;
-  const Watch& watch = setting.watch;
+  const Progress& progress = setting.progress;
   PullInMemory remembered;
   const PullInFinder find_pull_in = remembered.finder(file);
   // Find the voltages first, before the values that a waveform in Vdp needs: they are reported even where the search for more
   // is stopped.
   const Scene scene = read_scene(file);
   const bool leaves_choices = scene.auto_modes || scene.simulate.automatic_effects;
-  PreparedScene prepared = leaves_choices ? prepare_and_choose(file, false, watch) : prepare_statics(file);
+  PreparedScene prepared = leaves_choices ? prepare_and_choose(file, false, progress) : prepare_statics(file);
   for (const std::string& assignment : request.bias) set_bias(prepared, assignment);
   require(!prepared.scene.device.electrodes.empty(),
           fmt::format("{}: the scene has no electrode; add [electrode.NAME]", setting.name));
   PullInsRecord record;
-  add_electrodes(record, prepared, find_pull_in, watch);
+  add_electrodes(record, prepared, find_pull_in, progress);
   try {
-    watch.throw_if_stopped();
+    progress.throw_if_stopped();
     if (!leaves_choices) {
       const std::vector<double> standing = prepared.scene.standing;  // voltages of all drives, with those of --bias
-      prepared = prepare(file, false, watch, find_pull_in);
+      prepared = prepare(file, false, progress, find_pull_in);
       prepared.scene.standing = standing;
     }
-    record.stable_path = stable_path_of(prepared, watch);
+    record.stable_path = stable_path_of(prepared, progress);
   } catch (const Interrupted&) {
     record.stable_path.reset();
   }
-  if (watch.stopped() && prepared.model.has_contact()) {
+  if (progress.stopped() && prepared.model.has_contact()) {
     record.left_out.emplace_back(stable_path_left_out);
     record.stable_path.reset();
   }
-  if (request.sweep && !watch.stopped()) add_sweep(record, prepared, *request.sweep, watch);
-  const bool interrupted = watch.stopped();
+  if (request.sweep && !progress.stopped()) add_sweep(record, prepared, *request.sweep, progress);
+  const bool interrupted = progress.stopped();
   if (request.sweep && interrupted)
     record.left_out.push_back(record.sweep.empty() ? "the sweep"
                                                    : fmt::format("the sweep beyond its first {} points", record.sweep.size()));

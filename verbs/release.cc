@@ -56,7 +56,7 @@ void options(Archive& a, ReleaseRequest& r) {
 }
 
 Outcome run(const Setting& setting, const ReleaseRequest& request) {
-  const auto found = std::make_shared<const OpeningResult>(search_opening(setting.scene, request.options, setting.watch));
+  const auto found = std::make_shared<const OpeningResult>(search_opening(setting.scene, request.options, setting.progress));
   Outcome outcome = shown(record_of(*found, setting.command));
   outcome.files.push_back({"release.csv", [found] { return release_csv(*found); }, "release.csv"});
   outcome.files.push_back({"release.toml", [found] { return found->scene->text(); }, "release.toml"});

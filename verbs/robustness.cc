@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "config/assumed_spread.h"
-#include "config/calibration_words.h"
+#include "config/calibration_prose.h"
 #include "reports/record_file.h"
 #include "reports/report_files.h"
 #include "reports/robustness_report.h"
@@ -94,7 +94,7 @@ std::shared_ptr<const PreparedScene> nominal_of(const Setting& setting, const Ro
   set_calibration(file, request.calibration);
   if (!spread_assumed && request.calibration.empty())
     return std::make_shared<const PreparedScene>(closing_of(*setting.prepared(true)));
-  return std::make_shared<const PreparedScene>(closing_of(prepare_and_choose(file, true, setting.watch)));
+  return std::make_shared<const PreparedScene>(closing_of(prepare_and_choose(file, true, setting.progress)));
 }
 
 std::vector<Outcome::File> files_of(const std::shared_ptr<const Judged>& judged) {
@@ -129,14 +129,14 @@ Outcome run(const Setting& setting, const RobustnessRequest& request) {
   std::vector<NamedDrive> drives{{.name = setting.name, .waveforms = nominal.drives.waveforms(), .calibration = calibration}};
   for (const std::string& result : request.results)
     drives.push_back({.name = result, .waveforms = setting.waveforms_of(result, nominal), .calibration = calibration});
-  judged->found = robustness(nominal, drives, request.options, setting.watch);
+  judged->found = robustness(nominal, drives, request.options, setting.progress);
   judged->report.emplace(RobustnessReport{.nominal = nominal,
                                           .found = judged->found,
                                           .options = request.options,
                                           .command = setting.command,
                                           .spread_assumed = spread_assumed});
   RobustnessReport& report = *judged->report;
-  add_details(report, request.box_and_chaos, setting.watch);
+  add_details(report, request.box_and_chaos, setting.progress);
   Outcome outcome = shown(record_of(report));
   outcome.files = files_of(judged);
   outcome.ending = report.interrupted ? Ending::interrupted : report.unheld.empty() ? Ending::done : Ending::no_success;

@@ -55,7 +55,7 @@ std::string time_saved(const PreparedScene& chosen) {
 }
 
 Outcome run(const Setting& setting, const SimulateVerb& request) {
-  const auto [prepared, closing] = simulated(setting.prepared(false), request, setting.watch);
+  const auto [prepared, closing] = simulated(setting.prepared(false), request, setting.progress);
   const auto result = std::make_shared<const ClosingRecord>(record_of(*prepared, closing, setting.command));
   const Status status = closing.metrics.status;
   Outcome outcome = closing_shown(result);
@@ -70,10 +70,11 @@ Outcome run(const Setting& setting, const SimulateVerb& request) {
 
 }  // namespace
 
-SimulateRequest simulate_request(const Told& told) { return read_options<SimulateVerb>(told); }
+SimulateRequest simulate_request(const Arguments& arguments) { return read_options<SimulateVerb>(arguments); }
 
-Simulated simulated(std::shared_ptr<const PreparedScene> prepared, const SimulateRequest& request, const Watch& watch) {
-  Closing closing = request.certified ? certify(*prepared, watch, request.jobs) : simulate(*prepared, request.errors, watch);
+Simulated simulated(std::shared_ptr<const PreparedScene> prepared, const SimulateRequest& request, const Progress& progress) {
+  Closing closing =
+      request.certified ? certify(*prepared, progress, request.jobs) : simulate(*prepared, request.errors, progress);
   return {.prepared = std::move(prepared), .closing = std::move(closing)};
 }
 

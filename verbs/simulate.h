@@ -14,7 +14,7 @@ struct SimulateRequest {
   int jobs = one_per_core();  ///< threads of a certified run
 };
 /// Reads the request. Throws InvalidRequest.
-[[nodiscard]] SimulateRequest simulate_request(const Told& told);
+[[nodiscard]] SimulateRequest simulate_request(const Arguments& arguments);
 
 /// A closing and the scene that it belongs to.
 struct Simulated {
@@ -22,6 +22,6 @@ struct Simulated {
   Closing closing;
 };
 [[nodiscard]] Simulated simulated(std::shared_ptr<const PreparedScene> prepared, const SimulateRequest& request,
-                                  const Watch& watch);
+                                  const Progress& progress);
 
 }  // namespace softland::verbs

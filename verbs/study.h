@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "config/scene.h"
 #include "model/status.h"
 #include "studies/closing/prepared.h"
@@ -45,7 +45,7 @@ struct Setting {
   SceneFile scene;
   std::string name;     ///< name of the scene as the user gave it
   std::string command;  ///< command line, for provenance
-  const Watch& watch;
+  const Progress& progress;
   /// Prepares the scene. `default_limits` adds the voltage limits of a search to drives without [driver].
   std::function<std::shared_ptr<const PreparedScene>(bool default_limits)> prepared;
   /// Loads the scene of a file, or of a result.
@@ -82,7 +82,7 @@ struct Study {
   std::vector<OptionRow> options;
   /// Reads the given options and returns a function that runs the verb. Throws InvalidRequest. Empty if command line and Python
   /// run the verb differently.
-  std::function<std::function<Outcome(const Setting&)>(const Told&)> ask = {};
+  std::function<std::function<Outcome(const Setting&)>(const Arguments&)> ask = {};
   /// Makes the text and the files of an outcome again from its JSON, as far as possible. Throws InvalidInput for other JSON.
   /// Empty if the verb writes no JSON that can be read.
   std::function<Outcome(const nlohmann::json&)> shown_again = {};
@@ -108,9 +108,9 @@ struct Usual {
 
 /// Reads a request from the given options. Throws InvalidRequest.
 template <class Request>
-[[nodiscard]] Request read_options(const Told& told) {
+[[nodiscard]] Request read_options(const Arguments& arguments) {
   Request request;
-  OptionReader reader(told);
+  OptionReader reader(arguments);
   options(reader, request);
   return request;
 }
@@ -153,8 +153,8 @@ template <class Request>
 template <class Request>
 [[nodiscard]] Study study_of() {
   Study study = described<Request>();
-  study.ask = [](const Told& told) -> std::function<Outcome(const Setting&)> {
-    return [request = read_options<Request>(told)](const Setting& setting) { return run(setting, request); };
+  study.ask = [](const Arguments& arguments) -> std::function<Outcome(const Setting&)> {
+    return [request = read_options<Request>(arguments)](const Setting& setting) { return run(setting, request); };
   };
   return study;
 }

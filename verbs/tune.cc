@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "config/criterion.h"
+#include "config/condition.h"
 #include "config/told_quantity.h"
 #include "reports/tuning_report.h"
 #include "verbs/study.h"
@@ -50,9 +50,9 @@ Outcome TuneVerb::shown_again(const nlohmann::json& json) {
           .files = {{"tune.html", [report] { return page_html(tuning_document(*report)); }, "tune.html"}}};
 }
 
-void read_touch(const std::string& option, const std::string& text, std::optional<Criterion>& touch) {
+void read_touch(const std::string& option, const std::string& text, std::optional<Condition>& touch) {
   try {
-    touch = parse_criterion(text, all_figures);
+    touch = parse_condition(text, all_figures);
   } catch (const InvalidInput& error) {
     throw InvalidRequest(fmt::format("{}: {}", option, error.what()));
   }
@@ -139,7 +139,7 @@ TuningSession TuneRequest::session(const SceneFile& file) const {
   return {file, std::move(options), wafer};
 }
 
-TuneRequest tune_request(const Told& told) { return read_options<TuneVerb>(told); }
+TuneRequest tune_request(const Arguments& arguments) { return read_options<TuneVerb>(arguments); }
 
 Study tune_study() { return described<TuneVerb>(); }
 

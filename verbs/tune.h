@@ -31,6 +31,6 @@ struct TuneRequest {
   [[nodiscard]] TuningSession session(const SceneFile& file) const;
 };
 /// Reads the request. Throws InvalidRequest.
-[[nodiscard]] TuneRequest tune_request(const Told& told);
+[[nodiscard]] TuneRequest tune_request(const Arguments& arguments);
 
 }  // namespace softland::verbs

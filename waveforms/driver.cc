@@ -151,8 +151,8 @@ double step_of(const DriverLimits& limits, int bits) { return (limits.max_voltag
 
 }  // namespace
 
-Signal sampled(const Signal& told, double rate, std::optional<int> bits, const DriverLimits& limits, double end) {
-  const SignalPiece& last = told.pieces().back();
+Signal sampled(const Signal& commanded, double rate, std::optional<int> bits, const DriverLimits& limits, double end) {
+  const SignalPiece& last = commanded.pieces().back();
   double until = last.begin + duration_of_terms(last);
   if (last.oscillates()) until = std::max(until, end);
   const auto rounded = [&](double voltage) {
@@ -169,9 +169,9 @@ Signal sampled(const Signal& told, double rate, std::optional<int> bits, const D
   const auto hold = [&](double time, double voltage) {
     if (pieces.empty() || pieces.back().value != voltage) pieces.push_back({.begin = time, .value = voltage});
   };
-  for (double k = 0; k < count; ++k) hold(k / rate, rounded(told.voltage(k / rate)));
-  hold(count / rate, rounded(told.hold_level()));
-  return Signal(std::move(pieces), told.before());
+  for (double k = 0; k < count; ++k) hold(k / rate, rounded(commanded.voltage(k / rate)));
+  hold(count / rate, rounded(commanded.hold_level()));
+  return Signal(std::move(pieces), commanded.before());
 }
 
 Signal slewed(const Signal& held, double max_slew) {
@@ -241,22 +241,24 @@ DriverLimits limits_of_samples(DriverLimits limits, const DriverModel& model) {
   return limits;
 }
 
-Signal held(const Signal& told, const DriverModel& model, const DriverLimits& limits, double end) {
-  if (!model.sample_rate || told.is_zero()) return told;
-  return internal::sampled(told, *model.sample_rate, model.bits, limits, end);
+Signal held(const Signal& commanded, const DriverModel& model, const DriverLimits& limits, double end) {
+  if (!model.sample_rate || commanded.is_zero()) return commanded;
+  return internal::sampled(commanded, *model.sample_rate, model.bits, limits, end);
 }
 
-Signal told_samples(const Signal& told, const DriverModel& model, const DriverLimits& limits, double end) {
-  const Signal samples = held(told, model, limits, end);
-  if (!model.sample_rate || told.voltage(0) != told.before()) return samples;
+Signal commanded_samples(const Signal& commanded, const DriverModel& model, const DriverLimits& limits, double end) {
+  const Signal samples = held(commanded, model, limits, end);
+  if (!model.sample_rate || commanded.voltage(0) != commanded.before()) return samples;
   std::vector<SignalPiece> pieces = samples.pieces();
-  pieces.front().value = told.before();
+  pieces.front().value = commanded.before();
   return Signal(std::move(pieces), samples.before());
 }
 
-Signal driven(const Signal& told, const DriverModel& model, const DriverLimits& limits, double end, const SourceErrors& errors) {
-  Signal output = held(told, model, limits, end);
-  if (model.sample_rate && std::isfinite(limits.max_slew) && !told.is_zero()) output = internal::slewed(output, limits.max_slew);
+Signal applied(const Signal& commanded, const DriverModel& model, const DriverLimits& limits, double end,
+               const SourceErrors& errors) {
+  Signal output = held(commanded, model, limits, end);
+  if (model.sample_rate && std::isfinite(limits.max_slew) && !commanded.is_zero())
+    output = internal::slewed(output, limits.max_slew);
   if (!errors.are_none()) output = with_errors(output, errors);
   if (model.is_ideal() || output.is_zero()) return output;
   if (model.bandwidth) output = internal::filtered(output, 1 / (2 * std::numbers::pi * *model.bandwidth));

@@ -37,11 +37,11 @@ struct DriverModel {
 /// Returns the samples that the converter holds, each until the next. Returns the commanded signal for a source without samples,
 /// and for a signal of 0 V at all times. A sine without an end is sampled up to `end` [s]; from there its mean value is held.
 /// Throws InvalidInput for more than 1e7 samples.
-[[nodiscard]] Signal held(const Signal& told, const DriverModel& model, const DriverLimits& limits, double end);
+[[nodiscard]] Signal held(const Signal& commanded, const DriverModel& model, const DriverLimits& limits, double end);
 
 /// Returns the samples for a generator or a file. While the signal stays at its voltage before t = 0, the samples are not
 /// rounded, so that the voltage does not jump at t = 0.
-[[nodiscard]] Signal told_samples(const Signal& told, const DriverModel& model, const DriverLimits& limits, double end);
+[[nodiscard]] Signal commanded_samples(const Signal& commanded, const DriverModel& model, const DriverLimits& limits, double end);
 
 /// Returns the driver limits for a table of samples. By rounding, the change between two samples may exceed that of the waveform
 /// by one step of the converter.
@@ -49,13 +49,14 @@ struct DriverModel {
 
 /// Returns the applied voltage of the source: the output of its converter with gain, offset and delay. Throws as held(). A source
 /// commanded to 0 V at all times applies its offset; before t = 0 it applies the commanded voltage.
-[[nodiscard]] Signal driven(const Signal& told, const DriverModel& model, const DriverLimits& limits, double end,
-                            const SourceErrors& errors = {});
+[[nodiscard]] Signal applied(const Signal& commanded, const DriverModel& model, const DriverLimits& limits, double end,
+                             const SourceErrors& errors = {});
 
 namespace internal {
 
-/// The stages of driven().
-[[nodiscard]] Signal sampled(const Signal& told, double rate, std::optional<int> bits, const DriverLimits& limits, double end);
+/// The stages of applied().
+[[nodiscard]] Signal sampled(const Signal& commanded, double rate, std::optional<int> bits, const DriverLimits& limits,
+                             double end);
 [[nodiscard]] Signal slewed(const Signal& held, double max_slew);
 /// Returns the solution of T dV/dt + V = input, from V = 0 at t = 0; `time_constant` T > 0 [s].
 [[nodiscard]] Signal filtered(const Signal& input, double time_constant);

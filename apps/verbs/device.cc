@@ -28,7 +28,7 @@ using nlohmann::json;
 // Returns the answer of the device to a line, or a message about an invalid line.
 json answer(const PracticeDevice& device, const json& line) {
   try {
-    const ToldShot shot = read_shot(line);
+    const CommandedShot shot = read_shot(line);
     return record_json(
         shot.number,
         device.close(static_cast<std::uint64_t>(shot.number), shot.waveforms(device.nominal()), shot.duration()).record);
@@ -39,8 +39,8 @@ json answer(const PracticeDevice& device, const json& line) {
 
 }  // namespace
 
-int run_device(const Common& c, const verbs::Told& told) {
-  const verbs::DeviceRequest request = verbs::device_request(told);
+int run_device(const Common& c, const verbs::Arguments& arguments) {
+  const verbs::DeviceRequest request = verbs::device_request(arguments);
   const SceneFile file = load_scene_or_result(c);
   const PracticeDevice device(file, request.options(file));
   LineReader lines(STDIN_FILENO, longest_line);

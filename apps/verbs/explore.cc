@@ -26,12 +26,12 @@
 #include "base/write_whole.h"
 #include "config/plan.h"
 #include "document/quantity.h"
+#include "reports/exploration_reader.h"
 #include "reports/exploration_report.h"
-#include "reports/explored.h"
 #include "reports/made_with.h"
 #include "reports/origin.h"
 #include "store/study_store.h"
-#include "studies/exploration/exploring.h"
+#include "studies/exploration/exploration_runner.h"
 #include "studies/exploration/front_search.h"
 #include "verbs/points.h"
 
@@ -98,17 +98,17 @@ int print_point(const Common& c, const ExploreRequest& r) {
   require(!is_store(r.out),
           [&] { return fmt::format("--out {}: is a store and is not replaced; name another file for the scene", r.out); });
   write_whole(r.out, text);
-  if (!c.quiet) say(fmt::format("wrote {}: softland simulate {}", r.out, shell_word(r.out)));
+  if (!c.quiet) print_note(fmt::format("wrote {}: softland simulate {}", r.out, shell_word(r.out)));
   return exit_done;
 }
 
-std::pair<double, std::string> state_of(const Explored& e, double elapsed) {
+std::pair<double, std::string> state_of(const ExplorationProgress& e, double elapsed) {
   std::string words = fmt::format("{} of {} points", whole(e.there()), whole(e.points));
   const Pace pace{
       .remaining = e.remaining(), .computed = e.computed, .reused = e.reused, .earlier = e.earlier, .seconds = e.computing};
   if (pace.computed > 0 && pace.seconds > 0) {
     words += fmt::format(", {} per s", internal::plain_number(static_cast<double>(pace.computed) / pace.seconds));
-    if (pace.remaining > 0) words += fmt::format(", {} left", duration_words(pace.seconds_left()));
+    if (pace.remaining > 0) words += fmt::format(", {} left", duration_prose(pace.seconds_left()));
   }
   return {e.points > 0 ? static_cast<double>(e.there()) / static_cast<double>(e.points) : 1,
           words + fmt::format(", {:.0f} s", elapsed)};
@@ -135,7 +135,7 @@ class ShownProgress {
   Bar bar_;
 };
 
-json explored_json(const Explored& e, const Plan& plan, const ExploringOptions& options) {
+json explored_json(const ExplorationProgress& e, const Plan& plan, const ExplorationRunnerOptions& options) {
   return {{"status", e.remaining() > 0 ? "interrupted" : "done"},
           {"plan", content_key(plan.text()).hexadecimal()},
           {"study", plan.study()},
@@ -146,7 +146,7 @@ json explored_json(const Explored& e, const Plan& plan, const ExploringOptions& 
           {"work", {{"wall_s", e.seconds}, {"store_s", e.waited_on_store}, {"jobs", options.jobs}}}};
 }
 
-std::string explored_text(const Explored& e, const std::string& out) {
+std::string explored_text(const ExplorationProgress& e, const std::string& out) {
   std::string words = fmt::format("{} of {} points in {}: {} computed", whole(e.there()), whole(e.points), printable_line(out),
                                   whole(e.computed));
   if (e.known > 0) words += fmt::format(", {} known before", whole(e.known));
@@ -166,9 +166,9 @@ int search_the_front(const Common& c, const ExploreRequest& r, Exploration& expl
   KnownRows known = r.resume ? known_rows(out) : KnownRows{};
   StudyStore store = opened(out, exploration, {}, c, r.resume);
   if (!c.quiet) {
-    say(fmt::format("{}: searching the Pareto front of {} with {} points ({} known), study {}; rows go to {}", c.scene,
-                    plan.pareto(), whole(static_cast<std::int64_t>(plan.points())),
-                    whole(static_cast<std::int64_t>(known.size())), plan.study(), out));
+    print_note(fmt::format("{}: searching the Pareto front of {} with {} points ({} known), study {}; rows go to {}", c.scene,
+                           plan.pareto(), whole(static_cast<std::int64_t>(plan.points())),
+                           whole(static_cast<std::int64_t>(known.size())), plan.study(), out));
   }
   ShownProgress<FrontFound> progress(c.quiet);
   const FrontFound front =
@@ -178,7 +178,7 @@ int search_the_front(const Common& c, const ExploreRequest& r, Exploration& expl
 
   const bool interrupted = front.termination == Termination::interrupted;
   const StudyReader reader(out);
-  const ExplorationReport report = explored(reader, {});
+  const ExplorationReport report = read_exploration(reader, {});
   const Overview found = overview_of(reader);
   json j = overview_json(reader.plan(), found);
   j.update(exploration_json(report));
@@ -198,8 +198,8 @@ int search_the_front(const Common& c, const ExploreRequest& r, Exploration& expl
 
 }  // namespace
 
-int run_explore(const Common& c, const verbs::Told& told) {
-  const ExploreRequest r = verbs::explore_request(told);
+int run_explore(const Common& c, const verbs::Arguments& arguments) {
+  const ExploreRequest r = verbs::explore_request(arguments);
   if (r.point) return print_point(c, r);
   const bool goes_on = is_store(c.scene);
   const Shard shard = goes_on && r.shard.empty() ? StudyReader(c.scene).plan().shard : r.part();
@@ -207,29 +207,29 @@ int run_explore(const Common& c, const verbs::Told& told) {
   require(!goes_on || (r.resume && r.out.empty()),
           [&] { return fmt::format("{}: is a store: give --resume to continue it, and omit --out", c.scene); });
   const std::string out = goes_on ? c.scene : r.out.empty() ? "softland-out.sqlite" : r.out;
-  static_cast<void>(claim_places(c, {}));
+  static_cast<void>(reserve_outputs(c, {}));
   require(c.json.empty() || std::filesystem::weakly_canonical(c.json) != std::filesystem::weakly_canonical(out),
           [&] { return fmt::format("--json {}: is the store itself; name another file", c.json); });
   require(c.json.empty() || !is_companion(c.json, out),
           [&] { return fmt::format("--json {}: is a companion file of the store {}; name another file", c.json, out); });
-  std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  Exploration exploration = exploration_for(plan, out, work->watch(), verbs::studies_of_points());
+  std::optional<ShownWork> work(std::in_place, c.quiet, c.stop);
+  Exploration exploration = exploration_for(plan, out, work->progress(), verbs::studies_of_points());
   work.reset();
 
   require_part(exploration, shard);
   if (r.resume && !c.quiet) tell_of_other_programs(out);
   if (exploration.plan().is_search()) return search_the_front(c, r, exploration, out);
   StudyStore store = opened(out, exploration, shard, c, r.resume);
-  ShownProgress<Explored> progress(c.quiet);
-  const ExploringOptions options{.shard = shard, .jobs = r.jobs, .stop = c.stop, .on_point = std::ref(progress)};
-  Exploring exploring(exploration, store, options);
+  ShownProgress<ExplorationProgress> progress(c.quiet);
+  const ExplorationRunnerOptions options{.shard = shard, .jobs = r.jobs, .stop = c.stop, .on_point = std::ref(progress)};
+  ExplorationRunner runner(exploration, store, options);
   if (!c.quiet) {
-    const Explored before = exploring.explored();
-    say(fmt::format("{}: {} of {} points to explore, study {}; rows go to {}", c.scene, whole(before.remaining()),
-                    whole(before.points), exploration.plan().study(), out));
+    const ExplorationProgress before = runner.progress();
+    print_note(fmt::format("{}: {} of {} points to explore, study {}; rows go to {}", c.scene, whole(before.remaining()),
+                           whole(before.points), exploration.plan().study(), out));
   }
-  exploring.run();
-  const Explored e = exploring.explored();
+  runner.run();
+  const ExplorationProgress e = runner.progress();
   progress.close(e);
   store.close();
 

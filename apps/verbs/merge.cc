@@ -33,13 +33,13 @@ int merge_verb(const Common& c, const MergeRequest& request) {
   parts.insert(parts.end(), request.more.begin(), request.more.end());
   for (const std::filesystem::path& part : parts) {
     if (!c.quiet && writer_of(part))
-      say(fmt::format("{}: another process is still writing to it: {}", part.string(), *writer_of(part)));
+      print_note(fmt::format("{}: another process is still writing to it: {}", part.string(), *writer_of(part)));
   }
-  std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
+  std::optional<ShownWork> work(std::in_place, c.quiet, c.stop);
   const Merged merged =
-      merge_studies(parts, c.out, stored_origin(c.command), {.complete = request.complete, .watch = work->watch()});
+      merge_studies(parts, c.out, stored_origin(c.command), {.complete = request.complete, .progress = work->progress()});
   work.reset();
-  for (const std::string& note : merged.notes) say(note);
+  for (const std::string& note : merged.notes) print_note(note);
   if (!merged.written) return exit_no_success;
   print(fmt::format("{} of {} points from {} {} in {}\n", internal::whole(static_cast<double>(merged.rows)),
                     internal::whole(static_cast<double>(merged.plan.points)), parts.size(), parts.size() == 1 ? "part" : "parts",

@@ -34,8 +34,8 @@ struct ModesRequest {
 
 int frequencies_of_scene(const Common& c) {
   const SceneFile file = load_scene_or_result(c);
-  const PreparedScene prepared = prepare_and_choose(file, false, WatchedWork(c.quiet, c.stop).watch());
-  static_cast<void>(claim_places(c, {}));
+  const PreparedScene prepared = prepare_and_choose(file, false, ShownWork(c.quiet, c.stop).progress());
+  static_cast<void>(reserve_outputs(c, {}));
   const Eigen::VectorXd& omega = prepared.model.basis().angular_frequencies();
   const ModesRecord record{
       .origin = origin_of("modes", c.command), .frequencies = {omega.begin(), omega.end()}, .warnings = prepared.scene.warnings};

@@ -18,29 +18,29 @@
 namespace softland::apps {
 namespace {
 
-struct Kind {
+struct StarterScene {
   std::string_view name, scene;  // name; shipped scene
 };
-constexpr std::array kinds{Kind{"cantilever", "mem-gold.toml"},
-                           Kind{"cantilever-pzt", "mem-gold-pzt.toml"},
-                           Kind{"hinged-plate", "new/hinged-plate.toml"},
-                           Kind{"clamped-clamped", "new/clamped-clamped.toml"},
-                           Kind{"plate", "new/plate.toml"},
-                           Kind{"two-contacts", "new/two-contacts.toml"},
-                           Kind{"two-electrodes", "two-electrodes.toml"},
-                           Kind{"capacitive-bridge", "new/capacitive-bridge.toml"},
-                           Kind{"nem-cantilever", "nem-tin.toml"},
-                           Kind{"nem-casimir", "new/nem-casimir.toml"}};
+constexpr std::array starter_scenes{StarterScene{"cantilever", "mem-gold.toml"},
+                                    StarterScene{"cantilever-pzt", "mem-gold-pzt.toml"},
+                                    StarterScene{"hinged-plate", "new/hinged-plate.toml"},
+                                    StarterScene{"clamped-clamped", "new/clamped-clamped.toml"},
+                                    StarterScene{"plate", "new/plate.toml"},
+                                    StarterScene{"two-contacts", "new/two-contacts.toml"},
+                                    StarterScene{"two-electrodes", "two-electrodes.toml"},
+                                    StarterScene{"capacitive-bridge", "new/capacitive-bridge.toml"},
+                                    StarterScene{"nem-cantilever", "nem-tin.toml"},
+                                    StarterScene{"nem-casimir", "new/nem-casimir.toml"}};
 
-std::string names_of_kinds() {
+std::string names_of_starter_scenes() {
   std::vector<std::string_view> names;
-  for (const Kind& kind : kinds) names.push_back(kind.name);
+  for (const StarterScene& kind : starter_scenes) names.push_back(kind.name);
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
 int new_verb(const std::string& name) {
-  const auto found = std::ranges::find(kinds, name, &Kind::name);
-  require(found != kinds.end(), fmt::format("new {}: must be one of {}", name, names_of_kinds()));
+  const auto found = std::ranges::find(starter_scenes, name, &StarterScene::name);
+  require(found != starter_scenes.end(), fmt::format("new {}: must be one of {}", name, names_of_starter_scenes()));
   print(read_file(shipped_scene(std::string(found->scene))));
   return exit_done;
 }
@@ -48,8 +48,8 @@ int new_verb(const std::string& name) {
 }  // namespace
 
 void add_new(Verb& verb) {
-  const auto kind = std::make_shared<std::string>(kinds.front().name);
-  verb.positional("KIND", *kind, names_of_kinds() + "; default: the first", false);
+  const auto kind = std::make_shared<std::string>(starter_scenes.front().name);
+  verb.positional("KIND", *kind, names_of_starter_scenes() + "; default: the first", false);
   verb.footer("Example:\n  softland new cantilever > my-switch.toml");
   verb.runs([kind](const Common&) { return new_verb(*kind); });
 }

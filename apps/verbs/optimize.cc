@@ -34,7 +34,7 @@
 #include "reports/origin.h"
 #include "reports/record_file.h"
 #include "reports/report_files.h"
-#include "reports/robustness_words.h"
+#include "reports/robustness_prose.h"
 #include "reports/search_report.h"
 #include "reports/seeds_report.h"
 #include "studies/search/limit.h"
@@ -55,9 +55,9 @@ std::string on_devices(const Common& c, const PreparedScene& winner, int jobs, c
   if (winner.scene.spread.empty()) return {};
   constexpr std::uint64_t devices = 200;
   try {
-    const WatchedWork work(c.quiet, c.stop);
+    const ShownWork work(c.quiet, c.stop);
     const Robustness found = robustness(winner, {{.name = "found", .waveforms = winner.drives.waveforms()}},
-                                        {.samples = devices, .jobs = jobs}, work.watch());
+                                        {.samples = devices, .jobs = jobs}, work.progress());
     if (found.interrupted || found.drives.size() < 2) return {};
     const auto at_95_percent = [](const DriveRobustness& drive, std::string_view key) {
       const Figure& figure = figure_of(key);
@@ -75,7 +75,7 @@ std::string on_devices(const Common& c, const PreparedScene& winner, int jobs, c
                "On {} devices varied by [spread], with the same waveform: {} bounce-free, {} (plain step: {}, {}).{} More: "
                "softland robustness {}",
                devices, percent(own.bounce_free.value), words(own), percent(step.bounce_free.value), words(step),
-               internal::outside_words(found), shell_word((place / "best.toml").string()))) +
+               internal::outside_prose(found), shell_word((place / "best.toml").string()))) +
            "\n";
   } catch (const Interrupted&) {
     return {};
@@ -118,15 +118,16 @@ std::optional<TouchLimit> limit_of(const Asked& asked, const OptimizeResult& res
   const double own = result.best->metrics.impact_velocity, step = result.baseline.metrics.impact_velocity;
   if (!std::isfinite(own)) return std::nullopt;
   const double velocity = std::isfinite(step) ? std::max(own, softest * step) : own;
-  const WatchedWork work(asked.c.quiet, asked.c.stop);
-  work.watch().tell("least time", 0);
+  const ShownWork work(asked.c.quiet, asked.c.stop);
+  work.progress().tell("least time", 0);
   try {
-    const LeastTime least = least_time(
-        *result.best_scene, {.actuator = asked.search.options.actuator, .impact_velocity = velocity, .watch = work.watch()});
+    const LeastTime least =
+        least_time(*result.best_scene,
+                   {.actuator = asked.search.options.actuator, .impact_velocity = velocity, .progress = work.progress()});
     if (least.status != Status::done) return std::nullopt;
     return TouchLimit{.least_time = least.time, .impact_velocity = velocity};
   } catch (const InvalidInput& error) {
-    if (asked.limit) say(fmt::format("--limit: {}", error.what()));
+    if (asked.limit) print_note(fmt::format("--limit: {}", error.what()));
     return std::nullopt;
   }
 }
@@ -154,10 +155,10 @@ int run_search(const Asked& asked) {
   const Common& c = asked.c;
   StoredSearch& search = asked.search;
   SearchRun searching(c, search, asked.known, asked.output, asked.places);
-  if (search.robust && assume_spread(search.scene) && !c.quiet) say(std::string(assumed_words));
+  if (search.robust && assume_spread(search.scene) && !c.quiet) print_note(std::string(assumed_prose));
   SearchReport report(run(search));
   const OptimizeResult& best = report.found.best();
-  add_devices(report, search, c.command, {.stop = c.stop, .progress = search.options.on_preparation});
+  add_devices(report, search, c.command, {.stop = c.stop, .report = search.options.on_preparation});
   searching.close();
 
   SearchSession& session = searching.session();
@@ -175,10 +176,10 @@ int run_search(const Asked& asked) {
   }
   if (search.devices() == 0 && !c.quiet) {
     for (const std::string& broken : best.broken_conditions)
-      say(fmt::format("the found waveform violates --constrain \"{}\"", broken));
+      print_note(fmt::format("the found waveform violates --constrain \"{}\"", broken));
   }
   print_json_or(c, summary_json(json_of(result)),
-                terminal_text(closing_document(result)) + words_on_devices(asked, report, place) + left_in(place, left));
+                terminal_text(closing_document(result)) + words_on_devices(asked, report, place) + files_written(place, left));
   return status_of(report.found);
 }
 
@@ -190,13 +191,13 @@ SeedsFindings ranked(const SeedStudy& study, const StoredSearch& search, double 
 }
 
 // Reports a study of several seeds that was interrupted; --resume continues it.
-int tell_of_part(const Common& c, SearchPlaces& places, const SeedStudy& study, const SeedsFindings& seeds) {
+int report_interrupted(const Common& c, SearchPlaces& places, const SeedStudy& study, const SeedsFindings& seeds) {
   const fs::path stores = places.store(evaluations_file).parent_path();
-  std::string left = left_in(stores, {evaluations_file, seeds_file});
+  std::string left = files_written(stores, {evaluations_file, seeds_file});
   const std::string best = seeds.searches.empty() ? std::string() : study.scene_of(seeds.searches[seeds.best].seed);
   if (!best.empty()) {
     places.folder().write("best.toml", best);
-    left += left_in(places.folder().place("best.toml").parent_path(), {"best.toml (best waveform of the completed seeds)"});
+    left += files_written(places.folder().place("best.toml").parent_path(), {"best.toml (best waveform of the completed seeds)"});
   }
   const SeedsRecord record{.origin = origin_of("optimize", c.command), .seeds = seeds};
   print_json_or(c, json_of(record),
@@ -232,20 +233,21 @@ void run_shown(SeedStudy& study, const Common& c, const StoredSearch& search, Se
 
 int run_seeds(const Common& c, StoredSearch& search, const std::optional<KnownSearch>& known, const SearchOutput& output,
               bool limit) {
-  std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  const SearchedParameters searched = searched_parameters(search.scene, search.options, search.robust.has_value(), work->watch());
+  std::optional<ShownWork> work(std::in_place, c.quiet, c.stop);
+  const SearchedParameters searched =
+      searched_parameters(search.scene, search.options, search.robust.has_value(), work->progress());
   work.reset();
   SearchPlaces places(output, search, known, searched.columns);
   if (!c.quiet) {
-    say(search_words(c, search) +
-        fmt::format(", from seeds {} to {}; results go to {}", search.seed(0), search.seed(search.seeds - 1), c.out));
+    print_note(search_prose(c, search) +
+               fmt::format(", from seeds {} to {}; results go to {}", search.seed(0), search.seed(search.seeds - 1), c.out));
   }
   SeedStudy study(search, places.evaluations(), places.store(seeds_file), searched.columns.names(), stored_origin(c.command));
   run_shown(study, c, search, places, searched.columns);
   const SeedsFindings seeds = ranked(study, search, searched.significant_rebound);
   if (study.missing() > 0) {
     places.evaluations().close();
-    return tell_of_part(c, places, study, seeds);
+    return report_interrupted(c, places, study, seeds);
   }
   // Repeat the best search for the report, without new simulations: all of its evaluations are stored.
   search.options.seed = seeds.searches.at(seeds.best).seed;
@@ -259,17 +261,18 @@ void tell_of_another_scene(const fs::path& folder, const SceneFile& scene) {
     const fs::path best = folder / "best.toml";
     const std::optional<std::string> held = SceneFile::parse(look_into(best), best.string()).written("title");
     if (held && held != scene.written("title"))
-      say(fmt::format("{} holds results of another scene, \"{}\", which this search will replace; --out names another folder",
+      print_note(
+          fmt::format("{} holds results of another scene, \"{}\", which this search will replace; --out names another folder",
                       folder.string(), *held));
   } catch (const InvalidInput&) {  // the folder holds no readable result
   }
 }
 
 // Runs `softland cycle --search`, which searches the closing and the opening waveform together.
-int run_cycle_search(const Common& c, const verbs::Told& told) {
+int run_cycle_search(const Common& c, const verbs::Arguments& arguments) {
   static const verbs::Study cycle = verbs::cycle_study();
-  verbs::Told own{{"search", {""}}};
-  for (const auto& [name, words] : told) {
+  verbs::Arguments own{{"search", {""}}};
+  for (const auto& [name, words] : arguments) {
     const std::string as = name == "cycle" ? "rate" : name;
     require(std::ranges::find(cycle.options, as, &verbs::OptionRow::name) != cycle.options.end(),
             [&] { return fmt::format("--cycle must not be combined with --{}", name); });
@@ -280,14 +283,14 @@ int run_cycle_search(const Common& c, const verbs::Told& told) {
 
 }  // namespace
 
-int run_optimize(const Common& given, const verbs::Told& told) {
-  const verbs::OptimizeRequest request = verbs::optimize_request(told);
+int run_optimize(const Common& given, const verbs::Arguments& arguments) {
+  const verbs::OptimizeRequest request = verbs::optimize_request(arguments);
   Common c = given;
   if (c.scene.empty() && !request.resume) c.scene = shipped_scene("mem-gold-pzt.toml").string();
-  if (!request.cycle.empty()) return run_cycle_search(c, told);
+  if (!request.cycle.empty()) return run_cycle_search(c, arguments);
   require(request.duty.empty(), "--duty must be given together with --cycle");
   std::optional<KnownSearch> known;
-  StoredSearch search = asked_or_known(c, request, known);
+  StoredSearch search = new_or_resumed(c, request, known);
   const SearchOutput output = output_of(c);
   if (!known && !c.quiet) tell_of_another_scene(output.folder, search.scene);
   if (known && !c.quiet) tell_of_other_programs((known->place / evaluations_file).string());

@@ -24,7 +24,7 @@ int read_verb(const Common& c, const ReadRequest& request) {
   const ReadKeys keys = read_keys(c.set);
   Recording recording = read_recording(request.file, keys);
   if (!keys.column.empty() || keys.column_number > 0) recording.channels = {channel_of(recording, keys, "")};
-  static_cast<void>(claim_places(c, {}));
+  static_cast<void>(reserve_outputs(c, {}));
   if (request.plot) {
     if (!c.json.empty()) print_json_or(c, recording_json(recording), "");
     print(recording_svg(recording));

@@ -23,8 +23,8 @@
 #include "base/shortened.h"
 #include "document/text.h"
 #include "reports/closing_record.h"
+#include "reports/exploration_reader.h"
 #include "reports/exploration_report.h"
-#include "reports/explored.h"
 #include "reports/record.h"
 #include "store/study_store.h"
 #include "verbs/study.h"
@@ -76,8 +76,8 @@ std::string map_of(const ExplorationReport& report, const std::string& words) {
 int report_exploration(const Common& given, const ReportRequest& request, const std::filesystem::path& record = {}) {
   const std::filesystem::path path = request.result;
   const StudyReader store(path);
-  std::optional<WatchedWork> work(std::in_place, given.quiet, given.stop);
-  ExplorationReport report = explored(store, request.pareto);
+  std::optional<ShownWork> work(std::in_place, given.quiet, given.stop);
+  ExplorationReport report = read_exploration(store, request.pareto);
   std::vector<std::string> files{"report.html"};
   if (record.empty()) files.emplace_back("exploration.json");
   std::string map;
@@ -85,11 +85,11 @@ int report_exploration(const Common& given, const ReportRequest& request, const 
     map = map_of(report, request.map);
     files.emplace_back("map.svg");
   }
-  add_front_waveforms(report, store, work->watch());
+  add_front_waveforms(report, store, work->progress());
   work.reset();
   Common c = given;
   if (c.out.empty()) c.out = record.empty() ? (path.parent_path() / path.stem()).string() + "-report" : folder_of(record);
-  ResultFolder folder = *claim_places(c, files);
+  ResultFolder folder = *reserve_outputs(c, files);
   const Document document = exploration_document(report);
   folder.write("report.html", page_html(document));
   if (record.empty()) {
@@ -99,7 +99,7 @@ int report_exploration(const Common& given, const ReportRequest& request, const 
   }
   if (!map.empty()) folder.write("map.svg", map);
   folder.publish(false);
-  print(terminal_text(document) + left_in(c.out, files));
+  print(terminal_text(document) + files_written(c.out, files));
   return exit_done;
 }
 
@@ -123,10 +123,10 @@ int leave(Common c, const std::filesystem::path& record, std::vector<verbs::Outc
   for (const auto& file : all) files.push_back(file.name);
   if (files.empty()) return print(text), exit_done;
   if (c.out.empty()) c.out = folder_of(record);
-  ResultFolder folder = *claim_places(c, files);
+  ResultFolder folder = *reserve_outputs(c, files);
   for (const verbs::Outcome::File& file : all) folder.write(file.name, file.text());
   folder.publish(false);
-  print(text + left_in(c.out, files));
+  print(text + files_written(c.out, files));
   return exit_done;
 }
 

@@ -69,9 +69,9 @@ std::string text_of(const State& s) {
   const StoredSession& last = s.sessions.back();
   text += fmt::format("  last run             {} rows", whole(last.rows));
   if (const double rate = s.rate(); std::isfinite(rate)) {
-    text += fmt::format(" in {}, {} per s", duration_words(last.seconds), internal::plain_number(rate));
+    text += fmt::format(" in {}, {} per s", duration_prose(last.seconds), internal::plain_number(rate));
     if (s.writer && s.done < s.points)
-      text += fmt::format(", {} left", duration_words(static_cast<double>(s.points - s.done) / rate));
+      text += fmt::format(", {} left", duration_prose(static_cast<double>(s.points - s.done) / rate));
   }
   text += fmt::format("\n                       until {} UTC on {}, run {}\n", last.last, printable_line(last.host),
                       s.sessions.size());
@@ -107,7 +107,7 @@ json json_of(const State& s) {
 }
 
 int status_verb(const Common& c, const StatusRequest& request) {
-  static_cast<void>(claim_places(c, {}));
+  static_cast<void>(reserve_outputs(c, {}));
   std::vector<std::string> files{request.store};
   files.insert(files.end(), request.more.begin(), request.more.end());
   std::string text;

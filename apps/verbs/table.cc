@@ -102,8 +102,8 @@ std::vector<Column> selected(const StoredPlan& plan, const std::string& select) 
 using Sink = std::function<void(std::string_view)>;
 
 // Writes the same bytes to a file and to a terminal, where control characters could act: they are escaped in both.
-void write_csv(const StudyReader& store, const TableRequest& request, const std::vector<Column>& columns, const Watch& watch,
-               const Sink& sink) {
+void write_csv(const StudyReader& store, const TableRequest& request, const std::vector<Column>& columns,
+               const Progress& progress, const Sink& sink) {
   constexpr std::size_t most = 1 << 16;
   std::string text;
   const auto line = [&](const auto& cell) {
@@ -113,11 +113,12 @@ void write_csv(const StudyReader& store, const TableRequest& request, const std:
   };
   line([](const Column& column) { return column.key; });
   store.read([&](const StoredRow& row) { line([&](const Column& column) { return column.csv(row); }); }, {.where = request.where},
-             watch);
+             progress);
   sink(printable(text));
 }
 
-void print_table(const StudyReader& store, const TableRequest& request, const std::vector<Column>& columns, const Watch& watch) {
+void print_table(const StudyReader& store, const TableRequest& request, const std::vector<Column>& columns,
+                 const Progress& progress) {
   std::vector<std::size_t> widths;
   std::string header;
   for (const Column& column : columns) {
@@ -133,21 +134,21 @@ void print_table(const StudyReader& store, const TableRequest& request, const st
         text += "\n";
         print(std::exchange(text, {}));
       },
-      {.where = request.where}, watch);
+      {.where = request.where}, progress);
   print(text);
 }
 
 int table_verb(const Common& c, const TableRequest& request) {
   const StudyReader store(request.store);
   const std::vector<Column> columns = selected(store.plan(), request.select);
-  const Watch watch{.stop = c.stop};
+  const Progress progress{.stop = c.stop};
   if (c.out.empty() && !request.csv) {
-    print_table(store, request, columns, watch);
+    print_table(store, request, columns, progress);
   } else if (c.out.empty()) {
-    write_csv(store, request, columns, watch, print);
+    write_csv(store, request, columns, progress, print);
   } else {
     require(!is_store(c.out), [&] { return fmt::format("--out {}: is a store and is not replaced; name another file", c.out); });
-    write_whole(c.out, [&](const Sink& sink) { write_csv(store, request, columns, watch, sink); });
+    write_whole(c.out, [&](const Sink& sink) { write_csv(store, request, columns, progress, sink); });
   }
   return exit_done;
 }

@@ -84,17 +84,18 @@ class Tuning {
 
 Tuning::Tuning(const Common& common, const SceneFile& file, const TuneRequest& request)
     : common_(common), session_(request.session(file)) {
-  folder_ = claim_places(common, {"best.toml", "best.csv", "tune.json", "tune.html", log_file}, {log_file});
+  folder_ = reserve_outputs(common, {"best.toml", "best.csv", "tune.json", "tune.html", log_file}, {log_file});
   const std::filesystem::path aside = session_.keep(folder_->path() / log_file, request.resume);
-  if (!aside.empty() && !common_.quiet) say(fmt::format("the closings of an earlier run were moved to {}", aside.string()));
-  const WatchedWork work(common_.quiet, common_.stop);
-  session_.begin(work.watch());
+  if (!aside.empty() && !common_.quiet)
+    print_note(fmt::format("the closings of an earlier run were moved to {}", aside.string()));
+  const ShownWork work(common_.quiet, common_.stop);
+  session_.begin(work.progress());
 }
 
 void Tuning::learn_log() {
   for (bool learned = true; learned;) {
-    const WatchedWork work(common_.quiet, common_.stop);
-    learned = session_.learn_kept(work.watch());
+    const ShownWork work(common_.quiet, common_.stop);
+    learned = session_.learn_kept(work.progress());
   }
 }
 
@@ -102,14 +103,14 @@ TuningEnd Tuning::run(TuningLab& lab, int closings) {
   for (;;) {
     if (const std::optional<TuningEnd> end = session_.ends(closings)) return *end;
     const SentSignals sent = sent_signals(session_.tuner().scene(), session_.tuner().next().waveforms);
-    const std::optional<ContactRecord> record = lab.fire(session_.told(), sent);
+    const std::optional<ContactRecord> record = lab.fire(session_.commanded(), sent);
     if (!record) return TuningEnd::stopped;
     {
-      const WatchedWork work(common_.quiet, common_.stop);
-      session_.learn(*record, work.watch());
+      const ShownWork work(common_.quiet, common_.stop);
+      session_.learn(*record, work.progress());
     }
     write(TuningEnd::under_way);
-    if (!common_.quiet) say(closing_words(report(TuningEnd::under_way)));
+    if (!common_.quiet) print_note(closing_prose(report(TuningEnd::under_way)));
     session_.throw_if_failing();
   }
 }
@@ -121,8 +122,8 @@ void Tuning::write(TuningEnd end) {
 
 }  // namespace
 
-int run_tune(const Common& c, const verbs::Told& told) {
-  const TuneRequest request = verbs::tune_request(told);
+int run_tune(const Common& c, const verbs::Arguments& arguments) {
+  const TuneRequest request = verbs::tune_request(arguments);
   require(request.by_hand == request.device.empty(), "give either --device COMMAND or --by-hand: it says how shots are fired");
   require(request.contact.empty() || request.by_hand, "--contact requires --by-hand: it says how to read the recorded files");
   std::optional<ContactTraceKeys> contact;
@@ -133,7 +134,7 @@ int run_tune(const Common& c, const verbs::Told& told) {
   SceneFile file = load_scene_or_result(c);
   if (says_sources) set_sources(file, request, request.tuner.actuator);
   Tuning tuning(c, file, request);
-  if (tuning.report(TuningEnd::under_way).spread_assumed && !c.quiet) say(std::string(assumed_words));
+  if (tuning.report(TuningEnd::under_way).spread_assumed && !c.quiet) print_note(std::string(assumed_prose));
 
   TuningEnd end = TuningEnd::interrupted;
   try {
@@ -158,7 +159,7 @@ int run_tune(const Common& c, const verbs::Told& told) {
   const TuningReport report = tuning.report(end);
   print_json_or(c, json_of(report),
                 terminal_text(tuning_document(report)) +
-                    left_in(tuning.folder().path(), {"tune.html", "tune.json", "best.toml", "best.csv", log_file}));
+                    files_written(tuning.folder().path(), {"tune.html", "tune.json", "best.toml", "best.csv", log_file}));
   if (end == TuningEnd::interrupted) return exit_interrupted;
   return report.lands() ? exit_done : exit_no_success;
 }

@@ -22,10 +22,10 @@ void add_read(Verb& verb);
 [[nodiscard]] verbs::Outcome modes_shown_again(const nlohmann::json& json);
 
 // Verbs of verbs/study.h whose action the command line provides.
-[[nodiscard]] int run_optimize(const Common& common, const verbs::Told& told);
-[[nodiscard]] int run_explore(const Common& common, const verbs::Told& told);
-[[nodiscard]] int run_tune(const Common& common, const verbs::Told& told);
-[[nodiscard]] int run_device(const Common& common, const verbs::Told& told);
+[[nodiscard]] int run_optimize(const Common& common, const verbs::Arguments& arguments);
+[[nodiscard]] int run_explore(const Common& common, const verbs::Arguments& arguments);
+[[nodiscard]] int run_tune(const Common& common, const verbs::Arguments& arguments);
+[[nodiscard]] int run_device(const Common& common, const verbs::Arguments& arguments);
 
 struct RunRow {
   std::string_view name;

@@ -115,16 +115,16 @@ void ElectricalRecord::follow(Followed& followed, const Margin& at, double begin
       const double turn = time(
           boost::math::tools::brent_find_minima([&](double share) { return towards * at(time(share)); }, 0.0, 1.0, bits).first);
       const double there = at(turn);
-      follow_way(followed, at, begin, from, turn, there);
-      return follow_way(followed, at, turn, there, end, to);
+      follow_path(followed, at, begin, from, turn, there);
+      return follow_path(followed, at, turn, there, end, to);
     }
   }
-  follow_way(followed, at, begin, from, end, to);
+  follow_path(followed, at, begin, from, end, to);
 }
 
 // Records an interval in which the margin changes sign once at most.
 template <class Margin>
-void ElectricalRecord::follow_way(Followed& followed, const Margin& at, double begin, double from, double end, double to) const {
+void ElectricalRecord::follow_path(Followed& followed, const Margin& at, double begin, double from, double end, double to) const {
   set(followed, from > 0, begin);
   if ((to > 0) != (from > 0)) set(followed, to > 0, bracketed_zero(at, begin, end));
 }

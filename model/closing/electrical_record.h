@@ -73,7 +73,7 @@ class ElectricalRecord {
   template <class Margin>
   void follow(Followed& followed, const Margin& at, double begin, double end) const;
   template <class Margin>
-  void follow_way(Followed& followed, const Margin& at, double begin, double from, double end, double to) const;
+  void follow_path(Followed& followed, const Margin& at, double begin, double from, double end, double to) const;
   void set(Followed& followed, bool is_closed, double time) const;
   void tell(const Followed& followed, double time) const;
   [[nodiscard]] bool counts(const Followed& followed, double until) const;

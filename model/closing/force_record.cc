@@ -28,7 +28,7 @@ ForceRecord::ForceRecord(const Switch& model, double threshold, std::size_t cont
 
 // An extremum of the force lies in between when the force rises from both ends, or falls from both.
 template <class Force>
-void ForceRecord::follow_way(const Force& force, double begin, double from, double end, double to) {
+void ForceRecord::follow_path(const Force& force, double begin, double from, double end, double to) {
   constexpr double beside = 1e-6;  // share of the time
   constexpr int bits = 30;
   if (rises_with_depth_) return follow(force, begin, from, end, to);
@@ -72,10 +72,10 @@ void ForceRecord::take(const TipMotion& tip, const TrajectoryPoint& from, const 
   const auto force = [&](double t) {
     return contact_force(model_.contact(contact_), tip.position(t) - plane, law, tip.velocity(t));
   };
-  if (!(from.velocity * to.velocity < 0)) return follow_way(force, from.time, from.contact_force, to.time, to.contact_force);
+  if (!(from.velocity * to.velocity < 0)) return follow_path(force, from.time, from.contact_force, to.time, to.contact_force);
   const double turn = tip.turn(), there = force(turn);
-  follow_way(force, from.time, from.contact_force, turn, there);
-  follow_way(force, turn, there, to.time, to.contact_force);
+  follow_path(force, from.time, from.contact_force, turn, there);
+  follow_path(force, turn, there, to.time, to.contact_force);
 }
 
 void ForceRecord::take_line(const TrajectoryPoint& from, const TrajectoryPoint& to) {

@@ -38,7 +38,7 @@ class ForceRecord {
 
   /// Adds a time over which the contact point moves in one direction.
   template <class Force>
-  void follow_way(const Force& force, double begin, double from, double end, double to);
+  void follow_path(const Force& force, double begin, double from, double end, double to);
   template <class Force>
   void follow(const Force& force, double begin, double from, double end, double to);
 

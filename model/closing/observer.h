@@ -50,7 +50,7 @@ class ClosingObserver {
   /// Receives the energy balance of the run so far, at a breakpoint of the drives before their values change there [s].
   virtual void energies(double /*time*/, const EnergyBalance& /*balance*/) {}
   /// Receives an event at the knot from which the next step starts.
-  virtual void pass(const Knot& /*here*/, const PhaseChange& /*change*/) {}
+  virtual void on_phase(const Knot& /*here*/, const PhaseChange& /*change*/) {}
 
  protected:
   ClosingObserver() = default;

@@ -10,10 +10,10 @@
 
 namespace softland {
 
-class Course {
+class PendingKnots {
  public:
   /// Keeps references.
-  Course(const Device& device, std::size_t contact, ClosingObserver& observer)
+  PendingKnots(const Device& device, std::size_t contact, ClosingObserver& observer)
       : device_(device),
         rest_gap_(device.gap.electrode + device.rest_offset(device.contact_position(contact))),
         observer_(observer) {}

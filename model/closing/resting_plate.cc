@@ -13,7 +13,7 @@ RestingPlate::RestingPlate(const Switch& model, DriveCourse& drives, ClosingEqua
       equations_(equations),
       rates_(static_cast<std::size_t>(model.modes()) + model.film_states()) {}
 
-double RestingPlate::press(const Knot& here, double t) {
+double RestingPlate::load(const Knot& here, double t) {
   equations_.rates(t, here.state.data(), rates_.data());
   return rates_[0] / model_.basis().contact_shape()[0];
 }
@@ -27,7 +27,7 @@ RestingPlate::Impact RestingPlate::strike(Knot& here) {
   const double speed = contact.restitution * std::max(0.0, v * shape);
   q = plane / shape;  // position errors of events would add up over many impacts
   v = 0;
-  impact.rests = RigidContact::rests(speed, press(here, here.time) * shape * shape, plane);
+  impact.rests = RigidContact::rests(speed, load(here, here.time) * shape * shape, plane);
   if (!impact.rests) v = -speed / shape;
   impact.lost = impact.energy - model_.basis().kinetic_energy(&v);
   return impact;
@@ -42,12 +42,12 @@ void RestingPlate::begin(Knot& here, double stretch_end) {
 
 RestingPlate::Stay RestingPlate::stay(const Knot& here, double stretch_end) {
   const bool pressed = force_ >= 0;
-  double t = pressed ? std::min(stretch_end, here.time + look_) : here.time, next = press(here, t);
+  double t = pressed ? std::min(stretch_end, here.time + look_) : here.time, next = load(here, t);
   if (pressed && next < 0) {
     const double last = t;
-    t = bracketed_zero([&](double at) { return press(here, at); }, here.time, last);
+    t = bracketed_zero([&](double at) { return load(here, at); }, here.time, last);
     // Stop on the side on which the force pulls: a plate at rest at the time at which it leaves would rest again.
-    for (double more = 1e-15 * last; (next = press(here, t)) >= 0; more *= 2) t = std::min(last, t + more);
+    for (double more = 1e-15 * last; (next = load(here, t)) >= 0; more *= 2) t = std::min(last, t + more);
   }
   force_ = next;
   return {.until = t, .leaves = next < 0};

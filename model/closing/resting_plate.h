@@ -35,7 +35,7 @@ class RestingPlate {
   [[nodiscard]] double force() const { return force_ > 0 ? force_ : 0; }
   /// Returns the force with which the plate would press on the contact at `here` under the drives of time t [N]; negative when
   /// it would be pulled off.
-  [[nodiscard]] double press(const Knot& here, double t);
+  [[nodiscard]] double load(const Knot& here, double t);
 
  private:
   const Switch& model_;

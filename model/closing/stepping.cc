@@ -152,7 +152,7 @@ std::optional<Stepping::Step> Stepping::advance(double stop, EnergyAudit& audit)
     if (!step_again(*step.event)) return std::nullopt;
     consider_step();
     // The event may lie before knots that were added on the way to it.
-    for (FollowedContact& c : parts_.contacts) c.course.take_back(next_.time, here_.time);
+    for (FollowedContact& c : parts_.contacts) c.pending_knots.take_back(next_.time, here_.time);
   }
   step.field = parts_.equations.field(next_.state.data());
   account(step.field, audit);
@@ -160,7 +160,7 @@ std::optional<Stepping::Step> Stepping::advance(double stop, EnergyAudit& audit)
   std::swap(here_.state, next_.state);
   std::swap(here_.rates, next_.rates);
   here_.time = next_.time;
-  for (FollowedContact& c : parts_.contacts) c.course.push(c.end);
+  for (FollowedContact& c : parts_.contacts) c.pending_knots.push(c.end);
   return step;
 }
 
@@ -183,14 +183,14 @@ void Stepping::consider_step() {
 void Stepping::account(const FieldFigures& field, EnergyAudit& audit) {
   if (here_.time == next_.time) return;
   for (FollowedContact& c : parts_.contacts) {
-    const TrajectoryPoint& from = c.course.last();
+    const TrajectoryPoint& from = c.pending_knots.last();
     if (c.end.time > from.time) parts_.record(c, TipMotion(c.motion, from, c.end), from, c.end);
     c.touches.take(here_, next_, c.motion);
   }
   if (parts_.follows_state()) {
     std::vector<ContactInStep> contacts;
     for (FollowedContact& c : parts_.contacts)
-      contacts.push_back({c.motion, c.course.last(), c.end, c.phase.law(), c.phase.in_contact()});
+      contacts.push_back({c.motion, c.pending_knots.last(), c.end, c.phase.law(), c.phase.in_contact()});
     parts_.electrical->take(here_.time, next_.time, contacts);
   }
   audit.step(here_, next_, field.dissipation, parts_.first().motion, implicit());
@@ -216,7 +216,7 @@ TrajectoryPoint Stepping::knot(FollowedContact& contact, int k) {
 }
 
 double Stepping::force_on_line(const FollowedContact& contact, double time) {
-  const TrajectoryPoint &from = contact.course.last(), &to = contact.end;
+  const TrajectoryPoint &from = contact.pending_knots.last(), &to = contact.end;
   return std::lerp(from.contact_force, to.contact_force, (time - from.time) / (to.time - from.time));
 }
 
@@ -231,7 +231,7 @@ bool Stepping::follow(std::optional<Event>& event) {
 double Stepping::first_event_time() {
   double first = next_.time;
   for (FollowedContact& c : parts_.contacts) {
-    TrajectoryPoint from = c.course.last();
+    TrajectoryPoint from = c.pending_knots.last();
     for (int k = 1; k <= c.motion.pieces() && from.time < first; ++k) {
       const TrajectoryPoint to = knot(c, k);
       if (const auto event = first_event(TipMotion(c.motion, from, to), from, to, c.phase)) {
@@ -248,7 +248,7 @@ double Stepping::first_event_time() {
 bool Stepping::follow(FollowedContact& contact, double until, std::optional<Event>& event) {
   StepMotion& motion = contact.motion;
   for (int k = 1; k <= motion.pieces(); ++k) {
-    const TrajectoryPoint from = contact.course.last(), to = knot(contact, k);
+    const TrajectoryPoint from = contact.pending_knots.last(), to = knot(contact, k);
     const TipMotion tip(motion, from, to);
     std::optional<Event> found = first_event(tip, from, to, contact.phase);
     if (found && found->time <= until) {
@@ -263,7 +263,7 @@ bool Stepping::follow(FollowedContact& contact, double until, std::optional<Even
       return true;
     } else if (k < motion.pieces()) {
       parts_.record(contact, tip, from, to);
-      contact.course.push(to);
+      contact.pending_knots.push(to);
     }
   }
   return true;
@@ -271,14 +271,14 @@ bool Stepping::follow(FollowedContact& contact, double until, std::optional<Even
 
 // Passes an event at which the integrator is not restarted. Returns false after too many.
 bool Stepping::go_through(FollowedContact& contact, const Event& event, const TipMotion& tip) {
-  const TrajectoryPoint from = contact.course.last();
+  const TrajectoryPoint from = contact.pending_knots.last();
   TrajectoryPoint at{.time = event.time,
                      .position = event.edge->level,
                      .velocity = tip.velocity(event.time),
                      .acceleration = tip.acceleration(event.time)};
   if (parts_.model.has_spread_contact(contact.number)) at.contact_force = force_on_line(contact, at.time);
   if (at.time > from.time) parts_.record(contact, TipMotion(contact.motion, from, at), from, at);
-  contact.course.push(at);
+  contact.pending_knots.push(at);
   contact.touches.note(event, at);
   contact.phase.enter(event.edge->next, event.edge->zone);
   contact.end = parts_.point(contact, next_);  // end of the step in the new phase

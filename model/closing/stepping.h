@@ -40,7 +40,7 @@ struct FollowedContact {
         phase(contact_phase),
         touches(model, contact, contact_phase, observer),
         force(model, options.steady_force, contact),
-        course(model.device(), contact, observer),
+        pending_knots(model.device(), contact, observer),
         motion(model, options.tolerance, contact) {}
 
   std::size_t number;
@@ -48,7 +48,7 @@ struct FollowedContact {
   ContactPhase& phase;
   TouchRecord touches;
   ForceRecord force;
-  Course course;
+  PendingKnots pending_knots;
   StepMotion motion;    ///< motion in the present step
   TrajectoryPoint end;  ///< contact point at the end of the present step
 };
@@ -109,11 +109,11 @@ struct ClosingParts {
   [[nodiscard]] TrajectoryPoint point(const FollowedContact& contact, const Knot& knot) const;
   /// Continues the motion of every contact to a knot.
   void push(const Knot& knot) {
-    for (FollowedContact& c : contacts) c.course.push(point(c, knot));
+    for (FollowedContact& c : contacts) c.pending_knots.push(point(c, knot));
   }
   /// Passes on the knots that no event can change any more.
   void hand_over() {
-    for (FollowedContact& c : contacts) c.course.hand_over();
+    for (FollowedContact& c : contacts) c.pending_knots.hand_over();
     if (connection) connection->hand_over();
   }
   /// Returns the begin of the first touch of a contact of the near side [s]; NaN before this touch.

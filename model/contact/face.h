@@ -61,7 +61,7 @@ template <class Law>
 /// The pressure of a face with asperities on a beam of one width.
 struct RoughFacePressure {
   UniformAsperityContact asperities;  ///< asperities per length
-  static constexpr bool driven = false;
+  static constexpr bool drive_depends = false;
 
   /// Returns the load [N/m], away from the electrode.
   template <class S>
@@ -77,7 +77,7 @@ struct RoughFacePressure {
 struct FacePressure {
   double stiffness = 0;  ///< stiffness per length, a k [N/m^2]
   double from = 0;       ///< b [m]
-  static constexpr bool driven = false;
+  static constexpr bool drive_depends = false;
 
   /// Returns the load [N/m], away from the electrode.
   template <class S>
@@ -96,7 +96,7 @@ struct FacePressure {
 template <class Law>
 struct StopsAtFace {
   Law law;
-  static constexpr bool driven = Law::driven;
+  static constexpr bool drive_depends = Law::drive_depends;
 
   template <class S>
   [[gnu::always_inline]] S load(S gap, S velocity) const {

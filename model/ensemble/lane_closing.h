@@ -1,14 +1,14 @@
-// The data that fleet.cc passes to the code compiled for each set of vector instructions: numbers only. This code must leave no
-// function behind that the linker could use for the rest of the program, since not every processor can run it.
+// The data that ensemble_closings.cc passes to the code compiled for each set of vector instructions: numbers only. This code
+// must leave no function behind that the linker could use for the rest of the program, since not every processor can run it.
 #pragma once
 
 #include <cstddef>
 
 namespace softland {
-enum class Vectors;  // model/ensemble/fleet.h
+enum class Vectors;  // model/ensemble/ensemble_closings.h
 }
 
-namespace softland::fleet {
+namespace softland::simd {
 
 inline constexpr int most_modes = 8, most_points = 48, most_drives = 6, most_segments = most_points;
 inline constexpr int most_contacts = 4;
@@ -154,4 +154,4 @@ void run_avx512(const LaneLayout& layout, LaneClosing* closings, std::size_t cou
 /// Returns the function for these vectors; null where this build does not have them.
 [[nodiscard]] LaneRunner lane_runner(Vectors vectors);
 
-}  // namespace softland::fleet
+}  // namespace softland::simd

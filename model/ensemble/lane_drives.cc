@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace softland::fleet {
+namespace softland::simd {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -16,9 +16,9 @@ bool is_tail(const SignalTerm& term) {
 }
 
 /// A run of short pieces [first, last) with the integrals up to each.
-class Run {
+class PieceRun {
  public:
-  Run(std::span<const LanePiece> pieces, double end) : pieces_(pieces), end_(end) {
+  PieceRun(std::span<const LanePiece> pieces, double end) : pieces_(pieces), end_(end) {
     for (std::size_t i = 0; i < pieces.size(); ++i) integrals_.push_back(i == 0 ? 0 : integral_to(pieces[i].begin, i - 1));
   }
   [[nodiscard]] double begin() const { return pieces_.front().begin; }
@@ -79,7 +79,7 @@ struct Knot {
 
 /// Returns the mean over the window about a time, and its rate of change. Near an end of the run the window shrinks on both
 /// sides.
-Knot mean_about(double time, const Run& run, double window) {
+Knot mean_about(double time, const PieceRun& run, double window) {
   const double before = time - run.begin(), after = run.end() - time;
   if (before <= 0) return {time, run.voltage(time), run.rate(time)};
   if (after <= 0) return {time, run.voltage(time), run.rate(time)};
@@ -109,7 +109,7 @@ double missing(const Knot& a, const Knot& b, double integral) {
 
 /// Restores the integral, which a mean reduces at corners: corrects the knots between the ends by the missing integral about
 /// them.
-void restore_integral(std::vector<Knot>& knots, const Run& run) {
+void restore_integral(std::vector<Knot>& knots, const PieceRun& run) {
   const std::size_t last = knots.size() - 1;
   double until = run.integral(knots.front().time);  // integral up to the knot [V s]
   std::vector<double> more(knots.size(), 0);        // correction of each knot [V]
@@ -127,7 +127,7 @@ void restore_integral(std::vector<Knot>& knots, const Run& run) {
   }
 }
 
-void append_smooth(std::vector<LanePiece>& all, const Run& run, double window) {
+void append_smooth(std::vector<LanePiece>& all, const PieceRun& run, double window) {
   const double length = run.end() - run.begin(), count = std::max(2.0, std::ceil(2 * length / window));
   std::vector<Knot> knots{mean_about(run.begin(), run, window)};
   for (double k = 1; k < count; ++k) knots.push_back(mean_about(run.begin() + length * (k / count), run, window));
@@ -205,7 +205,7 @@ SmoothedDrive smoothed(std::vector<LanePiece> exact) {
                           exact.begin() + static_cast<std::ptrdiff_t>(end));
     } else {
       const std::span<const LanePiece> all(exact);
-      const Run run(all.subspan(i, end - i), exact[end].begin);
+      const PieceRun run(all.subspan(i, end - i), exact[end].begin);
       const double window = run.window();
       append_smooth(drive.pieces, run, window);
       drive.window = std::max(drive.window, window);
@@ -230,4 +230,4 @@ const std::vector<LanePiece>& LaneDrives::of(const Signal& drive, double fastest
   return known.smooth.window > 0 && known.smooth.window * fastest < 1 ? known.smooth.pieces : known.exact;
 }
 
-}  // namespace softland::fleet
+}  // namespace softland::simd

@@ -9,7 +9,7 @@
 #include "model/ensemble/lane_closing.h"
 #include "waveforms/signal.h"
 
-namespace softland::fleet {
+namespace softland::simd {
 
 /// True when a signal consists of straight lines, steady sines, cubic polynomials and a few exponentials.
 [[nodiscard]] bool goes_in_lanes(const Signal& drive);
@@ -43,4 +43,4 @@ class LaneDrives {
   std::unordered_map<const Signal*, Known> known_;
 };
 
-}  // namespace softland::fleet
+}  // namespace softland::simd

@@ -8,7 +8,7 @@
 //
 // Each variant has its own law of a contact.
 //
-// All code here depends on the type of the lanes: see lane_fleet.h.
+// All code here depends on the type of the lanes: see simd_closings.h.
 #pragma once
 
 #include <cstddef>
@@ -30,7 +30,7 @@
 #include "model/gas/strip_slit.h"
 #include "model/gas/veijola.h"
 
-namespace softland::fleet {
+namespace softland::simd {
 
 template <class V>
 class UsualContact {
@@ -225,7 +225,7 @@ class AnyLaws {
     if (layout_.film != LaneFilm::none) {
       add_film(gap_);
       if (layout_.far_film) {
-        look_far(0, layout_.points, film_gaps_, film_floor_);
+        check_far_gap(0, layout_.points, film_gaps_, film_floor_);
         add_film(far_gap_);
       }
     }
@@ -266,7 +266,7 @@ class AnyLaws {
     least = min(smallest, floor + (most_gap_ - largest));  // the sum is below the floor when the far side is near
   }
 
-  void look_far(int begin, int end, const V& both, const V& floor) {
+  void check_far_gap(int begin, int end, const V& both, const V& floor) {
     for (int p = begin; p < end; ++p) far_gap_[p] = max(both - gap_[p], floor);
   }
 
@@ -326,7 +326,7 @@ class AnyLaws {
     V drive = volts[pad.electrode] * volts[pad.electrode];
     const V* gap = gap_;
     if (pad.far) {
-      look_far(pad.begin, pad.end, electrode_gaps_[pad.electrode], electrode_floor_[pad.electrode]);
+      check_far_gap(pad.begin, pad.end, electrode_gaps_[pad.electrode], electrode_floor_[pad.electrode]);
       drive = -drive, gap = far_gap_;
     }
     const auto with = [&](auto law_of) {
@@ -410,4 +410,4 @@ class AnyLaws {
   V power_;
 };
 
-}  // namespace softland::fleet
+}  // namespace softland::simd

@@ -1,10 +1,10 @@
 // The vector instructions of this build: a file of its own, so that another choice compiles nothing else again.
-#include "model/ensemble/fleet.h"
+#include "model/ensemble/ensemble_closings.h"
 #include "model/ensemble/lane_closing.h"
 
 namespace softland {
 
-fleet::LaneRunner fleet::lane_runner(Vectors vectors) {
+simd::LaneRunner simd::lane_runner(Vectors vectors) {
 #ifdef SOFTLAND_LANES_AVX512
   if (vectors == Vectors::avx512) return run_avx512;
 #endif
@@ -17,7 +17,7 @@ fleet::LaneRunner fleet::lane_runner(Vectors vectors) {
 
 bool has(Vectors vectors) {
   if (vectors == Vectors::none) return true;
-  if (fleet::lane_runner(vectors) == nullptr) return false;
+  if (simd::lane_runner(vectors) == nullptr) return false;
 #if defined(__x86_64__)
   __builtin_cpu_init();
   const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");

@@ -75,7 +75,7 @@ template <class Pressure, class P = double>
 struct DispersionForce {
   Pressure law;
   P width = 0;  ///< a [m]
-  static constexpr bool driven = true;
+  static constexpr bool drive_depends = true;
 
   /// Returns the load [N/m] at factor 1.
   template <class S>

@@ -15,7 +15,7 @@ namespace softland {
 template <class Law>
 struct ElectrostaticForce {
   Law fringing;
-  static constexpr bool driven = true;
+  static constexpr bool drive_depends = true;
 
   /// Returns the load [N / (m V^2)].
   template <class S>
@@ -42,7 +42,7 @@ template <class Law>
 struct ThroughDielectric {
   Law law;
   double depth = 0;  ///< Dielectric::depth() [m]
-  static constexpr bool driven = Law::driven;
+  static constexpr bool drive_depends = Law::drive_depends;
 
   template <class S>
   [[gnu::always_inline]] S load(S gap, S velocity) const {

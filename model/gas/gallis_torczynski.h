@@ -20,7 +20,7 @@ struct GallisTorczynskiFilmOf {
   P viscosity = 0;       ///< [Pa s]
   P mean_free_path = 0;  ///< [m]
   P width = 0;           ///< [m]
-  static constexpr bool driven = false;
+  static constexpr bool drive_depends = false;
 
   /// Returns the load [N/m].
   template <class S>

@@ -26,7 +26,7 @@ struct GuoAlexeenkoFilmOf {
   P thickness = 0;                                                   ///< [m]
   P strength = 10.39 * thickness;                                    // A b [N s/m^2]
   P rarefaction = P(1.374) * raised(mean_free_path / width, 0.966);  // B (lambda/a)^e
-  static constexpr bool driven = false;
+  static constexpr bool drive_depends = false;
 
   /// Returns the load [N/m].
   template <class S>

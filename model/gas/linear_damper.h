@@ -18,7 +18,7 @@ namespace softland {
 template <class P>
 struct LinearDamperOf {
   P damping = 0;  ///< c [N s/m^2]
-  static constexpr bool driven = false;
+  static constexpr bool drive_depends = false;
 
   /// Returns the load [N/m].
   template <class S>

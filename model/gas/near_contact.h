@@ -24,7 +24,7 @@ struct NearContactFilmOf {
   P viscosity = 0;       ///< [Pa s]
   P mean_free_path = 0;  ///< [m]
   P width = 0;           ///< [m]
-  static constexpr bool driven = false;
+  static constexpr bool drive_depends = false;
   static constexpr double near = 0.015;       ///< h/a below which g is continued by its tangent
   static constexpr double rarefied = 210.79;  ///< E is that of rarefied gas for Kn well above 1 / rarefied
 

@@ -28,7 +28,7 @@ struct PerforatedStripFilm {
   double width = 0;      ///< width with the holes [m]
   double through = 0;    ///< R of the holes [Pa s/m]
   double around = 0;     ///< h^3 times R of the film around a hole [Pa s m^2]
-  static constexpr bool driven = false;
+  static constexpr bool drive_depends = false;
 
   PerforatedStripFilm(double mu, double a, double thickness, const Holes& holes) : viscosity(mu), width(a) {
     const double hole = holes.size / std::sqrt(pi), cell = holes.pitch / std::sqrt(pi), b = hole / cell;

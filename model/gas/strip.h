@@ -18,7 +18,7 @@ struct StripSqueezeFilmOf {
   P viscosity = 0;  ///< [Pa s]
   P width = 0;      ///< [m]
   P mu_a3 = viscosity * width * width * width;
-  static constexpr bool driven = false;
+  static constexpr bool drive_depends = false;
 
   /// Returns the load [N/m].
   template <class S>

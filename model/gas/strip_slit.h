@@ -26,7 +26,7 @@ struct StripOverSlitOf {
   P slit_length = 0;  ///< [m]
   P mu_a3 = viscosity * width * width * width;
   P passing = width * slit_height * slit_height * slit_height / slit_length;  ///< r h^3 [m^3]
-  static constexpr bool driven = false;
+  static constexpr bool drive_depends = false;
 
   /// Returns the load [N/m].
   template <class S>

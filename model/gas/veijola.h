@@ -21,7 +21,7 @@ struct VeijolaFilmOf {
   P mean_free_path = 0;  ///< [m]
   P width = 0;           ///< [m]
   P mu_a3 = viscosity * width * width * width;
-  static constexpr bool driven = false;
+  static constexpr bool drive_depends = false;
 
   /// Returns the load [N/m].
   template <class S>

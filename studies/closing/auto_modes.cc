@@ -35,28 +35,29 @@ struct Judgement {
 
 // Finds pull-in voltages only as precisely as the comparison needs: a dynamic pull-in voltage takes as long as tens of
 // closings.
-ElectrodePullIn pull_in_to_be_judged(const Switch& model, std::size_t electrode, Bias bias, const Watch& watch) {
+ElectrodePullIn pull_in_to_be_judged(const Switch& model, std::size_t electrode, Bias bias, const Progress& progress) {
   constexpr double precision = 1e-5;
   ElectrodePullIn found{.statically = static_pull_in(model, electrode, bias)};
-  found.dynamically = dynamic_pull_in(model, electrode, found.statically, bias, watch, run_tolerance, precision);
+  found.dynamically = dynamic_pull_in(model, electrode, found.statically, bias, progress, run_tolerance, precision);
   return found;
 }
 
-Judgement judged(const SceneFile& file, int modes, const Watch& watch) {
+Judgement judged(const SceneFile& file, int modes, const Progress& progress) {
   SceneFile with = file;
   with.assign("structure.modes", modes);
   with.assign("simulate.effects",
               std::string("all"));  // every number of modes is compared with all effects; effects are left out later
-  const PreparedScene p = prepare(with, false, watch, pull_in_to_be_judged);
+  const PreparedScene p = prepare(with, false, progress, pull_in_to_be_judged);
   const double omega = p.model.basis().angular_frequencies()[0], gap = p.scene.device.contact_gap();
-  const Trajectory t = simulate_closing(p.model, p.signals(),
-                                        {.duration = p.duration,
-                                         .tolerance = std::max(run_tolerance, p.tolerance),
-                                         .after_contact = 2 * pi / omega,
-                                         .start = p.start(),
-                                         .stop = watch.stop,
-                                         .observer = observer(watch, fmt::format("closing with {} modes", modes), p.duration)});
-  watch.throw_if_stopped();
+  const Trajectory t =
+      simulate_closing(p.model, p.signals(),
+                       {.duration = p.duration,
+                        .tolerance = std::max(run_tolerance, p.tolerance),
+                        .after_contact = 2 * pi / omega,
+                        .start = p.start(),
+                        .stop = progress.stop,
+                        .observer = observer(progress, fmt::format("closing with {} modes", modes), p.duration)});
+  progress.throw_if_stopped();
   const Metrics m = metrics(t, p.scene.metrics);
   FigureValues scale;
   scale[&Metrics::initial_contact_time] = 1 / omega;
@@ -119,14 +120,14 @@ std::string AutoModes::note() const {
                                  modes == 1 ? "" : "s", judged, engineering(100 * moved, "%", 2), not_judged);
 }
 
-AutoModes choose_modes(const SceneFile& file, const Watch& watch) {
+AutoModes choose_modes(const SceneFile& file, const Progress& progress) {
   const Scene scene = read_scene(file);
   const bool both_clamped = scene.device.structure.has_far_clamp();
   const int further = both_clamped ? 6 : 3;
   std::map<int, Judgement> known;
   const auto with = [&](int modes) -> const Judgement& {
     const auto found = known.find(modes);
-    return found != known.end() ? found->second : known.emplace(modes, judged(file, modes, watch)).first->second;
+    return found != known.end() ? found->second : known.emplace(modes, judged(file, modes, progress)).first->second;
   };
   AutoModes found;
   for (int modes = 1; modes + further <= most_modes; ++modes) {

@@ -15,7 +15,7 @@
 
 #include <string>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "config/scene.h"
 
 namespace softland {
@@ -33,6 +33,6 @@ struct AutoModes {
 
 /// Returns the chosen number of modes, or the largest number that can be compared with further ones if the figures change at
 /// every number. Throws as prepare() does.
-[[nodiscard]] AutoModes choose_modes(const SceneFile& file, const Watch& watch = {});
+[[nodiscard]] AutoModes choose_modes(const SceneFile& file, const Progress& progress = {});
 
 }  // namespace softland

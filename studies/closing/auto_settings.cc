@@ -27,21 +27,21 @@ std::string left_out_note(const EffectsChoice& choice, double tolerance) {
                      engineering(choice.influence, "", 1));
 }
 
-PreparedScene with_as_many_modes_as_needed(const PreparedScene& prepared, bool default_limits, const Watch& watch) {
-  const AutoModes chosen = choose_modes(prepared.scene.file, watch);
+PreparedScene with_as_many_modes_as_needed(const PreparedScene& prepared, bool default_limits, const Progress& progress) {
+  const AutoModes chosen = choose_modes(prepared.scene.file, progress);
   SceneFile file = prepared.scene.file;
   file.assign("structure.modes", chosen.modes);
-  PreparedScene p = prepare(file, default_limits, watch);
+  PreparedScene p = prepare(file, default_limits, progress);
   p.scene.warnings.push_back(chosen.note());
   return p;
 }
 
-PreparedScene without_what_does_not_matter(const PreparedScene& prepared, const Watch& watch) {
+PreparedScene without_what_does_not_matter(const PreparedScene& prepared, const Progress& progress) {
   const double tolerance = prepared.scene.simulate.effects_tolerance;
-  EffectsChoice choice = negligible_effects(prepared, tolerance, watch);
+  EffectsChoice choice = negligible_effects(prepared, tolerance, progress);
   std::vector<OmissibleEffect> effects;
   for (const EffectAblation& o : choice.left_out) effects.push_back(o.what);
-  PreparedScene chosen = without(prepared, effects);
+  PreparedScene chosen = copy_without(prepared, effects);
   chosen.scene.warnings.push_back(left_out_note(choice, tolerance));
   chosen.effects =
       std::make_shared<const DescribedEffects>(DescribedEffects{.described = prepared.scene, .choice = std::move(choice)});
@@ -50,14 +50,14 @@ PreparedScene without_what_does_not_matter(const PreparedScene& prepared, const 
 
 }  // namespace
 
-PreparedScene choose(PreparedScene prepared, bool default_limits, const Watch& watch) {
-  if (prepared.scene.auto_modes) prepared = with_as_many_modes_as_needed(prepared, default_limits, watch);
-  if (prepared.scene.simulate.automatic_effects) prepared = without_what_does_not_matter(prepared, watch);
+PreparedScene choose(PreparedScene prepared, bool default_limits, const Progress& progress) {
+  if (prepared.scene.auto_modes) prepared = with_as_many_modes_as_needed(prepared, default_limits, progress);
+  if (prepared.scene.simulate.automatic_effects) prepared = without_what_does_not_matter(prepared, progress);
   return prepared;
 }
 
-PreparedScene prepare_and_choose(const SceneFile& file, bool default_limits, const Watch& watch) {
-  PreparedScene prepared = choose(prepare(file, default_limits, watch), default_limits, watch);
+PreparedScene prepare_and_choose(const SceneFile& file, bool default_limits, const Progress& progress) {
+  PreparedScene prepared = choose(prepare(file, default_limits, progress), default_limits, progress);
   for (std::string& warning : mode_warnings(prepared)) prepared.scene.warnings.push_back(std::move(warning));
   return prepared;
 }

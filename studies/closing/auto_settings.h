@@ -2,18 +2,18 @@
 // prepared scene, and returns a newly prepared scene.
 #pragma once
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "studies/closing/prepared.h"
 
 namespace softland {
 
 /// Returns the scene with as many modes as its closing needs, then without the effects that change its figures negligibly. Adds
 /// a warning for each choice. A scene without choices is returned unchanged. `default_limits` is as in prepare(). Throws as
-/// prepare() does, and Interrupted if `watch` asks to stop.
-[[nodiscard]] PreparedScene choose(PreparedScene prepared, bool default_limits = false, const Watch& watch = {});
+/// prepare() does, and Interrupted if `progress` asks to stop.
+[[nodiscard]] PreparedScene choose(PreparedScene prepared, bool default_limits = false, const Progress& progress = {});
 
 /// Prepares a user's scene: prepare(), then choose(). Adds a warning if more modes change its static pull-in voltages
 /// (by_modes.h).
-[[nodiscard]] PreparedScene prepare_and_choose(const SceneFile& file, bool default_limits = false, const Watch& watch = {});
+[[nodiscard]] PreparedScene prepare_and_choose(const SceneFile& file, bool default_limits = false, const Progress& progress = {});
 
 }  // namespace softland

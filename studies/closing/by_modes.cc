@@ -83,7 +83,7 @@ std::string mode_warning(const Scene& scene, std::size_t electrode, const ByMode
       "structure.modes = {}: more modes move the static pull-in voltage of electrode {}, {}, by {}; dynamic pull-in "
       "and release are as uncertain",
       scene.device.structure.modes, scene.device.electrodes[electrode].name,
-      engineering(voltage.values.begin()->second, "V", digits), shift_words(voltage));
+      engineering(voltage.values.begin()->second, "V", digits), shift_prose(voltage));
 }
 
 std::string capacitance_warning(const Scene& scene, const ByModes& found) {
@@ -95,7 +95,7 @@ std::string capacitance_warning(const Scene& scene, const ByModes& found) {
           : fmt::format("the {} modes that a closing takes at most do not give it to 1 %", Structure::most_modes);
   return fmt::format("structure.modes = {}: more modes move the capacitance of the closed state, {}, by {}; {}",
                      scene.device.structure.modes, engineering(found.values.begin()->second, "F", digits),
-                     shift_words(found, "F"), enough);
+                     shift_prose(found, "F"), enough);
 }
 
 }  // namespace
@@ -224,7 +224,7 @@ std::optional<int> modes_needed(const ByModes& found) {
   return fewest;
 }
 
-std::string shift_words(const ByModes& value, std::string_view unit) {
+std::string shift_prose(const ByModes& value, std::string_view unit) {
   constexpr int digits = 5;
   constexpr double least = 1e-5;
   const double moved = value.moved();

@@ -92,7 +92,7 @@ struct VoltagesByModes {
 [[nodiscard]] std::optional<int> modes_needed(const ByModes& found);
 
 /// "−6.1 %, to 142.7 V": the shift of a voltage, or another value, by more modes, and its limit if that is reported.
-[[nodiscard]] std::string shift_words(const ByModes& value, std::string_view unit = "V");
+[[nodiscard]] std::string shift_prose(const ByModes& value, std::string_view unit = "V");
 
 /// Sentences about shifts of a scene's static pull-in voltages, and of the capacitance of its closed state, that are reported.
 [[nodiscard]] std::vector<std::string> mode_warnings(const PreparedScene& prepared);

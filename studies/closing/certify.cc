@@ -33,7 +33,7 @@ bool ill_conditioned(const Figure& figure, const std::vector<Metrics>& cloud, co
 // Computes the figures of the closing with each pull-in voltage that serves as a unit of its drives increased, and decreased,
 // by its error. The error is a multiple of the change with a finer quadrature, plus the width of the bracket of the voltage.
 std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switch& fine, const SwitchOptions& quadrature,
-                                      const ClosingOptions& options, const MetricsOptions& figures, const Watch& watch) {
+                                      const ClosingOptions& options, const MetricsOptions& figures, const Progress& progress) {
   const Scene& written = prepared.effects ? prepared.effects->described : prepared.scene;
   std::vector<Metrics> found;
   for (const std::string& name : written.need_pull_in) {
@@ -45,7 +45,7 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
     const Switch model(written.device, quadrature);
     const std::vector<double> bias = bias_of(written, k);
     const StaticPullIn statically = static_pull_in(model, k, bias);
-    const DynamicPullIn dynamically = dynamic_pull_in(model, k, statically, bias, watch);
+    const DynamicPullIn dynamically = dynamic_pull_in(model, k, statically, bias, progress);
     const ElectrodePullIn& own = known->second;
     const double by_static = error_safety * std::abs(statically.voltage - own.statically.voltage);
     const double by_dynamic = error_safety * std::abs(dynamically.voltage - own.dynamically.voltage) +
@@ -80,13 +80,13 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
 }
 
 // The rebounds of one run, with the impact velocity of the touch before each.
-struct Course {
+struct ReboundSequence {
   std::vector<Rebound> rebounds;
   std::vector<double> impacts;  // [m/s]
 };
 
-Course course(const Trajectory& run) {
-  Course c{.rebounds = rebounds(run), .impacts = {}};
+ReboundSequence rebound_sequence(const Trajectory& run) {
+  ReboundSequence c{.rebounds = rebounds(run), .impacts = {}};
   std::size_t touch = 0;
   for (const Rebound& r : c.rebounds) {
     while (touch + 1 < run.touches.size() && run.touches[touch + 1].begin <= r.begin) ++touch;
@@ -98,10 +98,10 @@ Course course(const Trajectory& run) {
 }  // namespace
 
 std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, const MetricsOptions& options) {
-  std::vector<Course> courses;
-  for (const Trajectory& run : runs) courses.push_back(course(run));
-  if (courses.empty()) return std::nullopt;
-  const Course& first = courses.front();
+  std::vector<ReboundSequence> sequences;
+  for (const Trajectory& run : runs) sequences.push_back(rebound_sequence(run));
+  if (sequences.empty()) return std::nullopt;
+  const ReboundSequence& first = sequences.front();
   const auto named = [&](std::size_t k, bool at_threshold) {
     const Rebound& r = first.rebounds[k];
     return GrazingRebound{.number = static_cast<int>(k) + 1,
@@ -119,7 +119,7 @@ std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, 
     const double own = first.rebounds[k].height;
     const bool counts = own > options.significant_rebound;
     bool apart = false, across = false;
-    for (const Course& other : courses) {
+    for (const ReboundSequence& other : sequences) {
       const double height = k < other.rebounds.size() ? other.rebounds[k].height : Metrics::unset;
       apart = apart || !(std::abs(height - own) <= parted * own);
       across = across || (height > options.significant_rebound) != counts;
@@ -127,14 +127,15 @@ std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, 
     if (apart) return gentlest(k + 1);
     if (across) return named(k, true);
   }
-  const bool others_go_on = std::any_of(courses.begin(), courses.end(),
-                                        [&](const Course& other) { return other.rebounds.size() > first.rebounds.size(); });
+  const bool others_go_on = std::any_of(sequences.begin(), sequences.end(), [&](const ReboundSequence& other) {
+    return other.rebounds.size() > first.rebounds.size();
+  });
   if (!others_go_on || first.rebounds.empty()) return std::nullopt;
   return gentlest(first.rebounds.size());
 }
 
-Closing certify(const PreparedScene& prepared, const Watch& watch, int jobs) {
-  Closing c = simulate(prepared, true, watch);
+Closing certify(const PreparedScene& prepared, const Progress& progress, int jobs) {
+  Closing c = simulate(prepared, true, progress);
   if (!c.judge) return c;
   if (!c.judge->came_to_its_end) {
     c.warnings.emplace_back("the figures could not be certified: no second run to compare them with came to its end");
@@ -150,13 +151,13 @@ Closing certify(const PreparedScene& prepared, const Watch& watch, int jobs) {
                                .steady_force = prepared.scene.metrics.steady_force * c.trajectory.hold_force,
                                .start = prepared.start(),
                                .opens_at = c.command ? c.command->time : std::numeric_limits<double>::infinity(),
-                               .stop = watch.stop};
+                               .stop = progress.stop};
   const MetricsOptions figures = with_load(with_opening(prepared.scene.metrics, fine, signals, c.command), fine, prepared.start(),
                                            c.command ? c.command->held : signals);
   const Metrics& better = c.judge->metrics;
-  const std::vector<Metrics> moved = at_other_pull_in(prepared, fine, quadrature, options, figures, watch);
-  std::vector<Trajectory> cloud = perturbed_closings(fine, signals, options, {.jobs = jobs}, watch);
-  if (watch.stopped()) {
+  const std::vector<Metrics> moved = at_other_pull_in(prepared, fine, quadrature, options, figures, progress);
+  std::vector<Trajectory> cloud = perturbed_closings(fine, signals, options, {.jobs = jobs}, progress);
+  if (progress.stopped()) {
     c.metrics.status = Status::interrupted;
     c.warnings.insert(c.warnings.begin(), "interrupted before the figures were certified");
     return c;

@@ -47,6 +47,6 @@ inline constexpr double error_safety = 3;
 
 /// Runs the scene's own waveforms with simulate() and certifies the figures, if both the run and its judge came to their end.
 /// `jobs` is the number of threads for the cloud; it does not change the result.
-[[nodiscard]] Closing certify(const PreparedScene& prepared, const Watch& watch = {}, int jobs = 1);
+[[nodiscard]] Closing certify(const PreparedScene& prepared, const Progress& progress = {}, int jobs = 1);
 
 }  // namespace softland

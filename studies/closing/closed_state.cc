@@ -75,7 +75,7 @@ std::string unstable_rest(const Switch& model, const std::vector<Signal>& signal
 namespace {
 
 // Returns "9.97e10 rad^2/s^2 with 5 modes, -6.9e10 with 10, none with 20".
-std::string by_modes_words(const ByModes& found, std::string_view unit, int digits) {
+std::string by_modes_prose(const ByModes& found, std::string_view unit, int digits) {
   std::string words;
   for (const auto& [modes, value] : found.values)
     words += fmt::format("{}{} with {}{}", words.empty() ? "" : ", ",
@@ -95,7 +95,7 @@ std::string warning(const ClosedState& state) {
           ? fmt::format(
                 "whether the hold levels keep the switch closed depends on the number of modes: the smallest eigenvalue of "
                 "its closed equilibrium, which must be positive, is {}",
-                by_modes_words(*state.by_modes, "rad^2/s^2", 3))
+                by_modes_prose(*state.by_modes, "rad^2/s^2", 3))
           : std::string(
                 "the hold levels do not keep the switch closed: its closed equilibrium is unstable, and the beam is pulled "
                 "through the contact onto the electrode, sooner or later");
@@ -103,7 +103,7 @@ std::string warning(const ClosedState& state) {
     const auto more = state.pulled_through_by_modes.find(electrode);
     if (state.flips && more != state.pulled_through_by_modes.end()) {
       words += fmt::format("; electrode {} pulls the beam through the contact from this voltage on: {}", electrode,
-                           by_modes_words(more->second, "V", 4));
+                           by_modes_prose(more->second, "V", 4));
     } else if (std::isfinite(volts)) {
       words += fmt::format(" (electrode {}: from {} on)", electrode, engineering(volts, "V", 4));
     }

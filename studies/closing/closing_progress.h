@@ -6,18 +6,18 @@
 #include <string>
 #include <utility>
 
-#include "base/watch.h"
+#include "base/progress.h"
 
 namespace softland {
 
 /// Returns a ClosingOptions::observer that reports the progress of a closing of `duration` [s]. The closing is the `share` of a
-/// computation of which `done` is complete. The observer is empty if the watch has no listener, and must not outlive `watch`.
-[[nodiscard]] inline std::function<bool(double, const double*, const double*)> observer(const Watch& watch, std::string what,
-                                                                                        double duration, double done = 0,
-                                                                                        double share = 1) {
-  if (!watch.progress) return {};
-  return [&watch, what = std::move(what), duration, done, share](double time, const double*, const double*) {
-    watch.tell(what, std::min(1.0, done + share * time / duration));
+/// computation of which `done` is complete. The observer is empty if it has no listener, and must not outlive `progress`.
+[[nodiscard]] inline std::function<bool(double, const double*, const double*)> observer(const Progress& progress,
+                                                                                        std::string what, double duration,
+                                                                                        double done = 0, double share = 1) {
+  if (!progress.report) return {};
+  return [&progress, what = std::move(what), duration, done, share](double time, const double*, const double*) {
+    progress.tell(what, std::min(1.0, done + share * time / duration));
     return false;
   };
 }

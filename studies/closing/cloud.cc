@@ -10,7 +10,7 @@
 namespace softland {
 
 std::vector<Trajectory> perturbed_closings(const Switch& model, std::span<const Signal> drives, const ClosingOptions& closing,
-                                           const CloudOptions& options, const Watch& watch) {
+                                           const CloudOptions& options, const Progress& progress) {
   std::vector<Trajectory> runs(static_cast<std::size_t>(options.runs));
   std::mutex telling;
   int done = 0;
@@ -25,7 +25,7 @@ std::vector<Trajectory> perturbed_closings(const Switch& model, std::span<const 
     }
     runs[i] = simulate_closing(model, perturbed, closing);
     const std::scoped_lock lock(telling);
-    watch.tell("cloud of perturbed closings", static_cast<double>(++done) / options.runs);
+    progress.tell("cloud of perturbed closings", static_cast<double>(++done) / options.runs);
   };
   runs.resize(run_tasks(runs.size(), options.jobs, run, closing.stop));
   const auto interrupted = [](const Trajectory& t) { return t.status == Status::interrupted; };

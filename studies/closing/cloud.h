@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "model/closing.h"
 #include "objectives/figures.h"
 
@@ -22,10 +22,11 @@ struct CloudOptions {
 };
 
 /// Returns the runs in order, as a function of the arguments alone. If `closing.stop` ends a run, that run and all after it are
-/// left out. An observer of `closing` is called from several threads at once if jobs > 1; `watch` is called from one at a time.
+/// left out. An observer of `closing` is called from several threads at once if jobs > 1; `progress` is called from one at a
+/// time.
 [[nodiscard]] std::vector<Trajectory> perturbed_closings(const Switch& model, std::span<const Signal> drives,
                                                          const ClosingOptions& closing, const CloudOptions& options = {},
-                                                         const Watch& watch = {});
+                                                         const Progress& progress = {});
 
 /// Range of a figure over those runs in which it exists; NaN if there are none.
 struct Spread {

@@ -31,9 +31,9 @@ double force_at_rest(const Device& described, std::size_t electrode) {
 
 double first_frequency(const Device& device) { return Switch(device).basis().angular_frequencies()[0]; }
 
-BoundedClosing closing(const PreparedScene& p, const Watch& watch, const ClosingBound& bound = {}, double done = 0,
+BoundedClosing closing(const PreparedScene& p, const Progress& progress, const ClosingBound& bound = {}, double done = 0,
                        double share = 1) {
-  return bounded_closing(p, p.model, bound, watch, "closings without each effect", done, share);
+  return bounded_closing(p, p.model, bound, progress, "closings without each effect", done, share);
 }
 
 // Returns the effect that shifts the rest position of the contact point by the difference between these two devices.
@@ -269,7 +269,7 @@ std::vector<OmissibleEffect> omissible_effects(const PreparedScene& prepared) {
   return list;
 }
 
-PreparedScene without(const PreparedScene& prepared, const std::vector<OmissibleEffect>& effects) {
+PreparedScene copy_without(const PreparedScene& prepared, const std::vector<OmissibleEffect>& effects) {
   const SceneFile frozen = prepared.resolved();
   SceneFile file = frozen.again(prepared.scene.file.name());
   file.assign("simulate.effects", std::string("all"));
@@ -310,16 +310,16 @@ double influence(const Metrics& own, const Metrics& other, const MetricsOptions&
   return most;
 }
 
-BoundedClosing bounded_closing(const PreparedScene& prepared, const Switch& model, const ClosingBound& bound, const Watch& watch,
-                               const std::string& what, double done, double share) {
+BoundedClosing bounded_closing(const PreparedScene& prepared, const Switch& model, const ClosingBound& bound,
+                               const Progress& progress, const std::string& what, double done, double share) {
   constexpr long steps_per_look = 64;  // integrator steps between two readings of the clock
   BoundedClosing found;
-  const auto tell = observer(watch, what, prepared.duration, done, share);
+  const auto tell = observer(progress, what, prepared.duration, done, share);
   const double start = processor_seconds();
   const Trajectory t = simulate_closing(model, prepared.signals(),
                                         {.duration = prepared.duration,
                                          .tolerance = prepared.tolerance,
-                                         .stop = watch.stop,
+                                         .stop = progress.stop,
                                          .observer = [&](double time, const double* q, const double* v) {
                                            if (tell) tell(time, q, v);
                                            keep_state(model, q, found.states);
@@ -337,41 +337,41 @@ BoundedClosing bounded_closing(const PreparedScene& prepared, const Switch& mode
 }
 
 std::vector<EffectAblation> ablate_effects(const PreparedScene& prepared, const BoundedClosing& own, bool timed,
-                                           const Watch& watch) {
+                                           const Progress& progress) {
   std::vector<EffectAblation> list;
   std::vector<OmissibleEffect> effects = omissible_effects(prepared);
   for (OmissibleEffect& effect : effects) {
     const double share = 1.0 / static_cast<double>(effects.size());
-    const PreparedScene p = without(prepared, {effect});
-    const BoundedClosing one = closing(p, watch, ClosingBound::after(own), static_cast<double>(list.size()) * share, share);
+    const PreparedScene p = copy_without(prepared, {effect});
+    const BoundedClosing one = closing(p, progress, ClosingBound::after(own), static_cast<double>(list.size()) * share, share);
     EffectAblation o{.what = std::move(effect),
                      .metrics = one.metrics,
                      .influence = influence(own.metrics, one.metrics, prepared.scene.metrics),
                      .rhs_seconds = Metrics::unset,
                      .end = one.end};
-    if (watch.stopped()) break;
+    if (progress.stopped()) break;
     if (timed) o.rhs_seconds = right_hand_side_seconds(p.model, hold_levels(p.signals()), one.states);
     list.push_back(std::move(o));
   }
   return list;
 }
 
-EffectsChoice negligible_effects(const PreparedScene& scene, double tolerance, const Watch& watch) {
+EffectsChoice negligible_effects(const PreparedScene& scene, double tolerance, const Progress& progress) {
   require_open_start(scene.scene, "effects = \"auto\" judges a closing");
   const PreparedScene prepared = closing_of(scene);
   EffectsChoice choice;
-  const BoundedClosing own = closing(prepared, watch);
-  for (EffectAblation& o : ablate_effects(prepared, own, false, watch)) {
+  const BoundedClosing own = closing(prepared, progress);
+  for (EffectAblation& o : ablate_effects(prepared, own, false, progress)) {
     if (o.what.automatic && !o.end && o.influence <= tolerance) choice.left_out.push_back(std::move(o));
   }
-  watch.throw_if_stopped();
+  progress.throw_if_stopped();
   std::sort(choice.left_out.begin(), choice.left_out.end(),
             [](const EffectAblation& a, const EffectAblation& b) { return a.influence < b.influence; });
   for (; !choice.left_out.empty(); choice.left_out.pop_back()) {
     std::vector<OmissibleEffect> effects;
     for (const EffectAblation& o : choice.left_out) effects.push_back(o.what);
-    choice.influence = influence(own.metrics, closing(without(prepared, effects), watch).metrics, prepared.scene.metrics);
-    watch.throw_if_stopped();
+    choice.influence = influence(own.metrics, closing(copy_without(prepared, effects), progress).metrics, prepared.scene.metrics);
+    progress.throw_if_stopped();
     if (choice.influence <= tolerance) return choice;
   }
   choice.influence = 0;

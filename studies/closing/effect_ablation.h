@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "objectives/figures.h"
 #include "studies/closing/prepared.h"
 
@@ -59,7 +59,8 @@ struct ClosingBound {
 };
 /// Runs a closing within a bound. `what` names the closing in progress reports, and `done` and `share` are as in observer().
 [[nodiscard]] BoundedClosing bounded_closing(const PreparedScene& prepared, const Switch& model, const ClosingBound& bound,
-                                             const Watch& watch, const std::string& what, double done = 0, double share = 1);
+                                             const Progress& progress, const std::string& what, double done = 0,
+                                             double share = 1);
 
 /// The scene without one effect.
 struct EffectAblation {
@@ -75,17 +76,17 @@ struct EffectAblation {
 [[nodiscard]] std::vector<OmissibleEffect> omissible_effects(const PreparedScene& prepared);
 
 /// Returns the scene without these effects. Its waveforms keep their voltages.
-[[nodiscard]] PreparedScene without(const PreparedScene& prepared, const std::vector<OmissibleEffect>& effects);
+[[nodiscard]] PreparedScene copy_without(const PreparedScene& prepared, const std::vector<OmissibleEffect>& effects);
 
 /// Returns the largest relative difference of t_i, v_i and B_H, as Figure::counted() has them. Infinite if one of these figures
 /// exists in one closing only, and if the scene's own closing does not touch.
 [[nodiscard]] double influence(const Metrics& own, const Metrics& other, const MetricsOptions& options);
 
-/// Leaves out one effect after the other. The list ends with the last complete closing if `watch` asks to stop. No closing
+/// Leaves out one effect after the other. The list ends with the last complete closing if `progress` asks to stop. No closing
 /// costs more than the bound that follows from `own`, the scene's own closing. `timed` also measures the time per right-hand
 /// side.
 [[nodiscard]] std::vector<EffectAblation> ablate_effects(const PreparedScene& prepared, const BoundedClosing& own, bool timed,
-                                                         const Watch& watch = {});
+                                                         const Progress& progress = {});
 
 /// The choice of effects = "auto".
 struct EffectsChoice {
@@ -100,8 +101,8 @@ struct DescribedEffects {
 
 /// Returns the effects that the scene can do without. Each of them, and all together, have an influence of at most `tolerance`,
 /// and without each the closing ran to its end. If all together exceed the tolerance, the most influential effect is put back,
-/// until they do not. No effect is left out of a scene whose closing does not touch. Throws Interrupted if `watch` asks to
+/// until they do not. No effect is left out of a scene whose closing does not touch. Throws Interrupted if `progress` asks to
 /// stop.
-[[nodiscard]] EffectsChoice negligible_effects(const PreparedScene& prepared, double tolerance, const Watch& watch = {});
+[[nodiscard]] EffectsChoice negligible_effects(const PreparedScene& prepared, double tolerance, const Progress& progress = {});
 
 }  // namespace softland

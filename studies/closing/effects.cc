@@ -30,18 +30,18 @@ struct LawClosing {
 };
 
 LawClosing closing_with(const PreparedScene& prepared, const std::optional<Gas>& gas, const ClosingBound& bound,
-                        const Watch& watch, double done, double share) {
+                        const Progress& progress, double done, double share) {
   Device described = prepared.scene.device;
   described.gas = gas;
   const Switch model(described, prepared.quadrature);
-  BoundedClosing closing = bounded_closing(prepared, model, bound, watch, "closings with every gas law", done, share);
+  BoundedClosing closing = bounded_closing(prepared, model, bound, progress, "closings with every gas law", done, share);
   Effect e{.section = "gas",
            .choice = "none",
            .magnitude = {.name = "damping per length, closed", .unit = "N s/m^2", .value = 0},
            .group = {.name = "Knudsen number, closed"},
            .metrics = closing.metrics,
-           .rhs_seconds =
-               watch.stopped() ? Metrics::unset : right_hand_side_seconds(model, hold_levels(prepared.signals()), closing.states),
+           .rhs_seconds = progress.stopped() ? Metrics::unset
+                                             : right_hand_side_seconds(model, hold_levels(prepared.signals()), closing.states),
            .warnings = closing.warnings,
            .end = closing.end};
   if (!gas) return {std::move(e), std::move(closing)};
@@ -70,7 +70,7 @@ double Effects::spread(const std::string& section, const Figure& figure) const {
   return (most - least) / figure.value(own(section).metrics);
 }
 
-Effects compare_effects(const PreparedScene& scene, const Watch& watch) {
+Effects compare_effects(const PreparedScene& scene, const Progress& progress) {
   require_open_start(scene.scene, "effects closes the switch");
   const PreparedScene prepared = closing_of(scene);
   const std::optional<Gas>& own = prepared.scene.device.gas;
@@ -89,8 +89,8 @@ Effects compare_effects(const PreparedScene& scene, const Watch& watch) {
   });
   // The scene's own closing comes first: its cost bounds that of the others.
   const double share = 1.0 / static_cast<double>(laws.size());
-  LawClosing of_scene = closing_with(prepared, own, {}, watch, 0, share);
-  if (watch.stopped()) throw Interrupted();
+  LawClosing of_scene = closing_with(prepared, own, {}, progress, 0, share);
+  if (progress.stopped()) throw Interrupted();
   of_scene.effect.in_scene = true;
   double done = share;
   bool has_own = false;
@@ -100,14 +100,14 @@ Effects compare_effects(const PreparedScene& scene, const Watch& watch) {
       has_own = true;
       continue;
     }
-    Effect e = closing_with(prepared, law, ClosingBound::after(of_scene.closing), watch, done, share).effect;
-    if (watch.stopped()) break;
+    Effect e = closing_with(prepared, law, ClosingBound::after(of_scene.closing), progress, done, share).effect;
+    if (progress.stopped()) break;
     done += share;
     found.list.push_back(std::move(e));
   }
   if (!has_own) found.list.push_back(of_scene.effect);
-  if (!watch.stopped()) found.omissions = ablate_effects(prepared, of_scene.closing, true, watch);
-  found.interrupted = watch.stopped();
+  if (!progress.stopped()) found.ablations = ablate_effects(prepared, of_scene.closing, true, progress);
+  found.interrupted = progress.stopped();
   return found;
 }
 

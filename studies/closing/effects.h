@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "objectives/figures.h"
 #include "studies/closing/effect_ablation.h"
 #include "studies/closing/prepared.h"
@@ -36,7 +36,7 @@ struct NotCompared {
 struct Effects {
   std::vector<Effect> list;               ///< the laws of the gas
   std::vector<NotCompared> not_compared;  ///< the laws that the scene cannot have
-  std::vector<EffectAblation> omissions;
+  std::vector<EffectAblation> ablations;
   double window = 0;         ///< window of every closing [s]
   bool interrupted = false;  ///< true after a stop: the lists then hold complete closings only, at least the scene's own
 
@@ -52,7 +52,7 @@ struct Effects {
 ///   removed.
 /// - The linear damper and the film over a slit are compared only if the scene describes them.
 /// - The cost of the scene's own closing bounds that of the others (ClosingBound).
-/// Throws Interrupted if `watch` asks to stop before the scene's own closing is complete.
-[[nodiscard]] Effects compare_effects(const PreparedScene& prepared, const Watch& watch = {});
+/// Throws Interrupted if `progress` asks to stop before the scene's own closing is complete.
+[[nodiscard]] Effects compare_effects(const PreparedScene& prepared, const Progress& progress = {});
 
 }  // namespace softland

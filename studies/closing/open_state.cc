@@ -28,7 +28,7 @@ void set_open_figures(Metrics& metrics, const Trajectory& run, const Switch& mod
   metrics.settled = true;
 }
 
-bool stays_open(const Switch& model, const std::vector<Signal>& signals, double duration, const Watch& watch) {
+bool stays_open(const Switch& model, const std::vector<Signal>& signals, double duration, const Progress& progress) {
   const std::vector<double> levels = hold_levels(signals);
   if (!model.open_equilibrium(levels)) return false;
   for (std::size_t k = 0; k < signals.size(); ++k) {
@@ -42,7 +42,7 @@ bool stays_open(const Switch& model, const std::vector<Signal>& signals, double 
     // An electrode pulls at either polarity.
     const double pull = std::max(model.strength(k, range.minimum), model.strength(k, range.maximum));
     const double most = model.drive_kind(k) == DriveKind::electrode ? model.value_of_strength(k, pull) : range.maximum;
-    if (step_closes(model, k, most, levels, watch)) return false;
+    if (step_closes(model, k, most, levels, progress)) return false;
   }
   return true;
 }

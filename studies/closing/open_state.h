@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "model/switch.h"
 #include "model/trajectory.h"
 #include "objectives/metrics.h"
@@ -25,6 +25,7 @@ void set_open_figures(Metrics& metrics, const Trajectory& run, const Switch& mod
 /// True if these drives ask for no closing. Their hold levels must have a stable open equilibrium, and so must the least and
 /// the largest value of each of them in the window [s], with the others at their hold levels. No step of an electrode, or of
 /// the dispersion force, to its largest value may reach the contact plane, so that none is at its dynamic pull-in voltage.
-[[nodiscard]] bool stays_open(const Switch& model, const std::vector<Signal>& signals, double duration, const Watch& watch = {});
+[[nodiscard]] bool stays_open(const Switch& model, const std::vector<Signal>& signals, double duration,
+                              const Progress& progress = {});
 
 }  // namespace softland

@@ -39,9 +39,9 @@ std::vector<double> PreparedScene::values_before() const {
   return values;
 }
 
-Signal PreparedScene::told(std::size_t k, const Waveform& waveform) const { return signal(waveform, values_before()[k]); }
+Signal PreparedScene::commanded(std::size_t k, const Waveform& waveform) const { return signal(waveform, values_before()[k]); }
 
-std::vector<Signal> PreparedScene::told(const std::vector<Waveform>& waveforms) const {
+std::vector<Signal> PreparedScene::commanded(const std::vector<Waveform>& waveforms) const {
   const std::vector<double> before = values_before();
   std::vector<Signal> signals;
   for (std::size_t k = 0; k < before.size(); ++k) signals.push_back(signal(waveforms[k], before[k]));
@@ -49,25 +49,25 @@ std::vector<Signal> PreparedScene::told(const std::vector<Waveform>& waveforms) 
 }
 
 std::vector<Signal> PreparedScene::signals() const {
-  std::vector<Signal> all = driven(waveforms());
+  std::vector<Signal> all = applied(waveforms());
   if (std::isfinite(held_from))
     std::ranges::transform(all, all.begin(), [&](const Signal& s) { return softland::held_from(s, held_from); });
   return all;
 }
 
-Signal PreparedScene::told_samples(std::size_t k, const Signal& told) const {
-  return softland::told_samples(told, drives[k].source, limits(k), duration);
+Signal PreparedScene::commanded_samples(std::size_t k, const Signal& commanded) const {
+  return softland::commanded_samples(commanded, drives[k].source, limits(k), duration);
 }
 
-Signal PreparedScene::driven(std::size_t k, const Signal& told, const SourceErrors& errors) const {
+Signal PreparedScene::applied(std::size_t k, const Signal& commanded, const SourceErrors& errors) const {
   const DriverModel& own = drives[k].source;
-  if (own.is_ideal()) return errors.are_none() ? told : with_errors(told, errors);
-  return softland::driven(told, own, limits(k), duration, errors);
+  if (own.is_ideal()) return errors.are_none() ? commanded : with_errors(commanded, errors);
+  return softland::applied(commanded, own, limits(k), duration, errors);
 }
 
-std::vector<Signal> PreparedScene::driven(std::vector<Signal> told) const {
-  for (std::size_t k = 0; k < told.size(); ++k) told[k] = driven(k, told[k]);
-  return told;
+std::vector<Signal> PreparedScene::applied(std::vector<Signal> commanded) const {
+  for (std::size_t k = 0; k < commanded.size(); ++k) commanded[k] = applied(k, commanded[k]);
+  return commanded;
 }
 
 std::map<std::string, PullInVoltages> PreparedScene::voltage_units() const {
@@ -78,16 +78,15 @@ std::map<std::string, PullInVoltages> PreparedScene::voltage_units() const {
   return units;
 }
 
-std::string begins_elsewhere(const DriveWaveforms& waveforms, const std::map<std::string, double>& before,
-                             const PreparedScene& scene) {
+std::string initial_state_difference(const DriveWaveforms& waveforms, const std::map<std::string, double>& before,
+                                     const PreparedScene& scene) {
   for (const auto& [drive, waveform] : waveforms) {
     const auto found = before.find(drive);
     const Drive* const here = scene.drives.find(drive);
     const double own = found == before.end() ? 0 : found->second, due = here != nullptr ? here->value_before() : 0;
     if (own != due)
-      return fmt::format(
-          "the drive '{}' stands at {} before its waveform, and at {} in the scene: both must be the same", drive,
-          engineering(own, "V"), engineering(due, "V"));
+      return fmt::format("the drive '{}' stands at {} before its waveform, and at {} in the scene: both must be the same", drive,
+                         engineering(own, "V"), engineering(due, "V"));
   }
   return {};
 }
@@ -110,7 +109,7 @@ std::string other_start_hint(const PreparedScene& scene) {
                                            : fmt::format("; without {} = \"closed\" a run begins there", key);
 }
 
-std::string start_words(const PreparedScene& scene) {
+std::string start_prose(const PreparedScene& scene) {
   const auto stands = [](const Drive& drive) { return drive.value_before() != 0; };
   if (!scene.scene.begins_closed && std::ranges::none_of(scene.drives, stands)) return {};
   constexpr int digits = 5;
@@ -201,7 +200,7 @@ double default_window_of_opening(const Switch& model, const std::vector<Signal>&
 
 /// Returns the drives without the effects of sampling and filters.
 std::vector<Signal> without_sources(const PreparedScene& p) {
-  std::vector<Signal> signals = p.told(p.waveforms());
+  std::vector<Signal> signals = p.commanded(p.waveforms());
   for (std::size_t k = 0; k < signals.size(); ++k) {
     if (!p.drives[k].errors.are_none()) signals[k] = with_errors(signals[k], p.drives[k].errors);
   }
@@ -339,9 +338,9 @@ std::string under_bias(const PreparedScene& p, std::size_t electrode) {
 
 }  // namespace
 
-ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, Bias bias, const Watch& watch) {
+ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, Bias bias, const Progress& progress) {
   ElectrodePullIn found{.statically = static_pull_in(model, electrode, bias)};
-  found.dynamically = dynamic_pull_in(model, electrode, found.statically, bias, watch);
+  found.dynamically = dynamic_pull_in(model, electrode, found.statically, bias, progress);
   return found;
 }
 
@@ -349,14 +348,14 @@ namespace {
 
 // Takes the pull-in voltages of limits with the other drives at 0 V, if the switch has no open state under their levels. A
 // limit belongs to the source, whatever the other drives do. A waveform in these units has no voltage in that case.
-bool take_limits_at_rest(PreparedScene& p, std::size_t electrode, const PullInFinder& find_pull_in, const Watch& watch) {
+bool take_limits_at_rest(PreparedScene& p, std::size_t electrode, const PullInFinder& find_pull_in, const Progress& progress) {
   const std::vector<std::string> names = p.drive_names();
   if (std::ranges::find(p.scene.limits_in_pull_in, names[electrode]) == p.scene.limits_in_pull_in.end()) return false;
   std::vector<double> bias = bias_of(p.scene, electrode);
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (names[k] != dispersion_drive) bias[k] = 0;
   }
-  const ElectrodePullIn found = find_pull_in(p.model, electrode, bias, watch);
+  const ElectrodePullIn found = find_pull_in(p.model, electrode, bias, progress);
   if (found.dynamically.status != Status::done) return false;
   p.pull_in_of_limits[names[electrode]] = {.static_pull_in = found.statically.voltage,
                                            .dynamic_pull_in = found.dynamically.voltage};
@@ -381,7 +380,7 @@ PreparedScene prepare_statics(const SceneFile& file) {
           .quadrature_accuracy = accuracy};
 }
 
-PreparedScene prepare(const SceneFile& file, bool default_limits, const Watch& watch, const PullInFinder& find_pull_in) {
+PreparedScene prepare(const SceneFile& file, bool default_limits, const Progress& progress, const PullInFinder& find_pull_in) {
   const Scene scene = read_scene(file);
   const double accuracy = scene.simulate.tolerance > 0 ? SimulateOptions{}.accuracy : scene.simulate.accuracy;
   ResolvedSwitch resolved = resolved_switch(scene.device, accuracy);
@@ -400,10 +399,10 @@ PreparedScene prepare(const SceneFile& file, bool default_limits, const Watch& w
     const std::string& name = scene.device.electrodes[k].name;
     const bool needed = std::find(scene.need_pull_in.begin(), scene.need_pull_in.end(), name) != scene.need_pull_in.end();
     if (!needed && !default_limits) continue;
-    const ElectrodePullIn found = find_pull_in(p.model, k, bias_of(scene, k), watch);
-    watch.throw_if_stopped();
+    const ElectrodePullIn found = find_pull_in(p.model, k, bias_of(scene, k), progress);
+    progress.throw_if_stopped();
     const bool ok = found.dynamically.status == Status::done;
-    if (needed && !ok && !take_limits_at_rest(p, k, find_pull_in, watch)) {
+    if (needed && !ok && !take_limits_at_rest(p, k, find_pull_in, progress)) {
       const bool is_closed = found.statically.status == Status::collapsed_at_rest && scene.device.is_charged();
       file.refuse("electrode." + name + ".span",
                   "its pull-in voltage is needed for the unit Vsp or Vdp, but none could be found" + under_bias(p, k) +

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "config/scene.h"
 #include "model/closing.h"
 #include "model/pull_in.h"
@@ -69,19 +69,21 @@ struct PreparedScene {
   [[nodiscard]] std::optional<Eigen::VectorXd> start_equilibrium() const;
   /// Returns the commanded signal of drive k for a waveform: the waveform from t = 0 on, and the scene's level before. Throws
   /// as signal() does.
-  [[nodiscard]] Signal told(std::size_t k, const Waveform& waveform) const;
+  [[nodiscard]] Signal commanded(std::size_t k, const Waveform& waveform) const;
   /// Returns one commanded signal per drive, in the order of drive_names().
-  [[nodiscard]] std::vector<Signal> told(const std::vector<Waveform>& waveforms) const;
+  [[nodiscard]] std::vector<Signal> commanded(const std::vector<Waveform>& waveforms) const;
   /// Returns the applied voltage of every drive, in the order of drive_names(); a drive without a waveform stays at 0 V.
   [[nodiscard]] std::vector<Signal> signals() const;
-  [[nodiscard]] std::vector<Signal> driven(const std::vector<Waveform>& waveforms) const { return driven(told(waveforms)); }
+  [[nodiscard]] std::vector<Signal> applied(const std::vector<Waveform>& waveforms) const {
+    return applied(commanded(waveforms));
+  }
   /// Returns the applied voltages for these commanded signals, one per drive, in the order of drive_names().
-  [[nodiscard]] std::vector<Signal> driven(std::vector<Signal> told) const;
+  [[nodiscard]] std::vector<Signal> applied(std::vector<Signal> commanded) const;
   /// Returns the applied voltage of drive k for a commanded signal, with gain, offset and delay of the scene, or with `errors`.
-  [[nodiscard]] Signal driven(std::size_t k, const Signal& told) const { return driven(k, told, drives[k].errors); }
-  [[nodiscard]] Signal driven(std::size_t k, const Signal& told, const SourceErrors& errors) const;
+  [[nodiscard]] Signal applied(std::size_t k, const Signal& commanded) const { return applied(k, commanded, drives[k].errors); }
+  [[nodiscard]] Signal applied(std::size_t k, const Signal& commanded, const SourceErrors& errors) const;
   /// Returns the commanded signal as the samples of drive k's converter; unchanged if the source takes no samples.
-  [[nodiscard]] Signal told_samples(std::size_t k, const Signal& told) const;
+  [[nodiscard]] Signal commanded_samples(std::size_t k, const Signal& commanded) const;
   /// Returns the limits of drive k; no limits if the scene has none.
   [[nodiscard]] DriverLimits limits(std::size_t k) const { return drives[k].limits.value_or(DriverLimits{}); }
   /// Returns the pull-in voltages as units of voltages.
@@ -92,8 +94,8 @@ struct PreparedScene {
 
 /// Returns the reason why the waveforms of another scene begin from other levels than those of this one; empty if they begin
 /// from the same levels. `before` has the level of each drive of the other scene before t = 0; a missing drive is at 0 V.
-[[nodiscard]] std::string begins_elsewhere(const DriveWaveforms& waveforms, const std::map<std::string, double>& before,
-                                           const PreparedScene& scene);
+[[nodiscard]] std::string initial_state_difference(const DriveWaveforms& waveforms, const std::map<std::string, double>& before,
+                                                   const PreparedScene& scene);
 
 /// Throws InvalidInput about the scene's key if runs begin closed. Studies that close the switch from its open state call it.
 /// `study` says in the third person what the study does: "accuracy closes the switch".
@@ -107,15 +109,17 @@ void require_open_start(const Scene& scene, std::string_view study);
 [[nodiscard]] std::string other_start_hint(const PreparedScene& scene);
 
 /// Describes the state in which runs begin, or the other one if that state does not exist. Empty if runs begin open and at 0 V.
-[[nodiscard]] std::string start_words(const PreparedScene& scene);
+[[nodiscard]] std::string start_prose(const PreparedScene& scene);
 
 /// Integrator tolerance that delivers a relative `accuracy` of t_i, v_i, B_H and the peak force.
 [[nodiscard]] double tolerance_for(double accuracy, bool stiff = false);  ///< `stiff`: with a compressible film
 
 /// Finds the pull-in voltages of an electrode of a switch, by its number, under a bias of the other drives. It is
 /// electrode_pull_in(), or a function that remembers its results.
-using PullInFinder = std::function<ElectrodePullIn(const Switch& model, std::size_t electrode, Bias bias, const Watch& watch)>;
-[[nodiscard]] ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, Bias bias, const Watch& watch = {});
+using PullInFinder =
+    std::function<ElectrodePullIn(const Switch& model, std::size_t electrode, Bias bias, const Progress& progress)>;
+[[nodiscard]] ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, Bias bias,
+                                                const Progress& progress = {});
 
 /// Prepares a scene for statics. The scene is read and its switch composed. Pull-in voltages, drives, window and tolerance are
 /// not known, and there are no warnings of the quadrature. Throws as read_scene() does.
@@ -125,8 +129,8 @@ using PullInFinder = std::function<ElectrodePullIn(const Switch& model, std::siz
 /// `default_limits` for all electrodes that have no written limit. The choices of the scene are still open (auto_settings.h):
 /// modes = "auto" stands for the default number, and effects = "auto" for all effects.
 /// Throws InvalidInput for a bad scene, and for one whose pull-in voltage is needed and does not exist. Throws Interrupted if
-/// `watch` asks to stop.
-[[nodiscard]] PreparedScene prepare(const SceneFile& file, bool default_limits = false, const Watch& watch = {},
+/// `progress` asks to stop.
+[[nodiscard]] PreparedScene prepare(const SceneFile& file, bool default_limits = false, const Progress& progress = {},
                                     const PullInFinder& find_pull_in = electrode_pull_in);
 
 }  // namespace softland

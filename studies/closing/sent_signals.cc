@@ -21,9 +21,10 @@ SentSignals sent_signals(const PreparedScene& p, const std::vector<Waveform>& wa
   const std::vector<std::string> names = p.drive_names();
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (names[k] == dispersion_drive) continue;
-    const Signal told = p.told(k, waveforms[k]);
-    all.signals.emplace(names[k], sent == Sent::output ? p.driven(k, told) : p.told_samples(k, told));
-    if (const auto rate = p.drives[k].source.sample_rate; rate && sent == Sent::told) all.sample_rates.emplace(names[k], *rate);
+    const Signal commanded = p.commanded(k, waveforms[k]);
+    all.signals.emplace(names[k], sent == Sent::output ? p.applied(k, commanded) : p.commanded_samples(k, commanded));
+    if (const auto rate = p.drives[k].source.sample_rate; rate && sent == Sent::commanded)
+      all.sample_rates.emplace(names[k], *rate);
     if (p.drives[k].amplifier) all.amplifiers.emplace(names[k], *p.drives[k].amplifier);
   }
   return all;

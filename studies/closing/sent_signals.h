@@ -14,7 +14,7 @@ namespace softland {
 [[nodiscard]] std::map<std::string, Signal> named_signals(const PreparedScene& prepared);
 
 /// The exported signals: the commanded ones (samples for sources that take samples), or the outputs of the sources.
-enum class Sent { told, output };
+enum class Sent { commanded, output };
 struct SentSignals {
   std::map<std::string, Signal> signals;
   std::map<std::string, double> sample_rates = {};  ///< rates of sampled signals [Hz]
@@ -23,7 +23,7 @@ struct SentSignals {
 };
 /// Returns the signals for one waveform per drive, in the order of Switch::drives().
 [[nodiscard]] SentSignals sent_signals(const PreparedScene& prepared, const std::vector<Waveform>& waveforms,
-                                       Sent sent = Sent::told);
+                                       Sent sent = Sent::commanded);
 /// Returns the commanded signals of the scene's sources as CSV. Under the same drivers the file gives the same closing.
 [[nodiscard]] std::string told_csv(const PreparedScene& prepared);
 

@@ -38,7 +38,7 @@ FigureValues difference(const Metrics& a, const Metrics& b, double tolerance, do
   return d;
 }
 
-struct Run {
+struct EvaluatedRun {
   Trajectory trajectory;
   Metrics metrics;
   std::vector<Rebound> rebounds;
@@ -50,7 +50,7 @@ struct Run {
 
 // Returns the time at which two runs diverge: their first rebound above a height whose heights differ by a tenth. Infinite if
 // they do not diverge.
-double parting_time(const Run& a, const Run& b, double lowest) {
+double parting_time(const EvaluatedRun& a, const EvaluatedRun& b, double lowest) {
   constexpr double parted = 0.1;
   const std::vector<Rebound>&one = a.rebounds, &two = b.rebounds;
   for (std::size_t k = 0; k < std::max(one.size(), two.size()); ++k) {
@@ -85,7 +85,8 @@ double energy_after(const std::vector<Touch>& touches, double parting) {
 // Removes the errors of chaotic figures. After the time at which two runs diverge the figures are random, and only a cloud of
 // runs gives their errors. Figures that depend on every touch count as chaotic if the runs differ by a thousand times the
 // tolerance.
-void forget_what_is_chaotic(FigureValues& errors, const Run& best, const Run& other, const MetricsOptions& options) {
+void forget_what_is_chaotic(FigureValues& errors, const EvaluatedRun& best, const EvaluatedRun& other,
+                            const MetricsOptions& options) {
   constexpr double magnified = 1000;
   const double visible = magnified * std::max(best.tolerance, other.tolerance);
   for (const Figure& figure : all_figures) {
@@ -93,14 +94,14 @@ void forget_what_is_chaotic(FigureValues& errors, const Run& best, const Run& ot
     if (errors[figure] > visible * std::abs(figure.value(best.metrics))) errors[figure] = Metrics::unset;
   }
   // Runs may diverge in insignificant rebounds as well: the energy of the later impacts bounds the difference.
-  for (const Run* run : {&best, &other}) {
+  for (const EvaluatedRun* run : {&best, &other}) {
     double& energy = errors[&Metrics::impact_energy];
     energy = std::max(energy, energy_after(run->trajectory.touches, parting_time(best, other, 0)));
   }
   const double parting = parting_time(best, other, options.significant_rebound);
   if (std::isinf(parting)) return;
   errors[&Metrics::impact_energy] = errors[&Metrics::drive_energy] = errors[&Metrics::steady_force_time] = Metrics::unset;
-  for (const Run* run : {&best, &other}) {
+  for (const EvaluatedRun* run : {&best, &other}) {
     const auto force = [](const Touch& t) { return t.peak_force; };
     if (chance_decides(run->trajectory.touches, parting, force)) errors[&Metrics::peak_contact_force] = Metrics::unset;
     const auto height = [](const Rebound& r) { return r.height; };
@@ -109,7 +110,7 @@ void forget_what_is_chaotic(FigureValues& errors, const Run& best, const Run& ot
 }
 
 // Returns the largest relative difference of t_i, v_i, B_H and the peak force, for which the scene requests an accuracy.
-double error(const Run& run, const Run& other, const PreparedScene& prepared) {
+double error(const EvaluatedRun& run, const EvaluatedRun& other, const PreparedScene& prepared) {
   FigureValues least;
   least[&Metrics::major_bounce_height] = prepared.scene.metrics.significant_rebound;
   least[&Metrics::peak_contact_force] = least_peak_force(prepared);
@@ -129,7 +130,7 @@ constexpr long most_growth = 10, least_steps = 100;
 constexpr double helps = 1.0 / 3;  // error of a tighter run over the error before, below which it helped
 constexpr int most_in_vain = 2;    // tighter runs in a row without help
 
-bool can_tighten(const Run& r) { return r.tolerance / tighter_by >= least_tolerance; }
+bool can_tighten(const EvaluatedRun& r) { return r.tolerance / tighter_by >= least_tolerance; }
 
 bool is_back_stop(const Switch& model, std::size_t contact) { return model.device().contacts[contact].side == Side::far; }
 
@@ -151,8 +152,8 @@ void set_commanded_opening(Metrics& m, const Trajectory& run, const Switch& mode
 // Runs the closing of a scene at different tolerances and reports each run to the watch.
 class ClosingRuns {
  public:
-  ClosingRuns(const PreparedScene& prepared, const Watch& watch)
-      : prepared_(prepared), watch_(watch), signals_(prepared.signals()), command_(open_command(prepared, signals_)) {}
+  ClosingRuns(const PreparedScene& prepared, const Progress& progress)
+      : prepared_(prepared), progress_(progress), signals_(prepared.signals()), command_(open_command(prepared, signals_)) {}
 
   [[nodiscard]] const std::vector<Signal>& signals() const { return signals_; }
   /// Returns the command to open, if it comes in the window.
@@ -165,29 +166,29 @@ class ClosingRuns {
   }
   [[nodiscard]] bool was_interrupted() const { return was_interrupted_; }
 
-  Run as_asked() { return run(prepared_.model, prepared_.tolerance, prepared_.quadrature, ClosingOptions{}.max_steps); }
+  EvaluatedRun as_asked() { return run(prepared_.model, prepared_.tolerance, prepared_.quadrature, ClosingOptions{}.max_steps); }
 
-  Run tighter_than(const Run& r) {
+  EvaluatedRun tighter_than(const EvaluatedRun& r) {
     const SwitchOptions finer = finer_than(r.quadrature);
     return run(Switch(prepared_.scene.device, finer), std::max(r.tolerance / tighter_by, least_tolerance), finer,
                most_growth * (least_steps + r.trajectory.work.steps));
   }
 
-  Run judge_of(const Run& r) {
+  EvaluatedRun judge_of(const EvaluatedRun& r) {
     if (!can_tighten(r)) return looser_than(r);
-    Run tighter = tighter_than(r);
-    return came_to_its_end(tighter.trajectory) || watch_.stopped() ? std::move(tighter) : looser_than(r);
+    EvaluatedRun tighter = tighter_than(r);
+    return came_to_its_end(tighter.trajectory) || progress_.stopped() ? std::move(tighter) : looser_than(r);
   }
 
-  Run looser_than(const Run& r) {
+  EvaluatedRun looser_than(const EvaluatedRun& r) {
     const SwitchOptions finer = finer_than(r.quadrature);
     return run(Switch(prepared_.scene.device, finer), std::min(loosest_tolerance, r.tolerance * tighter_by), finer,
                ClosingOptions{}.max_steps);
   }
 
  private:
-  Run run(const Switch& model, double tolerance, const SwitchOptions& quadrature, long max_steps) {
-    Run r{.tolerance = tolerance, .quadrature = quadrature};
+  EvaluatedRun run(const Switch& model, double tolerance, const SwitchOptions& quadrature, long max_steps) {
+    EvaluatedRun r{.tolerance = tolerance, .quadrature = quadrature};
     const std::string what =
         count_++ == 0 ? "closing" : fmt::format("closing again at tolerance {}, for its errors", engineering(tolerance, "", 1));
     const Hold hold = hold_of(model, held());
@@ -200,8 +201,8 @@ class ClosingRuns {
                                     .steady_force = hold.steady_force(prepared_.scene.metrics),
                                     .start = prepared_.start(),
                                     .opens_at = opens ? opens->time : std::numeric_limits<double>::infinity(),
-                                    .stop = watch_.stop,
-                                    .observer = observer(watch_, what, prepared_.duration)},
+                                    .stop = progress_.stop,
+                                    .observer = observer(progress_, what, prepared_.duration)},
                                    recorder);
     recorder.hand_over(r.trajectory);
     was_interrupted_ = was_interrupted_ || r.trajectory.status == Status::interrupted;
@@ -221,7 +222,7 @@ class ClosingRuns {
   }
 
   // The command to open counts only after the first touch.
-  [[nodiscard]] bool is_before_touch(const Run& r, const OpenCommand& command) const {
+  [[nodiscard]] bool is_before_touch(const EvaluatedRun& r, const OpenCommand& command) const {
     return prepared_.start() == StartState::open && came_to_its_end(r.trajectory) &&
            !(r.metrics.initial_contact_time < command.time);
   }
@@ -243,7 +244,7 @@ class ClosingRuns {
   }
 
   const PreparedScene& prepared_;
-  const Watch& watch_;
+  const Progress& progress_;
   std::vector<Signal> signals_;
   std::optional<OpenCommand> command_;
   int count_ = 0;
@@ -252,7 +253,7 @@ class ClosingRuns {
 
 // A run, its judge, and the largest relative difference of t_i, v_i, B_H and the peak force.
 struct JudgedRun {
-  Run own, judge;
+  EvaluatedRun own, judge;
   double error;
   const char* why;  // reason why the error is no smaller
 };
@@ -260,16 +261,16 @@ struct JudgedRun {
 // Finds the judge of a run. If runs may be tightened, the judge takes the place of the run and gets a judge of its own, until
 // the error is within the requested accuracy or tightening no longer helps. In the latter case the tightest run is delivered,
 // and a looser run judges it. If rounding forbids a tighter integrator, only the quadrature is refined.
-JudgedRun with_judge(Run own, ClosingRuns& runs, const PreparedScene& prepared, bool may_tighten) {
+JudgedRun with_judge(EvaluatedRun own, ClosingRuns& runs, const PreparedScene& prepared, bool may_tighten) {
   const double accuracy = prepared.scene.simulate.accuracy;
-  Run judge = runs.judge_of(own);
+  EvaluatedRun judge = runs.judge_of(own);
   double e = error(own, judge, prepared);
   const char* why = can_tighten(own) ? "and no tighter run comes to its end" : "and rounding forbids a tighter run";
   const auto judge_is_tighter = [&] { return came_to_its_end(judge.trajectory) && judge.tolerance < own.tolerance; };
   for (int vain = 0; may_tighten && e > accuracy && judge_is_tighter();) {
     why = "for so small a change decides it";
     if (vain == most_in_vain) break;
-    Run next = runs.tighter_than(judge);
+    EvaluatedRun next = runs.tighter_than(judge);
     if (!came_to_its_end(next.trajectory)) break;
     const double less = error(judge, next, prepared);
     vain = less < helps * e ? 0 : vain + 1;
@@ -300,7 +301,7 @@ std::string in_telling_digits(double above, double bound) {
 
 // Adds the errors and the warnings that follow from the judge.
 void add_errors(Closing& c, const JudgedRun& run, const PreparedScene& prepared, bool may_tighten) {
-  const Run &own = run.own, &judge = run.judge;
+  const EvaluatedRun &own = run.own, &judge = run.judge;
   const bool is_tighter = judge.tolerance < own.tolerance;
   c.errors = difference(own.metrics, judge.metrics, own.tolerance, prepared.scene.device.contact_gap());
   forget_what_is_chaotic(c.errors, own, judge, prepared.scene.metrics);
@@ -422,9 +423,9 @@ double least_peak_force(const PreparedScene& prepared) {
   return share * 2 * prepared.model.bending_energy() / prepared.scene.device.contact_gap();
 }
 
-Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Watch& watch) {
-  ClosingRuns runs(prepared, watch);
-  Run best = runs.as_asked();
+Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Progress& progress) {
+  ClosingRuns runs(prepared, progress);
+  EvaluatedRun best = runs.as_asked();
   const SimulateOptions& asked = prepared.scene.simulate;
   const bool may_tighten = estimate_errors && asked.tolerance == 0;
   if (may_tighten && best.trajectory.status == Status::numerical_failure && can_tighten(best)) best = runs.tighter_than(best);
@@ -432,7 +433,7 @@ Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Watc
   Closing c;
   if (estimate_errors && came_to_its_end(best.trajectory)) {
     JudgedRun run = with_judge(std::move(best), runs, prepared, may_tighten);
-    const Run& judge = run.judge;
+    const EvaluatedRun& judge = run.judge;
     c.judge = {.status = judge.trajectory.status,
                .came_to_its_end = came_to_its_end(judge.trajectory),
                .message = judge.trajectory.message,
@@ -441,7 +442,7 @@ Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Watc
                .quadrature = judge.quadrature};
     if (c.judge->came_to_its_end) {
       add_errors(c, run, prepared, may_tighten);
-    } else if (!watch.stopped()) {
+    } else if (!progress.stopped()) {
       c.warnings.push_back(fmt::format(
           "the errors are not known, nor whether accuracy {} is reached: no other run to compare with came to its end "
           "({}{}{})",
@@ -460,8 +461,8 @@ Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Watc
   if (best.metrics.status == Status::no_contact) {
     if (std::string unstable = unstable_rest(prepared.model, runs.signals()); !unstable.empty())
       c.warnings.push_back(std::move(unstable));
-    const bool stays = stays_open(prepared.model, runs.signals(), prepared.duration, watch);
-    if (watch.stopped()) {
+    const bool stays = stays_open(prepared.model, runs.signals(), prepared.duration, progress);
+    if (progress.stopped()) {
       say_interrupted(c);
     } else if (stays) {
       c.metrics.status = Status::open;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "model/closing.h"
 #include "objectives/figures.h"
 #include "studies/closing/hold.h"
@@ -90,6 +90,6 @@ void set_drive_figures(Metrics& metrics, const PreparedScene& prepared, const st
 /// - The status is collapsed_at_rest if the state in which the run has to begin does not exist. The message names the other
 ///   state.
 /// - The status is `open` if the switch did not touch and its drives are not meant to close it (stays_open()).
-[[nodiscard]] Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Watch& watch = {});
+[[nodiscard]] Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Progress& progress = {});
 
 }  // namespace softland

@@ -47,7 +47,7 @@ std::optional<SummitsAtHold> summits_at_hold(const Switch& model, const ClosedEq
       device.contacts.front().model);
 }
 
-std::string summits_words(const SummitsAtHold& summits) {
+std::string summits_prose(const SummitsAtHold& summits) {
   return fmt::format("{} of {} {}{}", engineering(summits.touching, "", 2), engineering(summits.all, "", 3), touch_at_hold,
                      summits.touching < 1
                          ? fmt::format("{}, so that the law, a mean over many of them, says little of one device", too_few)
@@ -58,7 +58,7 @@ std::string few_summits_warning(const Switch& model, const std::vector<Signal>& 
   const Hold hold = hold_of(model, signals);
   if (!hold.closed || !hold.is_held) return {};
   const std::optional<SummitsAtHold> summits = summits_at_hold(model, *hold.closed);
-  return summits && summits->touching < 1 ? "contact forces: " + summits_words(*summits) : std::string();
+  return summits && summits->touching < 1 ? "contact forces: " + summits_prose(*summits) : std::string();
 }
 
 bool is_few_summits_warning(std::string_view warning) {

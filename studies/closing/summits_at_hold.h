@@ -21,9 +21,9 @@ struct SummitsAtHold {
 [[nodiscard]] std::optional<SummitsAtHold> summits_at_hold(const Switch& model, const ClosedEquilibrium& closed);
 
 /// Returns "0.22 of 10 summits touch under the hold levels", with the consequence if it is fewer than one summit.
-[[nodiscard]] std::string summits_words(const SummitsAtHold& summits);
+[[nodiscard]] std::string summits_prose(const SummitsAtHold& summits);
 
-/// Returns summits_words() as a warning if the hold levels keep the switch closed on fewer than one summit; empty otherwise.
+/// Returns summits_prose() as a warning if the hold levels keep the switch closed on fewer than one summit; empty otherwise.
 [[nodiscard]] std::string few_summits_warning(const Switch& model, const std::vector<Signal>& signals);
 /// True if `warning` is a few_summits_warning().
 [[nodiscard]] bool is_few_summits_warning(std::string_view warning);

@@ -68,14 +68,14 @@ std::string_view to_string(SweepState state) {
 }
 
 std::vector<SweepPoint> static_sweep(const Switch& model, std::size_t drive, Bias bias, const SweepRange& range,
-                                     const Watch& watch) {
+                                     const Progress& progress) {
   require(range.points >= 2, "a sweep must have at least 2 points");
   SlowSwitch slow(model, drive, bias);
   std::vector<SweepPoint> points;
   const int last = range.points - 1;
   const auto pass = [&](int k, bool is_up) {
-    if (watch.stopped()) return;
-    watch.tell("static sweep", static_cast<double>(points.size()) / (2 * range.points));
+    if (progress.stopped()) return;
+    progress.tell("static sweep", static_cast<double>(points.size()) / (2 * range.points));
     const double share = static_cast<double>(k) / last;
     points.push_back(slow.follow((1 - share) * range.first + share * range.last, is_up));
   };

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "model/pull_in.h"
 #include "model/switch.h"
 
@@ -36,9 +36,9 @@ struct SweepRange {
 
 /// Returns the points of the sweep in order: `range.points` up to the last voltage and as many down, so that the last voltage
 /// occurs twice. The switch begins open if it can. It stays open while it has a stable open equilibrium. It stays closed while
-/// it has a closed equilibrium that it does not leave. The electrode must pull towards the contact. A sweep that `watch` asks
-/// to stop returns its points so far. Throws InvalidInput for fewer than 2 points, and as static_pull_in() does.
+/// it has a closed equilibrium that it does not leave. The electrode must pull towards the contact. A sweep that `progress`
+/// asks to stop returns its points so far. Throws InvalidInput for fewer than 2 points, and as static_pull_in() does.
 [[nodiscard]] std::vector<SweepPoint> static_sweep(const Switch& model, std::size_t drive, Bias bias, const SweepRange& range,
-                                                   const Watch& watch = {});
+                                                   const Progress& progress = {});
 
 }  // namespace softland

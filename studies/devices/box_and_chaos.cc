@@ -98,52 +98,52 @@ double predicted_share(const PolynomialChaos& chaos, const Eigen::MatrixXd& poin
 }
 
 /// Those of the devices [first, last) that have the figure: their points, and their figures.
-struct Taught {
+struct TrainingSet {
   Eigen::MatrixXd points;
   std::vector<double> figures;
 };
-Taught taught_by(const Ensemble& ensemble, const DriveRobustness& drive, const Figure& figure, std::size_t first,
-                 std::size_t last) {
+TrainingSet training_set(const Ensemble& ensemble, const DriveRobustness& drive, const Figure& figure, std::size_t first,
+                         std::size_t last) {
   std::vector<std::vector<double>> points;
-  Taught taught;
+  TrainingSet training;
   for (std::size_t k = first; k < last; ++k) {
     const double value = drive.outcomes[k].of(figure);
     if (!std::isfinite(value)) continue;
-    taught.figures.push_back(value);
+    training.figures.push_back(value);
     points.push_back(ensemble.point(k));
   }
-  taught.points.resize(static_cast<Eigen::Index>(points.size()),
-                       static_cast<Eigen::Index>(ensemble.nominal().scene.spread.variables.size()));
+  training.points.resize(static_cast<Eigen::Index>(points.size()),
+                         static_cast<Eigen::Index>(ensemble.nominal().scene.spread.variables.size()));
   for (std::size_t j = 0; j < points.size(); ++j) {
     for (std::size_t i = 0; i < points[j].size(); ++i)
-      taught.points(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(i)) = points[j][i];
+      training.points(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(i)) = points[j][i];
   }
-  return taught;
+  return training;
 }
 
-FigureChaos chaos_of(const Ensemble& ensemble, const DriveRobustness& drive, std::string_view key, std::size_t most_taught) {
+FigureChaos chaos_of(const Ensemble& ensemble, const DriveRobustness& drive, std::string_view key, std::size_t most_fitted) {
   const DeviceSpread& spread = ensemble.nominal().scene.spread;
   const Figure& figure = figure_of(key);
-  const std::size_t teachers = std::min(most_taught, drive.outcomes.size());
-  const Taught taught = taught_by(ensemble, drive, figure, 0, teachers);
-  FigureChaos found{.key = key, .taught = taught.figures.size()};
-  constexpr std::size_t least_taught = 20;  // two for each part of the cross-validation
-  if (found.taught < least_taught) return found;
+  const std::size_t fitted_devices = std::min(most_fitted, drive.outcomes.size());
+  const TrainingSet training = training_set(ensemble, drive, figure, 0, fitted_devices);
+  FigureChaos found{.key = key, .fitted = training.figures.size()};
+  constexpr std::size_t least_fitted = 20;  // two for each part of the cross-validation
+  if (found.fitted < least_fitted) return found;
   std::vector<Germ> germs_of_variables;
   for (const SpreadVariable& variable : spread.variables) {
     const DistributionKind kind = variable.distribution.kind();
     const bool normal = spread.copula || kind == DistributionKind::normal || kind == DistributionKind::lognormal;
     germs_of_variables.push_back(normal ? Germ::normal : Germ::uniform);
   }
-  const PolynomialChaos chaos(germs_of_variables, taught.points, taught.figures);
+  const PolynomialChaos chaos(germs_of_variables, training.points, training.figures);
   found.degree = chaos.degree();
   found.terms = chaos.terms();
   found.q2 = chaos.q2();
   found.mean = chaos.mean();
   found.standard_deviation = std::sqrt(chaos.variance());
-  const Taught others = taught_by(ensemble, drive, figure, teachers, drive.outcomes.size());
+  const TrainingSet others = training_set(ensemble, drive, figure, fitted_devices, drive.outcomes.size());
   found.unseen = others.figures.size();
-  if (found.unseen >= least_taught) found.q2_unseen = predicted_share(chaos, others.points, others.figures);
+  if (found.unseen >= least_fitted) found.q2_unseen = predicted_share(chaos, others.points, others.figures);
   constexpr std::uint64_t predictions = 8192;
   const SamplePoints points(PointSet::sobol, germs_of_variables.size(), 1, Stream::spread, predictions);
   std::vector<double> predicted, u(germs_of_variables.size());
@@ -163,13 +163,13 @@ double box_half_width(std::size_t d) {
 }
 
 BoxAndChaos box_and_chaos(const PreparedScene& nominal, const DriveRobustness& drive, const RobustnessOptions& options,
-                          const BoxAndChaosOptions& effort, const Watch& watch) {
+                          const BoxAndChaosOptions& effort, const Progress& progress) {
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   const std::size_t d = nominal.scene.spread.variables.size();
   BoxAndChaos found{.half_width = box_half_width(d)};
   const SampledInside inside = sampled_inside(ensemble, drive.outcomes.size(), found.half_width);
   found.sampled_inside = inside.devices.size();
-  const Box box(ensemble, internal::exactly_measured(nominal, drive), internal::run_of(nominal, options), watch.stop);
+  const Box box(ensemble, internal::exactly_measured(nominal, drive), internal::run_of(nominal, options), progress.stop);
   Problem problem;
   for (const SpreadVariable& variable : nominal.scene.spread.variables)
     problem.variables.push_back({.name = variable.name, .lower = -found.half_width, .upper = found.half_width});
@@ -193,19 +193,19 @@ BoxAndChaos box_and_chaos(const PreparedScene& nominal, const DriveRobustness& d
         return value == -no_bound ? not_closed : value;
       };
       OptimizerOptions search{
-          .max_evaluations = static_cast<long>(effort.closings_per_search), .jobs = options.jobs, .stop = watch.stop};
+          .max_evaluations = static_cast<long>(effort.closings_per_search), .jobs = options.jobs, .stop = progress.stop};
       search.target = not_closed;  // a device that does not close is the worst: the search ends
       const OptimizerResult result = minimize(problem, search);
-      if (watch.stopped()) return {.why_none = "interrupted"};
+      if (progress.stopped()) return {.why_none = "interrupted"};
       found.closings += result.evaluations;
       if (!result.x.empty()) (sign > 0 ? range.least : range.most) = box.device(result.x, figure);
-      watch.tell("worst and best devices", (2.0 * static_cast<double>(found.ranges.size()) + (sign > 0 ? 1 : 2)) / searches);
+      progress.tell("worst and best devices", (2.0 * static_cast<double>(found.ranges.size()) + (sign > 0 ? 1 : 2)) / searches);
     }
     found.ranges.push_back(std::move(range));
   }
-  for (const std::string_view key : explained_figures) found.chaos.push_back(chaos_of(ensemble, drive, key, effort.most_taught));
-  const std::size_t teachers = std::min(effort.most_taught, drive.outcomes.size());
-  found.left_out = teachers - found.chaos.front().taught;
+  for (const std::string_view key : explained_figures) found.chaos.push_back(chaos_of(ensemble, drive, key, effort.most_fitted));
+  const std::size_t fitted_devices = std::min(effort.most_fitted, drive.outcomes.size());
+  found.left_out = fitted_devices - found.chaos.front().fitted;
   return found;
 }
 

@@ -53,7 +53,7 @@ struct FigureRange {
 
 struct FigureChaos {
   std::string_view key;               ///< key of device_figures
-  std::size_t taught = 0;             ///< number of devices to which it is fitted
+  std::size_t fitted = 0;             ///< number of devices to which it is fitted
   std::size_t unseen = 0;             ///< number of devices on which it is tested
   int degree = 0;                     ///< degree of the polynomials
   std::size_t terms = 0;              ///< number of terms, the constant included
@@ -65,7 +65,7 @@ struct FigureChaos {
 
 struct BoxAndChaosOptions {
   std::size_t closings_per_search = 300;  ///< closings of each of the two searches per figure
-  std::size_t most_taught = 256;          ///< largest number of fitted devices
+  std::size_t most_fitted = 256;          ///< largest number of fitted devices
 };
 
 struct BoxAndChaos {
@@ -82,7 +82,7 @@ struct BoxAndChaos {
 /// functions of the arguments.
 [[nodiscard]] BoxAndChaos box_and_chaos(const PreparedScene& nominal, const DriveRobustness& drive,
                                         const RobustnessOptions& options, const BoxAndChaosOptions& effort = {},
-                                        const Watch& watch = {});
+                                        const Progress& progress = {});
 
 /// Returns the scene of a device at an end of a range. `simulate` runs it to the same closing.
 [[nodiscard]] SceneFile scene_of_device(const PreparedScene& nominal, const DriveRobustness& drive, const BoxDevice& device,

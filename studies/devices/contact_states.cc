@@ -209,17 +209,17 @@ void require_contact(const PreparedScene& prepared) {
         fmt::format("{}: needs a [contact] section: without one nothing closes or opens", prepared.scene.file.name()));
 }
 
-void say_of_run(const StatesOfRun& run, const std::string& whose, const SayLine& say) {
+void note_early_end(const StatesOfRun& run, const std::string& whose, const NoteSink& note) {
   if (!run.why_not_done.empty())
-    say(fmt::format("{}the run does not come to its end; its last states are kept from there on: {}", whose, run.why_not_done));
+    note(fmt::format("{}the run does not come to its end; its last states are kept from there on: {}", whose, run.why_not_done));
 }
 
 }  // namespace
 
-StateRecord contact_states(const PreparedScene& prepared, const Watch& watch, const SayLine& say) {
+StateRecord contact_states(const PreparedScene& prepared, const Progress& progress, const NoteSink& note) {
   require_contact(prepared);
-  const Closing closing = simulate(prepared, true, watch);
-  watch.throw_if_stopped();
+  const Closing closing = simulate(prepared, true, progress);
+  progress.throw_if_stopped();
   // Repeat the run of the figures with an observer of its states.
   const bool is_tighter = closing.tolerance != prepared.tolerance;
   const Switch tighter = is_tighter ? Switch(prepared.scene.device, closing.quadrature) : prepared.model;
@@ -229,14 +229,14 @@ StateRecord contact_states(const PreparedScene& prepared, const Watch& watch, co
                                .tolerance = closing.tolerance,
                                .start = prepared.start(),
                                .opens_at = closing.command ? closing.command->time : never,
-                               .stop = watch.stop});
-  watch.throw_if_stopped();
-  say_of_run(run, "", say);
+                               .stop = progress.stop});
+  progress.throw_if_stopped();
+  note_early_end(run, "", note);
   return {.end = prepared.duration, .channels = std::move(run.channels)};
 }
 
 StateRecord contact_states_of_devices(const PreparedScene& nominal, std::size_t devices, std::uint64_t seed, int jobs,
-                                      const Watch& watch, const SayLine& say) {
+                                      const Progress& progress, const NoteSink& note) {
   require_contact(nominal);
   const Ensemble ensemble(nominal, devices, seed);
   const DeviceDrives drives(nominal);
@@ -247,24 +247,24 @@ StateRecord contact_states_of_devices(const PreparedScene& nominal, std::size_t 
   const auto task = [&](std::size_t k) {
     const SampledDevice device = DeviceBuilder(ensemble).device(k);
     if (device.model) {
-      runs[k] =
-          states_of(*device.model, drives.signals(waveforms, {}, device.values),
-                    {.duration = nominal.duration, .tolerance = nominal.tolerance, .start = nominal.start(), .stop = watch.stop});
+      runs[k] = states_of(
+          *device.model, drives.signals(waveforms, {}, device.values),
+          {.duration = nominal.duration, .tolerance = nominal.tolerance, .start = nominal.start(), .stop = progress.stop});
     } else {
       runs[k].why_not_done = device.refusal;
     }
     const std::scoped_lock lock(telling);
-    watch.tell("devices of the spread", static_cast<double>(++done) / static_cast<double>(devices));
+    progress.tell("devices of the spread", static_cast<double>(++done) / static_cast<double>(devices));
   };
-  run_tasks(devices, jobs, task, watch.stop);
-  watch.throw_if_stopped();
+  run_tasks(devices, jobs, task, progress.stop);
+  progress.throw_if_stopped();
   StateRecord record{.end = nominal.duration, .channels = {}};
   for (std::size_t k = 0; k < devices; ++k) {
     if (runs[k].channels.empty()) {
-      say(fmt::format("device {} is left out: {}", k, runs[k].why_not_done));
+      note(fmt::format("device {} is left out: {}", k, runs[k].why_not_done));
       continue;
     }
-    say_of_run(runs[k], fmt::format("device {}: ", k), say);
+    note_early_end(runs[k], fmt::format("device {}: ", k), note);
     for (StateChannel& one : runs[k].channels) {
       one.device = k;
       record.channels.push_back(std::move(one));

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "studies/closing/prepared.h"
 
 namespace softland {
@@ -48,16 +48,16 @@ struct StateRecord {
 };
 
 /// Receives a message about a run that did not come to its end, or about a device that cannot be described.
-using SayLine = std::function<void(const std::string&)>;
+using NoteSink = std::function<void(const std::string&)>;
 
 /// Returns the states in the run of simulate() with errors. Its channels are the connection and, if there are several contacts,
-/// each of them. Throws InvalidInput for a switch without a contact, and Interrupted if `watch` asks to stop.
-[[nodiscard]] StateRecord contact_states(const PreparedScene& prepared, const Watch& watch, const SayLine& say);
+/// each of them. Throws InvalidInput for a switch without a contact, and Interrupted if `progress` asks to stop.
+[[nodiscard]] StateRecord contact_states(const PreparedScene& prepared, const Progress& progress, const NoteSink& note);
 
 /// Returns the states for the first `devices` devices of the spread with this seed, at the tolerance of the scene. The drives
 /// have the waveforms of the nominal device, and the errors of each device's own sources. The result does not depend on `jobs`,
 /// the number of threads.
 [[nodiscard]] StateRecord contact_states_of_devices(const PreparedScene& nominal, std::size_t devices, std::uint64_t seed,
-                                                    int jobs, const Watch& watch, const SayLine& say);
+                                                    int jobs, const Progress& progress, const NoteSink& note);
 
 }  // namespace softland

@@ -93,25 +93,25 @@ CycledSwitch::CycledSwitch(const PreparedScene& driven, const Switch& model, con
     options_.opening.open_position = connection_deflection(model, *open);
 }
 
-Trajectory CycledSwitch::observe(const CycleTimes& times, ClosingObserver& observer, const Watch& watch,
+Trajectory CycledSwitch::observe(const CycleTimes& times, ClosingObserver& observer, const Progress& progress,
                                  const std::function<bool()>& is_enough) const {
   PreparedScene whole = driven_;
   whole.duration = times.begin(times.cycles);
-  const std::vector<Signal> signals = whole.driven(cycled(waveforms_, times));
-  ClosingOptions options{.duration = whole.duration, .tolerance = driven_.tolerance, .stop = watch.stop};
+  const std::vector<Signal> signals = whole.applied(cycled(waveforms_, times));
+  ClosingOptions options{.duration = whole.duration, .tolerance = driven_.tolerance, .stop = progress.stop};
   options.max_steps *= static_cast<long>(times.cycles);
   options.observer = [&](double time, const double*, const double*) {
-    watch.tell("cycles", time / whole.duration);
+    progress.tell("cycles", time / whole.duration);
     return is_enough && is_enough();
   };
   return observe_closing(model_, signals, options, observer);
 }
 
-Cycles CycledSwitch::run(const CycleTimes& times, bool is_told, const Watch& watch) const {
+Cycles CycledSwitch::run(const CycleTimes& times, bool is_told, const Progress& progress) const {
   CycleRecorder recorder(model_.contact_gap(),
                          is_told ? with_load(options_, model_, StartState::open, waveforms_.closing) : options_, times);
   KeptCourse course(recorder, model_.contact_gap());
-  const Trajectory run = is_told ? observe(times, course, watch, {}) : observe(times, recorder, watch, {});
+  const Trajectory run = is_told ? observe(times, course, progress, {}) : observe(times, recorder, progress, {});
   Cycles found{.times = times,
                .status = run.status,
                .message = run.message,
@@ -124,7 +124,7 @@ Cycles CycledSwitch::run(const CycleTimes& times, bool is_told, const Watch& wat
 
 // Returns true if all cycles are steady. A touch is known only after the next one has begun, so a cycle is judged when the next
 // cycle has ended.
-bool CycledSwitch::is_steady(const CycleTimes& times, const CycleTolerances& tolerances, const Watch& watch) const {
+bool CycledSwitch::is_steady(const CycleTimes& times, const CycleTolerances& tolerances, const Progress& progress) const {
   CycleRecorder recorder(model_.contact_gap(), options_, times);
   Trajectory so_far;
   so_far.in_contact_period = model_.basis().in_contact_period();
@@ -140,18 +140,18 @@ bool CycledSwitch::is_steady(const CycleTimes& times, const CycleTolerances& tol
     return !is_steady;
   };
   const Trajectory run =
-      observe(times, recorder, watch, [&] { return recorder.ended() > judged + 1 && judge(recorder.ended() - 1, so_far); });
+      observe(times, recorder, progress, [&] { return recorder.ended() > judged + 1 && judge(recorder.ended() - 1, so_far); });
   if (!is_steady || run.status != Status::done || recorder.ended() < times.cycles) return false;
   judge(times.cycles, run);
   return is_steady;
 }
 
-CycledSwitch::PartTimes CycledSwitch::part_times(const Watch& watch) const {
+CycledSwitch::PartTimes CycledSwitch::part_times(const Progress& progress) const {
   const double period = 2 * pi / model_.basis().angular_frequencies()[0], in_contact = model_.basis().in_contact_period();
   const double close = last_breakpoint(waveforms_.closing), open = last_breakpoint(waveforms_.opening);
   const double on = std::max(driven_.duration, close + in_contact), off = open + periods_of_opening * period;
   PartTimes times;
-  const Cycles one = run({.period = on + off, .on_time = on}, false, watch);
+  const Cycles one = run({.period = on + off, .on_time = on}, false, progress);
   if (one.cycles.empty()) return times;
   const Metrics& m = one.cycles.front().metrics;
   if (m.touched()) times.least_on = std::max(m.initial_contact_time, close), times.least_off = open;
@@ -161,23 +161,23 @@ CycledSwitch::PartTimes CycledSwitch::part_times(const Watch& watch) const {
   return times;
 }
 
-RateScan scan_rates(const CycledSwitch& cycled, const ScanOptions& options, const Watch& watch) {
+RateScan scan_rates(const CycledSwitch& cycled, const ScanOptions& options, const Progress& progress) {
   RateScan scan;
   const auto rate_of = [&](double on, double off) { return 1 / std::max(on / options.duty, off / (1 - options.duty)); };
   const auto is_steady_at = [&](double rate) {
     return cycled.is_steady({.period = 1 / rate, .on_time = options.duty / rate, .cycles = options.cycles}, options.tolerances,
-                            {.stop = watch.stop});
+                            {.stop = progress.stop});
   };
-  const CycledSwitch::PartTimes times = cycled.part_times(watch);
+  const CycledSwitch::PartTimes times = cycled.part_times(progress);
   double lowest = rate_of(times.rest_on, times.rest_off);
   const double highest = rate_of(times.least_on, times.least_off);
   if (!(lowest > 0)) return scan;
   // At the lowest rate a remaining vibration may still affect the next landing.
-  for (int k = 0; k < most_slower && !watch.stopped() && !is_steady_at(lowest); ++k) lowest /= slower;
+  for (int k = 0; k < most_slower && !progress.stopped() && !is_steady_at(lowest); ++k) lowest /= slower;
   bool is_below = true;  // true up to the first rate that is not steady
-  for (double rate = lowest; rate <= highest && !watch.stopped(); rate *= 1 + options.step) {
+  for (double rate = lowest; rate <= highest && !progress.stopped(); rate *= 1 + options.step) {
     const bool is_steady = is_steady_at(rate);
-    watch.tell("rates", std::log(rate / lowest) / std::log(highest / lowest));
+    progress.tell("rates", std::log(rate / lowest) / std::log(highest / lowest));
     scan.rates.push_back({rate, is_steady});
     if (is_below && is_steady) scan.largest = rate;
     if (!is_below && is_steady) {
@@ -237,7 +237,7 @@ void require_fits(const CycleWaveforms& waveforms, const CycleTimes& times) {
 }
 
 std::vector<double> rates_of_devices(const PreparedScene& given, const CycleWaveforms& waveforms, const ScanOptions& options,
-                                     const CyclingOptions& asked, const Watch& watch) {
+                                     const CyclingOptions& asked, const Progress& progress) {
   const Ensemble ensemble(given, asked.devices, asked.seed);
   std::vector<double> rates(ensemble.size(), 0);
   std::atomic<std::size_t> done = 0;
@@ -246,20 +246,21 @@ std::vector<double> rates_of_devices(const PreparedScene& given, const CycleWave
       [&](std::size_t k) {
         const SampledDevice device = DeviceBuilder(ensemble).device(k);
         if (device.model) {
-          const RateScan scan = scan_rates(CycledSwitch(given, *device.model, waveforms), options, {.stop = watch.stop});
+          const RateScan scan = scan_rates(CycledSwitch(given, *device.model, waveforms), options, {.stop = progress.stop});
           if (scan.largest > 0) rates[k] = scan.largest;
         }
-        watch.tell(fmt::format("rates of devices, {}", waveforms.name),
-                   static_cast<double>(++done) / static_cast<double>(rates.size()));
+        progress.tell(fmt::format("rates of devices, {}", waveforms.name),
+                      static_cast<double>(++done) / static_cast<double>(rates.size()));
       },
-      watch.stop);
+      progress.stop);
   rates.resize(begun);
   return rates;
 }
 
 }  // namespace
 
-Cycling cycling(const PreparedScene& given, const CycleWaveforms& waveforms, const CyclingOptions& options, const Watch& watch) {
+Cycling cycling(const PreparedScene& given, const CycleWaveforms& waveforms, const CyclingOptions& options,
+                const Progress& progress) {
   require(given.model.has_contact(), "cycle needs a [contact] section: without one nothing closes or opens");
   for (std::size_t k = 0; k < waveforms.closing.size(); ++k) {
     const double held = waveforms.closing[k].hold_level(), begin = waveforms.opening[k].before();
@@ -281,22 +282,22 @@ Cycling cycling(const PreparedScene& given, const CycleWaveforms& waveforms, con
   ScanOptions scan{.duty = options.duty, .cycles = options.cycles};
   scan.tolerances.rebound = given.scene.metrics.significant_rebound;
   for (CycledDrive& drive : found.drives) {
-    if (!options.scans || watch.stopped()) break;
-    drive.scan = scan_rates(CycledSwitch(given, given.model, drive.waveforms), scan, watch);
+    if (!options.scans || progress.stopped()) break;
+    drive.scan = scan_rates(CycledSwitch(given, given.model, drive.waveforms), scan, progress);
     if (!options.rate && drive.scan.largest > 0) found.rate = drive.scan.largest;
   }
   for (CycledDrive& drive : found.drives) {
-    if (watch.stopped() || !(found.rate > 0)) break;
+    if (progress.stopped() || !(found.rate > 0)) break;
     drive.cycles =
         CycledSwitch(given, given.model, drive.waveforms)
-            .run({.period = 1 / found.rate, .on_time = options.duty / found.rate, .cycles = options.cycles}, true, watch);
+            .run({.period = 1 / found.rate, .on_time = options.duty / found.rate, .cycles = options.cycles}, true, progress);
   }
   scan.beyond_first = false;
   for (CycledDrive& drive : found.drives) {
-    if (watch.stopped() || options.devices == 0 || !options.scans) break;
-    drive.of_devices = rates_of_devices(given, drive.waveforms, scan, options, watch);
+    if (progress.stopped() || options.devices == 0 || !options.scans) break;
+    drive.of_devices = rates_of_devices(given, drive.waveforms, scan, options, progress);
   }
-  found.interrupted = watch.stopped();
+  found.interrupted = progress.stopped();
   return found;
 }
 

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "objectives/cycles.h"
 #include "studies/closing/prepared.h"
 #include "waveforms/signal.h"
@@ -55,9 +55,9 @@ class CycledSwitch {
 
   /// Runs cycles. With `is_told` it also records their course, and their figures include those of a load and of the electrical
   /// state.
-  [[nodiscard]] Cycles run(const CycleTimes& times, bool is_told, const Watch& watch = {}) const;
+  [[nodiscard]] Cycles run(const CycleTimes& times, bool is_told, const Progress& progress = {}) const;
   /// True if the switch lands in all cycles as in the first one. The run ends at the first cycle in which it does not.
-  [[nodiscard]] bool is_steady(const CycleTimes& times, const CycleTolerances& tolerances, const Watch& watch = {}) const;
+  [[nodiscard]] bool is_steady(const CycleTimes& times, const CycleTolerances& tolerances, const Progress& progress = {}) const;
   /// Times that a cycle needs for its closing and for its opening [s]. `rest` is the time until the switch is at rest, within
   /// windows that are long enough to show it. `least` is the time until the first touch or the end of the waveform. Infinite if
   /// the switch does not get there.
@@ -65,11 +65,11 @@ class CycledSwitch {
     double rest_on = std::numeric_limits<double>::infinity(), rest_off = std::numeric_limits<double>::infinity();
     double least_on = std::numeric_limits<double>::infinity(), least_off = std::numeric_limits<double>::infinity();
   };
-  [[nodiscard]] PartTimes part_times(const Watch& watch = {}) const;
+  [[nodiscard]] PartTimes part_times(const Progress& progress = {}) const;
 
  private:
   // `is_enough` returns true to end the run; it may be null.
-  [[nodiscard]] Trajectory observe(const CycleTimes& times, ClosingObserver& observer, const Watch& watch,
+  [[nodiscard]] Trajectory observe(const CycleTimes& times, ClosingObserver& observer, const Progress& progress,
                                    const std::function<bool()>& is_enough) const;
 
   const PreparedScene& driven_;
@@ -100,7 +100,7 @@ struct ScanOptions {
 
 /// Scans rates. At the first rate every cycle begins and ends at rest; it is lowered until it is steady. At the last rate the
 /// closing or the opening is too short for its waveform.
-[[nodiscard]] RateScan scan_rates(const CycledSwitch& cycled, const ScanOptions& options, const Watch& watch = {});
+[[nodiscard]] RateScan scan_rates(const CycledSwitch& cycled, const ScanOptions& options, const Progress& progress = {});
 
 struct CyclingOptions {
   std::optional<double> rate = {};  ///< rate of the reported cycles [Hz]; none for the largest steady rate of the last waveforms
@@ -137,6 +137,6 @@ void complete(CycleWaveforms& waveforms, const PreparedScene& given);
 /// the nominal design, without errors of the sources. Throws InvalidInput for a scene without contact, and for waveforms that
 /// are longer than their part of a cycle at the requested rate.
 [[nodiscard]] Cycling cycling(const PreparedScene& given, const CycleWaveforms& waveforms, const CyclingOptions& options,
-                              const Watch& watch = {});
+                              const Progress& progress = {});
 
 }  // namespace softland

@@ -31,9 +31,9 @@ PreparedScene without_jitter(const PreparedScene& scene) {
 
 // Returns the changes of switch and drives by the varied quantities near the nominal device, for quantities with derivatives.
 DeviceChanges changes_near(NearbyDevices& near, const Switch& model, std::vector<Derivatives::Variable*>& variables,
-                           const Watch& watch) {
+                           const Progress& progress) {
   std::vector<std::string> why_none(variables.size());
-  DeviceChanges changes = near.changes(model, why_none, watch);
+  DeviceChanges changes = near.changes(model, why_none, progress);
   for (std::size_t i = 0; i < variables.size(); ++i) {
     if (variables[i]->why_none.empty()) variables[i]->why_none = why_none[i];
   }
@@ -68,11 +68,11 @@ struct Changes {
 };
 
 NominalClosing close_nominal(const PreparedScene& nominal, const std::vector<Signal>& signals, const Changes& by,
-                             const DerivativeOptions& options, const Watch& watch) {
+                             const DerivativeOptions& options, const Progress& progress) {
   MetricsObserver observer(nominal.model.contact_gap(), nominal.scene.metrics);
   RecordedMotion tape(observer);
   const Trajectory end = observe_closing(
-      nominal.model, signals, {.duration = nominal.duration, .tolerance = options.tolerance, .stop = watch.stop}, tape);
+      nominal.model, signals, {.duration = nominal.duration, .tolerance = options.tolerance, .stop = progress.stop}, tape);
   NominalClosing closing{.outcome = {.metrics = observer.metrics(end)}, .slopes = {}};
   if (end.status != Status::done || !closing.outcome.closed()) return closing;
   LinearizedClosing motion(nominal.model, signals, tape, options.refinement, by.of_switch);
@@ -114,12 +114,12 @@ std::vector<Derivatives::Variable> variables_of(const DeviceSpread& spread) {
 // Computes the derivatives of the figures under these signals. `places` are the indices of the changes among the variables.
 void derive(Derivatives& found, const PreparedScene& nominal, const std::vector<Signal>& signals, const Changes& by,
             const std::vector<std::size_t>& places, const Eigen::MatrixXd& correlation, const DerivativeOptions& options,
-            const Watch& watch) {
+            const Progress& progress) {
   DerivativeOptions own = options;
   if (!(own.tolerance > 0)) own.tolerance = std::min(nominal.tolerance, usual_tolerance);
-  const NominalClosing closing = close_nominal(nominal, signals, by, own, watch);
-  const NominalClosing judge = close_nominal(nominal, signals, by, looser_than(own), watch);
-  if (watch.stopped()) {
+  const NominalClosing closing = close_nominal(nominal, signals, by, own, progress);
+  const NominalClosing judge = close_nominal(nominal, signals, by, looser_than(own), progress);
+  if (progress.stopped()) {
     found.why_none = "interrupted";
     return;
   }
@@ -152,7 +152,7 @@ void derive(Derivatives& found, const PreparedScene& nominal, const std::vector<
 bool Derivatives::grazes() const { return grazing < grazing_share; }
 
 Derivatives derivatives(const PreparedScene& scene, const EnsembleDrive& drive, const DerivativeOptions& options,
-                        const Watch& watch) {
+                        const Progress& progress) {
   require_open_start(scene.scene, "derivatives are those of a closing that begins");
   const DeviceSpread& spread = scene.scene.spread;
   Derivatives found{.variables = variables_of(spread), .figures = {}};
@@ -170,17 +170,17 @@ Derivatives derivatives(const PreparedScene& scene, const EnsembleDrive& drive, 
 
   const PreparedScene nominal = without_jitter(scene);
   NearbyDevices near(nominal, drive);
-  DeviceChanges by = changes_near(near, nominal.model, variables, watch);
+  DeviceChanges by = changes_near(near, nominal.model, variables, progress);
   for (const std::size_t k : by.of_signals.kinks()) variables[k]->why_none = NearbyDevices::other_pieces;
   const std::vector<Signal> signals = near.signals();
   derive(found, nominal, signals, {.of_switch = &by.of_switch, .of_signals = by.of_signals}, places, spread.correlation, options,
-         watch);
+         progress);
   return found;
 }
 
 Derivatives derivatives_by_waveforms(const PreparedScene& scene, const std::vector<WaveformParameter>& parameters,
                                      const SignalSlopes::SignalsOf& signals, const DerivativeOptions& options,
-                                     const Watch& watch) {
+                                     const Progress& progress) {
   Derivatives found{.figures = {}};
   found.why_none = LinearizedClosing::refusal(scene.model);
   if (!found.why_none.empty()) return found;
@@ -194,7 +194,7 @@ Derivatives derivatives_by_waveforms(const PreparedScene& scene, const std::vect
   const SignalSlopes by(signals, x, lower, upper);
   for (const std::size_t k : by.kinks()) found.variables[k].why_none = NearbyDevices::other_pieces;
   const auto count = static_cast<Eigen::Index>(parameters.size());
-  derive(found, scene, signals(x), {.of_signals = by}, places, Eigen::MatrixXd::Identity(count, count), options, watch);
+  derive(found, scene, signals(x), {.of_signals = by}, places, Eigen::MatrixXd::Identity(count, count), options, progress);
   return found;
 }
 

@@ -22,7 +22,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "studies/devices/ensemble.h"
 #include "waveforms/signal_slopes.h"
 
@@ -63,7 +63,7 @@ struct DerivativeOptions {
 /// Returns derivatives under these waveforms, in the known units of each device, which are taken as exact. None for a
 /// compressible film, for devices that are sorted into classes, if the nominal device does not close, and after a stop.
 [[nodiscard]] Derivatives derivatives(const PreparedScene& scene, const EnsembleDrive& drive,
-                                      const DerivativeOptions& options = {}, const Watch& watch = {});
+                                      const DerivativeOptions& options = {}, const Progress& progress = {});
 
 /// A number on which waveforms depend.
 struct WaveformParameter {
@@ -76,6 +76,6 @@ struct WaveformParameter {
 /// slightly smaller and larger values.
 [[nodiscard]] Derivatives derivatives_by_waveforms(const PreparedScene& scene, const std::vector<WaveformParameter>& parameters,
                                                    const SignalSlopes::SignalsOf& signals, const DerivativeOptions& options = {},
-                                                   const Watch& watch = {});
+                                                   const Progress& progress = {});
 
 }  // namespace softland

@@ -140,7 +140,7 @@ DeviceDrives::Driven DeviceDrives::driven(const std::vector<Waveform>& nominal, 
     }
     if (has_errors(k) && !nominal_->drives[k].source.sample_rate)
       all.waveforms[k] = scaled(std::move(all.waveforms[k]), std::exchange(errors.gain, 1), 1);
-    all.signals.push_back(nominal_->told(k, all.waveforms[k]));
+    all.signals.push_back(nominal_->commanded(k, all.waveforms[k]));
     for (const Source& source : sources_[k]) {
       switch (source.error) {
         case DriveError::gain:
@@ -170,8 +170,8 @@ std::vector<Signal> DeviceDrives::signals(const std::vector<Waveform>& nominal, 
   std::vector<Signal> own;
   for (std::size_t k = 0; k < all.signals.size(); ++k) {
     own.push_back(nominal_->drives[k].source.sample_rate
-                      ? nominal_->driven(k, all.jittered(k).first, all.after_samples(k))
-                      : nominal_->driven(k, with_errors(all.signals[k], all.errors[k], all.origin), SourceErrors{}));
+                      ? nominal_->applied(k, all.jittered(k).first, all.after_samples(k))
+                      : nominal_->applied(k, with_errors(all.signals[k], all.errors[k], all.origin), SourceErrors{}));
   }
   return own;
 }
@@ -192,11 +192,11 @@ std::optional<std::vector<double>> DeviceDrives::gains(const DeviceUnits& units,
 }
 
 std::vector<Signal> DeviceDrives::without_gains(const std::vector<Waveform>& nominal) const {
-  std::vector<Signal> own = nominal_->told(nominal);
+  std::vector<Signal> own = nominal_->commanded(nominal);
   for (std::size_t k = 0; k < own.size(); ++k) {
     SourceErrors errors = nominal_->drives[k].errors;
     errors.gain = 1;
-    own[k] = nominal_->driven(k, own[k], errors);
+    own[k] = nominal_->applied(k, own[k], errors);
   }
   return own;
 }

@@ -20,7 +20,7 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t chunk = 128;  // devices of one task: enough to fill a lane, few enough to check the Watch often
+constexpr std::size_t chunk = 128;  // devices of one task: enough to fill a lane, few enough to check the Progress often
 
 // Records the figures of a lane.
 class LaneFigures final : public LandingObserver {
@@ -35,7 +35,7 @@ class LaneFigures final : public LandingObserver {
     course_.above = std::isnan(end);
     figures_.rebound({.begin = begin, .end = end, .height = height});
   }
-  [[nodiscard]] DeviceOutcome outcome(const Switch& model, const FleetEnd& end) {
+  [[nodiscard]] DeviceOutcome outcome(const Switch& model, const EnsembleEnd& end) {
     course_.last_time = end.time;
     Trajectory run{.status = Status::done,
                    .contact_gap = model.contact_gap(),
@@ -154,30 +154,30 @@ double closing_time(const Switch& model, std::size_t drive, double step, Bias bi
   return end.touches.empty() ? Metrics::unset : end.touches.front().begin;
 }
 
-DeviceMeter::DeviceMeter(const PreparedScene& nominal, const Gauges& gauges, double precision)
-    : nominal_(&nominal), gauges_(gauges), precision_(precision) {
-  require(!gauges.piezo || piezo_unit(nominal.model) > 0, [&] {
+PullInMeter::PullInMeter(const PreparedScene& nominal, const MeasuredQuantities& quantities, double precision)
+    : nominal_(&nominal), quantities_(quantities), precision_(precision) {
+  require(!quantities.piezo || piezo_unit(nominal.model) > 0, [&] {
     return fmt::format("{}: piezo cannot be measured: {}", nominal.scene.file.name(),
                        nominal.model.has_piezo() ? "it does not move the contact point" : "there is no [piezo]");
   });
-  if (!gauges.pull_in && !gauges.closing_time) return;
+  if (!quantities.pull_in && !quantities.closing_time) return;
   require(has_pulling_electrode(nominal.scene.device), [&] {
     return fmt::format("{}: {} cannot be measured: there is no electrode that pulls in", nominal.scene.file.name(),
-                       gauges.pull_in ? "Vdp" : "a closing time");
+                       quantities.pull_in ? "Vdp" : "a closing time");
   });
   const std::string name = searched_electrode(nominal.scene.device);
   electrode_ = searched_drive(nominal.scene.device);
   pull_in_ = pull_in(nominal.model, std::min(precision, dynamic_pull_in_precision));
   require(std::isfinite(pull_in_), [&] { return fmt::format("electrode '{}' has no pull-in voltage to calibrate by", name); });
-  if (gauges.closing_time) learn_times();
+  if (quantities.closing_time) learn_times();
 }
 
-double DeviceMeter::time_of(const Switch& model, double step) const {
+double PullInMeter::time_of(const Switch& model, double step) const {
   return softland::closing_time(model, electrode_, step, bias_of(nominal_->scene, electrode_), periods_to_close / frequency());
 }
 
 // Measures the closing times of the nominal device under steps to closing_step Vdp / s, for s from 0.75 to 1.19.
-void DeviceMeter::learn_times() {
+void PullInMeter::learn_times() {
   constexpr double least = 0.75, most = 1.19;
   constexpr int steps = 88;
   for (int n = 0; n <= steps; ++n) {
@@ -191,12 +191,12 @@ void DeviceMeter::learn_times() {
   });
 }
 
-double DeviceMeter::closing_time() const {
-  return gauges_.closing_time ? time_of(nominal_->model, closing_step * pull_in_) : Metrics::unset;
+double PullInMeter::closing_time() const {
+  return quantities_.closing_time ? time_of(nominal_->model, closing_step * pull_in_) : Metrics::unset;
 }
 
 // Interpolates linearly between two steps of the nominal device, and extrapolates beyond the first and the last.
-DeviceUnits DeviceMeter::told_by(double time) const {
+DeviceUnits PullInMeter::units_by_time(double time) const {
   if (!std::isfinite(time)) return {.volts = Metrics::unset, .time = 1};
   const auto above = std::ranges::upper_bound(told_, time, {}, &ToldVolts::time);
   const auto next = std::clamp<std::ptrdiff_t>(above - told_.begin(), 1, static_cast<std::ptrdiff_t>(told_.size()) - 1);
@@ -205,27 +205,27 @@ DeviceUnits DeviceMeter::told_by(double time) const {
   return {.volts = volts, .time = 1, .volts_by_time = slope / volts};
 }
 
-double DeviceMeter::piezo_unit(const Switch& model) { return std::abs(model.basis().piezo_deflection()) / model.contact_gap(); }
+double PullInMeter::piezo_unit(const Switch& model) { return std::abs(model.basis().piezo_deflection()) / model.contact_gap(); }
 
-double DeviceMeter::frequency() const { return nominal_->model.basis().angular_frequencies()[0] / (2 * pi); }
+double PullInMeter::frequency() const { return nominal_->model.basis().angular_frequencies()[0] / (2 * pi); }
 
-double DeviceMeter::pull_in(const Switch& model, double precision) const {
+double PullInMeter::pull_in(const Switch& model, double precision) const {
   constexpr double looser = 10;  // tolerance of the integrator over the precision; measurements are less precise
   const std::vector<double> bias = bias_of(nominal_->scene, electrode_);
   const StaticPullIn statically = static_pull_in(model, electrode_, bias);
   return dynamic_pull_in(model, electrode_, statically, bias, {}, looser * precision, precision).voltage;
 }
 
-DeviceUnits DeviceMeter::exact(const Switch& model) const {
-  DeviceUnits units = gauges_.closing_time ? told_by(time_of(model, closing_step * pull_in_))
-                      : gauges_.pull_in    ? DeviceUnits{.volts = pull_in(model, precision_) / pull_in_}
-                                           : DeviceUnits{};
+DeviceUnits PullInMeter::exact(const Switch& model) const {
+  DeviceUnits units = quantities_.closing_time ? units_by_time(time_of(model, closing_step * pull_in_))
+                      : quantities_.pull_in    ? DeviceUnits{.volts = pull_in(model, precision_) / pull_in_}
+                                               : DeviceUnits{};
   units.time = nominal_->model.basis().angular_frequencies()[0] / model.basis().angular_frequencies()[0];
   if (const double unit = piezo_unit(nominal_->model); unit > 0) units.piezo = unit / piezo_unit(model);
   return units;
 }
 
-DeviceUnits DeviceMeter::measured(const DeviceUnits& exact, const Calibration& calibration, std::uint64_t seed, std::uint64_t k) {
+DeviceUnits PullInMeter::measured(const DeviceUnits& exact, const Calibration& calibration, std::uint64_t seed, std::uint64_t k) {
   constexpr double least_volts = 0.1;  // floor for a measured voltage: an instrument reads none below 0
   const auto reading = [&](double error, Stream stream, std::uint64_t counter) {
     return std::max(least_volts, 1 + error * random_normal(seed, stream, counter));
@@ -244,9 +244,9 @@ DeviceUnits DeviceMeter::measured(const DeviceUnits& exact, const Calibration& c
 namespace {
 
 // Returns the units of each reference device, without measurement error.
-std::vector<DeviceUnits> reference_units(const PreparedScene& nominal, const Gauges& gauges, std::size_t size, int jobs,
-                                         const Watch& watch) {
-  const DeviceMeter meter(nominal, gauges);
+std::vector<DeviceUnits> reference_units(const PreparedScene& nominal, const MeasuredQuantities& quantities, std::size_t size,
+                                         int jobs, const Progress& progress) {
+  const PullInMeter meter(nominal, quantities);
   const Ensemble ensemble(nominal, size, reference_seed);
   std::vector<DeviceUnits> units(ensemble.size());
   std::atomic<std::size_t> done = 0;
@@ -255,15 +255,15 @@ std::vector<DeviceUnits> reference_units(const PreparedScene& nominal, const Gau
   const std::size_t chunks = (size + together - 1) / together;
   const auto task = [&](std::size_t c) {
     DeviceBuilder builder(ensemble);
-    for (std::size_t k = c * together; k < std::min(size, (c + 1) * together) && !watch.stopped(); ++k) {
+    for (std::size_t k = c * together; k < std::min(size, (c + 1) * together) && !progress.stopped(); ++k) {
       const SampledDevice device = builder.device(k);
       units[k] = device.model ? meter.exact(*device.model) : DeviceUnits{.volts = Metrics::unset, .time = Metrics::unset};
     }
     const std::scoped_lock lock(telling);
-    watch.tell("devices from which classes are made", static_cast<double>(++done) / static_cast<double>(chunks));
+    progress.tell("devices from which classes are made", static_cast<double>(++done) / static_cast<double>(chunks));
   };
-  run_tasks(chunks, jobs, task, watch.stop);
-  watch.throw_if_stopped();
+  run_tasks(chunks, jobs, task, progress.stop);
+  progress.throw_if_stopped();
   return units;
 }
 
@@ -275,35 +275,35 @@ DeviceUnits units_at(const SpacePoint& point) {
 
 }  // namespace
 
-KnownUnits::KnownUnits(const Calibration& calibration, std::span<const DeviceUnits> reference) : calibration_(calibration) {
+MeasuredUnits::MeasuredUnits(const Calibration& calibration, std::span<const DeviceUnits> reference) : calibration_(calibration) {
   if (!calibration.classes) return;
   std::vector<SpacePoint> points;
   for (std::size_t k = 0; k < std::min(reference.size(), reference_size(calibration)); ++k) {
-    const SpacePoint point = logarithms(DeviceMeter::measured(reference[k], calibration, reference_seed, k));
+    const SpacePoint point = logarithms(PullInMeter::measured(reference[k], calibration, reference_seed, k));
     if (is_finite(point)) points.push_back(point);
   }
   require(!points.empty(), "classes need devices that can be measured, and no device of the spread can");
   classes_ = classes_of(points, static_cast<std::size_t>(*calibration.classes), reference_seed);
 }
 
-DeviceUnits KnownUnits::of(const DeviceUnits& exact, std::uint64_t seed, std::uint64_t k) const {
-  return of(DeviceMeter::measured(exact, calibration_, seed, k));
+DeviceUnits MeasuredUnits::of(const DeviceUnits& exact, std::uint64_t seed, std::uint64_t k) const {
+  return of(PullInMeter::measured(exact, calibration_, seed, k));
 }
 
-DeviceUnits KnownUnits::of(const DeviceUnits& measured) const {
+DeviceUnits MeasuredUnits::of(const DeviceUnits& measured) const {
   if (classes_.centres.empty() || !measured.are_known()) return measured;
   return units_at(classes_.centres[classes_.nearest(logarithms(measured))]);
 }
 
-std::vector<KnownUnits::Class> KnownUnits::classes() const {
+std::vector<MeasuredUnits::Class> MeasuredUnits::classes() const {
   std::vector<Class> all;
   for (std::size_t i = 0; i < classes_.centres.size(); ++i)
     all.push_back({.centre = units_at(classes_.centres[i]), .share = classes_.shares[i]});
   return all;
 }
 
-KnownUnits KnownUnits::without_errors() const {
-  KnownUnits exact = *this;
+MeasuredUnits MeasuredUnits::without_errors() const {
+  MeasuredUnits exact = *this;
   Calibration& all = exact.calibration_;
   for (std::optional<double>* error : {&all.pull_in_error, &all.frequency_error, &all.piezo_error, &all.time_error}) {
     if (*error) *error = 0;
@@ -311,30 +311,30 @@ KnownUnits KnownUnits::without_errors() const {
   return exact;
 }
 
-std::vector<KnownUnits> known_units(const PreparedScene& nominal, std::span<const Calibration> calibrations, int jobs,
-                                    const Watch& watch) {
+std::vector<MeasuredUnits> measured_units(const PreparedScene& nominal, std::span<const Calibration> calibrations, int jobs,
+                                          const Progress& progress) {
   // Voltages from a closing time differ from those from Vdp.
   std::map<bool, std::vector<DeviceUnits>> references;  // key: true if a closing time gives the voltages
   for (const bool by_time : {false, true}) {
     std::size_t size = 0;
-    Gauges gauges;
+    MeasuredQuantities quantities;
     for (const Calibration& one : calibrations) {
       if (one.time_error.has_value() != by_time) continue;
       size = std::max(size, reference_size(one));
-      if (one.classes) gauges = gauges | Gauges::of(one);
+      if (one.classes) quantities = quantities | MeasuredQuantities::of(one);
     }
-    if (size > 0) references[by_time] = reference_units(nominal, gauges, size, jobs, watch);
+    if (size > 0) references[by_time] = reference_units(nominal, quantities, size, jobs, progress);
   }
-  std::vector<KnownUnits> known;
+  std::vector<MeasuredUnits> known;
   for (const Calibration& one : calibrations) known.emplace_back(one, references[one.time_error.has_value()]);
   return known;
 }
 
-DeviceUnits deviation_of_units(const PreparedScene& nominal, bool need_pull_in, int jobs, const Watch& watch) {
+DeviceUnits deviation_of_units(const PreparedScene& nominal, bool need_pull_in, int jobs, const Progress& progress) {
   constexpr std::size_t devices = 128;  // gives the deviations within 6 %
   DeviceUnits squares{.volts = 0, .time = 0, .piezo = 0};
   double known = 0;
-  for (const DeviceUnits& one : reference_units(nominal, {.pull_in = need_pull_in}, devices, jobs, watch)) {
+  for (const DeviceUnits& one : reference_units(nominal, {.pull_in = need_pull_in}, devices, jobs, progress)) {
     if (!one.are_known() || !std::isfinite(one.time)) continue;
     ++known;
     squares.volts += (one.volts - 1) * (one.volts - 1);
@@ -365,7 +365,7 @@ DeviceOutcome close_device(const SampledDevice& device, const std::vector<Signal
 std::vector<DeviceOutcome> close_devices(std::span<const DeviceClosing> closings, const MetricsOptions& options,
                                          Vectors vectors) {
   std::vector<DeviceOutcome> outcomes(closings.size());
-  std::vector<FleetClosing> in_lanes;
+  std::vector<EnsembleClosing> in_lanes;
   std::vector<std::size_t> places;
   std::vector<LaneFigures> figures(closings.size(), LaneFigures(options));
   for (std::size_t i = 0; i < closings.size(); ++i) {
@@ -385,7 +385,7 @@ std::vector<DeviceOutcome> close_devices(std::span<const DeviceClosing> closings
   }
   std::vector<bool> done(closings.size(), false);
   if (!in_lanes.empty()) {
-    const std::vector<FleetEnd> ends = close_in_lanes(in_lanes, closings.front().run.tolerance, vectors);
+    const std::vector<EnsembleEnd> ends = close_in_lanes(in_lanes, closings.front().run.tolerance, vectors);
     for (std::size_t n = 0; n < ends.size(); ++n) {
       if (!ends[n].followed) continue;
       done[places[n]] = true;
@@ -441,15 +441,15 @@ DeviceCloser::DeviceCloser(const PreparedScene& nominal, const std::vector<Ensem
       vectors_(run.vectors),
       measures_drive_energy_(run.measures_drive_energy),
       device_drives_(nominal) {
-  Gauges gauges;
+  MeasuredQuantities quantities;
   bool is_measured = false;
   for (const EnsembleDrive& drive : drives) {
-    gauges = gauges | Gauges::of(drive.known.calibration());
+    quantities = quantities | MeasuredQuantities::of(drive.known.calibration());
     is_measured = is_measured || !drive.known.calibration().is_empty();
   }
-  if (is_measured) meter_.emplace(nominal, gauges);
+  if (is_measured) meter_.emplace(nominal, quantities);
   for (const EnsembleDrive& drive : drives) {
-    std::vector<Signal> signals = nominal.driven(drive.waveforms);
+    std::vector<Signal> signals = nominal.applied(drive.waveforms);
     nominal_commands_.push_back(run.opens_on_command ? open_command(nominal, signals) : std::nullopt);
     nominal_signals_.push_back(nominal_commands_.back() ? nominal_commands_.back()->held : std::move(signals));
     nominal_closed_.push_back(closed_equilibrium(nominal.model, hold_levels(nominal_signals_.back())));
@@ -498,8 +498,8 @@ std::vector<std::vector<DeviceOutcome>> DeviceCloser::operator()(std::span<const
 }
 
 std::vector<std::vector<DeviceOutcome>> close_all(const Ensemble& ensemble, const std::vector<EnsembleDrive>& drives,
-                                                  const EnsembleRun& run, const Watch& watch) {
-  const DeviceCloser closer(ensemble.nominal(), drives, run, watch.stop);
+                                                  const EnsembleRun& run, const Progress& progress) {
+  const DeviceCloser closer(ensemble.nominal(), drives, run, progress.stop);
   std::vector<std::vector<DeviceOutcome>> outcomes(drives.size(), std::vector<DeviceOutcome>(ensemble.size()));
   std::mutex telling;
   std::atomic<std::size_t> done = 0;
@@ -514,10 +514,10 @@ std::vector<std::vector<DeviceOutcome>> close_all(const Ensemble& ensemble, cons
       std::move(closed[d].begin(), closed[d].end(), outcomes[d].begin() + static_cast<std::ptrdiff_t>(first));
     done += devices.size();
     const std::scoped_lock lock(telling);
-    watch.tell("devices of the spread", static_cast<double>(done) / static_cast<double>(ensemble.size()));
+    progress.tell("devices of the spread", static_cast<double>(done) / static_cast<double>(ensemble.size()));
   };
   const std::size_t chunks = (ensemble.size() + chunk - 1) / chunk;
-  std::size_t complete = std::min<std::size_t>(ensemble.size(), chunk * run_tasks(chunks, run.jobs, task, watch.stop));
+  std::size_t complete = std::min<std::size_t>(ensemble.size(), chunk * run_tasks(chunks, run.jobs, task, progress.stop));
   // After a stop, some chunks hold devices whose closing was not begun, or not ended.
   const auto missing = [](const DeviceOutcome& o) {
     return o.failure.empty() && (o.metrics.status == Status::not_run || o.metrics.status == Status::interrupted);

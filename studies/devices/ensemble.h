@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "model/closing.h"
-#include "model/ensemble/fleet.h"
+#include "model/ensemble/ensemble_closings.h"
 #include "model/pull_in.h"
 #include "objectives/figures.h"
 #include "objectives/metrics.h"
@@ -49,7 +49,7 @@ class Ensemble {
   /// True if a varied key may change other members of a scene, so that the scene of each device is read anew.
   [[nodiscard]] bool reads_anew() const { return reads_anew_; }
   /// Returns the scene of the device with these values, in volts and without [spread]. `simulate` runs it to the same figures,
-  /// which differ within the tolerance if the ensemble is closed in lanes (model/ensemble/fleet.h).
+  /// which differ within the tolerance if the ensemble is closed in lanes (model/ensemble/ensemble_closings.h).
   [[nodiscard]] SceneFile scene(const std::vector<double>& values) const;
 
  private:
@@ -99,13 +99,13 @@ struct DeviceOutcome {
 inline constexpr double periods_to_close = 20;
 
 /// The measurements on each device, apart from its frequency and, if it has one, the effect of its piezo.
-struct Gauges {
+struct MeasuredQuantities {
   bool pull_in = false, closing_time = false, piezo = false;
-  [[nodiscard]] static Gauges of(const Calibration& calibration) {
+  [[nodiscard]] static MeasuredQuantities of(const Calibration& calibration) {
     return {calibration.pull_in_error.has_value(), calibration.time_error.has_value(), calibration.piezo_error.has_value()};
   }
   /// Returns the measurements of both.
-  friend Gauges operator|(const Gauges& a, const Gauges& b) {
+  friend MeasuredQuantities operator|(const MeasuredQuantities& a, const MeasuredQuantities& b) {
     return {a.pull_in || b.pull_in, a.closing_time || b.closing_time, a.piezo || b.piezo};
   }
 };
@@ -116,12 +116,12 @@ inline constexpr const char* not_measured = "its pull-in voltage, or what its pi
 /// Measures devices relative to the nominal one, with the errors of a calibration. A closing time gives the factor s of a
 /// device's voltages: under a step to closing_step Vdp the device closes in the time that the nominal device takes under
 /// closing_step Vdp / s.
-class DeviceMeter {
+class PullInMeter {
  public:
   /// Keeps a reference to `nominal`, whose closing electrode it measures. The relative `precision` is that of pull-in voltages;
   /// that of the nominal device has a precision of at least dynamic_pull_in_precision. Throws InvalidInput if a measurement
   /// needs an electrode, a pull-in voltage or a piezo that the switch lacks, or a piezo that does not move the contact point.
-  DeviceMeter(const PreparedScene& nominal, const Gauges& gauges, double precision = dynamic_pull_in_precision);
+  PullInMeter(const PreparedScene& nominal, const MeasuredQuantities& quantities, double precision = dynamic_pull_in_precision);
   /// Return the pull-in voltage [V] and the frequency [Hz] of the nominal device.
   [[nodiscard]] double pull_in() const { return pull_in_; }
   [[nodiscard]] double frequency() const;
@@ -132,7 +132,7 @@ class DeviceMeter {
   /// Returns the closing time of the nominal device under the step of the measurement; NaN if it is not measured [s].
   [[nodiscard]] double closing_time() const;
   /// Returns the units that follow from the closing time of a device [s]; their voltages are NaN if it does not close.
-  [[nodiscard]] DeviceUnits told_by(double time) const;
+  [[nodiscard]] DeviceUnits units_by_time(double time) const;
   /// Returns the exact units. Voltages are NaN for a device that has no pull-in voltage, or that does not close.
   [[nodiscard]] DeviceUnits exact(const Switch& model) const;
   /// Returns the measured units of device k, without classes; the errors are functions of seed and k.
@@ -149,7 +149,7 @@ class DeviceMeter {
   };
 
   const PreparedScene* nominal_;
-  Gauges gauges_;
+  MeasuredQuantities quantities_;
   double precision_;
   std::vector<ToldVolts> told_ = {};  // closing times of the nominal device, in increasing order
   std::size_t electrode_ = 0;
@@ -158,14 +158,14 @@ class DeviceMeter {
 
 /// The units of devices that a calibration knows: the measured units or, if measured devices are sorted into classes, those of
 /// the centre of the class.
-class KnownUnits {
+class MeasuredUnits {
  public:
-  /// Makes the classes from `reference`: devices without error that represent the spread, as known_units() provides. Throws
+  /// Makes the classes from `reference`: devices without error that represent the spread, as measured_units() provides. Throws
   /// InvalidInput if classes are needed and none of these devices can be measured.
-  KnownUnits(const Calibration& calibration = {}, std::span<const DeviceUnits> reference = {});
+  MeasuredUnits(const Calibration& calibration = {}, std::span<const DeviceUnits> reference = {});
   [[nodiscard]] const Calibration& calibration() const { return calibration_; }
   /// Returns the units with exact measurements and the same classes.
-  [[nodiscard]] KnownUnits without_errors() const;
+  [[nodiscard]] MeasuredUnits without_errors() const;
   /// Returns the units of device k from its exact ones; the errors are functions of seed and k.
   [[nodiscard]] DeviceUnits of(const DeviceUnits& exact, std::uint64_t seed, std::uint64_t k) const;
   /// Returns the units of a measured device.
@@ -183,19 +183,20 @@ class KnownUnits {
   Classes classes_;  // classes in the logarithms of voltages, time and the piezo's voltages
 };
 /// Returns the units for each of these calibrations. The classes depend on the spread alone, so that a device belongs to the
-/// same class in every study. Throws Interrupted if `watch` asks to stop.
-[[nodiscard]] std::vector<KnownUnits> known_units(const PreparedScene& nominal, std::span<const Calibration> calibrations,
-                                                  int jobs, const Watch& watch = {});
+/// same class in every study. Throws Interrupted if `progress` asks to stop.
+[[nodiscard]] std::vector<MeasuredUnits> measured_units(const PreparedScene& nominal, std::span<const Calibration> calibrations,
+                                                        int jobs, const Progress& progress = {});
 
-/// Returns the relative standard deviations of the units of the devices of the spread. Throws Interrupted if `watch` asks to
+/// Returns the relative standard deviations of the units of the devices of the spread. Throws Interrupted if `progress` asks to
 /// stop.
-[[nodiscard]] DeviceUnits deviation_of_units(const PreparedScene& nominal, bool need_pull_in, int jobs, const Watch& watch = {});
+[[nodiscard]] DeviceUnits deviation_of_units(const PreparedScene& nominal, bool need_pull_in, int jobs,
+                                             const Progress& progress = {});
 
 /// The drives of every device: the waveforms of the nominal device or, with a per-device calibration, those waveforms scaled by
 /// the units of each device. They have the errors of the device's sources if these vary.
 struct EnsembleDrive {
   std::vector<Waveform> waveforms;  ///< waveforms in the order of Switch::drives() [V]
-  KnownUnits known = {};
+  MeasuredUnits known = {};
 };
 
 struct EnsembleRun {
@@ -220,8 +221,8 @@ struct DeviceClosing {
   ClosingOptions run;
   bool measures_drive_energy = false;  ///< true to measure it in lanes as well; single closings always measure it
 };
-/// Closes several devices. Those whose laws are available in lanes (model/ensemble/fleet.h) are closed together, the others one
-/// by one. All have the tolerance of the first. An outcome does not depend on the other devices.
+/// Closes several devices. Those whose laws are available in lanes (model/ensemble/ensemble_closings.h) are closed together,
+/// the others one by one. All have the tolerance of the first. An outcome does not depend on the other devices.
 [[nodiscard]] std::vector<DeviceOutcome> close_devices(std::span<const DeviceClosing> closings, const MetricsOptions& options,
                                                        Vectors vectors);
 
@@ -240,7 +241,7 @@ struct DrivenDevice {
 /// Closes devices under drives, which are scaled by the units of each device if they are calibrated.
 class DeviceCloser {
  public:
-  /// Keeps references to `nominal` and `drives`. Throws what DeviceMeter throws.
+  /// Keeps references to `nominal` and `drives`. Throws what PullInMeter throws.
   DeviceCloser(const PreparedScene& nominal, const std::vector<EnsembleDrive>& drives, const EnsembleRun& run,
                const std::atomic<bool>* stop = nullptr);
   /// Returns the outcomes of devices `first`, first + 1, ..., by drive. After a stop, outcomes that were not begun are unset.
@@ -255,7 +256,7 @@ class DeviceCloser {
   Vectors vectors_;
   bool measures_drive_energy_;
   DeviceDrives device_drives_;
-  std::optional<DeviceMeter> meter_;
+  std::optional<PullInMeter> meter_;
   std::vector<std::vector<Signal>> nominal_signals_;          // signals of every drive
   std::vector<std::optional<OpenCommand>> nominal_commands_;  // command to open of each drive, if it has one
   std::vector<std::optional<ClosedEquilibrium>>
@@ -266,6 +267,6 @@ class DeviceCloser {
 /// the first devices only.
 [[nodiscard]] std::vector<std::vector<DeviceOutcome>> close_all(const Ensemble& ensemble,
                                                                 const std::vector<EnsembleDrive>& drives, const EnsembleRun& run,
-                                                                const Watch& watch = {});
+                                                                const Progress& progress = {});
 
 }  // namespace softland

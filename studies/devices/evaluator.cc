@@ -23,7 +23,7 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t rows_of_task = 64;  // rows of one task: enough to fill a lane, few enough to check the Watch often
+constexpr std::size_t rows_of_task = 64;  // rows of one task: enough to fill a lane, few enough to check the Progress often
 
 // Splits "electrode.main.span[2]" into its path and 2. A key without an element gives its path and 0.
 std::pair<std::string, std::size_t> key_and_element(const std::string& key) {
@@ -131,7 +131,7 @@ bool Evaluator::measured(const Figure& figure) {
 }
 
 Evaluator::Evaluator(const SceneFile& file, std::vector<std::string> keys, std::vector<Figure> figures,
-                     const EvaluatorOptions& options, const Watch& watch)
+                     const EvaluatorOptions& options, const Progress& progress)
     : keys_(std::move(keys)), figures_(std::move(figures)), options_(options) {
   require_open_start(read_scene(file), "evaluator closes the switch");
   require(!keys_.empty(), "evaluator: needs at least one key");
@@ -146,25 +146,25 @@ Evaluator::Evaluator(const SceneFile& file, std::vector<std::string> keys, std::
             [&] { return fmt::format("evaluator: the key '{}' occurs twice", keys_[i]); });
   units_.resize(keys_.size());
   values_.assign(keys_.size(), Metrics::unset);
-  vary_device(file, watch);
+  vary_device(file, progress);
   waveforms_ = nominal_->waveforms();
   if (options_.volts == VoltsOf::nominal) {
     for (std::size_t i = 0; i < keys_.size(); ++i) {
       if (waveform_key(key_and_element(keys_[i]).first)) read_waveform_key(i);
     }
   }
-  signals_ = nominal_->driven(waveforms_);
+  signals_ = nominal_->applied(waveforms_);
   closed_ = closed_equilibrium(nominal_->model, hold_levels(signals_));
   drives_ = std::make_unique<DeviceDrives>(*nominal_);
 }
 
 // Finds the columns of the device, and prepares the scene.
-void Evaluator::vary_device(const SceneFile& file, const Watch& watch) {
+void Evaluator::vary_device(const SceneFile& file, const Progress& progress) {
   if (options_.volts == VoltsOf::each) {
     SceneFile scene = file;
     scene.erase("spread");
     scene.erase("calibration");
-    nominal_ = std::make_unique<PreparedScene>(prepare_and_choose(scene, false, watch));
+    nominal_ = std::make_unique<PreparedScene>(prepare_and_choose(scene, false, progress));
     for (std::size_t i = 0; i < keys_.size(); ++i) {
       const auto [path, element] = key_and_element(keys_[i]);
       require(!path.starts_with("metrics."),
@@ -182,7 +182,7 @@ void Evaluator::vary_device(const SceneFile& file, const Watch& watch) {
   for (const std::string& key : keys_) {
     if (!waveform_key(key_and_element(key).first)) of_device.push_back(key);
   }
-  nominal_ = std::make_unique<PreparedScene>(prepare_and_choose(scene_that_varies(file, of_device), false, watch));
+  nominal_ = std::make_unique<PreparedScene>(prepare_and_choose(scene_that_varies(file, of_device), false, progress));
   if (of_device.empty()) return;
   for (const SpreadVariable& variable : nominal_->scene.spread.variables) {
     const auto column = static_cast<std::size_t>(std::find(keys_.begin(), keys_.end(), variable.name) - keys_.begin());
@@ -234,7 +234,7 @@ std::string Evaluator::violation_of(const std::vector<Waveform>& own) const {
   for (const WaveformKey& key : of_waveforms_) {
     const std::optional<DriverLimits>& limits = nominal_->drives[key.drive].limits;
     if (!limits) continue;
-    const std::string why = violation(nominal_->told(key.drive, own[key.drive]), *limits);
+    const std::string why = violation(nominal_->commanded(key.drive, own[key.drive]), *limits);
     if (!why.empty()) return why;
   }
   return {};
@@ -319,7 +319,7 @@ std::vector<Evaluator::Row> Evaluator::built(std::span<const double> rows, std::
 }
 
 void Evaluator::evaluate(std::span<const double> rows, std::span<double> figures, std::span<RowEnd> ends, int jobs,
-                         const Watch& watch) const {
+                         const Progress& progress) const {
   const std::size_t count = ends.size();
   require(rows.size() == count * keys_.size() && figures.size() == count * figures_.size(), [&] {
     return fmt::format("evaluator: `rows`, `figures` and `ends` must have as many rows, of {} numbers and {} figures",
@@ -346,7 +346,7 @@ void Evaluator::evaluate(std::span<const double> rows, std::span<double> figures
       driven.push_back({.device = row.device, .signals = row.has_signals ? &row.signals : &signals_, .duration = row.duration});
     }
     const std::vector<DeviceOutcome> closed = close_driven(
-        driven, nominal_->scene.metrics, {.duration = nominal_->duration, .tolerance = options_.tolerance, .stop = watch.stop},
+        driven, nominal_->scene.metrics, {.duration = nominal_->duration, .tolerance = options_.tolerance, .stop = progress.stop},
         options_.volts == VoltsOf::nominal ? closed_ : std::nullopt, measures_energy, vectors_in_use());
     for (std::size_t n = 0; n < places.size(); ++n) {
       const DeviceOutcome& outcome = closed[n];
@@ -356,10 +356,10 @@ void Evaluator::evaluate(std::span<const double> rows, std::span<double> figures
     }
     done += size;
     const std::scoped_lock lock(telling);
-    watch.tell("rows", static_cast<double>(done) / static_cast<double>(count));
+    progress.tell("rows", static_cast<double>(done) / static_cast<double>(count));
   };
-  run_tasks((count + rows_of_task - 1) / rows_of_task, jobs, task, watch.stop);
-  watch.throw_if_stopped();
+  run_tasks((count + rows_of_task - 1) / rows_of_task, jobs, task, progress.stop);
+  progress.throw_if_stopped();
 }
 
 namespace {
@@ -420,15 +420,15 @@ struct Evaluator::Place {
   PreparedScene scene;                 ///< its [spread] has the columns of the device
   std::vector<std::size_t> of_device;  ///< index of the column for each variable of that [spread]
   std::vector<WaveformKey> of_waveforms;
-  KnownUnits known;  ///< units by which the voltages scale with the device
+  MeasuredUnits known;  ///< units by which the voltages scale with the device
 };
 
-Evaluator::Place Evaluator::place_of(std::span<const double> row, const Watch& watch) const {
+Evaluator::Place Evaluator::place_of(std::span<const double> row, const Progress& progress) const {
   std::vector<std::string> device_keys;
   for (const std::string& key : keys_) {
     if (!waveform_key(key_and_element(key).first)) device_keys.push_back(key);
   }
-  const auto with_columns = [&](PreparedScene scene, std::vector<WaveformKey> of_waveforms, KnownUnits known) {
+  const auto with_columns = [&](PreparedScene scene, std::vector<WaveformKey> of_waveforms, MeasuredUnits known) {
     Place place{.scene = std::move(scene), .of_waveforms = std::move(of_waveforms), .known = std::move(known)};
     for (const SpreadVariable& variable : place.scene.scene.spread.variables)
       place.of_device.push_back(static_cast<std::size_t>(std::find(keys_.begin(), keys_.end(), variable.name) - keys_.begin()));
@@ -441,7 +441,7 @@ Evaluator::Place Evaluator::place_of(std::span<const double> row, const Watch& w
       const VariedKey& key = nominal_->scene.spread.variables[i].keys.front();
       file.assign(key.path, Quantity{.value = row[of_device_[i]], .dimension = key.measured_in}, key.element);
     }
-    PreparedScene there = prepare(scene_that_varies(file, device_keys), false, watch);
+    PreparedScene there = prepare(scene_that_varies(file, device_keys), false, progress);
     const std::vector<Waveform> own = waveforms_of(row);
     const std::string why = violation_of(own);
     require(why.empty(), [&] { return "jacobian: " + why; });
@@ -449,8 +449,8 @@ Evaluator::Place Evaluator::place_of(std::span<const double> row, const Watch& w
     return with_columns(std::move(there), of_waveforms_, {});
   }
   const SceneFile file = scene_of(row);
-  const PreparedScene in_volts = prepare_and_choose(file, false, watch);
-  KnownUnits known;
+  const PreparedScene in_volts = prepare_and_choose(file, false, progress);
+  MeasuredUnits known;
   if (!device_keys.empty()) {
     const WrittenVolts volts = written_volts(file, in_volts);
     require(!volts.in_other_units && !(volts.in_volts && volts.in_pull_in),
@@ -460,9 +460,9 @@ Evaluator::Place Evaluator::place_of(std::span<const double> row, const Watch& w
     const auto electrodes =
         std::ranges::count_if(drives, [](const std::string& name) { return name != piezo_drive && name != dispersion_drive; });
     require(!volts.in_pull_in || electrodes == 1, "jacobian: volts in Vdp of several electrodes have no exact derivative");
-    if (volts.in_pull_in) known = KnownUnits({.pull_in_error = 0.0});
+    if (volts.in_pull_in) known = MeasuredUnits({.pull_in_error = 0.0});
   }
-  PreparedScene there = prepare(scene_that_varies(in_volts.resolved(), device_keys), false, watch);
+  PreparedScene there = prepare(scene_that_varies(in_volts.resolved(), device_keys), false, progress);
   return with_columns(std::move(there), keys_of_row(in_volts, row), std::move(known));
 }
 
@@ -495,7 +495,7 @@ std::vector<Evaluator::WaveformKey> Evaluator::keys_of_row(const PreparedScene& 
 
 // Computes the derivatives of figures by parameters of waveforms.
 void Evaluator::derive_by_waveforms(const Place& place, std::span<const double> row, Eigen::MatrixXd& all,
-                                    const Watch& watch) const {
+                                    const Progress& progress) const {
   const std::vector<Waveform> here = place.scene.waveforms();
   std::vector<WaveformParameter> parameters;
   for (const WaveformKey& key : place.of_waveforms) {
@@ -503,14 +503,14 @@ void Evaluator::derive_by_waveforms(const Place& place, std::span<const double> 
       return fmt::format("jacobian: no derivative by {}: its source rounds to bits, so that the voltage jumps",
                          keys_[key.column]);
     });
-    const Signal told = place.scene.told(key.drive, here[key.drive]);
+    const Signal commanded = place.scene.commanded(key.drive, here[key.drive]);
     Waveform one = here[key.drive];
     std::vector<std::string_view> names;
     ParameterKind kind{};
     const double number = std::abs(*waveform_parameter(one, key.parameter, key.element, names, kind));
     const bool is_time = kind == ParameterKind::time || kind == ParameterKind::end_time;
     const bool is_voltage = kind == ParameterKind::level || kind == ParameterKind::swing;
-    const double size = std::max(number, is_voltage ? told.peak() : is_time ? told.pieces().back().begin : 0);
+    const double size = std::max(number, is_voltage ? commanded.peak() : is_time ? commanded.pieces().back().begin : 0);
     parameters.push_back({.name = keys_[key.column], .value = row[key.column], .size = size > 0 ? size / key.factor : 1});
   }
   const auto signals = [&](std::span<const double> x) {
@@ -521,10 +521,10 @@ void Evaluator::derive_by_waveforms(const Place& place, std::span<const double> 
       ParameterKind kind{};
       *waveform_parameter(moved[key.drive], key.parameter, key.element, names, kind) = key.factor * x[k];
     }
-    return place.scene.driven(moved);
+    return place.scene.applied(moved);
   };
-  const Derivatives found = derivatives_by_waveforms(place.scene, parameters, signals, {}, watch);
-  watch.throw_if_stopped();
+  const Derivatives found = derivatives_by_waveforms(place.scene, parameters, signals, {}, progress);
+  progress.throw_if_stopped();
   for (std::size_t f = 0; f < figures_.size(); ++f) {
     const FigureDerivatives& of = derived(found, figures_[f]);
     for (std::size_t k = 0; k < parameters.size(); ++k) {
@@ -534,15 +534,15 @@ void Evaluator::derive_by_waveforms(const Place& place, std::span<const double> 
   }
 }
 
-Eigen::MatrixXd Evaluator::jacobian(std::span<const double> row, const Watch& watch) const {
+Eigen::MatrixXd Evaluator::jacobian(std::span<const double> row, const Progress& progress) const {
   require(row.size() == keys_.size(), [&] { return fmt::format("jacobian: a row must have {} numbers", keys_.size()); });
-  const Place place = place_of(row, watch);
+  const Place place = place_of(row, progress);
   Eigen::MatrixXd all(static_cast<Eigen::Index>(figures_.size()), static_cast<Eigen::Index>(keys_.size()));
-  if (!place.of_waveforms.empty()) derive_by_waveforms(place, row, all, watch);
+  if (!place.of_waveforms.empty()) derive_by_waveforms(place, row, all, progress);
   if (place.of_device.empty()) return all;
   const PreparedScene& there = place.scene;
-  const Derivatives found = derivatives(there, {.waveforms = there.waveforms(), .known = place.known}, {}, watch);
-  watch.throw_if_stopped();
+  const Derivatives found = derivatives(there, {.waveforms = there.waveforms(), .known = place.known}, {}, progress);
+  progress.throw_if_stopped();
   for (std::size_t f = 0; f < figures_.size(); ++f) {
     const FigureDerivatives& of = derived(found, figures_[f]);
     for (std::size_t i = 0; i < place.of_device.size(); ++i) {

@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "config/scene.h"
 #include "objectives/figures.h"
 #include "studies/devices/ensemble.h"
@@ -47,7 +47,7 @@ class Evaluator {
   /// Throws InvalidInput for a scene that cannot be run, for a key that cannot vary or occurs twice, and for a figure that is
   /// not available in lanes (measured()).
   Evaluator(const SceneFile& file, std::vector<std::string> keys, std::vector<Figure> figures,
-            const EvaluatorOptions& options = {}, const Watch& watch = {});
+            const EvaluatorOptions& options = {}, const Progress& progress = {});
   Evaluator(const Evaluator&) = delete;
   Evaluator& operator=(const Evaluator&) = delete;
 
@@ -62,15 +62,15 @@ class Evaluator {
 
   /// Evaluates rows. `rows` holds them one after another, with a number for each key [SI unit]. `figures` holds the figures of
   /// each row in the same way, NaN if missing, and `ends` has one entry per row. The results depend neither on `jobs` nor on
-  /// the other rows. Throws InvalidInput if the sizes do not match, and Interrupted if `watch` asks to stop. May be called by
-  /// several threads at once.
+  /// the other rows. Throws InvalidInput if the sizes do not match, and Interrupted if `progress` asks to stop. May be called
+  /// by several threads at once.
   void evaluate(std::span<const double> rows, std::span<double> figures, std::span<RowEnd> ends, int jobs,
-                const Watch& watch = {}) const;
+                const Progress& progress = {}) const;
 
   /// Returns the derivatives of the figures by the keys at a row, figures x keys [unit of the figure over that of the key].
   /// They are exact derivatives of the closing (studies/devices/derivatives.h). With VoltsOf::each all voltages must be written
   /// in Vdp of one electrode, or none may be. Throws InvalidInput with the reason if a derivative is missing.
-  [[nodiscard]] Eigen::MatrixXd jacobian(std::span<const double> row, const Watch& watch = {}) const;
+  [[nodiscard]] Eigen::MatrixXd jacobian(std::span<const double> row, const Progress& progress = {}) const;
 
  private:
   /// A parameter of a waveform that a column sets.
@@ -84,16 +84,16 @@ class Evaluator {
   struct Place;
 
   void read_waveform_key(std::size_t column);
-  void vary_device(const SceneFile& file, const Watch& watch);
+  void vary_device(const SceneFile& file, const Progress& progress);
   [[nodiscard]] std::vector<Row> built(std::span<const double> rows, std::size_t first, std::size_t count) const;
   void build_device(Row& row, std::span<const double> values, DeviceBuilder& builder) const;
   void build_anew(Row& row, std::span<const double> values) const;
   [[nodiscard]] std::vector<Waveform> waveforms_of(std::span<const double> values) const;
   [[nodiscard]] std::string violation_of(const std::vector<Waveform>& own) const;
   [[nodiscard]] SceneFile scene_of(std::span<const double> values) const;
-  [[nodiscard]] Place place_of(std::span<const double> row, const Watch& watch) const;
+  [[nodiscard]] Place place_of(std::span<const double> row, const Progress& progress) const;
   [[nodiscard]] std::vector<WaveformKey> keys_of_row(const PreparedScene& in_volts, std::span<const double> row) const;
-  void derive_by_waveforms(const Place& place, std::span<const double> row, Eigen::MatrixXd& all, const Watch& watch) const;
+  void derive_by_waveforms(const Place& place, std::span<const double> row, Eigen::MatrixXd& all, const Progress& progress) const;
   [[nodiscard]] std::unique_ptr<DeviceBuilder> take_builder() const;
 
   std::vector<std::string> keys_, units_;

@@ -64,7 +64,7 @@ HoldWindow hold_window(std::span<const ClosedRange> devices) {
   return window;
 }
 
-HoldWindows hold_windows(const PreparedScene& nominal, const RobustnessOptions& options, const Watch& watch) {
+HoldWindows hold_windows(const PreparedScene& nominal, const RobustnessOptions& options, const Progress& progress) {
   constexpr std::size_t together = 8;  // devices of one task
   HoldWindows found;
   const std::vector<Electrode>& electrodes = nominal.scene.device.electrodes;
@@ -80,15 +80,15 @@ HoldWindows hold_windows(const PreparedScene& nominal, const RobustnessOptions& 
     std::vector<ClosedRange> ranges(count);
     const auto task = [&](std::size_t chunk) {
       DeviceBuilder builder(ensemble);
-      for (std::size_t i = chunk * together; i < std::min(count, (chunk + 1) * together) && !watch.stopped(); ++i) {
+      for (std::size_t i = chunk * together; i < std::min(count, (chunk + 1) * together) && !progress.stopped(); ++i) {
         const SampledDevice device = builder.device(i);
         if (device.model) ranges[i] = range_of_device(*device.model, k, bias, near);
         const std::scoped_lock lock(telling);
-        watch.tell("window of hold levels", static_cast<double>(++done) / static_cast<double>(count * electrodes.size()));
+        progress.tell("window of hold levels", static_cast<double>(++done) / static_cast<double>(count * electrodes.size()));
       }
     };
-    run_tasks((count + together - 1) / together, options.jobs, task, watch.stop);
-    if (watch.stopped()) return {};
+    run_tasks((count + together - 1) / together, options.jobs, task, progress.stop);
+    if (progress.stopped()) return {};
     found.of_electrodes[electrodes[k].name] = hold_window(ranges);
     found.devices = count;
   }

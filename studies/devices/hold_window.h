@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "studies/closing/closed_state.h"
 #include "studies/devices/robustness.h"
 
@@ -36,7 +36,8 @@ struct HoldWindows {
 
 /// Returns the windows of the first devices of robustness() under the same options, in volts, whatever their calibration. The
 /// other drives have the levels that they have for pull-in voltages. No level holds a device that cannot be described. No
-/// windows are returned if the scene has no contact, or if `watch` asks to stop.
-[[nodiscard]] HoldWindows hold_windows(const PreparedScene& nominal, const RobustnessOptions& options, const Watch& watch = {});
+/// windows are returned if the scene has no contact, or if `progress` asks to stop.
+[[nodiscard]] HoldWindows hold_windows(const PreparedScene& nominal, const RobustnessOptions& options,
+                                       const Progress& progress = {});
 
 }  // namespace softland

@@ -28,7 +28,7 @@ NearbyDevices::NearbyDevices(const PreparedScene& nominal, const EnsembleDrive& 
   known_ = drive.known.without_errors();
   const Calibration& calibration = known_.calibration();
   constexpr double precision = 1e-11;  // relative precision of pull-in voltages whose differences give derivatives
-  if (!calibration.is_empty()) meter_.emplace(nominal, Gauges::of(calibration), precision);
+  if (!calibration.is_empty()) meter_.emplace(nominal, MeasuredQuantities::of(calibration), precision);
 }
 
 NearbyDevices::NearbyDevices(const PreparedScene& nominal)
@@ -80,7 +80,7 @@ std::vector<Signal> NearbyDevices::signals_of(std::span<const double> values) {
     units = known_.of(meter_->exact(*sampled.model), 0, 0);
     require(units.are_known(), not_measured);
   }
-  return drives_.differ(units) ? drives_.signals(drive_->waveforms, units, own) : nominal_.driven(drive_->waveforms);
+  return drives_.differ(units) ? drives_.signals(drive_->waveforms, units, own) : nominal_.applied(drive_->waveforms);
 }
 
 // True if a quantity changes the drives of a device.
@@ -112,11 +112,11 @@ Switch NearbyDevices::device_at(std::vector<double> values) {
   return std::move(*sampled.model);
 }
 
-DeviceChanges NearbyDevices::changes(const Switch& model, std::vector<std::string>& why_none, const Watch& watch) {
+DeviceChanges NearbyDevices::changes(const Switch& model, std::vector<std::string>& why_none, const Progress& progress) {
   std::vector<std::optional<SwitchSlopes::Neighbours>> neighbours(variables().size());
   std::vector<double> lower = values_, upper = lower;
-  for (std::size_t i = 0; i < neighbours.size() && !watch.stopped(); ++i) {
-    watch.tell("derivatives", static_cast<double>(i) / static_cast<double>(neighbours.size()));
+  for (std::size_t i = 0; i < neighbours.size() && !progress.stopped(); ++i) {
+    progress.tell("derivatives", static_cast<double>(i) / static_cast<double>(neighbours.size()));
     try {
       if (changes_switch(i)) neighbours[i] = this->neighbours(i);
       if (!changes_signals(i)) continue;

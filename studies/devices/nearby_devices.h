@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "model/switch_slopes.h"
 #include "studies/devices/ensemble.h"
 #include "waveforms/signal_slopes.h"
@@ -49,7 +49,7 @@ class NearbyDevices {
 
   /// Returns the derivatives of device(), which is `model`, and of its signals. If `why_none` of a quantity is empty and the
   /// quantity has no derivatives, it receives the reason.
-  [[nodiscard]] DeviceChanges changes(const Switch& model, std::vector<std::string>& why_none, const Watch& watch = {});
+  [[nodiscard]] DeviceChanges changes(const Switch& model, std::vector<std::string>& why_none, const Progress& progress = {});
   /// Return the derivatives of the switch alone, and of the signals alone. They throw as device() does.
   [[nodiscard]] SwitchSlopes changes_of_switch(const Switch& model);
   [[nodiscard]] SignalSlopes changes_of_signals();
@@ -69,11 +69,11 @@ class NearbyDevices {
 
   const PreparedScene& nominal_;
   const EnsembleDrive* drive_ = nullptr;
-  KnownUnits known_;
+  MeasuredUnits known_;
   Ensemble ensemble_;
   DeviceBuilder builder_;
   DeviceDrives drives_;
-  std::optional<DeviceMeter> meter_;
+  std::optional<PullInMeter> meter_;
   std::vector<double> values_, steps_;
 };
 

@@ -92,7 +92,7 @@ std::vector<Waveform> waveforms_of(const PreparedScene& nominal, const NamedDriv
     if (!given->limits) continue;
     const DriverLimits own = limits_for(waveform, *given->limits);
     const bool may_be_samples = std::holds_alternative<Table>(waveform);
-    const std::string broken = violation(nominal.told(nominal.drives.place(name), waveform),
+    const std::string broken = violation(nominal.commanded(nominal.drives.place(name), waveform),
                                          may_be_samples ? limits_of_samples(own, given->source) : own);
     require(broken.empty(), [&] { return fmt::format("{}: drive '{}': {}", drive.name, name, broken); });
   }
@@ -187,7 +187,7 @@ Yield yield_of(std::size_t devices, std::size_t all) {
 }
 
 Robustness robustness(const PreparedScene& nominal, const std::vector<NamedDrive>& drives, const RobustnessOptions& options,
-                      const Watch& watch) {
+                      const Progress& progress) {
   require(nominal.model.has_contact(), "robustness needs a [contact] section: without contact there is no landing");
   require_open_start(nominal.scene, "robustness closes every device");
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
@@ -198,9 +198,9 @@ Robustness robustness(const PreparedScene& nominal, const std::vector<NamedDrive
   plain.waveforms.merge(nominal.drives.waveforms());  // drives that the plain step leaves out
   std::vector<NamedDrive> all;
   const auto is_judged = [&](const NamedDrive& drive) {  // the scene's own drive may be the plain step
-    const std::vector<Signal> own = nominal.told(waveforms_of(nominal, drive));
+    const std::vector<Signal> own = nominal.commanded(waveforms_of(nominal, drive));
     return drive.calibration.is_empty() && std::any_of(all.begin(), all.end(), [&](const NamedDrive& other) {
-             return other.calibration.is_empty() && same_drives(own, nominal.told(waveforms_of(nominal, other)));
+             return other.calibration.is_empty() && same_drives(own, nominal.commanded(waveforms_of(nominal, other)));
            });
   };
   all.push_back(plain);
@@ -214,13 +214,13 @@ Robustness robustness(const PreparedScene& nominal, const std::vector<NamedDrive
 
   std::vector<Calibration> calibrations;
   for (const NamedDrive& drive : all) calibrations.push_back(drive.calibration);
-  const std::vector<KnownUnits> known = known_units(nominal, calibrations, options.jobs, watch);
+  const std::vector<MeasuredUnits> known = measured_units(nominal, calibrations, options.jobs, progress);
   std::vector<EnsembleDrive> judged;
   for (std::size_t i = 0; i < all.size(); ++i) judged.push_back({.waveforms = waveforms_of(nominal, all[i]), .known = known[i]});
-  std::vector<std::vector<DeviceOutcome>> outcomes = close_all(ensemble, judged, run, watch);
+  std::vector<std::vector<DeviceOutcome>> outcomes = close_all(ensemble, judged, run, progress);
   result.devices = outcomes.front().size();
-  result.interrupted = watch.stopped();
-  if (result.devices == 0) watch.throw_if_stopped();
+  result.interrupted = progress.stopped();
+  if (result.devices == 0) progress.throw_if_stopped();
   for (std::size_t i = 0; i < all.size(); ++i) {
     (i < shown ? result.drives : result.by_knowledge)
         .push_back(internal::summarised(std::move(all[i]), known[i], std::move(outcomes[i])));
@@ -229,7 +229,7 @@ Robustness robustness(const PreparedScene& nominal, const std::vector<NamedDrive
 }
 
 Sensitivity sensitivity(const PreparedScene& nominal, const DriveRobustness& drive, std::uint64_t rows,
-                        const RobustnessOptions& options, const Watch& watch) {
+                        const RobustnessOptions& options, const Progress& progress) {
   const DeviceSpread& spread = nominal.scene.spread;
   Sensitivity found;
   for (const SpreadVariable& variable : spread.variables) found.variables.push_back(variable.name);
@@ -238,7 +238,7 @@ Sensitivity sensitivity(const PreparedScene& nominal, const DriveRobustness& dri
   if (!found.why_none.empty()) return found;
   const Ensemble ensemble(nominal, SobolDesign(PointSet::sobol, spread.variables.size(), options.seed, rows));
   const std::vector<DeviceOutcome> outcomes =
-      close_all(ensemble, {internal::exactly_measured(nominal, drive)}, internal::run_of(nominal, options), watch).front();
+      close_all(ensemble, {internal::exactly_measured(nominal, drive)}, internal::run_of(nominal, options), progress).front();
   if (outcomes.size() < ensemble.size()) {
     found.why_none = "interrupted";
     return found;
@@ -278,7 +278,7 @@ std::vector<DeviceCourse> device_courses(const PreparedScene& nominal, const Dri
 }
 
 GapCourses gap_courses(const PreparedScene& nominal, const DriveRobustness& drive, std::size_t devices, std::size_t instants,
-                       double end, const RobustnessOptions& options, const Watch& watch) {
+                       double end, const RobustnessOptions& options, const Progress& progress) {
   GapCourses courses{.end = end};
   std::vector<std::vector<double>> all(std::min(devices, drive.outcomes.size()));
   run_tasks(
@@ -292,8 +292,8 @@ GapCourses gap_courses(const PreparedScene& nominal, const DriveRobustness& driv
         } catch (const InvalidInput&) {  // a device that cannot be described has no course
         }
       },
-      watch.stop);
-  watch.throw_if_stopped();
+      progress.stop);
+  progress.throw_if_stopped();
   std::erase_if(all, [](const std::vector<double>& gap) { return gap.empty(); });
   courses.gaps = std::move(all);
   return courses;
@@ -307,7 +307,7 @@ SceneFile scene_of_device(const PreparedScene& nominal, const DriveRobustness& d
 
 namespace internal {
 
-DriveRobustness summarised(NamedDrive drive, KnownUnits known, std::vector<DeviceOutcome> outcomes) {
+DriveRobustness summarised(NamedDrive drive, MeasuredUnits known, std::vector<DeviceOutcome> outcomes) {
   DriveRobustness all{.name = std::move(drive.name),
                       .waveforms = std::move(drive.waveforms),
                       .known = std::move(known),
@@ -339,7 +339,7 @@ SceneFile scene_of_values(const Ensemble& ensemble, const DriveRobustness& drive
   if (const Calibration& calibration = drive.known.calibration(); !calibration.is_empty()) {
     const SampledDevice sampled = DeviceBuilder(ensemble).device(values);
     if (sampled.model) {
-      const DeviceMeter meter(nominal, Gauges::of(calibration));
+      const PullInMeter meter(nominal, MeasuredQuantities::of(calibration));
       units = drive.known.of(meter.exact(*sampled.model), seed, device);
       if (!units.are_known()) units = {};
     }
@@ -355,7 +355,7 @@ SceneFile scene_of_values(const Ensemble& ensemble, const DriveRobustness& drive
     if (!drive.waveforms.contains(names[k]) && !drives.has_errors(k)) continue;
     file.set_waveform(names[k], own[k].waveform);
     if (const std::optional<DriverLimits>& limits = nominal.drives[k].limits; limits)
-      allow(file, driver, nominal.told(k, own[k].waveform), *limits);
+      allow(file, driver, nominal.commanded(k, own[k].waveform), *limits);
   }
   return file;
 }

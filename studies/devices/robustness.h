@@ -47,7 +47,7 @@ struct Yield {
 struct DriveRobustness {
   std::string name;
   DriveWaveforms waveforms;             ///< waveforms of the nominal device, in volts
-  KnownUnits known = {};                ///< known units of the devices
+  MeasuredUnits known = {};             ///< known units of the devices
   std::vector<DeviceOutcome> outcomes;  ///< outcomes by device
   PerFigure<FigureStatistics> figures;  ///< statistics of device_figures
   Yield closing;                        ///< share of devices that touch and are simulated to the end of the window
@@ -119,21 +119,22 @@ struct NamedDrive {
 /// InvalidInput for a scene without [spread] or without contact, and for a drive that the scene lacks or that exceeds its
 /// limits.
 [[nodiscard]] Robustness robustness(const PreparedScene& nominal, const std::vector<NamedDrive>& drives,
-                                    const RobustnessOptions& options, const Watch& watch = {});
+                                    const RobustnessOptions& options, const Progress& progress = {});
 
 /// Computes Sobol' indices of the figures under this drive, from `rows` rows of a design. None for correlated variables, whose
 /// shares of the variance cannot be separated, and for a single variable. Measurements are taken as exact.
 [[nodiscard]] Sensitivity sensitivity(const PreparedScene& nominal, const DriveRobustness& drive, std::uint64_t rows,
-                                      const RobustnessOptions& options, const Watch& watch = {});
+                                      const RobustnessOptions& options, const Progress& progress = {});
 
 /// Returns the devices with the 5th, 50th and 95th percentile of the highest rebound, and their closings.
 [[nodiscard]] std::vector<DeviceCourse> device_courses(const PreparedScene& nominal, const DriveRobustness& drive,
                                                        const Robustness& found, const RobustnessOptions& options);
 
 /// Returns the gaps of the first `devices` devices until `end` [s], at `instants` instants. Devices that cannot be described
-/// are left out. Throws Interrupted if `watch` asks to stop.
+/// are left out. Throws Interrupted if `progress` asks to stop.
 [[nodiscard]] GapCourses gap_courses(const PreparedScene& nominal, const DriveRobustness& drive, std::size_t devices,
-                                     std::size_t instants, double end, const RobustnessOptions& options, const Watch& watch = {});
+                                     std::size_t instants, double end, const RobustnessOptions& options,
+                                     const Progress& progress = {});
 
 /// Returns the scene of a device of that ensemble under one of its drives, with the errors of its sources written out.
 /// `simulate` runs it to the same closing, as for Ensemble::scene(). An exception is a sine with errors of times or voltages,
@@ -144,7 +145,7 @@ struct NamedDrive {
 namespace internal {
 
 /// Returns the statistics of these outcomes, which are ordered by device.
-[[nodiscard]] DriveRobustness summarised(NamedDrive drive, KnownUnits known, std::vector<DeviceOutcome> outcomes);
+[[nodiscard]] DriveRobustness summarised(NamedDrive drive, MeasuredUnits known, std::vector<DeviceOutcome> outcomes);
 /// Returns the options of further runs of a drive of a Robustness.
 [[nodiscard]] EnsembleRun run_of(const PreparedScene& nominal, const RobustnessOptions& options);
 /// Returns the drive with exact measurements.

@@ -150,7 +150,7 @@ double touching_voltage(const PreparedScene& nominal, const StableApproach& appr
 }
 
 double share_with_path(const PreparedScene& nominal, const StableApproach& approach, std::uint64_t devices, std::uint64_t seed,
-                       int jobs, const Watch& watch) {
+                       int jobs, const Progress& progress) {
   constexpr std::size_t together = 16;  // devices of one task
   const Ensemble ensemble(nominal, devices, seed);
   std::vector<char> has(devices, 0);
@@ -158,13 +158,13 @@ double share_with_path(const PreparedScene& nominal, const StableApproach& appro
             [&](std::size_t task) {
               DeviceBuilder builder(ensemble);
               for (std::size_t k = task * together; k < std::min<std::size_t>(devices, (task + 1) * together); ++k) {
-                if (watch.stopped()) return;
+                if (progress.stopped()) return;
                 const std::optional<double> voltage = touching_voltage(nominal, builder.device(k), approach);
                 has[k] = voltage && is_within(*voltage, approach.limit) ? 1 : 0;
               }
             },
-            watch.stop);
-  watch.throw_if_stopped();
+            progress.stop);
+  progress.throw_if_stopped();
   return static_cast<double>(std::ranges::count(has, 1)) / static_cast<double>(devices);
 }
 

@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "studies/closing/actuator.h"
 #include "studies/closing/prepared.h"
 
@@ -47,6 +47,6 @@ struct StableApproach {
 
 /// Returns the share of devices of the spread that have such a path within the limits of the driver.
 [[nodiscard]] double share_with_path(const PreparedScene& nominal, const StableApproach& approach, std::uint64_t devices,
-                                     std::uint64_t seed, int jobs, const Watch& watch = {});
+                                     std::uint64_t seed, int jobs, const Progress& progress = {});
 
 }  // namespace softland

@@ -52,7 +52,7 @@ std::uint64_t whole_number(const std::string& text, std::uint64_t least, std::ui
 
 SearchRequest request_of(const std::map<std::string, std::string>& given) {
   SearchRequest request{.robust = std::string(nominal_alone)};
-  visit_words(
+  visit_prose(
       [&](std::string_view name, auto& word) {
         if (const auto found = given.find(std::string(name)); found != given.end()) word = found->second;
       },
@@ -241,7 +241,7 @@ void complete(PlanRequest& request, const OtherStudies& others) {
   }
 }
 
-Exploration::Exploration(Plan plan, const Watch& watch, const OtherStudies& others, std::vector<PointFigure> columns)
+Exploration::Exploration(Plan plan, const Progress& progress, const OtherStudies& others, std::vector<PointFigure> columns)
     : plan_(std::move(plan)) {
   if (const auto* const row = find_named(point_studies, plan_.study())) {
     study_ = row->value;
@@ -255,16 +255,16 @@ Exploration::Exploration(Plan plan, const Watch& watch, const OtherStudies& othe
                          key.path.starts_with("spread.") || key.path.starts_with("metrics.") || key.path == "simulate.duration";
     }
   }
-  if (figures_.empty()) list_figures(watch);
+  if (figures_.empty()) list_figures(progress);
 }
 
-void Exploration::list_figures(const Watch& watch) {
+void Exploration::list_figures(const Progress& progress) {
   const auto add = [&](const PointFigure& figure) { figures_.push_back(figure); };
   const auto add_closing = [&] {
     for (const Figure& figure : asked_among(all_figures, asked_)) add(figure_column(figure));
   };
   if (other_) {
-    for (const auto& [key, value] : other_->record(plan_.base(), plan_.options(), plan_.seed(), 1, watch).numbers)
+    for (const auto& [key, value] : other_->record(plan_.base(), plan_.options(), plan_.seed(), 1, progress).numbers)
       add(figure_of_key(key));
     return;
   }
@@ -296,7 +296,7 @@ void Exploration::list_figures(const Watch& watch) {
       add({"plain_step_cost", "Cost of the plain step", ""});
       for (const Figure& figure : step_figures) add(figure_column(figure, "plain_step_", ", plain step"));
       add({"evaluations", "Evaluations", ""});
-      const PreparedScene base = prepared(plan_.base(), true, watch);
+      const PreparedScene base = prepared(plan_.base(), true, progress);
       const std::string& families = plan_.options().at("waveform");
       for (const std::string& family : families_of(families)) {
         const SearchSpace space(base, find_named(actuators, plan_.options().at("actuator"))->value, family, base.duration / 2);
@@ -318,18 +318,19 @@ std::string Exploration::content(const SceneFile& scene) const {
   return text + "\n\n" + scene.text();
 }
 
-std::map<std::string, std::vector<std::pair<double, double>>> Exploration::waveforms(const SceneFile& scene, const Watch& watch) {
+std::map<std::string, std::vector<std::pair<double, double>>> Exploration::waveforms(const SceneFile& scene,
+                                                                                     const Progress& progress) {
   try {
-    return lines_of(prepared(scene, false, watch));
+    return lines_of(prepared(scene, false, progress));
   } catch (const InvalidInput&) {
     return {};
   }
 }
 
-PointRow Exploration::row(const SceneFile& scene, int jobs, const Watch& watch) {
+PointRow Exploration::row(const SceneFile& scene, int jobs, const Progress& progress) {
   PointRow row;
   try {
-    row = computed(scene, jobs, watch);
+    row = computed(scene, jobs, progress);
   } catch (const Interrupted&) {
     throw;
   } catch (const std::bad_alloc&) {
@@ -339,35 +340,35 @@ PointRow Exploration::row(const SceneFile& scene, int jobs, const Watch& watch) 
   } catch (const std::exception& error) {
     row = {.status = std::string(internal_fault), .reason = error.what(), .figures = {}};
   }
-  watch.throw_if_stopped();  // an interrupted point adds no row
+  progress.throw_if_stopped();  // an interrupted point adds no row
   row.figures.resize(figures_.size(), Metrics::unset);
   return row;
 }
 
-PointRow Exploration::computed(const SceneFile& scene, int jobs, const Watch& watch) {
-  if (other_) return recorded(scene, jobs, watch);
+PointRow Exploration::computed(const SceneFile& scene, int jobs, const Progress& progress) {
+  if (other_) return recorded(scene, jobs, progress);
   switch (*study_) {
     case PointStudy::simulate:
-      return simulated(scene, jobs, watch);
+      return simulated(scene, jobs, progress);
     case PointStudy::pull_in:
-      return pulled_in(scene, watch);
+      return pulled_in(scene, progress);
     case PointStudy::robustness:
-      return on_devices(scene, jobs, watch);
+      return on_devices(scene, jobs, progress);
     case PointStudy::optimize:
       break;
   }
-  return optimized(scene, jobs, watch);
+  return optimized(scene, jobs, progress);
 }
 
-PreparedScene Exploration::prepared(const SceneFile& scene, bool default_limits, const Watch& watch) {
+PreparedScene Exploration::prepared(const SceneFile& scene, bool default_limits, const Progress& progress) {
   const PullInFinder finder = shares_switches_ ? pull_in_.finder(scene) : PullInFinder(electrode_pull_in);
-  return choose(prepare(scene, default_limits, watch, finder), default_limits, watch);
+  return choose(prepare(scene, default_limits, progress, finder), default_limits, progress);
 }
 
-PointRow Exploration::simulated(const SceneFile& scene, int jobs, const Watch& watch) {
-  const PreparedScene p = prepared(scene, false, watch);
+PointRow Exploration::simulated(const SceneFile& scene, int jobs, const Progress& progress) {
+  const PreparedScene p = prepared(scene, false, progress);
   const bool certified = plan_.options().contains("certify");
-  const Closing closing = certified ? certify(p, watch, jobs) : simulate(p, true, watch);
+  const Closing closing = certified ? certify(p, progress, jobs) : simulate(p, true, progress);
   PointRow row{.status = std::string(to_string(closing.metrics.status)), .reason = closing.trajectory.message, .figures = {}};
   for (const Figure& figure : asked_among(all_figures, asked_)) row.figures.push_back(finite(figure.value(closing.metrics)));
   if (!certified) return row;
@@ -377,15 +378,15 @@ PointRow Exploration::simulated(const SceneFile& scene, int jobs, const Watch& w
   return row;
 }
 
-PointRow Exploration::pulled_in(const SceneFile& scene, const Watch& watch) {
-  const PreparedScene p = prepared(scene, false, watch);
+PointRow Exploration::pulled_in(const SceneFile& scene, const Progress& progress) {
+  const PreparedScene p = prepared(scene, false, progress);
   const Device& device = p.scene.device;
   PointRow row{.status = std::string(to_string(Status::done)), .reason = {}, .figures = {}};
   for (const std::size_t k : pulling_drives(device)) {
     const bool is_electrode = k < device.electrodes.size();
     const std::vector<double> bias = bias_of(p.scene, k);
     const auto known = is_electrode ? p.pull_in.find(device.electrodes[k].name) : p.pull_in.end();
-    const ElectrodePullIn found = known != p.pull_in.end() ? known->second : electrode_pull_in(p.model, k, bias, watch);
+    const ElectrodePullIn found = known != p.pull_in.end() ? known->second : electrode_pull_in(p.model, k, bias, progress);
     const Status status = found.statically.status == Status::done ? found.dynamically.status : found.statically.status;
     if (status != Status::done) row.status = to_string(status);
     const double offset = is_electrode ? 0 : 1;  // the drive of a dispersion force is its factor less one
@@ -399,8 +400,8 @@ PointRow Exploration::pulled_in(const SceneFile& scene, const Watch& watch) {
 }
 
 // Returns the numbers of a record as a row. A number that this record lacks, but that of the plan's scene has, stays unset.
-PointRow Exploration::recorded(const SceneFile& scene, int jobs, const Watch& watch) {
-  const OtherStudy::Record record = other_->record(scene, plan_.options(), plan_.seed(), jobs, watch);
+PointRow Exploration::recorded(const SceneFile& scene, int jobs, const Progress& progress) {
+  const OtherStudy::Record record = other_->record(scene, plan_.options(), plan_.seed(), jobs, progress);
   PointRow row{.status = record.status, .reason = {}, .figures = std::vector<double>(figures_.size(), Metrics::unset)};
   for (const auto& [key, value] : record.numbers) {
     const auto column = std::ranges::find(figures_, figure_of_key(key).quantity, &PointFigure::quantity);
@@ -409,11 +410,11 @@ PointRow Exploration::recorded(const SceneFile& scene, int jobs, const Watch& wa
   return row;
 }
 
-PointRow Exploration::on_devices(const SceneFile& scene, int jobs, const Watch& watch) {
-  const PreparedScene nominal = prepared(scene, true, watch);
+PointRow Exploration::on_devices(const SceneFile& scene, int jobs, const Progress& progress) {
+  const PreparedScene nominal = prepared(scene, true, progress);
   const Robustness found =
       robustness(nominal, {{.name = "scene", .waveforms = nominal.drives.waveforms(), .calibration = nominal.scene.calibration}},
-                 {.samples = std::stoull(plan_.options().at("samples")), .seed = plan_.seed(), .jobs = jobs}, watch);
+                 {.samples = std::stoull(plan_.options().at("samples")), .seed = plan_.seed(), .jobs = jobs}, progress);
   if (found.interrupted) throw Interrupted();
   const DriveRobustness& own = found.drives.back();
   PointRow row{
@@ -427,14 +428,14 @@ PointRow Exploration::on_devices(const SceneFile& scene, int jobs, const Watch& 
   return row;
 }
 
-PointRow Exploration::optimized(const SceneFile& scene, int jobs, const Watch& watch) {
+PointRow Exploration::optimized(const SceneFile& scene, int jobs, const Progress& progress) {
   OptimizeOptions search = planned(request_of(plan_.options()), scene, {}).options;
   search.begins_with_half = false;  // all rows of a plan have the same budget
   search.seed = plan_.seed();
   search.jobs = jobs;
-  search.stop = watch.stop;
+  search.stop = progress.stop;
   // Stop here: a stopped search would still verify results that no row keeps.
-  search.on_preparation = [&watch](std::string_view, double) { watch.throw_if_stopped(); };
+  search.on_preparation = [&progress](std::string_view, double) { progress.throw_if_stopped(); };
   const OptimizeResult found = optimize(scene, search);
   if (found.search.termination == Termination::interrupted) throw Interrupted();
   PointRow row{.status = {}, .reason = {}, .figures = {}};

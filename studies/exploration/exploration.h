@@ -2,7 +2,7 @@
 // of the point and on the options of the study. It is bit for bit the result of the verb of the same name for that scene.
 //
 //   simulate    every figure of merit of the closing under the scene's waveforms, with `certify` their errors too. Closings run
-//               one at a time: in lanes (model/ensemble/fleet.h) their last digits would differ.
+//               one at a time: in lanes (model/ensemble/ensemble_closings.h) their last digits would differ.
 //   pull-in     static and dynamic pull-in voltage and release voltage; for a switch without electrodes the factors of the
 //               dispersion force
 //   robustness  yields and quantiles of the figures over `samples` varied devices of [spread], under the scene's own
@@ -25,7 +25,7 @@
 #include <vector>
 
 #include "base/choice.h"
-#include "base/watch.h"
+#include "base/progress.h"
 #include "config/plan.h"
 #include "studies/devices/row_status.h"
 #include "studies/exploration/pull_in_memory.h"
@@ -52,8 +52,8 @@ struct OtherStudy {
   std::string name;
   /// Throws InvalidInput for an option that the study lacks, and for a value that breaks the option's rule.
   std::function<void(const Options&)> check;
-  /// Returns the record of a scene. Throws Interrupted if `watch` asks to stop, and InvalidInput.
-  std::function<Record(const SceneFile&, const Options&, std::uint64_t seed, int jobs, const Watch&)> record;
+  /// Returns the record of a scene. Throws Interrupted if `progress` asks to stop, and InvalidInput.
+  std::function<Record(const SceneFile&, const Options&, std::uint64_t seed, int jobs, const Progress&)> record;
 };
 using OtherStudies = std::vector<OtherStudy>;
 
@@ -75,7 +75,7 @@ class Exploration {
   /// The plan's study must be complete (complete()). `columns` are those of the record of another study, if known; otherwise
   /// they are found by making the record of the plan's own scene. Throws InvalidInput if the scene of the plan lacks something
   /// that the study needs.
-  explicit Exploration(Plan plan, const Watch& watch = {}, const OtherStudies& others = {},
+  explicit Exploration(Plan plan, const Progress& progress = {}, const OtherStudies& others = {},
                        std::vector<PointFigure> columns = {});
 
   [[nodiscard]] const Plan& plan() const { return plan_; }
@@ -84,20 +84,20 @@ class Exploration {
   [[nodiscard]] std::string content(const SceneFile& scene) const;
   /// Returns the drives of a scene of the plan as the ends of straight lines [s, V]; none for an impossible scene.
   [[nodiscard]] std::map<std::string, std::vector<std::pair<double, double>>> waveforms(const SceneFile& scene,
-                                                                                        const Watch& watch = {});
+                                                                                        const Progress& progress = {});
   /// Returns the row of a scene of the plan. May be called on any thread; the number `jobs` of threads for one point does not
-  /// change the row. Throws Interrupted if `watch` asks to stop.
-  [[nodiscard]] PointRow row(const SceneFile& scene, int jobs = 1, const Watch& watch = {});
+  /// change the row. Throws Interrupted if `progress` asks to stop.
+  [[nodiscard]] PointRow row(const SceneFile& scene, int jobs = 1, const Progress& progress = {});
 
  private:
-  void list_figures(const Watch& watch);
-  [[nodiscard]] PointRow computed(const SceneFile& scene, int jobs, const Watch& watch);
-  [[nodiscard]] PointRow simulated(const SceneFile& scene, int jobs, const Watch& watch);
-  [[nodiscard]] PointRow pulled_in(const SceneFile& scene, const Watch& watch);
-  [[nodiscard]] PointRow on_devices(const SceneFile& scene, int jobs, const Watch& watch);
-  [[nodiscard]] PointRow recorded(const SceneFile& scene, int jobs, const Watch& watch);
-  [[nodiscard]] PointRow optimized(const SceneFile& scene, int jobs, const Watch& watch);
-  [[nodiscard]] PreparedScene prepared(const SceneFile& scene, bool default_limits, const Watch& watch);
+  void list_figures(const Progress& progress);
+  [[nodiscard]] PointRow computed(const SceneFile& scene, int jobs, const Progress& progress);
+  [[nodiscard]] PointRow simulated(const SceneFile& scene, int jobs, const Progress& progress);
+  [[nodiscard]] PointRow pulled_in(const SceneFile& scene, const Progress& progress);
+  [[nodiscard]] PointRow on_devices(const SceneFile& scene, int jobs, const Progress& progress);
+  [[nodiscard]] PointRow recorded(const SceneFile& scene, int jobs, const Progress& progress);
+  [[nodiscard]] PointRow optimized(const SceneFile& scene, int jobs, const Progress& progress);
+  [[nodiscard]] PreparedScene prepared(const SceneFile& scene, bool default_limits, const Progress& progress);
 
   Plan plan_;
   std::optional<PointStudy> study_;  // none if the study is `other_`

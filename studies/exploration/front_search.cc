@@ -9,7 +9,7 @@
 #include <span>
 #include <utility>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "optimizers/nsga2.h"
 
 namespace softland {
@@ -30,7 +30,7 @@ class FrontSearch {
         known_(std::move(known)),
         aims_(aims),
         options_(options),
-        watch_{.stop = options.stop},
+        progress_{.stop = options.stop},
         found_{.points = static_cast<std::int64_t>(exploration.plan().points()),
                .known = static_cast<std::int64_t>(known_.size())} {}
 
@@ -65,7 +65,7 @@ class FrontSearch {
     const SceneFile scene = exploration_.plan().scene(values);
     const ContentKey content = content_key(exploration_.content(scene));
     if (auto earlier = store_.find(content)) return *std::move(earlier);
-    StoredRow row = stored_row(0, content, values, exploration_.row(scene, 1, watch_));
+    StoredRow row = stored_row(0, content, values, exploration_.row(scene, 1, progress_));
     const std::scoped_lock lock(mutex_);
     ++found_.computed;
     return row;
@@ -100,7 +100,7 @@ class FrontSearch {
   KnownRows known_;
   const std::vector<ExploredAim>& aims_;
   const FrontOptions& options_;
-  Watch watch_;
+  Progress progress_;
   std::mutex mutex_;
   std::map<std::vector<double>, StoredRow> fresh_;  // rows by position in the box, until their number is known
   FrontFound found_;

@@ -12,13 +12,13 @@ PullInFinder PullInMemory::finder(const SceneFile& scene) {
   SceneFile same = scene;
   for (const char* path : {"title", "waveform", "driver", "metrics", "spread", "calibration", "simulate.duration"})
     same.erase(path);
-  return [this, text = same.text()](const Switch& model, std::size_t electrode, Bias bias, const Watch& watch) {
-    return find(text, model, electrode, bias, watch);
+  return [this, text = same.text()](const Switch& model, std::size_t electrode, Bias bias, const Progress& progress) {
+    return find(text, model, electrode, bias, progress);
   };
 }
 
 ElectrodePullIn PullInMemory::find(const std::string& switch_text, const Switch& model, std::size_t electrode, Bias bias,
-                                   const Watch& watch) {
+                                   const Progress& progress) {
   std::string key = fmt::format("{}{} {}", switch_text, electrode, fmt::join(bias, " "));
   std::promise<ElectrodePullIn> mine;
   {
@@ -36,7 +36,7 @@ ElectrodePullIn PullInMemory::find(const std::string& switch_text, const Switch&
     }
   }
   try {
-    const ElectrodePullIn found = electrode_pull_in(model, electrode, bias, watch);
+    const ElectrodePullIn found = electrode_pull_in(model, electrode, bias, progress);
     mine.set_value(found);
     return found;
   } catch (...) {

@@ -21,7 +21,7 @@ class PullInMemory {
 
  private:
   [[nodiscard]] ElectrodePullIn find(const std::string& switch_text, const Switch& model, std::size_t electrode, Bias bias,
-                                     const Watch& watch);
+                                     const Progress& progress);
 
   // Largest number of kept entries, the newest: a plan visits the points of one switch together, or after up to a thousand
   // others.

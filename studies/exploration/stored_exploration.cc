@@ -26,7 +26,7 @@ StoredPlan stored_plan(const Exploration& exploration, const Shard& shard) {
   return stored;
 }
 
-Exploration exploration_for(Plan plan, const std::filesystem::path& store, const Watch& watch, const OtherStudies& others) {
+Exploration exploration_for(Plan plan, const std::filesystem::path& store, const Progress& progress, const OtherStudies& others) {
   std::vector<PointFigure> columns;
   if (is_store(store)) {
     const StoredPlan held = StudyReader(store).plan();
@@ -35,7 +35,7 @@ Exploration exploration_for(Plan plan, const std::filesystem::path& store, const
         columns.push_back({.quantity = column.name, .name = column.name, .unit = column.unit});
     }
   }
-  return Exploration(std::move(plan), watch, others, std::move(columns));
+  return Exploration(std::move(plan), progress, others, std::move(columns));
 }
 
 void require_part(const Exploration& exploration, const Shard& shard) {

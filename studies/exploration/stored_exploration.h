@@ -14,7 +14,7 @@ namespace softland {
 /// Returns the part of the plan that its store holds.
 [[nodiscard]] StoredPlan stored_plan(const Exploration& exploration, const Shard& shard);
 /// Returns the exploration of `plan` for the store. If the store holds it already, the columns are those in the store.
-[[nodiscard]] Exploration exploration_for(Plan plan, const std::filesystem::path& store, const Watch& watch = {},
+[[nodiscard]] Exploration exploration_for(Plan plan, const std::filesystem::path& store, const Progress& progress = {},
                                           const OtherStudies& others = {});
 /// Throws InvalidRequest about the field `shard` if the exploration has no such part: a search of a front cannot be divided.
 void require_part(const Exploration& exploration, const Shard& shard);

@@ -49,7 +49,7 @@ double Likelihood::touch_deviation(double speed) const {
   return std::hypot(scene_.options().laboratory.edge_error, of_height, time_share * s.closing_time);
 }
 
-double Likelihood::touch_residual(const ImaginedClosing& closing, const ContactRecord& record) const {
+double Likelihood::touch_residual(const PredictedClosing& closing, const ContactRecord& record) const {
   constexpr double one_alone = 30;
   const std::optional<double> seen = first_touch(record);
   const bool closes = closing.is_seen_to_close();
@@ -57,12 +57,12 @@ double Likelihood::touch_residual(const ImaginedClosing& closing, const ContactR
   return (closing.recorded_touch() - *seen) / touch_deviation(closing.seen().speed);
 }
 
-double Likelihood::of_record(const ImaginedClosing& closing, const ContactRecord& record) const {
+double Likelihood::of_record(const PredictedClosing& closing, const ContactRecord& record) const {
   constexpr double linear_from = 6;
   const double r = touch_residual(closing, record);
   double sum = -loss_value(Loss::huber, r, linear_from) / 2;
   if (!closing.is_seen_to_close() || !first_touch(record)) return sum;
-  const auto imagined = closing.seen();
+  const auto predicted = closing.seen();
   const double unseen = scene_.options().laboratory.unseen;
   if (!record.edges.empty()) {
     constexpr std::array spans{0.09, 0.3, 0.9};
@@ -70,14 +70,14 @@ double Likelihood::of_record(const ImaginedClosing& closing, const ContactRecord
     const double t0 = scene_.scales().closing_time;
     const std::vector<ContactOpening> seen = openings(record);
     for (const double span : spans) {
-      const double own = open_time(imagined.touch, imagined.openings, span * t0, unseen);
+      const double own = open_time(predicted.touch, predicted.openings, span * t0, unseen);
       const double recorded = open_time(*first_touch(record), seen, span * t0, 0);
       sum += gentle((own - recorded) / (least * t0 + share * std::max(own, recorded)));
     }
   } else if (record.bounce_count) {
     constexpr double share = 0.3;
     const auto own = static_cast<double>(
-        std::ranges::count_if(imagined.openings, [&](const ContactOpening& o) { return o.end - o.begin >= unseen; }));
+        std::ranges::count_if(predicted.openings, [&](const ContactOpening& o) { return o.end - o.begin >= unseen; }));
     const double counted = *record.bounce_count;
     sum += gentle((own - counted) / (1 + share * std::max(own, counted)));
     if ((own > 0) != (counted > 0)) sum += gentle(1);
@@ -85,7 +85,7 @@ double Likelihood::of_record(const ImaginedClosing& closing, const ContactRecord
   return sum;
 }
 
-double Likelihood::of_loudness(std::span<const ImaginedClosing> closings) const {
+double Likelihood::of_loudness(std::span<const PredictedClosing> closings) const {
   constexpr double error = 0.3, flattest = 0.5, steepest = 2;
   std::vector<double> speeds, sounds;
   for (std::size_t i = 0; i < shots_.size(); ++i) {
@@ -102,7 +102,7 @@ double Likelihood::of_loudness(std::span<const ImaginedClosing> closings) const 
   return -(ds - slope * dv).square().sum() / (2 * error * error);
 }
 
-double Likelihood::of(std::span<const ImaginedClosing> closings) const {
+double Likelihood::of(std::span<const PredictedClosing> closings) const {
   double sum = of_loudness(closings);
   for (std::size_t i = 0; i < shots_.size(); ++i) sum += of_record(closings[i], shots_[i].record);
   return sum;
@@ -139,12 +139,12 @@ struct LinearTouches {
   MatrixXd slopes;
 };
 
-class Learner {
+class BeliefUpdate {
  public:
-  Learner(const TunedScene& scene, std::span<const LearnedShot> shots, Draws& draws, const Watch& watch)
-      : scene_(scene), shots_(shots), likelihood_(scene, shots), draws_(draws), watch_(watch) {}
+  BeliefUpdate(const TuningModel& scene, std::span<const LearnedShot> shots, Draws& draws, const Progress& progress)
+      : scene_(scene), shots_(shots), likelihood_(scene, shots), draws_(draws), progress_(progress) {}
 
-  [[nodiscard]] Belief learned(const Belief& last) {
+  [[nodiscard]] Belief updated_belief(const Belief& last) {
     find_mode(last);
     return sampled();
   }
@@ -160,13 +160,13 @@ class Learner {
 
  private:
   // Returns the closings of every point under every shot, ordered by point.
-  [[nodiscard]] std::vector<ImaginedClosing> close(std::span<const VectorXd> points) const {
-    const std::vector<ImaginedDevice> devices = scene_.devices(points, watch_);
-    std::vector<ImaginedShot> all;
-    for (const ImaginedDevice& device : devices) {
+  [[nodiscard]] std::vector<PredictedClosing> close(std::span<const VectorXd> points) const {
+    const std::vector<Particle> devices = scene_.devices(points, progress_);
+    std::vector<PredictedShot> all;
+    for (const Particle& device : devices) {
       for (const LearnedShot& shot : shots_) all.push_back({.device = &device, .waveforms = &shot.waveforms});
     }
-    return scene_.close(all, watch_);
+    return scene_.close(all, progress_);
   }
   // Returns the log posteriors. A point that occurs several times is simulated once.
   [[nodiscard]] std::vector<double> log_posteriors(std::span<const VectorXd> points) const {
@@ -177,7 +177,7 @@ class Learner {
       places.push_back(static_cast<std::size_t>(known - distinct.begin()));
       if (known == distinct.end()) distinct.push_back(point);
     }
-    const std::vector<ImaginedClosing> closings = close(distinct);
+    const std::vector<PredictedClosing> closings = close(distinct);
     std::vector<double> all;
     for (std::size_t k = 0; k < points.size(); ++k) {
       const auto own = std::span(closings).subspan(places[k] * shots_.size(), shots_.size());
@@ -203,11 +203,11 @@ class Learner {
     return all;
   }
 
-  const TunedScene& scene_;
+  const TuningModel& scene_;
   std::span<const LearnedShot> shots_;
   Likelihood likelihood_;
   Draws& draws_;
-  const Watch& watch_;
+  const Progress& progress_;
   VectorXd mode_;
   MatrixXd curvature_;
   bool pins_ratio_ = false;
@@ -215,7 +215,7 @@ class Learner {
 };
 
 // Returns the residuals at z, those beyond 4 compressed, and their slopes by differences. All devices close together.
-LinearTouches Learner::linear_touches(const VectorXd& z) const {
+LinearTouches BeliefUpdate::linear_touches(const VectorXd& z) const {
   constexpr double apart = 0.01, steepest = 3000;
   const auto touches = static_cast<Eigen::Index>(shots_.size()), m = touches + (pins_ratio_ ? 1 : 0), n = scene_.size();
   const auto compressed = [](double r) {
@@ -224,7 +224,7 @@ LinearTouches Learner::linear_touches(const VectorXd& z) const {
   };
   std::vector<VectorXd> points{z};
   for (Eigen::Index k = 0; k < n; ++k) points.push_back(z + apart * VectorXd::Unit(n, k));
-  const std::vector<ImaginedClosing> closings = close(points);
+  const std::vector<PredictedClosing> closings = close(points);
   MatrixXd residuals(m, n + 1);  // a column for each point
   for (Eigen::Index k = 0; k <= n; ++k) {
     for (Eigen::Index i = 0; i < touches; ++i)
@@ -239,7 +239,7 @@ LinearTouches Learner::linear_touches(const VectorXd& z) const {
 
 // Minimises the squares of the residuals of touch times and of z by Levenberg and Marquardt. Returns the minimum, and the
 // curvature there: the inverse covariance of a normal distribution.
-std::pair<VectorXd, MatrixXd> Learner::fitted(VectorXd z) const {
+std::pair<VectorXd, MatrixXd> BeliefUpdate::fitted(VectorXd z) const {
   constexpr double longest = 1.5, enough = 0.02, hopeless = 1e4;
   constexpr int most_rounds = 14;
   const Eigen::Index n = scene_.size();
@@ -269,7 +269,7 @@ std::pair<VectorXd, MatrixXd> Learner::fitted(VectorXd z) const {
 }
 
 // Searches from the `most` likeliest of these starts, until an end is as likely as `enough`.
-void Learner::climb_from(const std::vector<VectorXd>& starts, std::size_t most, double enough) {
+void BeliefUpdate::climb_from(const std::vector<VectorXd>& starts, std::size_t most, double enough) {
   const std::vector<double> before = log_posteriors(starts);
   std::vector<std::size_t> order(starts.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -285,7 +285,7 @@ void Learner::climb_from(const std::vector<VectorXd>& starts, std::size_t most, 
   }
 }
 
-void Learner::find_mode(const Belief& last) {
+void BeliefUpdate::find_mode(const Belief& last) {
   constexpr std::size_t of_last = 48, of_prior = 48, many = 400;
   const auto shots = static_cast<double>(shots_.size());
   std::vector<VectorXd> starts = last.resampled(of_last, draws_);
@@ -297,8 +297,8 @@ void Learner::find_mode(const Belief& last) {
 }
 
 // Returns |z|^2 + sum of r^2 of every point.
-std::vector<double> Learner::misfits(std::span<const VectorXd> points) const {
-  const std::vector<ImaginedClosing> closings = close(points);
+std::vector<double> BeliefUpdate::misfits(std::span<const VectorXd> points) const {
+  const std::vector<PredictedClosing> closings = close(points);
   std::vector<double> all;
   for (std::size_t k = 0; k < points.size(); ++k) {
     double sum = points[k].squaredNorm() + std::pow(ratio_residual(points[k]), 2);
@@ -311,7 +311,7 @@ std::vector<double> Learner::misfits(std::span<const VectorXd> points) const {
   return all;
 }
 
-double Learner::least_misfit(const Belief& belief, double enough) {
+double BeliefUpdate::least_misfit(const Belief& belief, double enough) {
   constexpr std::size_t of_belief = 16, of_prior = 240, most_fits = 10;
   constexpr std::array nearer{0.9, 0.8, 0.7, 0.6, 0.5, 0.4};
   const auto own = [&](const VectorXd& z) { return pins_ratio_ ? scene_.with_gap_ratio_of_scene(z) : z; };
@@ -346,7 +346,7 @@ double Learner::least_misfit(const Belief& belief, double enough) {
 }
 
 // Samples the posterior of all records by adaptive importance sampling from normal distributions.
-Belief Learner::sampled() {
+Belief BeliefUpdate::sampled() {
   constexpr int most_rounds = 4;
   constexpr double least_share = 0.2, cooler = 0.7, coldest = 1e-3;
   const Eigen::Index n = scene_.size();
@@ -379,8 +379,8 @@ Belief Learner::sampled() {
 
 }  // namespace
 
-TouchMisfit touch_misfit(const TunedScene& scene, std::span<const LearnedShot> shots, const Belief& belief, Draws& draws,
-                         const Watch& watch) {
+TouchMisfit touch_misfit(const TuningModel& scene, std::span<const LearnedShot> shots, const Belief& belief, Draws& draws,
+                         const Progress& progress) {
   constexpr double one_in_a_thousand = 3.0902;  // standard deviations of the normal distribution
   const auto stayed_open = [](const LearnedShot& shot) { return !first_touch(shot.record).has_value(); };
   std::vector<LearnedShot> counted(shots.begin(), shots.end());
@@ -389,22 +389,22 @@ TouchMisfit touch_misfit(const TunedScene& scene, std::span<const LearnedShot> s
   if (counted.empty()) return misfit;
   const double m = static_cast<double>(counted.size()), ninth = 2 / (9 * m);
   misfit.bound = m * std::pow(1 - ninth + one_in_a_thousand * std::sqrt(ninth), 3);
-  misfit.least = Learner(scene, counted, draws, watch).least_misfit(belief, misfit.bound);
+  misfit.least = BeliefUpdate(scene, counted, draws, progress).least_misfit(belief, misfit.bound);
   return misfit;
 }
 
-double gap_ratio_misfit(const TunedScene& scene, std::span<const LearnedShot> shots, const Belief& belief, double enough,
-                        Draws& draws, const Watch& watch) {
+double gap_ratio_misfit(const TuningModel& scene, std::span<const LearnedShot> shots, const Belief& belief, double enough,
+                        Draws& draws, const Progress& progress) {
   if (!scene.gap_ratio_coordinate(belief.mode)) return 0;
-  Learner learner(scene, shots, draws, watch);
-  const double least = std::min(learner.misfit_of(belief.mode), learner.misfit_from(belief.mode));
-  learner.pin_gap_ratio();
-  return learner.least_misfit(belief, least + enough) - least;
+  BeliefUpdate update(scene, shots, draws, progress);
+  const double least = std::min(update.misfit_of(belief.mode), update.misfit_from(belief.mode));
+  update.pin_gap_ratio();
+  return update.least_misfit(belief, least + enough) - least;
 }
 
-Belief learned(const TunedScene& scene, std::span<const LearnedShot> shots, const Belief& last, Draws& draws,
-               const Watch& watch) {
-  return Learner(scene, shots, draws, watch).learned(last);
+Belief updated_belief(const TuningModel& scene, std::span<const LearnedShot> shots, const Belief& last, Draws& draws,
+                      const Progress& progress) {
+  return BeliefUpdate(scene, shots, draws, progress).updated_belief(last);
 }
 
 }  // namespace softland

@@ -1,4 +1,4 @@
-// The belief about a device from its records: devices with weights, in the standard normal coordinates z of TunedScene. It is
+// The belief about a device from its records: devices with weights, in the standard normal coordinates z of TuningModel. It is
 // the posterior of studies/inverse/posterior.h with these terms:
 //
 //   -ln p(z | records) = |z|^2 / 2 + sum over records L(record, closing of the device z under the same shot) + const
@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "studies/inverse/posterior.h"
-#include "studies/inverse/tuned_scene.h"
+#include "studies/inverse/tuning_model.h"
 
 namespace softland {
 
@@ -48,19 +48,19 @@ class Draws {
 class Likelihood {
  public:
   /// Keeps references.
-  Likelihood(const TunedScene& scene, std::span<const LearnedShot> shots) : scene_(scene), shots_(shots) {}
+  Likelihood(const TuningModel& scene, std::span<const LearnedShot> shots) : scene_(scene), shots_(shots) {}
   /// Returns the residual r of the first touch in one shot: +-30 if only one of record and closing touches, 0 if neither does.
-  [[nodiscard]] double touch_residual(const ImaginedClosing& closing, const ContactRecord& record) const;
+  [[nodiscard]] double touch_residual(const PredictedClosing& closing, const ContactRecord& record) const;
   /// Returns the log likelihood of all records. `closings` are those of one device under all shots, in order.
-  [[nodiscard]] double of(std::span<const ImaginedClosing> closings) const;
+  [[nodiscard]] double of(std::span<const PredictedClosing> closings) const;
   /// Returns the standard deviation of a recorded first touch with this impact velocity [s].
   [[nodiscard]] double touch_deviation(double speed) const;
 
  private:
-  [[nodiscard]] double of_record(const ImaginedClosing& closing, const ContactRecord& record) const;
-  [[nodiscard]] double of_loudness(std::span<const ImaginedClosing> closings) const;
+  [[nodiscard]] double of_record(const PredictedClosing& closing, const ContactRecord& record) const;
+  [[nodiscard]] double of_loudness(std::span<const PredictedClosing> closings) const;
 
-  const TunedScene& scene_;
+  const TuningModel& scene_;
   std::span<const LearnedShot> shots_;
 };
 
@@ -85,19 +85,19 @@ struct Belief {
 /// For closings that are linear in z the first touches y are normal, with the covariance J J^T + I in units of their errors.
 /// The least |z|^2 + |r|^2 is then y^T (J J^T + I)^-1 y, which is chi-square distributed with as many degrees of freedom as
 /// records. The bound is its quantile at 0.999 by E. B. Wilson & M. M. Hilferty, Proc. Natl. Acad. Sci. 17 (1931) 684. The
-/// least is over all peaks of the posterior. Throws Interrupted if `watch` asks to stop.
-[[nodiscard]] TouchMisfit touch_misfit(const TunedScene& scene, std::span<const LearnedShot> shots, const Belief& belief,
-                                       Draws& draws, const Watch& watch = {});
+/// least is over all peaks of the posterior. Throws Interrupted if `progress` asks to stop.
+[[nodiscard]] TouchMisfit touch_misfit(const TuningModel& scene, std::span<const LearnedShot> shots, const Belief& belief,
+                                       Draws& draws, const Progress& progress = {});
 
 /// Returns the increase of the least |z|^2 + sum of r^2 if the ratio of contact to electrode gap is fixed at that of the scene;
 /// 0 if the spread has no such ratio. On devices of the spread the increase is chi-square distributed with one degree of
-/// freedom. The search over all peaks ends when the increase is below `enough`. Throws Interrupted if `watch` asks to stop.
-[[nodiscard]] double gap_ratio_misfit(const TunedScene& scene, std::span<const LearnedShot> shots, const Belief& belief,
-                                      double enough, Draws& draws, const Watch& watch = {});
+/// freedom. The search over all peaks ends when the increase is below `enough`. Throws Interrupted if `progress` asks to stop.
+[[nodiscard]] double gap_ratio_misfit(const TuningModel& scene, std::span<const LearnedShot> shots, const Belief& belief,
+                                      double enough, Draws& draws, const Progress& progress = {});
 
-/// Returns the belief after these shots, at least one. Some of the searches start from `last`. Throws Interrupted if `watch`
+/// Returns the belief after these shots, at least one. Some of the searches start from `last`. Throws Interrupted if `progress`
 /// asks to stop.
-[[nodiscard]] Belief learned(const TunedScene& scene, std::span<const LearnedShot> shots, const Belief& last, Draws& draws,
-                             const Watch& watch = {});
+[[nodiscard]] Belief updated_belief(const TuningModel& scene, std::span<const LearnedShot> shots, const Belief& last,
+                                    Draws& draws, const Progress& progress = {});
 
 }  // namespace softland

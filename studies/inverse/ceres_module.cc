@@ -15,13 +15,17 @@ namespace {
 // Evaluates all residuals at one x together. Ceres asks for them one by one, so that each may have its own loss.
 class Evaluations final : public ceres::EvaluationCallback {
  public:
-  Evaluations(const LeastSquares& problem, const std::vector<double>& x, const Watch& watch)
-      : problem_(problem), x_(x), watch_(watch), residuals_(problem.residuals), jacobian_(problem.residuals * problem.unknowns) {}
+  Evaluations(const LeastSquares& problem, const std::vector<double>& x, const Progress& progress)
+      : problem_(problem),
+        x_(x),
+        progress_(progress),
+        residuals_(problem.residuals),
+        jacobian_(problem.residuals * problem.unknowns) {}
 
   void PrepareForEvaluation(bool with_jacobian, bool is_new) final {
     if (fault || (!is_new && (has_jacobian_ || !with_jacobian))) return;
     try {
-      watch_.throw_if_stopped();
+      progress_.throw_if_stopped();
       ++evaluations;
       if (with_jacobian) ++jacobians;
       is_known_ = problem_.evaluate(x_, residuals_, with_jacobian ? jacobian_.data() : nullptr);
@@ -44,7 +48,7 @@ class Evaluations final : public ceres::EvaluationCallback {
  private:
   const LeastSquares& problem_;
   const std::vector<double>& x_;
-  const Watch& watch_;
+  const Progress& progress_;
   std::vector<double> residuals_, jacobian_;
   bool is_known_ = false, has_jacobian_ = false;
 };
@@ -86,11 +90,11 @@ void silence_log() {
   std::call_once(once, [] { FLAGS_minloglevel = google::GLOG_FATAL; });
 }
 
-void solve_by_ceres(const LeastSquares& problem, std::vector<double> start, const Watch& watch, LeastSquaresEnd& end,
+void solve_by_ceres(const LeastSquares& problem, std::vector<double> start, const Progress& progress, LeastSquaresEnd& end,
                     std::exception_ptr& fault) {
   silence_log();
   std::vector<double> x = std::move(start);
-  Evaluations all(problem, x, watch);
+  Evaluations all(problem, x, progress);
   const std::unique_ptr<ceres::LossFunction> loss = loss_function(problem.loss);
   ceres::Problem::Options ownership;
   ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -121,6 +125,7 @@ void solve_by_ceres(const LeastSquares& problem, std::vector<double> start, cons
 }  // namespace softland
 
 extern "C" void softland_ceres_solve(const softland::LeastSquares& problem, std::vector<double> start,
-                                     const softland::Watch& watch, softland::LeastSquaresEnd& end, std::exception_ptr& fault) {
-  softland::solve_by_ceres(problem, std::move(start), watch, end, fault);
+                                     const softland::Progress& progress, softland::LeastSquaresEnd& end,
+                                     std::exception_ptr& fault) {
+  softland::solve_by_ceres(problem, std::move(start), progress, end, fault);
 }

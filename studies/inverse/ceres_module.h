@@ -10,11 +10,11 @@ namespace softland {
 
 inline constexpr const char* ceres_solve_name = "softland_ceres_solve";
 /// Signature of solve() in the module. `fault` receives what `evaluate` has thrown.
-using CeresSolve = void(const LeastSquares& problem, std::vector<double> start, const Watch& watch, LeastSquaresEnd& end,
+using CeresSolve = void(const LeastSquares& problem, std::vector<double> start, const Progress& progress, LeastSquaresEnd& end,
                         std::exception_ptr& fault);
 
 }  // namespace softland
 
 extern "C" [[gnu::visibility("default")]] void softland_ceres_solve(const softland::LeastSquares& problem,
-                                                                    std::vector<double> start, const softland::Watch& watch,
+                                                                    std::vector<double> start, const softland::Progress& progress,
                                                                     softland::LeastSquaresEnd& end, std::exception_ptr& fault);

@@ -102,9 +102,10 @@ bool is_one_minimum(const LeastSquaresEnd& a, const LeastSquaresEnd& b) {
   return largest <= apart && std::abs(a.cost - b.cost) <= apart;
 }
 
-Stage solved(FitProblem problem, const std::vector<std::vector<double>>& starts, const FitOptions& options, const Watch& watch) {
+Stage solved(FitProblem problem, const std::vector<std::vector<double>>& starts, const FitOptions& options,
+             const Progress& progress) {
   Stage stage{.problem = std::make_unique<const FitProblem>(std::move(problem))};
-  stage.all = solve_from([&] { return least_squares_of(*stage.problem); }, starts, options.jobs, is_one_minimum, watch);
+  stage.all = solve_from([&] { return least_squares_of(*stage.problem); }, starts, options.jobs, is_one_minimum, progress);
   return stage;
 }
 
@@ -203,16 +204,16 @@ bool is_linear(const Stage& stage) {
 
 }  // namespace
 
-Fit fit(const SceneFile& given, const Bench& bench, const FitOptions& options, const Watch& watch) {
+Fit fit(const SceneFile& given, const Bench& bench, const FitOptions& options, const Progress& progress) {
   require(options.starts >= 1 && options.starts <= most_starts,
           [&] { return fmt::format("{} starts: must be from 1 to {}", options.starts, most_starts); });
   require(!bench.measurements.empty(), [&] { return fmt::format("{}: a fit needs at least one measurement", bench.name); });
   SceneFile file = given;
   const bool assumed = options.unknowns.empty() && assume_spread(file);
   const std::size_t measurements = bench.measurements.size();
-  const FitProblem whole = with_data(problem_without_data(file, bench, options, watch), bench);
+  const FitProblem whole = with_data(problem_without_data(file, bench, options, progress), bench);
   TraceWindows windows(bench, nominal_touches(whole, measurements));
-  Stage stage = solved(with_data(whole, windows.inside()), starts_of(whole, options), options, watch);
+  Stage stage = solved(with_data(whole, windows.inside()), starts_of(whole, options), options, progress);
   Fit found{.scene = stage.problem->devices.front().nominal, .spread_assumed = assumed};
   found.loss = options.loss;
   found.seed = options.seed;
@@ -227,7 +228,7 @@ Fit fit(const SceneFile& given, const Bench& bench, const FitOptions& options, c
   if (!found.found) return found;
   const TraceMisfit before_touch = misfit(stage, measurements);
   while (windows.grow()) {
-    Stage next = solved(with_data(whole, windows.inside()), best_ends(stage.all), options, watch);
+    Stage next = solved(with_data(whole, windows.inside()), best_ends(stage.all), options, progress);
     std::vector<bool> goes_on = described(misfit(next, measurements, &windows), before_touch);
     if (!next.all.found() || !is_linear(next)) goes_on.assign(measurements, false);
     if (windows.keep(goes_on)) stage = std::move(next);
@@ -243,7 +244,7 @@ Fit fit(const SceneFile& given, const Bench& bench, const FitOptions& options, c
   EndOfFit end(*stage.problem, stage.all.ends[stage.all.best], found);
   end.require_all_seen(bench.name);
   end.add_population();
-  if (options.suggest) end.add_next(watch);
+  if (options.suggest) end.add_next(progress);
   found.doubts = doubts_of(found, stage.all, stage.all.ends[stage.all.best]);
   if (found.doubts.empty()) return found;
   for (FittedUnknown& u : found.unknowns) u.standard_error = u.low = u.high = Metrics::unset;

@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "config/bench.h"
 #include "studies/devices/instruments.h"
 #include "studies/inverse/estimate.h"
@@ -118,6 +118,6 @@ struct Fit {
 
 /// Throws InvalidInput for unknowns that no device can have, for measurements that the scene cannot have, and if the scene
 /// itself or a device of the bench file does not allow any of it. Throws Interrupted.
-[[nodiscard]] Fit fit(const SceneFile& file, const Bench& bench, const FitOptions& options, const Watch& watch = {});
+[[nodiscard]] Fit fit(const SceneFile& file, const Bench& bench, const FitOptions& options, const Progress& progress = {});
 
 }  // namespace softland

@@ -114,12 +114,12 @@ void EndOfFit::add_unknowns() {
   }
 }
 
-void EndOfFit::add_next(const Watch& watch) {
+void EndOfFit::add_next(const Progress& progress) {
   const std::vector<PossibleMeasurement> all = possible_measurements(fit_.scene);
   const std::span<const double> z(z_.data(), static_cast<std::size_t>(z_.size()));
   for (std::size_t k = 0; k < all.size(); ++k) {
-    watch.throw_if_stopped();
-    watch.tell("further measurements", static_cast<double>(k) / static_cast<double>(all.size()));
+    progress.throw_if_stopped();
+    progress.tell("further measurements", static_cast<double>(k) / static_cast<double>(all.size()));
     std::vector<VectorXd> slopes;
     double error = all[k].error;
     for (std::size_t d = 0; d < problem_.devices.size(); ++d) {

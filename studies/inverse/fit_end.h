@@ -21,7 +21,7 @@ class EndOfFit {
   /// Adds the population of the devices' own unknowns, with shared unknowns as they were found.
   void add_population();
   /// Adds the possible measurements, the best first.
-  void add_next(const Watch& watch);
+  void add_next(const Progress& progress);
 
  private:
   void add_residuals(const Eigen::VectorXd& values);

@@ -135,7 +135,7 @@ VectorXd FitProblem::weights(const VectorXd& residuals) const {
   return residuals.unaryExpr([this](double r) { return loss_weight(loss, r); });
 }
 
-FitProblem problem_without_data(const SceneFile& file, const Bench& bench, const FitOptions& options, const Watch& watch) {
+FitProblem problem_without_data(const SceneFile& file, const Bench& bench, const FitOptions& options, const Progress& progress) {
   FitProblem problem;
   problem.loss = options.loss;
   std::vector<std::string> names;
@@ -153,8 +153,9 @@ FitProblem problem_without_data(const SceneFile& file, const Bench& bench, const
     std::vector<std::string> unknowns = options.unknowns;
     without_prior.clear();
     if (differs || !plain) {
-      PreparedScene own = with_unknowns(
-          prepare_and_choose(differs ? with_changes(file, name, changes->second) : file, false, watch), unknowns, without_prior);
+      PreparedScene own =
+          with_unknowns(prepare_and_choose(differs ? with_changes(file, name, changes->second) : file, false, progress), unknowns,
+                        without_prior);
       if (!differs) plain = own;
       problem.devices.push_back({.name = name, .nominal = std::move(own)});
     } else {

@@ -56,7 +56,7 @@ inline constexpr double scale_without_prior = 0.1;
 
 /// Returns the problem without data. Throws what fit() throws.
 [[nodiscard]] FitProblem problem_without_data(const SceneFile& file, const Bench& bench, const FitOptions& options,
-                                              const Watch& watch);
+                                              const Progress& progress);
 /// Returns the problem with the data of these measurements in place of its own.
 [[nodiscard]] FitProblem with_data(FitProblem problem, const Bench& bench);
 

@@ -41,31 +41,32 @@ constexpr double unknown = Metrics::unset;
 
 // Runs tasks over devices, and reports their progress.
 template <class Task>
-void over_devices(std::size_t devices, int jobs, const char* what, const Watch& watch, const Task& task) {
+void over_devices(std::size_t devices, int jobs, const char* what, const Progress& progress, const Task& task) {
   std::atomic<std::size_t> done = 0;
   std::mutex telling;
   run_tasks(
       devices, jobs,
       [&](std::size_t k) {
-        if (watch.stopped()) return;
+        if (progress.stopped()) return;
         task(k);
         const std::scoped_lock lock(telling);
-        watch.tell(what, static_cast<double>(++done) / static_cast<double>(devices));
+        progress.tell(what, static_cast<double>(++done) / static_cast<double>(devices));
       },
-      watch.stop);
+      progress.stop);
 }
 
 // A figure to measure, its error, and the way to read it.
-struct Gauge {
+struct FigureMeter {
   std::string name, unit;
   double error;
   std::function<double(const Switch&)> read;
 };
 
-std::vector<Gauge> instruments(const PreparedScene& nominal, const DeviceMeter& meter, const IdentificationOptions& options) {
+std::vector<FigureMeter> instruments(const PreparedScene& nominal, const PullInMeter& meter,
+                                     const IdentificationOptions& options) {
   const std::size_t electrode = meter.electrode();
   const std::vector<double> bias = bias_of(nominal.scene, electrode);
-  std::vector<Gauge> all{
+  std::vector<FigureMeter> all{
       {"Vdp", "V", options.pull_in_error, [&meter](const Switch& m) { return meter.exact(m).volts * meter.pull_in(); }}};
   const double duration = periods_of_step / meter.frequency();
   const auto add = [&](std::string name, double error, const Instrument& instrument) {
@@ -78,7 +79,7 @@ std::vector<Gauge> instruments(const PreparedScene& nominal, const DeviceMeter& 
   for (const double step : options.steps)
     add(fmt::format("time at {:g} Vdp", step), options.time_error,
         {.what = Measurable::closing_time, .drive = electrode, .level = step * meter.pull_in()});
-  all.push_back({std::string(measured_piezo), "1/V", options.piezo_error, DeviceMeter::piezo_unit});
+  all.push_back({std::string(measured_piezo), "1/V", options.piezo_error, PullInMeter::piezo_unit});
   return all;
 }
 
@@ -89,22 +90,22 @@ bool tells(const MeasurableFigure& figure) {
                      [&](double v) { return std::isfinite(v) && std::abs(v / figure.nominal - 1) > 1e-9; });
 }
 
-std::vector<MeasurableFigure> measure(const std::vector<Gauge>& all, const Switch& nominal, const RobustCost& cost, int jobs,
-                                      const Watch& watch) {
+std::vector<MeasurableFigure> measure(const std::vector<FigureMeter>& all, const Switch& nominal, const RobustCost& cost,
+                                      int jobs, const Progress& progress) {
   std::vector<MeasurableFigure> figures;
-  for (const Gauge& one : all) {
+  for (const FigureMeter& one : all) {
     figures.push_back({.name = one.name,
                        .unit = one.unit,
                        .nominal = one.read(nominal),
                        .error = one.error,
                        .values = std::vector<double>(cost.devices(), unknown)});
   }
-  over_devices(cost.devices(), jobs, "figures of the devices", watch, [&](std::size_t k) {
+  over_devices(cost.devices(), jobs, "figures of the devices", progress, [&](std::size_t k) {
     const SampledDevice& device = cost.device(k);
-    for (std::size_t f = 0; f < figures.size() && device.model && !watch.stopped(); ++f)
+    for (std::size_t f = 0; f < figures.size() && device.model && !progress.stopped(); ++f)
       figures[f].values[k] = all[f].read(*device.model);
   });
-  watch.throw_if_stopped();
+  progress.throw_if_stopped();
   std::erase_if(figures, [](const MeasurableFigure& f) { return !tells(f); });
   return figures;
 }
@@ -163,10 +164,10 @@ Eigen::MatrixXd regressors(const std::vector<MeasurableFigure>& figures, const s
 }
 
 // Predicts the factors of every device. The fit is to the half of the devices that it does not belong to.
-std::vector<DeviceUnits> told_factors(const Eigen::MatrixXd& x, const std::vector<DeviceUnits>& best,
-                                      std::span<const Factor> factors) {
+std::vector<DeviceUnits> predicted_factors(const Eigen::MatrixXd& x, const std::vector<DeviceUnits>& best,
+                                           std::span<const Factor> factors) {
   const Eigen::Index devices = x.rows(), middle = devices / 2, count = static_cast<Eigen::Index>(factors.size());
-  Eigen::MatrixXd told = Eigen::MatrixXd::Constant(devices, count, unknown);
+  Eigen::MatrixXd predicted = Eigen::MatrixXd::Constant(devices, count, unknown);
   for (const bool first : {true, false}) {
     const Eigen::Index begin = first ? 0 : middle, end = first ? middle : devices;
     std::vector<Eigen::Index> fitted;
@@ -183,22 +184,22 @@ std::vector<DeviceUnits> told_factors(const Eigen::MatrixXd& x, const std::vecto
     }
     const Eigen::MatrixXd rows = x(fitted, Eigen::all);
     const Eigen::MatrixXd slopes = least_squares(rows, logarithms);
-    told.middleRows(begin, end - begin) = x.middleRows(begin, end - begin) * slopes;
+    predicted.middleRows(begin, end - begin) = x.middleRows(begin, end - begin) * slopes;
   }
   std::vector<DeviceUnits> units(best.size());
   for (Eigen::Index k = 0; k < devices; ++k) {
     for (Eigen::Index f = 0; f < count; ++f)
-      units[static_cast<std::size_t>(k)].*factors[static_cast<std::size_t>(f)] = std::exp(told(k, f));
+      units[static_cast<std::size_t>(k)].*factors[static_cast<std::size_t>(f)] = std::exp(predicted(k, f));
   }
   return units;
 }
 
 // Returns the root mean square error of the prediction, and its square over the variance.
-std::pair<double, double> misses(const std::vector<DeviceUnits>& told, const std::vector<DeviceUnits>& best, Factor factor) {
+std::pair<double, double> misses(const std::vector<DeviceUnits>& predicted, const std::vector<DeviceUnits>& best, Factor factor) {
   std::vector<double> wanted;
   double square = 0;
-  for (std::size_t k = 0; k < told.size(); ++k) {
-    const double miss = std::log(told[k].*factor / best[k].*factor);
+  for (std::size_t k = 0; k < predicted.size(); ++k) {
+    const double miss = std::log(predicted[k].*factor / best[k].*factor);
     if (!std::isfinite(miss)) continue;
     wanted.push_back(std::log(best[k].*factor));
     square += miss * miss;
@@ -209,24 +210,25 @@ std::pair<double, double> misses(const std::vector<DeviceUnits>& told, const std
 }
 
 // A prediction, and the factors that it predicts.
-struct Told {
+struct GivenUnits {
   Prediction prediction;
   std::vector<DeviceUnits> units;
 };
 
-Told fitted(const IdentificationStudy& study, std::uint64_t seed, std::string name, std::vector<std::size_t> figures) {
-  Told told{.prediction = {.name = std::move(name), .figures = std::move(figures)}, .units = {}};
-  Prediction& p = told.prediction;
-  told.units = told_factors(regressors(study.figures, p.figures, seed), study.best, factors_of(study.drives_piezo));
-  std::tie(p.volts_miss, p.volts_unexplained) = misses(told.units, study.best, &DeviceUnits::volts);
-  std::tie(p.time_miss, p.time_unexplained) = misses(told.units, study.best, &DeviceUnits::time);
-  if (study.drives_piezo) std::tie(p.piezo_miss, p.piezo_unexplained) = misses(told.units, study.best, &DeviceUnits::piezo);
-  return told;
+GivenUnits fitted(const IdentificationStudy& study, std::uint64_t seed, std::string name, std::vector<std::size_t> figures) {
+  GivenUnits given_units{.prediction = {.name = std::move(name), .figures = std::move(figures)}, .units = {}};
+  Prediction& p = given_units.prediction;
+  given_units.units = predicted_factors(regressors(study.figures, p.figures, seed), study.best, factors_of(study.drives_piezo));
+  std::tie(p.volts_miss, p.volts_unexplained) = misses(given_units.units, study.best, &DeviceUnits::volts);
+  std::tie(p.time_miss, p.time_unexplained) = misses(given_units.units, study.best, &DeviceUnits::time);
+  if (study.drives_piezo)
+    std::tie(p.piezo_miss, p.piezo_unexplained) = misses(given_units.units, study.best, &DeviceUnits::piezo);
+  return given_units;
 }
 
 // Returns what the predictions are compared with: no factors, the best ones, those by all figures, and the device's own units.
-std::vector<Told> told_for_reference(const IdentificationStudy& study, std::uint64_t seed) {
-  std::vector<Told> all;
+std::vector<GivenUnits> reference_predictions(const IdentificationStudy& study, std::uint64_t seed) {
+  std::vector<GivenUnits> all;
   const auto given = [&](std::string name, std::vector<DeviceUnits> units) {
     all.push_back({.prediction = {.name = std::move(name), .figures = {}}, .units = std::move(units)});
   };
@@ -258,8 +260,8 @@ std::vector<Told> told_for_reference(const IdentificationStudy& study, std::uint
 }
 
 // Returns the predictions from every figure, and from every two of them.
-std::vector<Told> told_by_figures(const IdentificationStudy& study, std::uint64_t seed) {
-  std::vector<Told> all;
+std::vector<GivenUnits> predictions_by_figures(const IdentificationStudy& study, std::uint64_t seed) {
+  std::vector<GivenUnits> all;
   const std::vector<MeasurableFigure>& figures = study.figures;
   for (std::size_t a = 0; a < figures.size(); ++a) {
     all.push_back(fitted(study, seed, figures[a].name, {a}));
@@ -269,37 +271,38 @@ std::vector<Told> told_by_figures(const IdentificationStudy& study, std::uint64_
   return all;
 }
 
-void judge_told(Told& told, const RobustCost& cost, const std::vector<Waveform>& recipe, int jobs, const Watch& watch) {
+void judge_prediction(GivenUnits& given_units, const RobustCost& cost, const std::vector<Waveform>& recipe, int jobs,
+                      const Progress& progress) {
   std::vector<DeviceOutcome> outcomes(cost.devices());
   run_tasks(outcomes.size(), jobs, [&](std::size_t k) {
-    if (watch.stopped()) return;
-    const DeviceUnits& units = told.units[k];
+    if (progress.stopped()) return;
+    const DeviceUnits& units = given_units.units[k];
     if (units.are_known() && std::isfinite(units.time)) {
       outcomes[k] = cost.close(recipe, k, units);
     } else {
       outcomes[k].failure = "its factors cannot be told";
     }
   });
-  if (watch.stopped()) return;
+  if (progress.stopped()) return;
   std::vector<double> scores, speeds, heights;
-  std::size_t free = 0;
+  std::size_t bounce_free = 0;
   for (const DeviceOutcome& o : outcomes) {
     scores.push_back(std::min(cost.score(o), RobustCost::not_closed));
     speeds.push_back(o.of(figure_of(&Metrics::largest_impact_velocity)));
     heights.push_back(o.of(figure_of(&Metrics::major_bounce_height)));
-    free += is_bounce_free(o);
+    bounce_free += is_bounce_free(o);
   }
-  Prediction& p = told.prediction;
+  Prediction& p = given_units.prediction;
   p.is_judged = true;
   p.score = sample_quantile(scores, probability);
-  p.bounce_free = yield_of(free, outcomes.size());
+  p.bounce_free = yield_of(bounce_free, outcomes.size());
   p.impact_speed = estimated_quantile(speeds, probability);
   p.rebound_height = estimated_quantile(heights, probability);
 }
 
 }  // namespace
 
-IdentificationStudy identify(SceneFile file, const IdentificationOptions& options, const Watch& watch) {
+IdentificationStudy identify(SceneFile file, const IdentificationOptions& options, const Progress& progress) {
   require(options.samples >= fewest_measured && options.samples <= most_measured, [&] {
     return fmt::format("{} devices: there must be from {} to {}", options.samples, fewest_measured, most_measured);
   });
@@ -309,40 +312,40 @@ IdentificationStudy identify(SceneFile file, const IdentificationOptions& option
   const Device& device = scene.device;
   require(device.has_contact(), "calibrate needs a [contact] section: without contact there is nothing to land on");
   require(has_pulling_electrode(device), "calibrate needs an electrode that pulls in: its voltage is what devices differ in");
-  const SearchSetting setting = search_setting(file, Target::bounce, Actuator::electrostatic, "pulse", watch);
+  const SearchSetting setting = search_setting(file, Target::bounce, Actuator::electrostatic, "pulse", progress);
   const PreparedScene& nominal = setting.given;
   const std::vector<Waveform> recipe = nominal.waveforms();
-  require(!same_drives(nominal.told(recipe), setting.baseline_scene.signals()), [&] {
+  require(!same_drives(nominal.commanded(recipe), setting.baseline_scene.signals()), [&] {
     return fmt::format(
         "{}: its drive is the plain step, which lands no device softly: there is no waveform to pin. Give what "
         "softland optimize has found",
         nominal.scene.file.name());
   });
-  const DeviceMeter meter(nominal, {.pull_in = true});
+  const PullInMeter meter(nominal, {.pull_in = true});
   const RobustAim aim;
   const Ensemble ensemble(nominal, options.samples, options.seed);
-  const RobustCost cost(setting, aim, build_all(ensemble, {}, options.seed, options.jobs, watch));
+  const RobustCost cost(setting, aim, build_all(ensemble, {}, options.seed, options.jobs, progress));
 
   IdentificationStudy study{.devices = cost.devices(), .spread_assumed = spread_assumed};
-  study.drives_piezo = nominal.model.has_piezo() && nominal.told(recipe).back().peak() > 0;
-  study.figures = measure(instruments(nominal, meter, options), nominal.model, cost, options.jobs, watch);
+  study.drives_piezo = nominal.model.has_piezo() && nominal.commanded(recipe).back().peak() > 0;
+  study.figures = measure(instruments(nominal, meter, options), nominal.model, cost, options.jobs, progress);
   study.best.assign(study.devices, no_factors);
-  over_devices(study.devices, options.jobs, "best factors of the devices", watch, [&](std::size_t k) {
+  over_devices(study.devices, options.jobs, "best factors of the devices", progress, [&](std::size_t k) {
     if (!cost.device(k).model) return;
     DeviceUnits own = meter.exact(*cost.device(k).model);
     if (!std::isfinite(own.volts)) own.volts = 1;
     study.best[k] = best_factors(cost, recipe, k, own, factors_of(study.drives_piezo));
   });
-  watch.throw_if_stopped();
+  progress.throw_if_stopped();
 
-  std::vector<Told> all = told_for_reference(study, options.seed);
+  std::vector<GivenUnits> all = reference_predictions(study, options.seed);
   const std::size_t references = all.size();
-  for (Told& told : told_by_figures(study, options.seed)) all.push_back(std::move(told));
-  for (std::size_t i = 0; i < all.size() && !watch.stopped(); ++i) {
-    judge_told(all[i], cost, recipe, options.jobs, watch);
-    watch.tell("judging what is told", static_cast<double>(i + 1) / static_cast<double>(all.size()));
+  for (GivenUnits& given_units : predictions_by_figures(study, options.seed)) all.push_back(std::move(given_units));
+  for (std::size_t i = 0; i < all.size() && !progress.stopped(); ++i) {
+    judge_prediction(all[i], cost, recipe, options.jobs, progress);
+    progress.tell("judging what is told", static_cast<double>(i + 1) / static_cast<double>(all.size()));
   }
-  study.interrupted = watch.stopped();
+  study.interrupted = progress.stopped();
   for (std::size_t i = 0; i < all.size(); ++i)
     (i < references ? study.references : study.predictions).push_back(std::move(all[i].prediction));
   std::stable_sort(study.predictions.begin(), study.predictions.end(), [](const Prediction& a, const Prediction& b) {

@@ -75,7 +75,7 @@ inline constexpr std::uint64_t fewest_measured = 16, most_measured = 100'000;
 
 /// Assumes a spread if the scene has none. Throws InvalidInput for a scene without contact, or without an electrode that pulls
 /// in; for a plain step, which has no landing to determine; for samples outside [fewest_measured, most_measured]. Throws
-/// Interrupted if `watch` asks to stop before the best factors of all devices are known.
-[[nodiscard]] IdentificationStudy identify(SceneFile file, const IdentificationOptions& options, const Watch& watch = {});
+/// Interrupted if `progress` asks to stop before the best factors of all devices are known.
+[[nodiscard]] IdentificationStudy identify(SceneFile file, const IdentificationOptions& options, const Progress& progress = {});
 
 }  // namespace softland

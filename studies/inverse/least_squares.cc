@@ -75,10 +75,10 @@ double loss_value(Loss loss, double residual, double scale) {
   return square(residual);
 }
 
-LeastSquaresEnd solve(const LeastSquares& problem, std::vector<double> start, const Watch& watch) {
+LeastSquaresEnd solve(const LeastSquares& problem, std::vector<double> start, const Progress& progress) {
   LeastSquaresEnd end;
   std::exception_ptr fault;
-  ceres_solve()(problem, std::move(start), watch, end, fault);
+  ceres_solve()(problem, std::move(start), progress, end, fault);
   if (fault) std::rethrow_exception(fault);
   return end;
 }
@@ -92,7 +92,7 @@ bool has_ceres() {
 }
 
 ManyEnds solve_from(const std::function<LeastSquares()>& make, const std::vector<std::vector<double>>& starts, int jobs,
-                    const std::function<bool(const LeastSquaresEnd&, const LeastSquaresEnd&)>& same, const Watch& watch) {
+                    const std::function<bool(const LeastSquaresEnd&, const LeastSquaresEnd&)>& same, const Progress& progress) {
   ManyEnds all;
   all.ends.resize(starts.size());
   std::atomic<std::size_t> done = 0;
@@ -100,12 +100,12 @@ ManyEnds solve_from(const std::function<LeastSquares()>& make, const std::vector
   run_tasks(
       starts.size(), jobs,
       [&](std::size_t k) {
-        all.ends[k] = solve(make(), starts[k], watch);
+        all.ends[k] = solve(make(), starts[k], progress);
         const std::scoped_lock lock(telling);
-        watch.tell("fits", static_cast<double>(++done) / static_cast<double>(starts.size()));
+        progress.tell("fits", static_cast<double>(++done) / static_cast<double>(starts.size()));
       },
-      watch.stop);
-  watch.throw_if_stopped();
+      progress.stop);
+  progress.throw_if_stopped();
   const auto is_better = [&](std::size_t a, std::size_t b) {
     const LeastSquaresEnd &one = all.ends[a], &other = all.ends[b];
     return !one.x.empty() && (other.x.empty() || one.cost < other.cost);

@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "base/choice.h"
-#include "base/watch.h"
+#include "base/progress.h"
 
 namespace softland {
 
@@ -56,8 +56,8 @@ struct LeastSquaresEnd {
 [[nodiscard]] bool has_ceres();
 
 /// Minimises from this start. The result does not depend on other solves that run at the same time. Throws what `evaluate`
-/// throws, Interrupted if `watch` asks to stop, and InvalidInput if Ceres is not available.
-[[nodiscard]] LeastSquaresEnd solve(const LeastSquares& problem, std::vector<double> start, const Watch& watch = {});
+/// throws, Interrupted if `progress` asks to stop, and InvalidInput if Ceres is not available.
+[[nodiscard]] LeastSquaresEnd solve(const LeastSquares& problem, std::vector<double> start, const Progress& progress = {});
 
 /// The ends of searches from several starts. They do not depend on the number of threads.
 struct ManyEnds {
@@ -69,6 +69,6 @@ struct ManyEnds {
 /// Solves from all starts. `make` gives each search its own problem. `same` decides whether two ends are one minimum.
 [[nodiscard]] ManyEnds solve_from(const std::function<LeastSquares()>& make, const std::vector<std::vector<double>>& starts,
                                   int jobs, const std::function<bool(const LeastSquaresEnd&, const LeastSquaresEnd&)>& same,
-                                  const Watch& watch = {});
+                                  const Progress& progress = {});
 
 }  // namespace softland

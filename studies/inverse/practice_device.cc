@@ -14,7 +14,7 @@
 #include "model/gas/gas_law.h"
 #include "studies/closing/auto_settings.h"
 #include "studies/inverse/capacitance_edges.h"
-#include "studies/inverse/tuned_scene.h"
+#include "studies/inverse/tuning_model.h"
 
 namespace softland {
 namespace {
@@ -154,7 +154,7 @@ PracticeClosing PracticeDevice::close(std::uint64_t shot, const std::vector<Wave
   const std::vector<std::string> names = nominal_.drive_names();
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (!nominal_.drives[k].limits) continue;
-    const std::string broken = violation(nominal_.told(k, waveforms[k]), nominal_.limits(k));
+    const std::string broken = violation(nominal_.commanded(k, waveforms[k]), nominal_.limits(k));
     require(broken.empty(), [&] { return fmt::format("drives.{}: {}", names[k], broken); });
   }
   std::vector<Signal> signals = DeviceDrives(own_).signals(waveforms, {}, device_.values);

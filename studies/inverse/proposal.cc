@@ -16,7 +16,7 @@
 
 namespace softland {
 
-LandingCost landing_cost(const ImaginedClosing& closing, const TuningScales& s) {
+LandingCost landing_cost(const PredictedClosing& closing, const TuningScales& s) {
   constexpr double time_price = 0.34, free_time = 0.88, contact_price = 0.02, late_price = 10, margin = 0.99;
   if (!closing.closes()) return {.landing = not_landed};
   const double middle = std::sqrt(s.rebound * s.gap / 20), height = closing.highest;
@@ -29,7 +29,7 @@ LandingCost landing_cost(const ImaginedClosing& closing, const TuningScales& s) 
 
 namespace {
 
-std::string families_for(const TunedScene& scene) {
+std::string families_for(const TuningModel& scene) {
   if (scene.approach() == Approach::quasi_static) return std::string(quasi_static_family);
   const PreparedScene& p = scene.nominal();
   const Actuator actuator = scene.options().actuator;
@@ -44,7 +44,7 @@ bool ends_with(const std::string& name, std::string_view ending) { return name.e
 
 }  // namespace
 
-Shapes::Shapes(const TunedScene& scene) : scene_(&scene) {
+TuningSpace::TuningSpace(const TuningModel& scene) : scene_(&scene) {
   const PreparedScene& p = scene.nominal();
   SearchSpace space(p, scene.options().actuator, families_for(scene), scene.scales().closing_time);
   if (scene.approach() == Approach::quasi_static) {
@@ -58,7 +58,7 @@ Shapes::Shapes(const TunedScene& scene) : scene_(&scene) {
   describe();
 }
 
-void Shapes::describe() {
+void TuningSpace::describe() {
   variables_.clear();
   coarse_.clear();
   of_electrode_.clear();
@@ -78,8 +78,8 @@ void Shapes::describe() {
   }
 }
 
-Shapes Shapes::within(double highest, double hold) const {
-  Shapes own = *this;
+TuningSpace TuningSpace::within(double highest, double hold) const {
+  TuningSpace own = *this;
   DriveSearch& closing = own.drives_.front();
   if (joint_ || closing.drive == piezo_drive) return own;
   own.highest_ = highest;
@@ -92,9 +92,9 @@ Shapes Shapes::within(double highest, double hold) const {
   return own;
 }
 
-std::vector<std::vector<double>> Shapes::starts() const { return starts_; }
+std::vector<std::vector<double>> TuningSpace::starts() const { return starts_; }
 
-std::vector<Waveform> Shapes::waveforms(std::vector<double> x) const {
+std::vector<Waveform> TuningSpace::waveforms(std::vector<double> x) const {
   for (std::size_t k = 0; k < x.size(); ++k) x[k] = std::clamp(x[k], variables_[k].lower, variables_[k].upper);
   DriveWaveforms all = others_;
   if (joint_) {
@@ -109,7 +109,8 @@ std::vector<Waveform> Shapes::waveforms(std::vector<double> x) const {
   return scene_->nominal().in_drive_order(all);
 }
 
-std::vector<double> Shapes::in_units(std::vector<double> x, const TunedScene::Units& from, const TunedScene::Units& to) const {
+std::vector<double> TuningSpace::in_units(std::vector<double> x, const TuningModel::Units& from,
+                                          const TuningModel::Units& to) const {
   for (std::size_t k = 0; k < x.size(); ++k) {
     if (ends_with(variables_[k].name, "_s")) x[k] *= to.time / from.time;
     if (of_electrode_[k]) x[k] *= to.volts / from.volts;
@@ -118,7 +119,7 @@ std::vector<double> Shapes::in_units(std::vector<double> x, const TunedScene::Un
   return x;
 }
 
-bool Shapes::is_allowed(const std::vector<Waveform>& waveforms) const {
+bool TuningSpace::is_allowed(const std::vector<Waveform>& waveforms) const {
   const std::vector<std::string> names = scene_->nominal().drive_names();
   return std::ranges::all_of(drives_, [&](const DriveSearch& drive) {
     const auto k = static_cast<std::size_t>(std::ranges::find(names, drive.drive) - names.begin());
@@ -126,12 +127,12 @@ bool Shapes::is_allowed(const std::vector<Waveform>& waveforms) const {
   });
 }
 
-double Shapes::highest_level() const {
+double TuningSpace::highest_level() const {
   const DriveSearch& closing = drives_.front();
   return closing.drive == piezo_drive ? std::numeric_limits<double>::infinity() : closing.limits.max_voltage;
 }
 
-double Shapes::room(const std::vector<Waveform>& waveforms) const {
+double TuningSpace::largest_factor(const std::vector<Waveform>& waveforms) const {
   const std::vector<std::string> names = scene_->nominal().drive_names();
   double most = std::numeric_limits<double>::infinity();
   for (const DriveSearch& drive : drives_) {
@@ -144,24 +145,25 @@ double Shapes::room(const std::vector<Waveform>& waveforms) const {
   return most;
 }
 
-Outlook::Outlook(const TunedScene& scene, const std::vector<Eigen::VectorXd>& points, Draws& draws, const Watch& watch)
-    : scene_(scene), devices_(scene.devices(points, watch)), watch_(watch) {
+OutcomeForecast::OutcomeForecast(const TuningModel& scene, const std::vector<Eigen::VectorXd>& points, Draws& draws,
+                                 const Progress& progress)
+    : scene_(scene), devices_(scene.devices(points, progress)), progress_(progress) {
   for (std::size_t k = 0; k < devices_.size(); ++k) gains_.push_back(1 + scene.options().laboratory.shot_error * draws.normal());
 }
 
-std::vector<ImaginedClosing> Outlook::close(const std::vector<Waveform>& waveforms, std::size_t begin, std::size_t end,
-                                            double gain) const {
-  std::vector<ImaginedShot> shots;
+std::vector<PredictedClosing> OutcomeForecast::close(const std::vector<Waveform>& waveforms, std::size_t begin, std::size_t end,
+                                                     double gain) const {
+  std::vector<PredictedShot> shots;
   for (std::size_t k = begin; k < std::min(end, size()); ++k)
     shots.push_back({.device = &devices_[k], .waveforms = &waveforms, .gain = gain * gains_[k]});
-  return scene_.close(shots, watch_);
+  return scene_.close(shots, progress_);
 }
 
-LandingCost Outlook::expected(const std::vector<Waveform>& waveforms, std::size_t count, double give_up) const {
+LandingCost OutcomeForecast::expected(const std::vector<Waveform>& waveforms, std::size_t count, double give_up) const {
   constexpr std::size_t first_devices = 8;
-  const auto mean = [&](const std::vector<ImaginedClosing>& closings) {
+  const auto mean = [&](const std::vector<PredictedClosing>& closings) {
     LandingCost sum;
-    for (const ImaginedClosing& closing : closings) {
+    for (const PredictedClosing& closing : closings) {
       const LandingCost one = landing_cost(closing, scene_.scales());
       sum.landing += one.landing / static_cast<double>(closings.size());
       sum.time += one.time / static_cast<double>(closings.size());
@@ -169,7 +171,7 @@ LandingCost Outlook::expected(const std::vector<Waveform>& waveforms, std::size_
     return sum;
   };
   const bool tries_few = std::isfinite(give_up) && count > first_devices;
-  std::vector<ImaginedClosing> closings = close(waveforms, 0, tries_few ? first_devices : count);
+  std::vector<PredictedClosing> closings = close(waveforms, 0, tries_few ? first_devices : count);
   if (!tries_few) return mean(closings);
   if (const LandingCost of_few = mean(closings); of_few.total() > give_up) return of_few;
   std::ranges::move(close(waveforms, first_devices, count), std::back_inserter(closings));
@@ -190,11 +192,11 @@ double scatter_of(const std::vector<double>& sample, double middle, double side)
 
 }  // namespace
 
-PredictedRecord Outlook::predicted(const std::vector<Waveform>& waveforms) const {
+PredictedRecord OutcomeForecast::predicted(const std::vector<Waveform>& waveforms) const {
   constexpr double both_sides = 1.96, unset = Metrics::unset;
   std::vector<double> touches, speeds, heights;
   double bouncing = 0;
-  for (const ImaginedClosing& closing : close(waveforms, 0, size())) {
+  for (const PredictedClosing& closing : close(waveforms, 0, size())) {
     if (!closing.is_seen_to_close()) continue;
     const auto seen = closing.seen();
     touches.push_back(closing.recorded_touch());
@@ -218,9 +220,10 @@ PredictedRecord Outlook::predicted(const std::vector<Waveform>& waveforms) const
   return record;
 }
 
-double Outlook::touch_slope(const std::vector<Waveform>& waveforms) const {
+double OutcomeForecast::touch_slope(const std::vector<Waveform>& waveforms) const {
   constexpr double apart = 5e-4;
-  const std::vector<ImaginedClosing> less = close(waveforms, 0, size(), 1 - apart), more = close(waveforms, 0, size(), 1 + apart);
+  const std::vector<PredictedClosing> less = close(waveforms, 0, size(), 1 - apart),
+                                      more = close(waveforms, 0, size(), 1 + apart);
   std::vector<double> slopes;
   for (std::size_t k = 0; k < less.size(); ++k) {
     if (less[k].is_seen_to_close() && more[k].is_seen_to_close())
@@ -231,8 +234,8 @@ double Outlook::touch_slope(const std::vector<Waveform>& waveforms) const {
 
 namespace {
 
-// A search for the least expected cost over the first devices of an outlook.
-struct Search {
+// A search for the least expected cost over the first devices of a forecast.
+struct ProposalSearch {
   const char* optimizer;
   std::size_t devices;
   long evaluations;
@@ -240,17 +243,17 @@ struct Search {
   bool fine;    // true to vary only the variables that matter to the landing
 };
 
-std::vector<double> found(const Shapes& shapes, const Outlook& outlook, const std::vector<double>& start, const Search& search,
-                          double effort, std::uint64_t seed, const Watch& watch,
+std::vector<double> found(const TuningSpace& space, const OutcomeForecast& forecast, const std::vector<double>& start,
+                          const ProposalSearch& search, double effort, std::uint64_t seed, const Progress& progress,
                           double give_up = std::numeric_limits<double>::infinity()) {
-  Problem problem{.variables = shapes.variables()};
+  Problem problem{.variables = space.variables()};
   for (std::size_t k = 0; k < start.size(); ++k) {
-    if (search.fine && shapes.is_coarse(k)) problem.variables[k].lower = problem.variables[k].upper = start[k];
+    if (search.fine && space.is_coarse(k)) problem.variables[k].lower = problem.variables[k].upper = start[k];
   }
   problem.objective = [&](std::span<const double> x) {
-    const std::vector<Waveform> waveforms = shapes.waveforms({x.begin(), x.end()});
-    if (!shapes.is_allowed(waveforms)) return std::numeric_limits<double>::infinity();
-    return outlook.expected(waveforms, search.devices, give_up).total();
+    const std::vector<Waveform> waveforms = space.waveforms({x.begin(), x.end()});
+    if (!space.is_allowed(waveforms)) return std::numeric_limits<double>::infinity();
+    return forecast.expected(waveforms, search.devices, give_up).total();
   };
   problem.starts = {start};
   const double evaluations = effort * static_cast<double>(search.evaluations);
@@ -258,8 +261,8 @@ std::vector<double> found(const Shapes& shapes, const Outlook& outlook, const st
                                                     .max_evaluations = std::max(1L, std::lround(evaluations)),
                                                     .seed = seed,
                                                     .step = search.step,
-                                                    .stop = watch.stop});
-  watch.throw_if_stopped();
+                                                    .stop = progress.stop});
+  progress.throw_if_stopped();
   return result.x.empty() ? start : result.x;
 }
 
@@ -267,13 +270,14 @@ std::vector<double> found(const Shapes& shapes, const Outlook& outlook, const st
 
 namespace {
 
-std::vector<Recipe> searched_recipes(const TunedScene& scene, const Shapes& shapes, std::size_t count, const Watch& watch) {
+std::vector<CandidateWaveform> searched_recipes(const TuningModel& scene, const TuningSpace& space, std::size_t count,
+                                                const Progress& progress) {
   constexpr double narrow = 0.1, narrow_nuisances = 0.5;  // scatter of the devices, in standard deviations of the prior
   constexpr double headroom = 0.92;                       // limit of levels, over the driver's highest level
   constexpr double hopeless = 0.9;
   constexpr std::array deviations{0.0, -1.0, 1.0, -2.0, 2.0};
   const std::size_t devices = scene.is_in_lanes() ? 48 : 12;
-  const long budget = (scene.is_in_lanes() ? 100 : 50) * static_cast<long>(shapes.variables().size());
+  const long budget = (scene.is_in_lanes() ? 100 : 50) * static_cast<long>(space.variables().size());
   const std::uint64_t seed = scene.options().seed;
   const Eigen::VectorXd& slope = scene.volts_slope();
   Draws draws(seed, std::uint64_t{1} << 40);
@@ -282,42 +286,42 @@ std::vector<Recipe> searched_recipes(const TunedScene& scene, const Shapes& shap
     apart.push_back(draws.normals(scene.size()));
     for (Eigen::Index i = 0; i < scene.size(); ++i) apart.back()[i] *= scene.is_nuisance(i) ? narrow_nuisances : narrow;
   }
-  std::vector<Recipe> recipes;
+  std::vector<CandidateWaveform> recipes;
   for (std::size_t n = 0; n < std::min(count, deviations.size()); ++n) {
-    watch.tell("recipes", static_cast<double>(n) / static_cast<double>(count));
+    progress.tell("recipes", static_cast<double>(n) / static_cast<double>(count));
     const Eigen::VectorXd centre =
         slope.isZero() ? Eigen::VectorXd(slope) : Eigen::VectorXd(deviations[n] / slope.norm() * slope);
     std::vector<Eigen::VectorXd> points = apart;
     for (Eigen::VectorXd& point : points) point += centre;
-    const Outlook outlook(scene, points, draws, watch);
-    const TunedScene::Units units = scene.units(centre);
-    const Shapes limited = shapes.within(
+    const OutcomeForecast forecast(scene, points, draws, progress);
+    const TuningModel::Units units = scene.units(centre);
+    const TuningSpace limited = space.within(
         std::min(scene.safe_level(
                      {.mean = centre, .covariance = narrow * narrow * Eigen::MatrixXd::Identity(scene.size(), scene.size())}),
-                 headroom * units.volts * shapes.highest_level()),
+                 headroom * units.volts * space.highest_level()),
         units.volts);
     std::vector<Proposal> from;
     const auto add = [&](const std::vector<double>& x) {
       const std::vector<Waveform> waveforms = limited.waveforms(x);
-      if (limited.is_allowed(waveforms)) from.push_back({.x = x, .cost = outlook.expected(waveforms, devices)});
+      if (limited.is_allowed(waveforms)) from.push_back({.x = x, .cost = forecast.expected(waveforms, devices)});
     };
     if (n == 0) {
       for (const std::vector<double>& start : limited.starts()) add(limited.in_units(start, {}, {}));
     } else {
-      for (const Recipe& recipe : recipes) add(limited.in_units(recipe.x, units_of(recipe), units));
+      for (const CandidateWaveform& recipe : recipes) add(limited.in_units(recipe.x, units_of(recipe), units));
     }
     std::ranges::stable_sort(from, {}, [](const Proposal& one) { return one.cost.total(); });
-    Recipe best{.approach = scene.approach(),
-                .x = from.empty() ? limited.in_units(shapes.starts().front(), {}, {}) : from.front().x,
-                .volts = units.volts,
-                .time = units.time,
-                .cost = from.empty() ? not_landed : from.front().cost.total()};
+    CandidateWaveform best{.approach = scene.approach(),
+                           .x = from.empty() ? limited.in_units(space.starts().front(), {}, {}) : from.front().x,
+                           .volts = units.volts,
+                           .time = units.time,
+                           .cost = from.empty() ? not_landed : from.front().cost.total()};
     from.resize(std::min<std::size_t>(from.size(), n == 0 ? 3 : 1));
     run_tasks(from.size(), scene.options().jobs, [&](std::size_t k) {
-      from[k].x = found(limited, outlook, from[k].x,
+      from[k].x = found(limited, forecast, from[k].x,
                         {.optimizer = "cma-es", .devices = devices, .evaluations = budget, .step = 0.1, .fine = false},
-                        scene.options().effort, random_bits(seed, Stream::tuning, 16 * n + k), watch, hopeless);
-      from[k].cost = outlook.expected(limited.waveforms(from[k].x), devices);
+                        scene.options().effort, random_bits(seed, Stream::tuning, 16 * n + k), progress, hopeless);
+      from[k].cost = forecast.expected(limited.waveforms(from[k].x), devices);
     });
     for (const Proposal& end : from) {
       if (end.cost.total() < best.cost) best.x = end.x, best.cost = end.cost.total();
@@ -329,27 +333,27 @@ std::vector<Recipe> searched_recipes(const TunedScene& scene, const Shapes& shap
 
 }  // namespace
 
-std::vector<Recipe> recipes_of(TunedScene& scene, const Watch& watch) {
+std::vector<CandidateWaveform> recipes_of(TuningModel& scene, const Progress& progress) {
   const std::size_t count = scene.volts_slope().isZero() ? 1 : static_cast<std::size_t>(scene.options().most_recipes);
-  const std::vector<Recipe>& known = scene.options().recipes;
+  const std::vector<CandidateWaveform>& known = scene.options().recipes;
   if (known.empty()) {
     constexpr double nothing_costs_less = 0.1;
     const auto searched = [&](Approach approach) {
       scene.choose(approach);
-      return searched_recipes(scene, Shapes(scene), count, watch);
+      return searched_recipes(scene, TuningSpace(scene), count, progress);
     };
     if (!scene.has_stable_path()) return searched(Approach::fast);
-    std::vector<Recipe> slow = searched(Approach::quasi_static);
+    std::vector<CandidateWaveform> slow = searched(Approach::quasi_static);
     if (slow.front().cost <= nothing_costs_less) return slow;
-    std::vector<Recipe> fast = searched(Approach::fast);
+    std::vector<CandidateWaveform> fast = searched(Approach::fast);
     if (fast.front().cost < slow.front().cost) return fast;
     scene.choose(Approach::quasi_static);
     return slow;
   }
   require(known.size() == count, [&] { return fmt::format("there are {} recipes; there must be {}", known.size(), count); });
   scene.choose(known.front().approach);
-  const std::size_t numbers = Shapes(scene).variables().size();
-  for (const Recipe& recipe : known) {
+  const std::size_t numbers = TuningSpace(scene).variables().size();
+  for (const CandidateWaveform& recipe : known) {
     require(recipe.approach == scene.approach(), "all recipes must have the same approach");
     require(recipe.x.size() == numbers,
             [&] { return fmt::format("a recipe has {} numbers, and must have {}", recipe.x.size(), numbers); });
@@ -360,30 +364,30 @@ std::vector<Recipe> recipes_of(TunedScene& scene, const Watch& watch) {
   return known;
 }
 
-Proposal propose(const TunedScene& scene, const Shapes& shapes, const Outlook& outlook,
-                 const std::vector<std::vector<double>>& candidates, std::uint64_t seed, const Watch& watch) {
+Proposal propose(const TuningModel& scene, const TuningSpace& space, const OutcomeForecast& forecast,
+                 const std::vector<std::vector<double>>& candidates, std::uint64_t seed, const Progress& progress) {
   constexpr double far_off = 0.3, not_good = 0.03, hopeless = 0.3;
-  const std::size_t all = outlook.size();
+  const std::size_t all = forecast.size();
   const auto priced = [&](std::vector<double> x) -> Proposal {
-    const std::vector<Waveform> waveforms = shapes.waveforms(x);
-    if (!shapes.is_allowed(waveforms)) return {.x = std::move(x), .cost = {.landing = std::numeric_limits<double>::infinity()}};
-    return {.x = std::move(x), .cost = outlook.expected(waveforms, all)};
+    const std::vector<Waveform> waveforms = space.waveforms(x);
+    if (!space.is_allowed(waveforms)) return {.x = std::move(x), .cost = {.landing = std::numeric_limits<double>::infinity()}};
+    return {.x = std::move(x), .cost = forecast.expected(waveforms, all)};
   };
   std::vector<Proposal> ranked;
-  for (const std::vector<double>& x : candidates) ranked.push_back(priced(shapes.in_units(x, {}, {})));
+  for (const std::vector<double>& x : candidates) ranked.push_back(priced(space.in_units(x, {}, {})));
   std::ranges::stable_sort(ranked, {}, [](const Proposal& one) { return one.cost.total(); });
   Proposal best = ranked.front();
-  const auto end_of = [&](const std::vector<double>& start, const Search& how, std::uint64_t which) {
-    return priced(found(shapes, outlook, start, how, scene.options().effort, random_bits(seed, Stream::tuning, which), watch));
+  const auto end_of = [&](const std::vector<double>& start, const ProposalSearch& how, std::uint64_t which) {
+    return priced(found(space, forecast, start, how, scene.options().effort, random_bits(seed, Stream::tuning, which), progress));
   };
   const auto take = [&](Proposal end) {
     if (end.cost.total() < best.cost.total()) best = std::move(end);
   };
-  const auto search = [&](const Search& how, std::uint64_t which) { take(end_of(best.x, how, which)); };
+  const auto search = [&](const ProposalSearch& how, std::uint64_t which) { take(end_of(best.x, how, which)); };
   const double step = best.cost.landing > far_off ? 0.0067 : 0.0027;
   search({.optimizer = "nelder-mead", .devices = 8, .evaluations = 50, .step = step, .fine = true}, 0);
   search({.optimizer = "nelder-mead", .devices = all, .evaluations = 50, .step = step, .fine = true}, 1);
-  const auto numbers = static_cast<long>(shapes.variables().size());
+  const auto numbers = static_cast<long>(space.variables().size());
   if (best.cost.landing > not_good)
     search({.optimizer = "nelder-mead", .devices = 12, .evaluations = 12 * numbers, .step = 0.013, .fine = false}, 2);
   if (best.cost.landing > hopeless) {

@@ -24,18 +24,18 @@ struct LandingCost {
   double landing = 0, time = 0;
   [[nodiscard]] double total() const { return landing + time; }
 };
-[[nodiscard]] LandingCost landing_cost(const ImaginedClosing& closing, const TuningScales& scales);
+[[nodiscard]] LandingCost landing_cost(const PredictedClosing& closing, const TuningScales& scales);
 /// Cost of a switch that does not close.
 inline constexpr double not_landed = 3;
 
 /// The waveforms that a search may try, as functions of its variables.
-class Shapes {
+class TuningSpace {
  public:
   /// Makes the shapes of the scene's approach. Keeps a reference to the scene. Throws what SearchSpace throws.
-  explicit Shapes(const TunedScene& scene);
+  explicit TuningSpace(const TuningModel& scene);
   /// Returns the shapes with a limit `highest` [V] of the closing electrode's levels, within the limits of its driver. The hold
   /// level is multiplied by `hold`, and limited as well.
-  [[nodiscard]] Shapes within(double highest, double hold) const;
+  [[nodiscard]] TuningSpace within(double highest, double hold) const;
 
   [[nodiscard]] const std::vector<Variable>& variables() const { return variables_; }
   /// True for a variable that hardly affects the landing: level and duration of the last pull.
@@ -45,19 +45,19 @@ class Shapes {
   [[nodiscard]] std::vector<Waveform> waveforms(std::vector<double> x) const;
   /// Converts variables from the units `from` of a device to the units `to` of another one: it scales levels of electrodes and
   /// all times.
-  [[nodiscard]] std::vector<double> in_units(std::vector<double> x, const TunedScene::Units& from,
-                                             const TunedScene::Units& to) const;
+  [[nodiscard]] std::vector<double> in_units(std::vector<double> x, const TuningModel::Units& from,
+                                             const TuningModel::Units& to) const;
   /// True if the waveforms are within the limits of the drivers.
   [[nodiscard]] bool is_allowed(const std::vector<Waveform>& waveforms) const;
   /// Returns the highest level of the closing electrode that its driver permits [V]; infinite for a piezo.
   [[nodiscard]] double highest_level() const;
   /// Returns the largest factor of all voltages that the limits of the drivers and the highest level allow.
-  [[nodiscard]] double room(const std::vector<Waveform>& waveforms) const;
+  [[nodiscard]] double largest_factor(const std::vector<Waveform>& waveforms) const;
 
  private:
   void describe();
 
-  const TunedScene* scene_;
+  const TuningModel* scene_;
   std::vector<DriveSearch> drives_;
   std::optional<QuasiStatic> joint_;  // moves all drives together; only for the quasi-static approach
   DriveWaveforms others_;
@@ -69,10 +69,10 @@ class Shapes {
 };
 
 /// Devices of a belief, each with its own gain in the next shot.
-class Outlook {
+class OutcomeForecast {
  public:
   /// Keeps a reference to `scene`.
-  Outlook(const TunedScene& scene, const std::vector<Eigen::VectorXd>& points, Draws& draws, const Watch& watch);
+  OutcomeForecast(const TuningModel& scene, const std::vector<Eigen::VectorXd>& points, Draws& draws, const Progress& progress);
   [[nodiscard]] std::size_t size() const { return devices_.size(); }
   /// Returns the mean cost over the first `count` devices. If the mean over the first few of them is above `give_up`, it
   /// returns that mean.
@@ -84,27 +84,29 @@ class Outlook {
 
  private:
   // Simulates the closings of the devices from `begin` to `end`.
-  [[nodiscard]] std::vector<ImaginedClosing> close(const std::vector<Waveform>& waveforms, std::size_t begin, std::size_t end,
-                                                   double gain = 1) const;
+  [[nodiscard]] std::vector<PredictedClosing> close(const std::vector<Waveform>& waveforms, std::size_t begin, std::size_t end,
+                                                    double gain = 1) const;
 
-  const TunedScene& scene_;
-  std::vector<ImaginedDevice> devices_;
+  const TuningModel& scene_;
+  std::vector<Particle> devices_;
   std::vector<double> gains_;
-  Watch watch_;
+  Progress progress_;
 };
 
-[[nodiscard]] inline TunedScene::Units units_of(const Recipe& recipe) { return {.volts = recipe.volts, .time = recipe.time}; }
+[[nodiscard]] inline TuningModel::Units units_of(const CandidateWaveform& recipe) {
+  return {.volts = recipe.volts, .time = recipe.time};
+}
 /// Returns the recipes of the options. If there are none, it searches those of each approach of the scene, returns the cheaper
 /// ones and chooses their approach. The recipe of the nominal device comes first. Throws InvalidInput for recipes of other
-/// shapes, and Interrupted if `watch` asks to stop.
-[[nodiscard]] std::vector<Recipe> recipes_of(TunedScene& scene, const Watch& watch);
+/// shapes, and Interrupted if `progress` asks to stop.
+[[nodiscard]] std::vector<CandidateWaveform> recipes_of(TuningModel& scene, const Progress& progress);
 
 struct Proposal {
   std::vector<double> x;
   LandingCost cost;
 };
-/// Returns the best point that searches from these candidates find. Throws Interrupted if `watch` asks to stop.
-[[nodiscard]] Proposal propose(const TunedScene& scene, const Shapes& shapes, const Outlook& outlook,
-                               const std::vector<std::vector<double>>& candidates, std::uint64_t seed, const Watch& watch);
+/// Returns the best point that searches from these candidates find. Throws Interrupted if `progress` asks to stop.
+[[nodiscard]] Proposal propose(const TuningModel& scene, const TuningSpace& space, const OutcomeForecast& forecast,
+                               const std::vector<std::vector<double>>& candidates, std::uint64_t seed, const Progress& progress);
 
 }  // namespace softland

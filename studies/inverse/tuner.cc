@@ -41,7 +41,7 @@ constexpr double enough_devices = 8;                  // effective devices that 
 constexpr double certain = 3.5;                       // standard errors from which on the ratio of the gaps differs
 constexpr std::size_t first_ones = 4, last_ones = 8;  // numbers of records from which the belief is computed
 
-std::optional<BelievedQuantity> believed_gap_ratio(const TunedScene& scene, const Belief& belief) {
+std::optional<BelievedQuantity> believed_gap_ratio(const TuningModel& scene, const Belief& belief) {
   std::vector<Eigen::VectorXd> ratios;
   for (const Eigen::VectorXd& z : belief.points) {
     const std::optional<double> ratio = scene.gap_ratio(scene.values(z));
@@ -52,7 +52,7 @@ std::optional<BelievedQuantity> believed_gap_ratio(const TunedScene& scene, cons
   return BelievedQuantity{.name = scene.gap_ratio_name(),
                           .unit = {},
                           .prior_mean = 1,
-                          .prior_deviation = TunedScene::gap_ratio_deviation,
+                          .prior_deviation = TuningModel::gap_ratio_deviation,
                           .mean = of_ratio.mean[0],
                           .deviation = of_ratio.deviation(0)};
 }
@@ -64,14 +64,14 @@ std::uint64_t first_draw(int closings) { return (static_cast<std::uint64_t>(clos
 
 // The members that no closing changes.
 struct Tuner::Setting {
-  Setting(const SceneFile& file, const TunerOptions& options, const Watch& watch)
-      : scene(file, options, watch), recipes(recipes_of(scene, watch)), shapes(scene) {
+  Setting(const SceneFile& file, const TunerOptions& options, const Progress& progress)
+      : scene(file, options, progress), recipes(recipes_of(scene, progress)), space(scene) {
     if (!options.wafer.empty()) scene.begin_with(believed_of_wafer(options.wafer, scene.size()).next);
   }
 
-  TunedScene scene;
-  std::vector<Recipe> recipes;
-  Shapes shapes;
+  TuningModel scene;
+  std::vector<CandidateWaveform> recipes;
+  TuningSpace space;
 };
 
 struct Tuner::State {
@@ -82,12 +82,12 @@ struct Tuner::State {
     int waveform = 0;  // number of the first shot with this waveform
   };
   // A controller by which the voltages of a repeated shot follow its touch time.
-  struct Steering {
+  struct TouchController {
     std::vector<Waveform> waveforms;  // waveforms at s = 1
     int waveform = 0;                 // number of the first shot with this waveform
     double slope = Metrics::unset, most = 1, s = 1;
     std::vector<double> touches;  // first touches, whose mean is the reference [s]
-    [[nodiscard]] std::vector<Waveform> steered() const {
+    [[nodiscard]] std::vector<Waveform> controlled_waveforms() const {
       std::vector<Waveform> own = waveforms;
       for (Waveform& waveform : own) waveform = scaled(std::move(waveform), s, 1);
       return own;
@@ -100,13 +100,13 @@ struct Tuner::State {
       if (std::isfinite(error)) s = std::min(most, s * (1 - share * error));
     }
   };
-  struct Learned {
+  struct Knowledge {
     std::vector<Fired> fired;
     int closings = 0, in_a_row = 0;
     std::size_t forgotten = 0;  // number of first records that are no longer used
     double hold = 1;            // hold level over the nominal one
     Belief belief;
-    std::optional<Steering> steering;
+    std::optional<TouchController> controller;
     std::vector<double> x;  // variables of the next shot
     TunerShot next, kept;
     int next_waveform = 0;          // number of the first shot with the next waveform; 0 for a new waveform
@@ -118,49 +118,49 @@ struct Tuner::State {
     TouchMisfit misfit = {};  // misfit of the records that were used last
   };
 
-  State(std::shared_ptr<const Setting> of_scene, const Watch& watch)
-      : setting(std::move(of_scene)), scene(setting->scene), shapes(setting->shapes), recipes(setting->recipes) {
+  State(std::shared_ptr<const Setting> of_scene, const Progress& progress)
+      : setting(std::move(of_scene)), scene(setting->scene), space(setting->space), recipes(setting->recipes) {
     Draws draws(scene.options().seed, first_draw(0));
     now.belief = Belief::prior(scene.size(), draws);
-    const Outlook outlook(scene, now.belief.resampled(proposal_devices, draws), draws, watch);
-    const TunedScene::Units units = scene.units(now.belief.moments.mean);
+    const OutcomeForecast forecast(scene, now.belief.resampled(proposal_devices, draws), draws, progress);
+    const TuningModel::Units units = scene.units(now.belief.moments.mean);
     if (scene.prior()) now.hold = believed_hold(units);
-    const Shapes limited = shapes_for(now);
+    const TuningSpace limited = space_for(now);
     now.x = limited.in_units(recipes.front().x, {}, {});
-    if (scene.prior()) now.x = propose(scene, limited, outlook, recipes_in(units), scene.options().seed, watch).x;
-    now.next = shot(1, limited.waveforms(now.x), outlook);
+    if (scene.prior()) now.x = propose(scene, limited, forecast, recipes_in(units), scene.options().seed, progress).x;
+    now.next = shot(1, limited.waveforms(now.x), forecast);
     now.kept = now.next;
   }
 
-  [[nodiscard]] static double believed_hold(const TunedScene::Units& units) {
+  [[nodiscard]] static double believed_hold(const TuningModel::Units& units) {
     constexpr double lowest = 0.85, highest = 1.2;
     return std::clamp(units.volts, lowest, highest);
   }
-  [[nodiscard]] std::vector<std::vector<double>> recipes_in(const TunedScene::Units& units) const {
+  [[nodiscard]] std::vector<std::vector<double>> recipes_in(const TuningModel::Units& units) const {
     std::vector<std::vector<double>> all;
-    for (const Recipe& recipe : recipes) all.push_back(shapes.in_units(recipe.x, units_of(recipe), units));
+    for (const CandidateWaveform& recipe : recipes) all.push_back(space.in_units(recipe.x, units_of(recipe), units));
     return all;
   }
-  [[nodiscard]] Shapes shapes_for(const Learned& known) const {
-    return shapes.within(scene.safe_level(known.belief.moments), known.hold);
+  [[nodiscard]] TuningSpace space_for(const Knowledge& known) const {
+    return space.within(scene.safe_level(known.belief.moments), known.hold);
   }
-  [[nodiscard]] TunerShot shot(int number, std::vector<Waveform> waveforms, const Outlook& outlook) const {
+  [[nodiscard]] TunerShot shot(int number, std::vector<Waveform> waveforms, const OutcomeForecast& forecast) const {
     TunerShot shot{.number = number, .waveforms = std::move(waveforms), .hold_time = scene.hold_time()};
-    shot.expected_cost = outlook.expected(shot.waveforms, outlook.size()).total();
-    shot.predicted = outlook.predicted(shot.waveforms);
+    shot.expected_cost = forecast.expected(shot.waveforms, forecast.size()).total();
+    shot.predicted = forecast.predicted(shot.waveforms);
     return shot;
   }
-  [[nodiscard]] Learned learned(Learned known, const ContactRecord& record, const Watch& watch) const;
-  void propose_next(Learned& known, const Watch& watch) const;
-  void keep_best(Learned& known, const Outlook& outlook, double expected) const;
-  void repeat(Learned& known, const Outlook& outlook) const;
+  [[nodiscard]] Knowledge updated(Knowledge known, const ContactRecord& record, const Progress& progress) const;
+  void propose_next(Knowledge& known, const Progress& progress) const;
+  void keep_best(Knowledge& known, const OutcomeForecast& forecast, double expected) const;
+  void repeat(Knowledge& known, const OutcomeForecast& forecast) const;
   void fire_kept_again();
 
   std::shared_ptr<const Setting> setting;
-  const TunedScene& scene;
-  const Shapes& shapes;
-  const std::vector<Recipe>& recipes;
-  Learned now;
+  const TuningModel& scene;
+  const TuningSpace& space;
+  const std::vector<CandidateWaveform>& recipes;
+  Knowledge now;
 };
 
 namespace {
@@ -175,7 +175,7 @@ double surprise(const PredictedRecord& predicted, const ContactRecord& record, d
 }
 
 // True if the contact opened for longer than errors of the model explain: a mode that the model lacks opens it by a nanometre.
-bool has_long_bounce(const TunedScene& scene, const ContactRecord& record) {
+bool has_long_bounce(const TuningModel& scene, const ContactRecord& record) {
   constexpr double share = 0.04;  // least duration, over the closing time of the plain step
   if (record.edges.empty()) return bounce_count(record).value_or(0) > 0;
   const double least = scene.options().laboratory.unseen + share * scene.scales().closing_time;
@@ -183,12 +183,13 @@ bool has_long_bounce(const TunedScene& scene, const ContactRecord& record) {
 }
 
 // Counts the records with a long bounce that the best device of the belief does not have.
-int unexplained_bounces(const TunedScene& scene, std::span<const LearnedShot> shots, const Belief& belief, const Watch& watch) {
+int unexplained_bounces(const TuningModel& scene, std::span<const LearnedShot> shots, const Belief& belief,
+                        const Progress& progress) {
   const std::vector<Eigen::VectorXd> best{belief.mode};
-  const std::vector<ImaginedDevice> device = scene.devices(best, watch);
-  std::vector<ImaginedShot> fired;
+  const std::vector<Particle> device = scene.devices(best, progress);
+  std::vector<PredictedShot> fired;
   for (const LearnedShot& shot : shots) fired.push_back({.device = device.data(), .waveforms = &shot.waveforms});
-  const std::vector<ImaginedClosing> closings = scene.close(fired, watch);
+  const std::vector<PredictedClosing> closings = scene.close(fired, progress);
   int count = 0;
   for (std::size_t i = 0; i < shots.size(); ++i) {
     const bool bounces = std::ranges::any_of(closings[i].seen().openings, [&](const ContactOpening& one) {
@@ -206,9 +207,9 @@ bool is_off(const std::optional<BelievedQuantity>& ratio) {
 
 }  // namespace
 
-Tuner::State::Learned Tuner::State::learned(Learned known, const ContactRecord& record, const Watch& watch) const {
+Tuner::State::Knowledge Tuner::State::updated(Knowledge known, const ContactRecord& record, const Progress& progress) const {
   const PredictedRecord predicted = known.next.predicted;
-  if (known.steering) known.next_waveform = known.steering->waveform;
+  if (known.controller) known.next_waveform = known.controller->waveform;
   known.fired.push_back({.shot = {.waveforms = known.next.waveforms, .record = record},
                          .x = known.x,
                          .as_proposed = known.next,
@@ -216,26 +217,26 @@ Tuner::State::Learned Tuner::State::learned(Learned known, const ContactRecord& 
   known.next_waveform = 0;
   ++known.closings;
   const bool quiet = is_bounce_free(record), bounced_long = has_long_bounce(scene, record);
-  const bool repeats = known.steering && first_touch(record) && !bounced_long;
+  const bool repeats = known.controller && first_touch(record) && !bounced_long;
   known.in_a_row = quiet ? known.in_a_row + 1 : 0;
   if (!repeats) known.surprises.push_back(surprise(predicted, record, known.belief.effective_devices));
   constexpr double rarely = 0.05;
   if (bounced_long && predicted.bounces <= rarely) ++known.unexpected_bounces;
   if (repeats) {
     if (quiet) known.kept = known.fired.back().as_proposed;
-    known.steering->follow(*first_touch(record));
-    known.next.waveforms = known.steering->steered();
+    known.controller->follow(*first_touch(record));
+    known.next.waveforms = known.controller->controlled_waveforms();
     known.next.number += 1;
     return known;
   }
-  if (known.steering)
+  if (known.controller)
     known.forgotten = known.fired.size() - std::min(known.fired.size(), last_ones);  // drop records from before the drift
-  known.steering.reset();
-  propose_next(known, watch);
+  known.controller.reset();
+  propose_next(known, progress);
   return known;
 }
 
-void Tuner::State::propose_next(Learned& known, const Watch& watch) const {
+void Tuner::State::propose_next(Knowledge& known, const Progress& progress) const {
   constexpr double calm = 0.05;
   constexpr int hold_is_fixed = 2;  // closings
   Draws draws(scene.options().seed, first_draw(known.closings));
@@ -243,35 +244,35 @@ void Tuner::State::propose_next(Learned& known, const Watch& watch) const {
   for (std::size_t k = known.forgotten; k < known.fired.size(); ++k) {
     if (k < known.forgotten + first_ones || k + last_ones >= known.fired.size()) shots.push_back(known.fired[k].shot);
   }
-  known.belief = softland::learned(scene, shots, known.belief, draws, watch);
+  known.belief = softland::updated_belief(scene, shots, known.belief, draws, progress);
   Draws of_misfit(scene.options().seed, first_draw(known.closings) + (std::uint64_t{1} << 19));
-  known.misfit = touch_misfit(scene, shots, known.belief, of_misfit, watch);
-  known.unexplained_bounces = unexplained_bounces(scene, shots, known.belief, watch);
+  known.misfit = touch_misfit(scene, shots, known.belief, of_misfit, progress);
+  known.unexplained_bounces = unexplained_bounces(scene, shots, known.belief, progress);
   if (known.belief.effective_devices >= enough_devices) {
     known.gap_ratio = believed_gap_ratio(scene, known.belief);
     if (is_off(known.gap_ratio) &&
-        gap_ratio_misfit(scene, shots, known.belief, certain * certain, of_misfit, watch) < certain * certain)
+        gap_ratio_misfit(scene, shots, known.belief, certain * certain, of_misfit, progress) < certain * certain)
       known.gap_ratio.reset();
   }
-  const TunedScene::Units units = scene.units(known.belief.moments.mean);
+  const TuningModel::Units units = scene.units(known.belief.moments.mean);
   if (known.closings <= hold_is_fixed) known.hold = believed_hold(units);
-  const Outlook outlook(scene, known.belief.resampled(proposal_devices, draws), draws, watch);
-  const Shapes limited = shapes_for(known);
+  const OutcomeForecast forecast(scene, known.belief.resampled(proposal_devices, draws), draws, progress);
+  const TuningSpace limited = space_for(known);
   std::vector<std::vector<double>> candidates{known.x};
   std::ranges::move(recipes_in(units), std::back_inserter(candidates));
   for (const Fired& fired : known.fired) {
     if (std::ranges::find(candidates, fired.x) == candidates.end()) candidates.push_back(fired.x);
   }
   const Proposal proposal =
-      propose(scene, limited, outlook, candidates, scene.options().seed + static_cast<std::uint64_t>(known.closings), watch);
+      propose(scene, limited, forecast, candidates, scene.options().seed + static_cast<std::uint64_t>(known.closings), progress);
   known.x = proposal.x;
-  known.next = shot(known.next.number + 1, limited.waveforms(known.x), outlook);
-  keep_best(known, outlook, proposal.cost.total());
-  if (known.in_a_row >= 2 && proposal.cost.landing < calm) repeat(known, outlook);
+  known.next = shot(known.next.number + 1, limited.waveforms(known.x), forecast);
+  keep_best(known, forecast, proposal.cost.total());
+  if (known.in_a_row >= 2 && proposal.cost.landing < calm) repeat(known, forecast);
 }
 
 // Keeps the best waveform among those that did not bounce in their last shot, unless the next waveform is clearly better.
-void Tuner::State::keep_best(Learned& known, const Outlook& outlook, double expected) const {
+void Tuner::State::keep_best(Knowledge& known, const OutcomeForecast& forecast, double expected) const {
   constexpr double clearly = 0.15;
   known.kept = known.next;
   double least = expected + clearly;
@@ -280,22 +281,22 @@ void Tuner::State::keep_best(Learned& known, const Outlook& outlook, double expe
     const bool is_last =
         std::none_of(one + 1, known.fired.end(), [&](const Fired& later) { return later.waveform == fired.waveform; });
     if (!is_last || !is_bounce_free(fired.shot.record)) continue;
-    const double cost = outlook.expected(fired.shot.waveforms, outlook.size()).total();
+    const double cost = forecast.expected(fired.shot.waveforms, forecast.size()).total();
     if (!(cost < least)) continue;
     least = cost;
     known.kept = fired.as_proposed;
     known.kept.expected_cost = cost;
-    known.kept.predicted = outlook.predicted(fired.shot.waveforms);
+    known.kept.predicted = forecast.predicted(fired.shot.waveforms);
   }
 }
 
-void Tuner::State::repeat(Learned& known, const Outlook& outlook) const {
+void Tuner::State::repeat(Knowledge& known, const OutcomeForecast& forecast) const {
   const auto fired = std::ranges::find(known.fired, known.kept.number, [](const Fired& one) { return one.as_proposed.number; });
   if (fired == known.fired.end()) return;
-  known.steering = Steering{.waveforms = fired->shot.waveforms,
-                            .waveform = fired->waveform,
-                            .slope = outlook.touch_slope(fired->shot.waveforms),
-                            .most = std::max(1.0, shapes_for(known).room(fired->shot.waveforms))};
+  known.controller = TouchController{.waveforms = fired->shot.waveforms,
+                                     .waveform = fired->waveform,
+                                     .slope = forecast.touch_slope(fired->shot.waveforms),
+                                     .most = std::max(1.0, space_for(known).largest_factor(fired->shot.waveforms))};
   known.x = fired->x;
   const int number = known.next.number;
   known.next = known.kept;
@@ -304,7 +305,7 @@ void Tuner::State::repeat(Learned& known, const Outlook& outlook) const {
 
 void Tuner::State::fire_kept_again() {
   const auto fired = std::ranges::find(now.fired, now.kept.number, [](const Fired& one) { return one.as_proposed.number; });
-  if (fired == now.fired.end() || now.steering) return;  // the repeated waveform is the one kept
+  if (fired == now.fired.end() || now.controller) return;  // the repeated waveform is the one kept
   now.x = fired->x;
   now.next_waveform = fired->waveform;
   const int number = now.next.number;
@@ -312,12 +313,12 @@ void Tuner::State::fire_kept_again() {
   now.next.number = number;
 }
 
-Tuner::Tuner(const SceneFile& file, const TunerOptions& options, const Watch& watch) {
+Tuner::Tuner(const SceneFile& file, const TunerOptions& options, const Progress& progress) {
   check(options);
-  state_ = std::make_unique<State>(std::make_shared<const Setting>(file, options, watch), watch);
+  state_ = std::make_unique<State>(std::make_shared<const Setting>(file, options, progress), progress);
 }
-Tuner::Tuner(std::shared_ptr<const Setting> setting, const Watch& watch)
-    : state_(std::make_unique<State>(std::move(setting), watch)) {}
+Tuner::Tuner(std::shared_ptr<const Setting> setting, const Progress& progress)
+    : state_(std::make_unique<State>(std::move(setting), progress)) {}
 Tuner::~Tuner() = default;
 Tuner::Tuner(Tuner&&) noexcept = default;
 Tuner& Tuner::operator=(Tuner&&) noexcept = default;
@@ -325,7 +326,7 @@ Tuner& Tuner::operator=(Tuner&&) noexcept = default;
 Tuner Tuner::restarted() const { return Tuner(state_->setting, {}); }
 
 const PreparedScene& Tuner::scene() const { return state_->scene.nominal(); }
-const std::vector<Recipe>& Tuner::recipes() const { return state_->recipes; }
+const std::vector<CandidateWaveform>& Tuner::recipes() const { return state_->recipes; }
 Approach Tuner::approach() const { return state_->scene.approach(); }
 double Tuner::step_closing_time() const { return state_->scene.scales().closing_time; }
 double Tuner::step_permanent_contact() const { return state_->scene.scales().permanent_contact; }
@@ -341,18 +342,18 @@ const std::vector<double>& Tuner::surprises() const { return state_->now.surpris
 int Tuner::unexpected_bounces() const { return state_->now.unexpected_bounces; }
 int Tuner::bounce_free_in_a_row() const { return state_->now.in_a_row; }
 
-void Tuner::learn(const ContactRecord& record, const Watch& watch) {
+void Tuner::learn(const ContactRecord& record, const Progress& progress) {
   const std::string fault = record_fault(record);
   require(fault.empty(), fault);
   if (!record.error.empty()) {
     ++state_->now.next.number;
     return;
   }
-  state_->now = state_->learned(state_->now, record, watch);
+  state_->now = state_->updated(state_->now, record, progress);
 }
 
 BeliefSummary Tuner::belief() const {
-  const TunedScene& scene = state_->scene;
+  const TuningModel& scene = state_->scene;
   const Belief& belief = state_->now.belief;
   const std::vector<SpreadVariable>& variables = scene.nominal().scene.spread.variables;
   std::vector<Eigen::VectorXd> values;  // values of each device: the varied quantities, then the trigger delay
@@ -395,7 +396,7 @@ BeliefSummary Tuner::belief() const {
 namespace {
 
 // Returns "The device does not match the model: its contact gap is 4.8 % wider ...". The ratio is constant over [spread].
-std::string gap_ratio_words(const BelievedQuantity& ratio) {
+std::string gap_ratio_prose(const BelievedQuantity& ratio) {
   constexpr double percent = 100;
   const double change = percent * (ratio.mean - 1);
   return fmt::format(
@@ -408,7 +409,7 @@ std::string gap_ratio_words(const BelievedQuantity& ratio) {
 
 std::optional<std::string> Tuner::broken_assumption() const {
   constexpr int too_many = 3;
-  const State::Learned& now = state_->now;
+  const State::Knowledge& now = state_->now;
   if (now.misfit.is_beyond())
     return fmt::format(
         "The device does not match the model: no device of the spread touches as recorded. The sum of squared residuals of the "
@@ -417,7 +418,7 @@ std::optional<std::string> Tuner::broken_assumption() const {
   if (std::min(now.unexpected_bounces, now.unexplained_bounces) >= too_many)
     return fmt::format("The device does not match the model: it bounced in {} closings that were predicted to be bounce-free.",
                        now.unexpected_bounces);
-  return is_off(now.gap_ratio) ? std::optional(gap_ratio_words(*now.gap_ratio)) : std::nullopt;
+  return is_off(now.gap_ratio) ? std::optional(gap_ratio_prose(*now.gap_ratio)) : std::nullopt;
 }
 
 }  // namespace softland

@@ -39,9 +39,9 @@
 #include <vector>
 
 #include "base/choice.h"
-#include "base/watch.h"
-#include "config/criterion.h"
-#include "model/ensemble/fleet.h"
+#include "base/progress.h"
+#include "config/condition.h"
+#include "model/ensemble/ensemble_closings.h"
 #include "studies/closing/prepared.h"
 #include "studies/inverse/contact_record.h"
 #include "studies/inverse/wafer.h"
@@ -60,7 +60,7 @@ inline constexpr auto approaches =
 static_assert(is_complete<approaches>());
 
 /// A waveform from which searches start, found once for a scene.
-struct Recipe {
+struct CandidateWaveform {
   Approach approach = Approach::fast;
   std::vector<double> x;       ///< variables of its shape
   double volts = 1, time = 1;  ///< units of the devices for which it was found, over those of the nominal one
@@ -75,11 +75,11 @@ struct TunerOptions {
   int most_recipes = 1;  ///< number of voltage units for which recipes are searched, 1 to 5
   double effort = 1;     ///< factor of the usual number of evaluations of every search
   /// Limit of the first touch: before or by a time; none for no limit.
-  std::optional<Criterion> touch = {};
+  std::optional<Condition> touch = {};
   /// Beliefs about devices of the same wafer that were tuned before. They make the prior of this device.
   std::vector<TunedBelief> wafer = {};
   /// Result of Tuner::recipes() for this scene and these options; if empty, recipes are searched.
-  std::vector<Recipe> recipes = {};
+  std::vector<CandidateWaveform> recipes = {};
   Vectors vectors = vectors_in_use();
 };
 
@@ -140,8 +140,8 @@ class Tuner {
  public:
   /// Prepares the scene and searches the recipes of its nominal device, which takes seconds in lanes. Throws InvalidInput for a
   /// scene that cannot be tuned (no contact, no drive to shape, options out of range), for a wafer of other quantities, and for
-  /// recipes of other shapes. Throws Interrupted if `watch` asks to stop.
-  Tuner(const SceneFile& file, const TunerOptions& options, const Watch& watch = {});
+  /// recipes of other shapes. Throws Interrupted if `progress` asks to stop.
+  Tuner(const SceneFile& file, const TunerOptions& options, const Progress& progress = {});
   ~Tuner();
   Tuner(Tuner&&) noexcept;
   Tuner& operator=(Tuner&&) noexcept;
@@ -152,7 +152,7 @@ class Tuner {
   /// Returns the scene of the belief: nominal device, drives and limits.
   [[nodiscard]] const PreparedScene& scene() const;
   /// Returns the recipes; that of the nominal device comes first.
-  [[nodiscard]] const std::vector<Recipe>& recipes() const;
+  [[nodiscard]] const std::vector<CandidateWaveform>& recipes() const;
   [[nodiscard]] Approach approach() const;
   /// Returns the first touch of the plain step on the nominal device [s].
   [[nodiscard]] double step_closing_time() const;
@@ -164,9 +164,9 @@ class Tuner {
   /// Returns the next shot. It stays the same until a record is learned.
   [[nodiscard]] const TunerShot& next() const;
   /// Learns the record of next(), and proposes the shot after it. After a record with an error the same waveform is proposed
-  /// again, under the next number. Throws InvalidInput for an invalid record, and Interrupted if `watch` asks to stop: nothing
-  /// is learned then.
-  void learn(const ContactRecord& record, const Watch& watch = {});
+  /// again, under the next number. Throws InvalidInput for an invalid record, and Interrupted if `progress` asks to stop:
+  /// nothing is learned then.
+  void learn(const ContactRecord& record, const Progress& progress = {});
 
   /// Returns the number of closings that were learned.
   [[nodiscard]] int closings() const;
@@ -197,7 +197,7 @@ class Tuner {
  private:
   struct Setting;
   struct State;
-  Tuner(std::shared_ptr<const Setting> setting, const Watch& watch);
+  Tuner(std::shared_ptr<const Setting> setting, const Progress& progress);
 
   std::unique_ptr<State> state_;
 };

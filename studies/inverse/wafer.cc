@@ -26,21 +26,21 @@ void check(const NormalBelief& belief, Index size) {
           "a belief about a tuned device must have finite coordinates of this scene, and a positive definite covariance");
 }
 
-LinearMeasurement told_by(const TunedBelief& tuned) {
+LinearMeasurement measurement_of(const TunedBelief& tuned) {
   // Largest variance of a measured direction, over that of the prior: a belief from samples scatters around 1.
-  constexpr double is_told = 0.5;
+  constexpr double measured_share = 0.5;
   const Index n = tuned.prior.mean.size();
   const MatrixXd inverse = whitening_of(tuned.prior.covariance);
   const VectorXd mean = inverse * (tuned.posterior.mean - tuned.prior.mean);
   const SymmetricEigen eigen = symmetric_eigen(inverse * tuned.posterior.covariance * inverse.transpose());
-  std::vector<Index> told;
+  std::vector<Index> measured;
   for (Index k = 0; k < n; ++k) {
-    if (eigen.values[k] < is_told) told.push_back(k);
+    if (eigen.values[k] < measured_share) measured.push_back(k);
   }
-  LinearMeasurement all{.rows = MatrixXd(static_cast<Index>(told.size()), n),
-                        .values = VectorXd(static_cast<Index>(told.size()))};
+  LinearMeasurement all{.rows = MatrixXd(static_cast<Index>(measured.size()), n),
+                        .values = VectorXd(static_cast<Index>(measured.size()))};
   for (Index i = 0; i < all.values.size(); ++i) {
-    const Index k = told[static_cast<std::size_t>(i)];
+    const Index k = measured[static_cast<std::size_t>(i)];
     const double variance = eigen.values[k], precision = 1 / variance - 1;  // precision from the records alone
     const VectorXd direction = eigen.vectors.col(k);
     all.rows.row(i) = std::sqrt(precision) * direction.transpose() * inverse;
@@ -57,7 +57,7 @@ WaferBelief believed_of_wafer(std::span<const TunedBelief> tuned, Index size) {
   for (const TunedBelief& one : tuned) {
     check(one.prior, size);
     check(one.posterior, size);
-    all.push_back(told_by(one));
+    all.push_back(measurement_of(one));
     count += all.back().values.size();
   }
   MatrixXd rows(count, size), own = MatrixXd::Zero(count, count);  // `own` has J J^T of each device

@@ -1,6 +1,6 @@
 // Predicts the next device of a wafer from devices of the wafer that were tuned.
 //
-// The coordinates z of each device are standard normal (tuned_scene.h). Devices of one wafer share an unknown part rho of the
+// The coordinates z of each device are standard normal (tuning_model.h). Devices of one wafer share an unknown part rho of the
 // variance:
 //
 //   z_i = w + e_i,   w ~ N(0, rho I) of the wafer,   e_i ~ N(0, (1 - rho) I) of each device

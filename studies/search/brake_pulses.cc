@@ -84,7 +84,7 @@ std::vector<double> BrakePulses::start(const Brake& braking, const std::array<do
   return x;
 }
 
-std::vector<Corners> BrakePulses::told(std::span<const double> x) const {
+std::vector<Corners> BrakePulses::commanded(std::span<const double> x) const {
   std::vector<Corners> all = plain_;
   for (const Brake& brake : brakes_) all[brake.drive] = corners(brake, x);
   return all;

@@ -31,7 +31,7 @@ class BrakePulses {
   /// others stay at 0 V.
   [[nodiscard]] std::vector<std::vector<double>> starts() const;
   /// Commanded voltages at a point, one per drive of the switch.
-  [[nodiscard]] std::vector<Corners> told(std::span<const double> x) const;
+  [[nodiscard]] std::vector<Corners> commanded(std::span<const double> x) const;
   /// Commanded voltages of the plain opening: every drive goes to 0 V at once, or as fast as its driver can.
   [[nodiscard]] const std::vector<Corners>& plain() const { return plain_; }
   [[nodiscard]] const std::vector<double>& holds() const { return holds_; }

@@ -25,13 +25,13 @@ constexpr double line_tolerance = 1e-5;     // error of the lines in a scene fil
 
 class PairSearch {
  public:
-  PairSearch(const SearchSetting& setting, const CycleSearchOptions& options, const Watch& watch)
+  PairSearch(const SearchSetting& setting, const CycleSearchOptions& options, const Progress& progress)
       : setting_(setting),
         options_(options),
-        watch_(watch),
-        budget_({.stop = watch.stop}),
+        progress_(progress),
+        budget_({.stop = progress.stop}),
         coarse_(setting.given),
-        pulses_(setting.given, options.actuator, hold_levels(setting.given.told(setting.given.waveforms())), "optimize"),
+        pulses_(setting.given, options.actuator, hold_levels(setting.given.commanded(setting.given.waveforms())), "optimize"),
         closing_(setting.space.variables().size()),
         scale_(setting.scale) {
     coarse_.tolerance = setting.run.tolerance;
@@ -48,10 +48,10 @@ class PairSearch {
   /// Returns the pair of a point, in which the parameters of the closing come first. Without those of the opening the drives go
   /// to 0 V at once. Returns nothing if a drive leaves its limits, or if a waveform does not fit into its part of a cycle.
   [[nodiscard]] std::optional<CycleWaveforms> pair(std::span<const double> x) const {
-    std::optional<std::vector<Signal>> closing = setting_.allowed_told(setting_.space.waveforms(x.first(closing_)));
+    std::optional<std::vector<Signal>> closing = setting_.allowed_commands(setting_.space.waveforms(x.first(closing_)));
     if (!closing) return std::nullopt;
     CycleWaveforms waveforms{.name = "found", .closing = std::move(*closing), .opening = {}};
-    for (const Corners& corners : x.size() > closing_ ? pulses_.told(x.subspan(closing_)) : pulses_.plain())
+    for (const Corners& corners : x.size() > closing_ ? pulses_.commanded(x.subspan(closing_)) : pulses_.plain())
       waveforms.opening.push_back(Signal::piecewise_linear(corners, corners.front().second));
     const CycleTimes one = times(1);
     const bool fits =
@@ -61,7 +61,7 @@ class PairSearch {
 
   /// Returns the cost of the worst of the first `cycles`; infinite if they cannot be simulated.
   [[nodiscard]] double cost(const CycleWaveforms& waveforms, std::size_t cycles = searched_cycles) const {
-    const Cycles run = CycledSwitch(coarse_, coarse_.model, waveforms).run(times(cycles), false, {.stop = watch_.stop});
+    const Cycles run = CycledSwitch(coarse_, coarse_.model, waveforms).run(times(cycles), false, {.stop = progress_.stop});
     if (run.cycles.size() < cycles) return std::numeric_limits<double>::infinity();
     double worst = 0;
     for (const CycleFigures& cycle : run.cycles) {
@@ -75,7 +75,7 @@ class PairSearch {
 
   /// Returns how far the contact point swings from its rest before the second cycle begins, over the contact gap.
   [[nodiscard]] double unrest(const CycleWaveforms& waveforms) const {
-    const Cycles run = CycledSwitch(coarse_, coarse_.model, waveforms).run(times(1), false, {.stop = watch_.stop});
+    const Cycles run = CycledSwitch(coarse_, coarse_.model, waveforms).run(times(1), false, {.stop = progress_.stop});
     if (run.cycles.empty()) return std::numeric_limits<double>::infinity();
     const CycleFigures& cycle = run.cycles.front();
     if (!cycle.opens) return never_touched;
@@ -103,7 +103,7 @@ class PairSearch {
                                             {.variables = {all.begin() + static_cast<std::ptrdiff_t>(first), all.end()},
                                              .objective = [&](std::span<const double> x) { return price(by, whole(x)); },
                                              .starts = std::move(starts)},
-                                            options_.seed, options_.jobs, watch_, what);
+                                            options_.seed, options_.jobs, progress_, what);
     if (!found.x.empty()) found.x = whole(found.x);
     return found;
   }
@@ -119,7 +119,7 @@ class PairSearch {
  private:
   const SearchSetting& setting_;
   const CycleSearchOptions& options_;
-  const Watch& watch_;
+  const Progress& progress_;
   SearchBudget budget_;  // counts the evaluations of pairs
   PreparedScene coarse_;
   BrakePulses pulses_;
@@ -152,7 +152,7 @@ SceneFile scene_of_cycle(const PreparedScene& given, const CycleWaveforms& wavef
 CycleWaveforms read_again(const SceneFile& file, const PreparedScene& given, const CycleTimes& times) {
   const PreparedScene read = read_back(file, "best.toml", given);
   CycleWaveforms waveforms{.name = "found", .closing = {}, .opening = {}};
-  for (const Signal& s : read.told(read.waveforms())) {
+  for (const Signal& s : read.commanded(read.waveforms())) {
     waveforms.closing.push_back(held_from(s, times.on_time));
     waveforms.opening.push_back(part_from(s, times.on_time, s.voltage_before(times.on_time)));
   }
@@ -160,29 +160,29 @@ CycleWaveforms read_again(const SceneFile& file, const PreparedScene& given, con
 }
 
 // Searches the closing alone.
-OptimizeResult closing_alone(const SceneFile& file, const CycleSearchOptions& options, const Watch& watch) {
+OptimizeResult closing_alone(const SceneFile& file, const CycleSearchOptions& options, const Progress& progress) {
   OptimizeOptions how = usual_options(file, options.target, options.actuator);
   if (!options.family.empty()) how.family = options.family;
   how.max_evaluations = std::max(1L, options.max_evaluations / 3);
   how.seed = options.seed;
   how.jobs = options.jobs;
-  how.stop = watch.stop;
-  how.on_preparation = watch.progress;
+  how.stop = progress.stop;
+  how.on_preparation = progress.report;
   how.on_evaluation = [&](const Evaluation&, const OptimizeProgress& now) {
-    watch.tell("closings", static_cast<double>(now.evaluations) / static_cast<double>(how.max_evaluations));
+    progress.tell("closings", static_cast<double>(now.evaluations) / static_cast<double>(how.max_evaluations));
   };
   return optimize(file, how);
 }
 
 }  // namespace
 
-CycleSearchResult search_cycle(const SceneFile& file, const CycleSearchOptions& options, const Watch& watch) {
+CycleSearchResult search_cycle(const SceneFile& file, const CycleSearchOptions& options, const Progress& progress) {
   require(options.rate > 0 && options.duty > 0 && options.duty < 1, "a rate must be above 0 Hz, and a duty above 0 and below 1");
-  const OptimizeResult alone = closing_alone(file, options, watch);
-  const SearchSetting setting = search_setting(file, options.target, options.actuator, alone.family, {.stop = watch.stop});
+  const OptimizeResult alone = closing_alone(file, options, progress);
+  const SearchSetting setting = search_setting(file, options.target, options.actuator, alone.family, {.stop = progress.stop});
   const PreparedScene& given = setting.given;
   require(given.rest().has_value(), "with every drive at 0 V the switch has no stable open state: it cannot be opened");
-  PairSearch search(setting, options, watch);
+  PairSearch search(setting, options, progress);
 
   // Begin with the closing that was found alone, and with those of the family, as far as they fit.
   std::vector<std::vector<double>> closings = setting.space.starts();
@@ -199,7 +199,7 @@ CycleSearchResult search_cycle(const SceneFile& file, const CycleSearchOptions& 
   std::vector<double> best = closings.front();
   double least = std::numeric_limits<double>::infinity();
   for (const std::vector<double>& x : closings) {
-    if (watch.stopped()) break;
+    if (progress.stopped()) break;
     const double own = search.cost(*search.pair(x), 1);
     if (own < least) least = own, best = x;
   }
@@ -223,11 +223,11 @@ CycleSearchResult search_cycle(const SceneFile& file, const CycleSearchOptions& 
     both.insert(both.end(), opening.begin() + static_cast<std::ptrdiff_t>(closing), opening.end());
     return both;
   };
-  if (!watch.stopped()) {
+  if (!progress.stopped()) {
     const OptimizerResult calm = search.improve("openings", &PairSearch::unrest, closing, best, search.pulses().starts());
     if (!calm.x.empty()) best = calm.x;
   }
-  if (!watch.stopped() && best.size() > closing) {
+  if (!progress.stopped() && best.size() > closing) {
     std::vector<std::vector<double>> pairs{best};
     for (const std::vector<double>& x : closings) pairs.push_back(with(x, best));
     const OptimizerResult both = search.improve("pairs", &PairSearch::cost_of_cycles, 0, best, std::move(pairs));
@@ -242,16 +242,16 @@ CycleSearchResult search_cycle(const SceneFile& file, const CycleSearchOptions& 
   const std::vector<Variable> variables = search.variables();
   for (std::size_t k = 0; k < best.size(); ++k) result.parameters[variables[k].name] = best[k];
   const CycleWaveforms plain = plain_cycle(given, found);
-  if (!watch.stopped()) {
+  if (!progress.stopped()) {
     result.plain_cost = search.cost(plain);
     result.cost = search.cost(found);
   }
   for (const CycleWaveforms& waveforms : {plain, found}) {
     CycledDrive& drive = result.cycling.drives.emplace_back();
     drive.waveforms = waveforms;
-    drive.cycles = CycledSwitch(given, given.model, waveforms).run(search.times(options.cycles), true, {.stop = watch.stop});
+    drive.cycles = CycledSwitch(given, given.model, waveforms).run(search.times(options.cycles), true, {.stop = progress.stop});
   }
-  result.interrupted = result.cycling.interrupted = watch.stopped();
+  result.interrupted = result.cycling.interrupted = progress.stopped();
   return result;
 }
 

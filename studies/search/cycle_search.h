@@ -13,7 +13,7 @@
 #include <map>
 #include <string>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "config/scene.h"
 #include "objectives/cost.h"
 #include "optimizers/problem.h"
@@ -51,6 +51,7 @@ struct CycleSearchResult {
 
 /// Throws InvalidInput as optimize() does, for a scene without an open state, and for a rate at which no waveform of the family
 /// fits into its part of a cycle.
-[[nodiscard]] CycleSearchResult search_cycle(const SceneFile& file, const CycleSearchOptions& options, const Watch& watch = {});
+[[nodiscard]] CycleSearchResult search_cycle(const SceneFile& file, const CycleSearchOptions& options,
+                                             const Progress& progress = {});
 
 }  // namespace softland

@@ -29,7 +29,7 @@ struct FrontPoint {
 
 /// Results where Vdp of each device is known with an error, on the first of the fresh devices. Each figure is that of the best
 /// waveform: of those that were searched with a per-device calibration, and of the winner in volts.
-struct KnownVdp {
+struct CalibrationError {
   double error = 0;                                                    ///< standard deviation of the error of Vdp, relative
   double bounce_free = Metrics::unset, impact_speed = Metrics::unset;  ///< share of the devices; 95th percentile [m/s]
 };
@@ -97,7 +97,7 @@ struct DevicesFindings {
   double step_delay = Metrics::unset;          ///< delay of the electrode's plain step, where its instant was searched [s]
   std::optional<Courses> courses;              ///< none if the plain step wins
   std::vector<FrontPoint> front;               ///< candidates, sorted by first touch
-  std::vector<KnownVdp> by_error;              ///< results with the least error first; none if Vdp is not measured
+  std::vector<CalibrationError> by_error;      ///< results with the least error first; none if Vdp is not measured
   HoldWindows windows;                         ///< windows of hold levels
   std::vector<RaceEntry> race;                 ///< candidates of the choice, the best first
   std::vector<FulfilledCondition> conditions;  ///< conditions, and how the winner fulfils them

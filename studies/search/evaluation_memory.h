@@ -27,11 +27,10 @@ struct EvaluationKey {
 };
 
 struct EvaluationValues {
-  double cost = std::numeric_limits<double>::infinity();  ///< cost of the search itself; infinite if the waveform is infeasible
-  double leading =
-      std::numeric_limits<double>::infinity();  ///< the cost that leads the first stage of a search; see GuidedSearch
-  bool lands = false;                           ///< true for a closing without a significant rebound
-  long closings = 1;                            ///< closings that the evaluation took
+  double cost = std::numeric_limits<double>::infinity();   ///< cost of the search itself; infinite if the waveform is infeasible
+  double guide = std::numeric_limits<double>::infinity();  ///< the cost that leads the first stage of a search; see GuidedSearch
+  bool lands = false;                                      ///< true for a closing without a significant rebound
+  long closings = 1;                                       ///< closings that the evaluation took
 };
 
 /// The memory that a search asks, on any thread. Neither function throws: the owner reports what goes wrong with the storage.

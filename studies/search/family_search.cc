@@ -8,7 +8,7 @@ FamilySearch::FamilySearch(const SearchSetting& setting, const OptimizeOptions& 
     : setting_(setting),
       options_(options),
       problem_{.variables = setting.space.variables(), .starts = setting.space.starts()},
-      stages_([this](std::span<const double> x) { return setting_.price_at(x, options_.memory, &last_of_thread()); },
+      stages_([this](std::span<const double> x) { return setting_.cost_at(x, options_.memory, &last_of_thread()); },
               [this, told = std::move(on_evaluation)](const Evaluation& e) { told(numbered(e)); }, slopes()) {}
 
 LastClosing& FamilySearch::last_of_thread() const {
@@ -16,7 +16,7 @@ LastClosing& FamilySearch::last_of_thread() const {
   return last_[std::this_thread::get_id()];
 }
 
-PriceSlopes FamilySearch::slopes() const {
+CostGradients FamilySearch::slopes() const {
   using Slope = std::function<std::vector<double>(std::span<const double>)>;
   if (setting_.target.from_the_start() != nullptr) return {};
   std::vector<ParameterGroup> groups;
@@ -25,11 +25,11 @@ PriceSlopes FamilySearch::slopes() const {
     if (groups.empty()) groups = setting_.parameter_groups();
     return [this, aim, groups](std::span<const double> x) { return setting_.gradient_at(x, aim, groups, &last_of_thread()); };
   };
-  PriceSlopes all{.leading = of(Target::bounce),
-                  .own = of(setting_.target.has_own_cost() ? setting_.target : Aim(Target::bounce))};
-  if (!all.leading || !all.own) return all;
+  CostGradients all{.guide = of(Target::bounce),
+                    .target = of(setting_.target.has_own_cost() ? setting_.target : Aim(Target::bounce))};
+  if (!all.guide || !all.target) return all;
   all.conditions = setting_.followed_conditions().size();
-  all.apart = [this](std::span<const double> x) { return setting_.price_at(x).apart.value_or(SearchCosts::Apart()); };
+  all.apart = [this](std::span<const double> x) { return setting_.cost_at(x).apart.value_or(SearchCosts::Apart()); };
   return all;
 }
 

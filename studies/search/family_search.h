@@ -49,7 +49,7 @@ class FamilySearch {
 
  private:
   [[nodiscard]] LastClosing& last_of_thread() const;
-  [[nodiscard]] PriceSlopes slopes() const;
+  [[nodiscard]] CostGradients slopes() const;
   [[nodiscard]] Evaluation numbered(Evaluation e) const;
 
   const SearchSetting& setting_;

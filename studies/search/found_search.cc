@@ -16,8 +16,8 @@ auto& best_of(Found& found) {
   }
 }
 
-ForDevicesResult searched_for_devices(const PlannedSearch& search) {
-  ForDevicesResult found = optimize_for_devices(search.scene, search.options, *search.for_devices);
+RobustSearchResult searched_for_devices(const PlannedSearch& search) {
+  RobustSearchResult found = robust_search(search.scene, search.options, *search.for_devices);
   if (found.interrupted) found.best.search.termination = Termination::interrupted;
   return found;
 }
@@ -33,7 +33,7 @@ OptimizeResult& FoundSearch::best() {
 }
 
 bool FoundSearch::is_success() const {
-  const auto* devices = std::get_if<ForDevicesResult>(&result);
+  const auto* devices = std::get_if<RobustSearchResult>(&result);
   // A plain step under which no device bounces is an answer, too.
   const bool has_answer = devices == nullptr || !devices->best.plain_step_wins || devices->plain_step_lands();
   return best().is_success() && has_answer;

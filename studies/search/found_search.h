@@ -8,7 +8,7 @@
 namespace softland {
 
 struct FoundSearch {
-  std::variant<OptimizeResult, RobustResult, ForDevicesResult> result;
+  std::variant<OptimizeResult, RobustResult, RobustSearchResult> result;
 
   /// The waveform found, on the nominal device.
   [[nodiscard]] const OptimizeResult& best() const;

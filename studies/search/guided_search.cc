@@ -17,23 +17,22 @@ constexpr double separation = 0.05;  // least distance of two such starts in som
 
 }  // namespace
 
-OptimizerResult GuidedSearch::stage(Problem problem, OptimizerOptions options, bool leading) {
-  problem.objective = [this, leading](std::span<const double> x) {
+OptimizerResult GuidedSearch::stage(Problem problem, OptimizerOptions options, bool guide) {
+  problem.objective = [this, guide](std::span<const double> x) {
     const std::vector<double> point(x.begin(), x.end());
     {
       const std::scoped_lock lock(mutex_);
-      if (const auto found = known_.find(point); found != known_.end())
-        return leading ? found->second.leading : found->second.own;
+      if (const auto found = known_.find(point); found != known_.end()) return guide ? found->second.guide : found->second.target;
     }
     const SearchCosts prices = price_(x);
     const std::scoped_lock lock(mutex_);
     known_.emplace(point, prices);
-    return leading ? prices.leading : prices.own;
+    return guide ? prices.guide : prices.target;
   };
-  const auto& slopes = leading ? slopes_.leading : slopes_.own;
+  const auto& slopes = guide ? slopes_.guide : slopes_.target;
   if (slopes_.conditions > 0) {
     problem.conditions.count = slopes_.conditions;
-    problem.conditions.values = [this, leading](std::span<const double> x) { return values_apart(x, leading); };
+    problem.conditions.values = [this, guide](std::span<const double> x) { return values_apart(x, guide); };
     problem.conditions.gradients = slopes;
   } else {
     problem.gradient = slopes;
@@ -44,7 +43,8 @@ OptimizerResult GuidedSearch::stage(Problem problem, OptimizerOptions options, b
     {
       const std::scoped_lock lock(mutex_);
       const auto found = known_.find(e.x);
-      own.value = found == known_.end() ? std::numeric_limits<double>::quiet_NaN() : found->second.own;  // the evaluation threw
+      own.value =
+          found == known_.end() ? std::numeric_limits<double>::quiet_NaN() : found->second.target;  // the evaluation threw
     }
     on_evaluation_(own);
     log_.emplace(own.index, std::move(own));
@@ -52,20 +52,20 @@ OptimizerResult GuidedSearch::stage(Problem problem, OptimizerOptions options, b
   return minimize(problem, options);
 }
 
-std::vector<double> GuidedSearch::values_apart(std::span<const double> x, bool leading) {
+std::vector<double> GuidedSearch::values_apart(std::span<const double> x, bool guide) {
   std::optional<SearchCosts::Apart> apart;
   {
     const std::scoped_lock lock(mutex_);
     if (const auto found = known_.find({x.begin(), x.end()}); found != known_.end()) apart = found->second.apart;
   }
   if (!apart) apart = slopes_.apart(x);
-  std::vector<double> values{leading ? apart->leading : apart->own};
+  std::vector<double> values{guide ? apart->guide : apart->target};
   values.insert(values.end(), apart->excess.begin(), apart->excess.end());
   return values;
 }
 
 double GuidedSearch::cost_of(const Evaluation& e, Costs costs) const {
-  return costs == Costs::leading && std::isfinite(e.value) ? known_.at(e.x).leading : e.value;
+  return costs == Costs::guide && std::isfinite(e.value) ? known_.at(e.x).guide : e.value;
 }
 
 std::optional<GuidedSearch::Best> GuidedSearch::best(Costs costs) const {
@@ -104,8 +104,8 @@ std::optional<Evaluation> GuidedSearch::surest_below(double own, const std::vect
   double least = std::numeric_limits<double>::infinity();
   for (const auto& [index, e] : log_) {
     if (!(e.value < own) || std::find(others.begin(), others.end(), e.x) != others.end()) continue;
-    const double leading = known_.at(e.x).leading;
-    if (leading < least) least = leading, surest = &e;
+    const double guide = known_.at(e.x).guide;
+    if (guide < least) least = guide, surest = &e;
   }
   return surest ? std::optional(*surest) : std::nullopt;
 }
@@ -120,12 +120,12 @@ OptimizerResult GuidedSearch::run(Problem problem, OptimizerOptions options, Cos
     problem.starts = std::move(starts);
   }
   OptimizerOptions first = options;
-  first.smooth = costs == Costs::own;
+  first.smooth = costs == Costs::target;
   if (costs == Costs::both) {
-    first.max_evaluations -= options.max_evaluations / own_share;
-    first.max_seconds *= 1 - 1.0 / own_share;
+    first.max_evaluations -= options.max_evaluations / target_share;
+    first.max_seconds *= 1 - 1.0 / target_share;
   }
-  OptimizerResult result = stage(problem, first, costs == Costs::both || costs == Costs::leading);
+  OptimizerResult result = stage(problem, first, costs == Costs::both || costs == Costs::guide);
   const bool goes_on = result.termination != Termination::interrupted && result.termination != Termination::failure;
   OptimizerOptions second = options;
   second.seed = ~options.seed;  // sample other points than the first stage
@@ -133,12 +133,12 @@ OptimizerResult GuidedSearch::run(Problem problem, OptimizerOptions options, Cos
   second.smooth = costs == Costs::both;
   second.max_evaluations -= result.evaluations;
   const bool lands = std::any_of(known_.begin(), known_.end(), [](const auto& one) { return one.second.lands; });
-  if (costs == Costs::leading || costs == Costs::own) second.max_evaluations = 0;
+  if (costs == Costs::guide || costs == Costs::target) second.max_evaluations = 0;
   if (costs == Costs::same) second.max_evaluations = lands || result.termination != Termination::evaluation_budget ? 0 : more;
   second.max_seconds = budget.seconds_left();
   if (goes_on && second.max_evaluations > 0 && second.max_seconds > 0) {
     if (!log_.empty()) first_index_ = log_.rbegin()->first + 1;
-    problem.starts = promising_points(problem.variables, Costs::own);
+    problem.starts = promising_points(problem.variables, Costs::target);
     OptimizerResult own = stage(problem, second, false);
     own.evaluations += result.evaluations;
     own.message = costs == Costs::both

@@ -15,7 +15,7 @@
 #include "model/constants.h"
 #include "studies/closing/auto_settings.h"
 #include "studies/closing/plain_step.h"
-#include "studies/search/free_flight.h"
+#include "studies/search/first_touch_problem.h"
 #include "studies/search/search_setting.h"
 
 namespace softland {
@@ -35,7 +35,7 @@ constexpr int refinements = 3;            // knot refinements: each halves their
 constexpr int most_meshes = 3;            // meshes: each is half as wide as the one before
 
 // Distances of every mode from its place in the closed equilibrium, in gaps; they shrink step by step.
-constexpr std::array rest_rooms = {0.1, 0.03, 0.01, 0.003, 0.001, 0.0003};
+constexpr std::array rest_distances = {0.1, 0.03, 0.01, 0.003, 0.001, 0.0003};
 constexpr long nearing_iterations = 100;  // Ipopt iterations per distance: about thirty if a way exists
 
 std::vector<double> uniform_knots(int intervals) {
@@ -45,7 +45,7 @@ std::vector<double> uniform_knots(int intervals) {
 }
 
 // Returns the controls as tables of volts against time, which pull from the touch on.
-DriveWaveforms tables_of(const FreeFlight& flight, const ControlledCourse& course) {
+DriveWaveforms tables_of(const FirstTouchProblem& flight, const ControlledCourse& course) {
   const double end = course.time * flight.time_unit();
   std::map<std::string, Table> tables;
   const auto add = [&](double time, const std::map<std::string, double>& volts) {
@@ -83,7 +83,8 @@ struct Catch {
   double begin = 0, end = 0;  // times after the touch
 };
 
-DriveWaveforms with_catch(const FreeFlight& flight, const LeastTime& found, const Catch& pulled, const DriveWaveforms& held) {
+DriveWaveforms with_catch(const FirstTouchProblem& flight, const LeastTime& found, const Catch& pulled,
+                          const DriveWaveforms& held) {
   DriveWaveforms caught = found.waveforms;
   const std::map<std::string, double> pull = flight.volts(flight.pull());
   const double touch = found.course.time * flight.time_unit();
@@ -103,9 +104,9 @@ DriveWaveforms with_catch(const FreeFlight& flight, const LeastTime& found, cons
 }
 
 // Returns the drives under searched waveforms. Other drives have the plain step, else the waveform of the scene.
-std::vector<Signal> driven(const PreparedScene& prepared, DriveWaveforms searched, const DriveWaveforms& plain) {
+std::vector<Signal> applied(const PreparedScene& prepared, DriveWaveforms searched, const DriveWaveforms& plain) {
   searched.insert(plain.begin(), plain.end());
-  return prepared.driven(prepared.waveforms(searched));
+  return prepared.applied(prepared.waveforms(searched));
 }
 
 struct Arrival {
@@ -114,7 +115,7 @@ struct Arrival {
 
 Arrival arrival(const PreparedScene& prepared, const DriveWaveforms& searched, Actuator actuator, double window) {
   const ClosingOptions options{.duration = window, .tolerance = std::min(prepared.tolerance, 1e-8), .after_contact = 0};
-  const Trajectory run = simulate_closing(prepared.model, driven(prepared, searched, plain_step(prepared, actuator)), options);
+  const Trajectory run = simulate_closing(prepared.model, applied(prepared, searched, plain_step(prepared, actuator)), options);
   const Metrics m = metrics(run);
   return {m.initial_contact_time, m.impact_velocity};
 }
@@ -123,7 +124,7 @@ Arrival arrival(const PreparedScene& prepared, const DriveWaveforms& searched, A
 class LeastTimeSearch {
  public:
   LeastTimeSearch(const PreparedScene& prepared, const LeastTimeOptions& options)
-      : prepared_(prepared), options_(options), flight_(prepared, options.actuator, options.peak) {
+      : prepared_(prepared), options_(options), first_touch_(prepared, options.actuator, options.peak) {
     result_.permitted = options.impact_velocity;
     if (options.actuator == Actuator::pzt) return;
     const DriverLimits& limits = prepared.drives.at(searched_electrode(prepared.scene.device)).limits.value();
@@ -131,7 +132,7 @@ class LeastTimeSearch {
   }
 
   LeastTime from_swing() {
-    std::optional<ControlledCourse> swing = flight_.swing(longest_time());
+    std::optional<ControlledCourse> swing = first_touch_.swing(longest_time());
     if (!swing) return ended(Status::no_contact, "full pull does not bring the switch to its contact");
     return from(std::move(*swing), longest_time());
   }
@@ -140,25 +141,25 @@ class LeastTimeSearch {
   // on.
   std::vector<DriveWaveforms> ways_to_rest(const DriveWaveforms& plain) {
     std::vector<DriveWaveforms> all;
-    std::optional<ControlledCourse> swing = flight_.swing(longest_time());
-    const std::optional<FreeFlight::Landing> landing = flight_.landing();
+    std::optional<ControlledCourse> swing = first_touch_.swing(longest_time());
+    const std::optional<FirstTouchProblem::Landing> landing = first_touch_.landing();
     if (!swing || !landing) return all;
     course_ = std::move(*swing);
     pose(longest_time(), landing);
     (void)come_to_rest(landing->state, [&] {
-      const LeastTime way{.waveforms = tables_of(flight_, course_), .course = course_};
-      all.push_back(with_catch(flight_, way, {}, plain));
-      options_.watch.tell("landings at rest to begin with", static_cast<double>(all.size()) / rest_rooms.size());
+      const LeastTime path{.waveforms = tables_of(first_touch_, course_), .course = course_};
+      all.push_back(with_catch(first_touch_, path, {}, plain));
+      options_.progress.tell("landings at rest to begin with", static_cast<double>(all.size()) / rest_distances.size());
     });
     return all;
   }
 
   LeastTime from_start() {
     result_.from_start = true;
-    const std::vector<Signal> signals = driven(prepared_, options_.start, plain_step(prepared_, options_.actuator));
-    std::optional<ControlledCourse> flown = flight_.flown(signals, first_knots, prepared_.duration);
+    const std::vector<Signal> signals = applied(prepared_, options_.start, plain_step(prepared_, options_.actuator));
+    std::optional<ControlledCourse> flown = first_touch_.flown(signals, first_knots, prepared_.duration);
     if (!flown) return ended(Status::no_contact, "the waveform to start with does not bring the switch to its contact");
-    const double longest = 2 * flown->time * flight_.time_unit();
+    const double longest = 2 * flown->time * first_touch_.time_unit();
     return from(std::move(*flown), longest);
   }
 
@@ -167,9 +168,9 @@ class LeastTimeSearch {
 
   LeastTime from(ControlledCourse guess, double longest) {
     course_ = std::move(guess);
-    std::optional<FreeFlight::Landing> landing;
+    std::optional<FirstTouchProblem::Landing> landing;
     if (options_.at_rest) {
-      landing = flight_.landing();
+      landing = first_touch_.landing();
       if (!landing) return ended(Status::no_contact, "the hold levels do not keep the switch closed");
     }
     pose(longest, landing);
@@ -187,22 +188,22 @@ class LeastTimeSearch {
     return result_;
   }
 
-  void pose(double longest, const std::optional<FreeFlight::Landing>& landing) {
-    const double speed = options_.impact_velocity / flight_.speed_unit();
-    const double fastest = prepared_.model.basis().angular_frequencies().maxCoeff() * flight_.time_unit();
-    problem_ = {
-        .system = &flight_,
-        .start = flight_.start(),
-        .bounds = flight_.bounds(),
-        .on_the_way = {{.row = flight_.tip(), .upper = 1}},
-        .at_the_end = {{.row = flight_.tip(), .lower = 1, .upper = 1}, {.row = flight_.tip_speed(), .lower = 0, .upper = speed}},
-        .shortest = course_.time / 10,
-        .longest = longest / flight_.time_unit(),
-        .knots = uniform_knots(first_knots),
-        .longest_piece = piece_angle / (fastest * course_.time),
-        .stop = options_.watch.stop};
+  void pose(double longest, const std::optional<FirstTouchProblem::Landing>& landing) {
+    const double speed = options_.impact_velocity / first_touch_.speed_unit();
+    const double fastest = prepared_.model.basis().angular_frequencies().maxCoeff() * first_touch_.time_unit();
+    problem_ = {.system = &first_touch_,
+                .start = first_touch_.start(),
+                .bounds = first_touch_.bounds(),
+                .on_the_way = {{.row = first_touch_.tip(), .upper = 1}},
+                .at_the_end = {{.row = first_touch_.tip(), .lower = 1, .upper = 1},
+                               {.row = first_touch_.tip_speed(), .lower = 0, .upper = speed}},
+                .shortest = course_.time / 10,
+                .longest = longest / first_touch_.time_unit(),
+                .knots = uniform_knots(first_knots),
+                .longest_piece = piece_angle / (fastest * course_.time),
+                .stop = options_.progress.stop};
     // A beam stays at rest only if the drives end at the levels under which it rests.
-    for (Index k = 0; landing && flight_.ramps() && k < flight_.controls(); ++k)
+    for (Index k = 0; landing && first_touch_.ramps() && k < first_touch_.controls(); ++k)
       problem_.bounds[static_cast<std::size_t>(k)].after = landing->controls[k];
   }
 
@@ -228,28 +229,28 @@ class LeastTimeSearch {
 
   // Brings the modes to rest little by little: Ipopt finds no way in one go.
   Status come_to_rest(const VectorXd& landed, const std::function<void()>& nearer = {}) {
-    const Index n = flight_.states();
+    const Index n = first_touch_.states();
     for (Index r = 0; r < n; ++r) problem_.at_the_end.push_back({.row = VectorXd::Unit(n, r)});
-    const auto leave = [&](double room) {
+    const auto leave = [&](double distance) {
       for (Index r = 0; r < n; ++r) {
         StateCondition& mode = problem_.at_the_end[static_cast<std::size_t>(r) + 2];
-        mode.lower = landed[r] - room;
-        mode.upper = landed[r] + room;
+        mode.lower = landed[r] - distance;
+        mode.upper = landed[r] + distance;
       }
     };
     const long usual = problem_.max_iterations;
-    for (const double room : rest_rooms) {
-      leave(room);
+    for (const double distance : rest_distances) {
+      leave(distance);
       const Status status = improve();
       if (status == Status::interrupted) return status;
       if (status != Status::done) break;
-      result_.room = room;
+      result_.distance = distance;
       problem_.max_iterations = nearing_iterations;
       if (nearer) nearer();
     }
     problem_.max_iterations = usual;
-    if (std::isnan(result_.room)) return Status::numerical_failure;
-    leave(result_.room);
+    if (std::isnan(result_.distance)) return Status::numerical_failure;
+    leave(result_.distance);
     return Status::done;
   }
 
@@ -257,10 +258,11 @@ class LeastTimeSearch {
   LeastTime refine_until_simulated() {
     for (int mesh = 1;; ++mesh) {
       result_.course = course_;
-      result_.time = course_.time * flight_.time_unit();
-      result_.impact_velocity = flight_.tip_speed().dot(course_.states.col(course_.states.cols() - 1)) * flight_.speed_unit();
+      result_.time = course_.time * first_touch_.time_unit();
+      result_.impact_velocity =
+          first_touch_.tip_speed().dot(course_.states.col(course_.states.cols() - 1)) * first_touch_.speed_unit();
       result_.waveforms =
-          with_catch(flight_, {.waveforms = tables_of(flight_, course_), .course = course_}, {.end = result_.time}, {});
+          with_catch(first_touch_, {.waveforms = tables_of(first_touch_, course_), .course = course_}, {.end = result_.time}, {});
       const Arrival touch = arrival(prepared_, result_.waveforms, options_.actuator, 2 * result_.time);
       result_.simulated_time = touch.time;
       result_.simulated_velocity = touch.velocity;
@@ -280,7 +282,7 @@ class LeastTimeSearch {
 
   const PreparedScene& prepared_;
   const LeastTimeOptions& options_;
-  FreeFlight flight_;
+  FirstTouchProblem first_touch_;
   ControlProblem problem_;
   ControlledCourse course_;
   LeastTime result_;
@@ -292,24 +294,24 @@ LeastTime least_time(const PreparedScene& prepared, const LeastTimeOptions& opti
   require(options.impact_velocity > 0 && std::isfinite(options.impact_velocity),
           "the permitted impact velocity must be positive");
   LeastTime swung = LeastTimeSearch(prepared, options).from_swing();
-  if (options.start.empty() || options.watch.stopped()) return swung;
+  if (options.start.empty() || options.progress.stopped()) return swung;
   LeastTime started = LeastTimeSearch(prepared, options).from_start();
   const bool better = started.status == Status::done && (swung.status != Status::done || started.time < swung.time);
   return better ? started : swung;
 }
 
-std::vector<DriveWaveforms> landings_at_rest(const PreparedScene& prepared, Actuator actuator, double impact_velocity,
-                                             const Watch& watch) {
+std::vector<DriveWaveforms> rest_to_rest_starts(const PreparedScene& prepared, Actuator actuator, double impact_velocity,
+                                                const Progress& progress) {
   constexpr int most_modes_followed = 4;
   constexpr std::array ramps = {1.0 / 9, 1.0 / 18};  // periods of the first mode from one end of a range to the other
   const double period = 2 * pi / prepared.model.basis().angular_frequencies()[0];
   std::vector<DriveWaveforms> found;
   if (prepared.model.modes() > most_modes_followed) return found;
-  for (std::size_t k = 0; k < ramps.size() && !watch.stopped(); ++k) {
+  for (std::size_t k = 0; k < ramps.size() && !progress.stopped(); ++k) {
     const double ramp = ramps[k];
-    const Watch own{.stop = watch.stop, .progress = [&](std::string_view what, double part) {
-                      watch.tell(what, (static_cast<double>(k) + part) / ramps.size());
-                    }};
+    const Progress own{.stop = progress.stop, .report = [&](std::string_view what, double part) {
+                         progress.tell(what, (static_cast<double>(k) + part) / ramps.size());
+                       }};
     own.tell("landings at rest to begin with", 0);
     PreparedScene smooth = prepared;
     for (Drive& drive : smooth.drives) {
@@ -317,10 +319,10 @@ std::vector<DriveWaveforms> landings_at_rest(const PreparedScene& prepared, Actu
         limits->max_slew = std::min(limits->max_slew, (limits->max_voltage - limits->min_voltage) / (ramp * period));
     }
     try {
-      const LeastTimeOptions options{.actuator = actuator, .impact_velocity = impact_velocity, .watch = own};
+      const LeastTimeOptions options{.actuator = actuator, .impact_velocity = impact_velocity, .progress = own};
       std::ranges::move(LeastTimeSearch(smooth, options).ways_to_rest(plain_step(prepared, actuator)), std::back_inserter(found));
     } catch (const InvalidInput&) {
-      return {};  // a scene that free_flight.h does not follow
+      return {};  // a scene that first_touch_problem.h does not follow
     }
   }
   return found;
@@ -335,26 +337,26 @@ constexpr std::array catch_delays = {0.0, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04};
 // The phases that can follow the touch of a way to it.
 class AfterTouch {
  public:
-  AfterTouch(const PreparedScene& prepared, const LeastTime& way, Actuator actuator)
+  AfterTouch(const PreparedScene& prepared, const LeastTime& path, Actuator actuator)
       : prepared_(prepared),
-        flight_(prepared, actuator, std::isfinite(way.peak) ? way.peak : std::numeric_limits<double>::infinity()),
+        first_touch_(prepared, actuator, std::isfinite(path.peak) ? path.peak : std::numeric_limits<double>::infinity()),
         plain_(plain_step(prepared, actuator)),
-        way_(way),
-        until_touch_(way) {
-    until_touch_.waveforms = tables_of(flight_, way.course);
+        path_(path),
+        until_touch_(path) {
+    until_touch_.waveforms = tables_of(first_touch_, path.course);
   }
 
   // Returns the catch that rebounds least, among those that begin after `delay` and end up to a few times the time of the touch
   // later.
-  [[nodiscard]] Catch best_catch(double delay, const Watch& watch) const {
+  [[nodiscard]] Catch best_catch(double delay, const Progress& progress) const {
     constexpr double longest = 3, step = 0.1;  // multiples of the time of the touch
     const double period = 2 * pi / prepared_.model.basis().angular_frequencies()[0];
     Catch best;
     double least = std::numeric_limits<double>::infinity();
-    for (int k = 0; k * step <= longest && !watch.stopped() && least > 0; ++k) {
-      const Catch other{.begin = delay * way_.time, .end = (delay + k * step) * way_.time};
-      const std::vector<Signal> signals = driven(prepared_, with_catch(flight_, until_touch_, other, plain_), plain_);
-      const ClosingOptions options{.duration = way_.time + other.end + period, .tolerance = catch_tolerance};
+    for (int k = 0; k * step <= longest && !progress.stopped() && least > 0; ++k) {
+      const Catch other{.begin = delay * path_.time, .end = (delay + k * step) * path_.time};
+      const std::vector<Signal> signals = applied(prepared_, with_catch(first_touch_, until_touch_, other, plain_), plain_);
+      const ClosingOptions options{.duration = path_.time + other.end + period, .tolerance = catch_tolerance};
       const Metrics m = metrics(simulate_closing(prepared_.model, signals, options), prepared_.scene.metrics);
       if (m.major_bounce_height < least) best = other, least = m.major_bounce_height;
     }
@@ -362,28 +364,28 @@ class AfterTouch {
   }
 
   [[nodiscard]] LimitLanding landing(const Catch& pulled) const {
-    DriveWaveforms all = with_catch(flight_, until_touch_, pulled, plain_);
+    DriveWaveforms all = with_catch(first_touch_, until_touch_, pulled, plain_);
     all.insert(plain_.begin(), plain_.end());
     PreparedScene scene = read_back(with_waveforms(prepared_, all), "best.toml", prepared_);
     Closing closing = simulate(scene, false);
     const auto soft = [](const Metrics& m) { return m.status == Status::done && m.lands(); };
-    LimitLanding landing{.way = way_,
+    LimitLanding landing{.path = path_,
                          .catch_delay = pulled.begin,
                          .catch_time = pulled.end,
                          .scene = std::move(scene),
                          .closing = std::move(closing)};
     if (!soft(landing.closing.metrics)) return landing;
-    landing.checks = confirm(landing.scene);
+    landing.checks = run_checks(landing.scene);
     landing.bounce_free =
-        std::ranges::all_of(landing.checks, [&](const ConfirmingRun& c) { return c.varied == Varied::gas || soft(c.metrics); });
+        std::ranges::all_of(landing.checks, [&](const CheckingRun& c) { return c.varied == Varied::gas || soft(c.metrics); });
     return landing;
   }
 
  private:
   const PreparedScene& prepared_;
-  FreeFlight flight_;
+  FirstTouchProblem first_touch_;
   DriveWaveforms plain_;
-  const LeastTime& way_;
+  const LeastTime& path_;
   LeastTime until_touch_;  // the way, with waveforms that end at the touch
 };
 
@@ -398,13 +400,13 @@ bool goes_before(const LimitLanding& a, const std::optional<LimitLanding>& b) {
 // All least times and landings of one limit; each is reported as it begins.
 class LimitStudy {
  public:
-  LimitStudy(Limit& result, const Watch& watch)
+  LimitStudy(Limit& result, const Progress& progress)
       : result_(result),
-        watch_(watch),
+        progress_(progress),
         usual_{.actuator = result.options.actuator,
                .impact_velocity = result.impact_velocity,
                .start = result.options.start,
-               .watch = watch},
+               .progress = progress},
         parts_(static_cast<double>(3 + (may_be_quicker() ? quicker.size() : 0) + (result.options.curves ? speeds.size() : 0) +
                                    (has_peaks() ? peaks.size() : 0))) {}
 
@@ -438,8 +440,8 @@ class LimitStudy {
   [[nodiscard]] bool has_peaks() const { return result_.options.curves && result_.options.actuator != Actuator::pzt; }
 
   bool next(std::string_view what) {
-    watch_.tell(what, done_++ / parts_);
-    return !watch_.stopped();
+    progress_.tell(what, done_++ / parts_);
+    return !progress_.stopped();
   }
 
   const LeastTime& at_speed(double share) {
@@ -451,12 +453,12 @@ class LimitStudy {
   }
 
   // Lands with the first of several catches whose landing is confirmed.
-  void land(const LeastTime& way, bool catches) {
-    if (way.status != Status::done) return;
-    const AfterTouch after(result_.given, way, result_.options.actuator);
+  void land(const LeastTime& path, bool catches) {
+    if (path.status != Status::done) return;
+    const AfterTouch after(result_.given, path, result_.options.actuator);
     for (const double delay : catch_delays) {
-      if (watch_.stopped()) return;
-      LimitLanding landing = after.landing(catches ? after.best_catch(delay, watch_) : Catch{});
+      if (progress_.stopped()) return;
+      LimitLanding landing = after.landing(catches ? after.best_catch(delay, progress_) : Catch{});
       const bool is_last = !catches || landing.bounce_free;
       if (goes_before(landing, result_.landing)) result_.landing = std::move(landing);
       if (is_last) return;
@@ -470,11 +472,11 @@ class LimitStudy {
       lower.peak = share * result_.touch.peak;
       result_.over_peak.push_back(least_time(result_.given, lower));
     }
-    if (!watch_.stopped()) result_.over_peak.push_back(result_.touch);
+    if (!progress_.stopped()) result_.over_peak.push_back(result_.touch);
   }
 
   Limit& result_;
-  const Watch& watch_;
+  const Progress& progress_;
   LeastTimeOptions usual_;
   double parts_, done_ = 0;
   std::map<double, LeastTime> known_;  // results by the speed over the permitted one
@@ -495,8 +497,8 @@ void refuse_what_pulls_away(const PreparedScene& given, Actuator actuator) {
 
 }  // namespace
 
-Limit limit(const SceneFile& file, const LimitOptions& options, const Watch& watch) {
-  PreparedScene given = prepare_and_choose(file, true, watch);
+Limit limit(const SceneFile& file, const LimitOptions& options, const Progress& progress) {
+  PreparedScene given = prepare_and_choose(file, true, progress);
   require_open_start(given.scene, "limit closes the switch");
   require(given.model.has_contact(), "limit needs a [contact] section: without contact there is nothing to land on");
   refuse_what_pulls_away(given, options.actuator);
@@ -505,16 +507,16 @@ Limit limit(const SceneFile& file, const LimitOptions& options, const Watch& wat
     require(std::find(names.begin(), names.end(), name) != names.end(),
             fmt::format("the waveform to start with is of a drive \"{}\", which the switch does not have", name));
   }
-  const std::string elsewhere = begins_elsewhere(options.start, options.before, given);
+  const std::string elsewhere = initial_state_difference(options.start, options.before, given);
   require(elsewhere.empty(), [&] { return "the waveform to start with: " + elsewhere; });
   Limit result{.given = std::move(given), .options = options};
   const PreparedScene& prepared = result.given;
   result.closed_state = closed_state(prepared, prepared.signals());
   result.hold_warning = hold_warning(prepared.model, prepared.signals(), result.closed_state);
-  result.step =
-      simulate(read_back(with_waveforms(prepared, plain_step(prepared, options.actuator)), "step.toml", prepared), false, watch)
-          .metrics;
-  watch.throw_if_stopped();
+  result.step = simulate(read_back(with_waveforms(prepared, plain_step(prepared, options.actuator)), "step.toml", prepared),
+                         false, progress)
+                    .metrics;
+  progress.throw_if_stopped();
   if (!prepared.scene.spread.empty()) result.approach = stable_approach(prepared, options.actuator);
   if (result.approach) result.quasi_static = quasi_static_speed(*result.approach, prepared, result.step.steady_force_time);
   constexpr double soft = 0.01;  // share of the plain step's impact velocity
@@ -522,8 +524,8 @@ Limit limit(const SceneFile& file, const LimitOptions& options, const Watch& wat
                   [] { return "the plain step does not touch: give " + requested("impact-velocity"); });
   result.impact_velocity = options.impact_velocity.value_or(soft * result.step.impact_velocity);
 
-  LimitStudy(result, watch).run();
-  result.interrupted = watch.stopped();
+  LimitStudy(result, progress).run();
+  result.interrupted = progress.stopped();
   return result;
 }
 

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "objectives/metrics.h"
 #include "optimizers/collocation.h"
 #include "studies/closing/closed_state.h"
@@ -35,7 +35,7 @@ struct LeastTimeOptions {
   double peak = std::numeric_limits<double>::infinity();  ///< peak of the pulling electrode, if below its driver's [V]
   /// Waveforms of the drives, of a search for example: the optimum is also sought from their flight, if that touches.
   DriveWaveforms start = {};
-  Watch watch = {};
+  Progress progress = {};
 };
 
 struct LeastTime {
@@ -47,7 +47,7 @@ struct LeastTime {
   double time = std::numeric_limits<double>::quiet_NaN();             ///< least time of the first touch [s]
   double impact_velocity = std::numeric_limits<double>::quiet_NaN();  ///< speed of that touch [m/s]
   /// Largest distance of any mode from its place in the closed equilibrium, in contact gaps, for a landing at rest.
-  double room = std::numeric_limits<double>::quiet_NaN();
+  double distance = std::numeric_limits<double>::quiet_NaN();
   double permitted = std::numeric_limits<double>::quiet_NaN();  ///< permitted speed [m/s]
   double peak = std::numeric_limits<double>::quiet_NaN();       ///< permitted peak [V]; NaN if no electrode is shaped
   /// Touch time [s] and speed [m/s] by an integration of the closing under the waveforms, with the contact.
@@ -56,27 +56,27 @@ struct LeastTime {
   ControlledCourse course = {};
 };
 
-/// Throws InvalidInput for a scene that free_flight.h does not follow.
+/// Throws InvalidInput for a scene that first_touch_problem.h does not follow.
 [[nodiscard]] LeastTime least_time(const PreparedScene& prepared, const LeastTimeOptions& options);
 
 /// Waveforms of the shaped drives that bring every mode to rest on the contact in about the least time. A drive takes a ninth,
 /// or an eighteenth, of the first mode's period from one end of its range to the other: without the jumps that ring modes which
 /// the model leaves out. The search of a piezo, or of several drives, begins with them. `impact_velocity` is as in
-/// LeastTimeOptions. Those that are not found are left out. None if free_flight.h does not follow the switch, or if it has more
-/// than four modes, which would take minutes.
-[[nodiscard]] std::vector<DriveWaveforms> landings_at_rest(const PreparedScene& prepared, Actuator actuator,
-                                                           double impact_velocity, const Watch& watch);
+/// LeastTimeOptions. Those that are not found are left out. None if first_touch_problem.h does not follow the switch, or if it
+/// has more than four modes, which would take minutes.
+[[nodiscard]] std::vector<DriveWaveforms> rest_to_rest_starts(const PreparedScene& prepared, Actuator actuator,
+                                                              double impact_velocity, const Progress& progress);
 
 /// A landing under a waveform that begins as one of least time does. It then goes on pulling, to keep the beam on its contact
 /// while its modes ring down (the catch), and ends on the hold levels.
 struct LimitLanding {
-  LeastTime way = {};
-  double catch_delay = 0;                  ///< time from the touch to the pull; the drives stay as at the touch [s]
-  double catch_time = 0;                   ///< time from the touch to the hold levels [s]; 0: held at once
-  PreparedScene scene;                     ///< scene that is read back from its text
-  Closing closing;                         ///< closing over the scene's whole window
-  std::vector<ConfirmingRun> checks = {};  ///< runs with a tighter integrator and a richer beam
-  bool bounce_free = false;                ///< settles without a significant rebound, in these runs too
+  LeastTime path = {};
+  double catch_delay = 0;                ///< time from the touch to the pull; the drives stay as at the touch [s]
+  double catch_time = 0;                 ///< time from the touch to the hold levels [s]; 0: held at once
+  PreparedScene scene;                   ///< scene that is read back from its text
+  Closing closing;                       ///< closing over the scene's whole window
+  std::vector<CheckingRun> checks = {};  ///< runs with a tighter integrator and a richer beam
+  bool bounce_free = false;              ///< settles without a significant rebound, in these runs too
 };
 
 struct LimitOptions {
@@ -108,6 +108,6 @@ struct Limit {
 /// Computes the limit. A run that is asked to stop returns the results so far. Throws InvalidInput as least_time(). Throws it
 /// if the plain step does not touch and no speed is given, if the shaped electrode pulls away from the contact, or if a given
 /// waveform begins at another rest. Throws Interrupted before the first result.
-[[nodiscard]] Limit limit(const SceneFile& file, const LimitOptions& options, const Watch& watch = {});
+[[nodiscard]] Limit limit(const SceneFile& file, const LimitOptions& options, const Progress& progress = {});
 
 }  // namespace softland

@@ -6,7 +6,7 @@
 
 #include "base/require.h"
 #include "model/constants.h"
-#include "studies/closing/confirmation.h"
+#include "studies/closing/checking_runs.h"
 
 namespace softland {
 namespace {
@@ -50,7 +50,7 @@ bool begins_gently(const std::vector<SearchSetting>& gentle, const std::vector<S
   const SearchSetting& setting = gentle.front();
   const auto fits = [&](const DriveWaveforms& waveforms) { return setting.is_allowed(setting.space.searched(waveforms)); };
   return std::ranges::any_of(setting.space.drives(), [](const DriveSearch& s) { return s.drive == piezo_drive; }) &&
-         (setting.begins_plainly() || fits(setting.given.drives.waveforms())) &&
+         (setting.starts_as_step() || fits(setting.given.drives.waveforms())) &&
          std::ranges::all_of(starts, [&](const StartingWaveforms& start) { return fits(start.waveforms); });
 }
 

@@ -48,22 +48,22 @@ class ReleaseSearch {
         gap_(given.scene.device.contact_gap()),
         period_(2 * pi / given.model.basis().angular_frequencies()[0]),
         pulses_(given, options.actuator, hold_levels(signals_of(given.waveforms())), "release"),
-        plain_(driven(pulses_.plain())) {}
+        plain_(applied(pulses_.plain())) {}
 
   /// Signals of the plain opening: every drive goes to 0 V at once.
   [[nodiscard]] const std::vector<Signal>& plain() const { return plain_; }
-  [[nodiscard]] std::vector<Signal> signals(std::span<const double> x) const { return driven(pulses_.told(x)); }
+  [[nodiscard]] std::vector<Signal> signals(std::span<const double> x) const { return applied(pulses_.commanded(x)); }
 
   /// Returns the scene with the commanded voltages of all drives, each from its hold level on; with those of the plain opening
   /// if `x` is empty.
   [[nodiscard]] SceneFile scene(std::span<const double> x) const {
-    const std::vector<Corners> told = x.empty() ? pulses_.plain() : pulses_.told(x);
+    const std::vector<Corners> commanded = x.empty() ? pulses_.plain() : pulses_.commanded(x);
     const std::vector<std::string> names = given_.drive_names();
     DriveWaveforms waveforms;
     for (std::size_t k = 0; k < names.size(); ++k) {
       if (names[k] == dispersion_drive) continue;  // no source drives it
       Table table;
-      for (const auto& [time, voltage] : told[k]) {
+      for (const auto& [time, voltage] : commanded[k]) {
         table.time.push_back(time);
         table.voltage.push_back(voltage);
       }
@@ -102,13 +102,13 @@ class ReleaseSearch {
     return f.residual_vibration / gap_ + outside_share * outside + time_share * time / period_ + touched_again * f.touches;
   }
 
-  [[nodiscard]] OptimizerResult run(std::span<const double> closed, const Watch& watch) const {
-    SearchBudget budget({.evaluations = options_.max_evaluations, .stop = watch.stop});
+  [[nodiscard]] OptimizerResult run(std::span<const double> closed, const Progress& progress) const {
+    SearchBudget budget({.evaluations = options_.max_evaluations, .stop = progress.stop});
     const auto objective = [&](std::span<const double> x) {
-      return cost(open(given_.model, closed, signals(x), opening_tolerance, OpeningFigures::unset, watch.stop));
+      return cost(open(given_.model, closed, signals(x), opening_tolerance, OpeningFigures::unset, progress.stop));
     };
     return minimize_within(budget, {.variables = pulses_.variables(), .objective = objective, .starts = pulses_.starts()},
-                           options_.seed, options_.jobs, watch, "waveforms");
+                           options_.seed, options_.jobs, progress, "waveforms");
   }
 
   [[nodiscard]] std::map<std::string, double> named(const std::vector<double>& x) const {
@@ -118,14 +118,14 @@ class ReleaseSearch {
   }
 
  private:
-  [[nodiscard]] std::vector<Signal> driven(const std::vector<Corners>& told) const {
+  [[nodiscard]] std::vector<Signal> applied(const std::vector<Corners>& commanded) const {
     std::vector<Signal> all;
-    for (std::size_t k = 0; k < told.size(); ++k) all.push_back(driven(k, told[k]));
+    for (std::size_t k = 0; k < commanded.size(); ++k) all.push_back(applied(k, commanded[k]));
     return all;
   }
 
   // Returns the output of the source of drive k for these commanded points, after it has stood at the first one for long.
-  [[nodiscard]] Signal driven(std::size_t k, Corners points) const {
+  [[nodiscard]] Signal applied(std::size_t k, Corners points) const {
     const DriverModel& source = given_.drives[k].source;
     const SourceErrors& errors = given_.drives[k].errors;
     if (source.is_ideal() && errors.are_none()) return Signal::piecewise_linear(points);
@@ -135,7 +135,7 @@ class ReleaseSearch {
     if (source.sample_rate) stands = std::ceil(stands * *source.sample_rate) / *source.sample_rate;
     for (auto& [time, voltage] : points) time += stands;
     points.insert(points.begin(), {0, points.front().second});
-    return part_from(given_.driven(k, Signal::piecewise_linear(points)), stands);
+    return part_from(given_.applied(k, Signal::piecewise_linear(points)), stands);
   }
 
   const PreparedScene& given_;
@@ -179,7 +179,7 @@ DeviceOpenings summarised(const std::vector<OpeningFigures>& openings, double ba
 }
 
 // Returns the openings on devices; none if no device is held closed.
-std::optional<OpeningsOnDevices> on_devices(const ReleaseSearch& search, const OpeningResult& r, const Watch& watch) {
+std::optional<OpeningsOnDevices> on_devices(const ReleaseSearch& search, const OpeningResult& r, const Progress& progress) {
   SceneFile file = r.given.scene.file;
   OpeningsOnDevices found{.spread_assumed = assume_spread(file), .plain = {}, .best = {}};
   const PreparedScene nominal = found.spread_assumed ? prepare(file) : r.given;
@@ -191,18 +191,18 @@ std::optional<OpeningsOnDevices> on_devices(const ReleaseSearch& search, const O
       ensemble.size(), r.options.jobs,
       [&](std::size_t k) {
         const SampledDevice device = DeviceBuilder(ensemble).device(k);
-        watch.tell("devices", static_cast<double>(++done) / static_cast<double>(ensemble.size()));
+        progress.tell("devices", static_cast<double>(++done) / static_cast<double>(ensemble.size()));
         if (!device.model || !device.model->rest()) return;
         const std::optional<ClosedEquilibrium> closed = closed_equilibrium(*device.model, r.holds);
         if (!keeps_closed(*device.model, closed)) return;
         const std::span<const double> at = closed->coordinates();
         const auto opened = [&](const std::vector<Signal>& signals) {
-          return search.open(*device.model, at, signals, opening_tolerance, r.window, watch.stop).figures;
+          return search.open(*device.model, at, signals, opening_tolerance, r.window, progress.stop).figures;
         };
         of_device[k].emplace(opened(r.plain.signals), opened(r.best->signals));
       },
-      watch.stop);
-  if (watch.stopped()) return std::nullopt;
+      progress.stop);
+  if (progress.stopped()) return std::nullopt;
   std::vector<OpeningFigures> plain, best;
   for (const auto& one : of_device) {
     if (!one) continue;
@@ -218,9 +218,9 @@ std::optional<OpeningsOnDevices> on_devices(const ReleaseSearch& search, const O
 
 }  // namespace
 
-OpeningResult search_opening(const SceneFile& file, const OpeningOptions& options, const Watch& watch) {
+OpeningResult search_opening(const SceneFile& file, const OpeningOptions& options, const Progress& progress) {
   require(options.band > 0 && options.band < 1, fmt::format("band = {}: must be above 0 and below 1 contact gap", options.band));
-  OpeningResult r{.given = prepare_and_choose(file, true, watch), .options = options};
+  OpeningResult r{.given = prepare_and_choose(file, true, progress), .options = options};
   const PreparedScene& given = r.given;
   require(given.model.has_contact(), "release needs a [contact] section to open from, and the scene has none");
   require(given.model.rest().has_value(), "with every drive at 0 V the switch has no stable open state: it cannot be opened");
@@ -237,12 +237,12 @@ OpeningResult search_opening(const SceneFile& file, const OpeningOptions& option
   });
   r.contact_force = closed->contact_force;
   const auto open = [&](std::vector<Signal> signals) {
-    return search.open(given.model, closed->coordinates(), std::move(signals), given.tolerance, r.window, watch.stop);
+    return search.open(given.model, closed->coordinates(), std::move(signals), given.tolerance, r.window, progress.stop);
   };
   r.plain = open(search.plain());
-  watch.throw_if_stopped();
-  r.search = search.run(closed->coordinates(), watch);
-  r.interrupted = watch.stopped();
+  progress.throw_if_stopped();
+  r.search = search.run(closed->coordinates(), progress);
+  r.interrupted = progress.stopped();
   r.scene = search.scene(r.search.x);
   if (r.search.x.empty()) return r;
 
@@ -262,8 +262,8 @@ OpeningResult search_opening(const SceneFile& file, const OpeningOptions& option
   const auto meets_goal = [&](const auto& run) { return is_open_with_drives(run.figures, r.band); };
   r.goal_met = meets_goal(*r.best);
   r.confirmed = r.goal_met && std::all_of(r.checks.begin(), r.checks.end(), meets_goal);
-  if (r.options.devices > 0 && !r.interrupted) r.on_devices = on_devices(search, r, watch);
-  r.interrupted = watch.stopped();
+  if (r.options.devices > 0 && !r.interrupted) r.on_devices = on_devices(search, r, progress);
+  r.interrupted = progress.stopped();
   return r;
 }
 

@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "model/trajectory.h"
 #include "objectives/opening.h"
 #include "optimizers/problem.h"
@@ -90,6 +90,6 @@ struct OpeningResult {
 /// Throws InvalidInput for a scene without contact, or without an open or a closed equilibrium under its hold levels. Throws it
 /// for an actuator that the scene lacks or whose drives have no limits, and for options out of range. Throws Interrupted before
 /// the first result. Numerical trouble is reported in the result.
-[[nodiscard]] OpeningResult search_opening(const SceneFile& file, const OpeningOptions& options, const Watch& watch = {});
+[[nodiscard]] OpeningResult search_opening(const SceneFile& file, const OpeningOptions& options, const Progress& progress = {});
 
 }  // namespace softland

@@ -12,7 +12,7 @@
 #include "studies/closing/plain_step.h"
 #include "studies/search/evaluation_log.h"
 #include "studies/search/family_search.h"
-#include "studies/search/joint_swings.h"
+#include "studies/search/joint_rest_to_rest_starts.h"
 #include "studies/search/limit.h"
 #include "studies/search/modes_of_search.h"
 #include "studies/search/search_budget.h"
@@ -38,7 +38,7 @@ constexpr long evaluations_of_the_worst = 50;  // divisor of the budget for the 
 constexpr long shortest_half = 100;            // evaluations of a budget that is not divided any more
 constexpr double opening = 0.6;                // share of the budget that several families divide before the best goes on
 
-// Numbers of candidates that are kept: see Search::tried.
+// Numbers of candidates that are kept: see RunningSearch::tried.
 constexpr std::size_t kept_best = 100, kept_of_ladder = 150, kept_of_family = 15;
 
 // Returns the best of a search's improvements first, each distinctly worse than the one before: neighbours would fail for the
@@ -53,10 +53,10 @@ std::vector<Evaluation> candidates(const std::vector<Evaluation>& improvements) 
 }
 
 // One search: its families, and its reports while it runs.
-class Search {
+class RunningSearch {
  public:
   /// The family of each setting is its index. The search takes `seconds` [s] of the budget.
-  Search(const std::vector<SearchSetting>& settings, const OptimizeOptions& options, SearchBudget& whole, double seconds)
+  RunningSearch(const std::vector<SearchSetting>& settings, const OptimizeOptions& options, SearchBudget& whole, double seconds)
       : settings_(settings),
         options_(options),
         budget_(whole, options.max_evaluations, seconds),
@@ -75,15 +75,15 @@ class Search {
   // and the search starts there, or at the nearest waveform of its family.
   void begin() {
     const SearchSetting& setting = settings_.front();
-    if (!setting.begins_plainly())
+    if (!setting.starts_as_step())
       refine(setting.given.signals(), setting.given.drives.waveforms(),
              [&] { return prepared_with(setting.given, {}, setting.given); });
     for (const StartingWaveforms& start : options_.starts) {
       const DriveWaveforms searched = setting.space.searched(start.waveforms);
-      refine(setting.given.driven(setting.drives(searched)), searched, [&] { return setting.prepared(searched); });
+      refine(setting.given.applied(setting.drives(searched)), searched, [&] { return setting.prepared(searched); });
     }
     if (!is_divided(options_.max_evaluations)) begin_at_rest();
-    for (const auto& swing : joint_swings(setting.given, setting.space)) {
+    for (const auto& swing : joint_rest_to_rest_starts(setting.given, setting.space)) {
       for (FamilySearch& family : families_) {
         if (family.point(swing)) family.begin_at(swing);
       }
@@ -91,7 +91,7 @@ class Search {
   }
 
   void begin_at_rest() {
-    for (const auto& landing : landings_at_rest()) {
+    for (const auto& landing : rest_to_rest_starts()) {
       for (FamilySearch& family : families_) family.begin_at(landing);
     }
   }
@@ -100,14 +100,14 @@ class Search {
   void begin_at_point(const std::vector<double>& x) { families_.front().begin_at_point(x); }
 
   // Finds landings at rest for a piezo and for several drives, which can bring all modes to rest.
-  [[nodiscard]] std::vector<DriveWaveforms> landings_at_rest() const {
+  [[nodiscard]] std::vector<DriveWaveforms> rest_to_rest_starts() const {
     const SearchSetting& setting = settings_.front();
     const std::vector<DriveSearch>& shaped = setting.space.drives();
     const bool can_rest = shaped.size() > 1 || shaped.front().drive == piezo_drive;
     if (!can_rest || options_.max_evaluations < fewest_for_landings || budget_.seconds() < least_for_landings) return {};
-    return softland::landings_at_rest(setting.within_limits(), options_.actuator,
-                                      soft_touch * setting.scale.step.largest_impact_velocity,
-                                      {.stop = options_.stop, .progress = options_.on_preparation});
+    return softland::rest_to_rest_starts(setting.within_limits(), options_.actuator,
+                                         soft_touch * setting.scale.step.largest_impact_velocity,
+                                         {.stop = options_.stop, .report = options_.on_preparation});
   }
 
   OptimizerResult run() {
@@ -116,7 +116,7 @@ class Search {
   }
 
   // Verifies the given landings and the best candidates of the search.
-  void verify(Verification& all) const {
+  void check(Verification& all) const {
     for (const FoundWaveform& given : landings_) all.add(given);
     std::vector<Evaluation> tried;
     const auto add = [&](const Evaluation& e) {
@@ -164,7 +164,7 @@ class Search {
       std::vector<std::pair<double, std::vector<double>>> own;
       for (const Evaluation& e : candidates(improvements_of(log_.evaluations(k)))) {
         const DriveWaveforms waveforms = families_[k].waveforms(e);
-        own.emplace_back(other.price(other.given.driven(other.drives(waveforms))).own, e.x);
+        own.emplace_back(other.price(other.given.applied(other.drives(waveforms))).target, e.x);
       }
       if (own.empty()) continue;
       std::ranges::stable_sort(own, {}, &std::pair<double, std::vector<double>>::first);
@@ -200,7 +200,7 @@ class Search {
   [[nodiscard]] std::vector<SearchedFamilyResult> families() const {
     std::vector<SearchedFamilyResult> all;
     for (std::size_t k = 0; k < families_.size(); ++k) {
-      const std::optional<GuidedSearch::Best> best = families_[k].best(Costs::own);
+      const std::optional<GuidedSearch::Best> best = families_[k].best(Costs::target);
       all.push_back({.family = names_[k],
                      .evaluations = static_cast<long>(log_.evaluations(k).size()),
                      .cost = best ? best->cost : std::numeric_limits<double>::quiet_NaN()});
@@ -229,19 +229,19 @@ class Search {
     if (families_.size() == 1)
       return go_on(0, evaluations, all_seconds, options_.more_evaluations, has_own ? Costs::both : Costs::same, before > 0);
     // Search for bounce first, as a whole: no winner of that search is then better than one for another target.
-    const long own = has_own ? evaluations / own_share : 0;
-    const double bounce_seconds = all_seconds * (has_own ? 1 - 1.0 / own_share : 1);
-    if (!run_families(evaluations - own, bounce_seconds, has_own ? Costs::leading : Costs::same)) return false;
+    const long own = has_own ? evaluations / target_share : 0;
+    const double bounce_seconds = all_seconds * (has_own ? 1 - 1.0 / target_share : 1);
+    if (!run_families(evaluations - own, bounce_seconds, has_own ? Costs::guide : Costs::same)) return false;
     // Search by the own cost next, from the best points of every family. The remaining budget counts gradients as well.
     const long rest = evaluations - (all_.evaluations - before);
-    return !has_own || rest <= 0 || run_families(rest, budget_.seconds_left(), Costs::own);
+    return !has_own || rest <= 0 || run_families(rest, budget_.seconds_left(), Costs::target);
   }
 
   // Computes the own cost with the modes of the scene alone.
   [[nodiscard]] double own_cost(std::size_t family, const Evaluation& e) const {
     SearchSetting alone = settings_[family];
     alone.richer.clear();
-    return alone.price(alone.given.driven(alone.drives(families_[family].waveforms(e)))).own;
+    return alone.price(alone.given.applied(alone.drives(families_[family].waveforms(e)))).target;
   }
 
   [[nodiscard]] FoundWaveform found(const Evaluation& e) const {
@@ -260,18 +260,18 @@ class Search {
     const double share = opening / static_cast<double>(families_.size());
     const auto evaluations = static_cast<long>(share * static_cast<double>(all_evaluations));
     for (std::size_t k = 0; evaluations > 0 && k < families_.size(); ++k) {
-      if (costs != Costs::own) begin_where_others_were(k, costs);
+      if (costs != Costs::target) begin_where_others_were(k, costs);
       if (!go_on(k, evaluations, share * all_seconds, 0, costs, false)) return false;
     }
     const long rest = all_evaluations - static_cast<long>(families_.size()) * evaluations;
-    if (costs == Costs::own) begin_where_others_were(leader(costs), costs);
+    if (costs == Costs::target) begin_where_others_were(leader(costs), costs);
     return go_on(leader(costs), rest, all.seconds_left(), options_.more_evaluations, costs, true);
   }
 
   // `prepared()` returns the scene under these waveforms.
   template <class MakePrepared>
   void refine(const std::vector<Signal>& drives, const DriveWaveforms& waveforms, const MakePrepared& prepared) {
-    const double cost = settings_.front().price(drives).own;
+    const double cost = settings_.front().price(drives).target;
     for (FamilySearch& family : families_) family.begin_at(waveforms);
     if (!(cost < never_touched)) return;
     Evaluation given{.index = given_index, .value = cost, .x = {}};
@@ -362,21 +362,21 @@ class SearchBeyondModes {
   }
 
   /// Continues a search without gentle edges, which `gentle` has; returns the evaluations.
-  long go_on(const Search& search, const std::vector<SearchSetting>& settings, const std::vector<SearchSetting>& gentle) {
+  long go_on(const RunningSearch& search, const std::vector<SearchSetting>& settings, const std::vector<SearchSetting>& gentle) {
     if (!verified_.belongs_to_modes()) return 0;
     if (gentle.empty()) return sift(search, settings);
     if (!begin("searching on with gentler edges", options_.max_evaluations / 2, end_of_gentle)) return 0;
-    Search other(gentle, own_, budget_, own_.max_seconds);
+    RunningSearch other(gentle, own_, budget_, own_.max_seconds);
     other.begin();
     (void)other.run();
-    other.verify(verified_);
+    other.check(verified_);
     return sift(other, gentle);
   }
 
   /// Continues a search with gentle edges, or whose drivers have no others; returns the evaluations.
-  long sift(const Search& search, const std::vector<SearchSetting>& settings) {
+  long sift(const RunningSearch& search, const std::vector<SearchSetting>& settings) {
     if (!verified_.belongs_to_modes() && !verified_.confirmed()) return evaluations_;
-    const std::vector<Search::Promising> all = search.promising(by_the_worst_of_modes(settings.front()));
+    const std::vector<RunningSearch::Promising> all = search.promising(by_the_worst_of_modes(settings.front()));
     for (std::size_t n = 0; n < std::min(families_sifted, all.size()); ++n) {
       const auto& [k, least, points] = all[n];
       if (!begin("searching on by the worst of more modes", options_.max_evaluations / evaluations_of_the_worst, end_of_worst))
@@ -384,10 +384,10 @@ class SearchBeyondModes {
       std::vector<SearchSetting> worst{by_the_worst_of_modes(settings[k])};
       worst.front().family = 0;  // index of the only one
       own_.family = families_of(options_.family)[k];
-      Search other(worst, own_, budget_, own_.max_seconds);
+      RunningSearch other(worst, own_, budget_, own_.max_seconds);
       for (const std::vector<double>& point : points) other.begin_at_point(point);
       (void)other.run();
-      other.verify(verified_);
+      other.check(verified_);
     }
     return evaluations_;
   }
@@ -465,7 +465,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& asked) {
   SearchBudget budget({.seconds = options.max_seconds, .stop = options.stop});
   const std::vector<SearchSetting> settings =
       search_settings(file, options.target, options.actuator, options.family,
-                      {.stop = options.stop, .progress = options.on_preparation}, options.conditions, options.own_waveforms);
+                      {.stop = options.stop, .report = options.on_preparation}, options.conditions, options.own_waveforms);
   const SearchSetting& setting = settings.front();
   setting.check_starts(options.starts);
   fit_nominal_budget(setting, options);
@@ -477,14 +477,14 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& asked) {
     if (options.on_start) options.on_start(searched_columns(searched, options.family));
   });
   options.memory = asked.memory;  // the caller's memory may exist only from now on
-  Search search(searched, options, budget,
-                std::max(budget.seconds_left(may_go_on ? end_of_search : end_of_worst), budget.seconds() / 4));
+  RunningSearch search(searched, options, budget,
+                       std::max(budget.seconds_left(may_go_on ? end_of_search : end_of_worst), budget.seconds() / 4));
   search.begin();
   OptimizeResult result{.scene = setting.given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline};
   result.baseline_cost = setting.baseline_cost;
   result.search = search.run();
   Verification verified(setting, options);
-  search.verify(verified);
+  search.check(verified);
   result.families = search.families();
   if (options.keep_tried) result.tried = search.tried();
   result.family = result.families.front().family;  // name for a result without winner

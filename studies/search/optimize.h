@@ -15,10 +15,10 @@
 #include <string>
 #include <vector>
 
-#include "config/criterion.h"
+#include "config/condition.h"
 #include "objectives/cost.h"
 #include "optimizers/problem.h"
-#include "studies/closing/confirmation.h"
+#include "studies/closing/checking_runs.h"
 #include "studies/closing/simulate.h"
 #include "studies/search/evaluation_memory.h"
 #include "studies/search/search_space.h"
@@ -53,7 +53,7 @@ inline constexpr long given_index = -1;
 struct OptimizeOptions {
   Aim target = Target::bounce;
   /// Conditions for the winner on figures of all_figures: see conditioned_figures.
-  std::vector<Criterion> conditions = {};
+  std::vector<Condition> conditions = {};
   Actuator actuator = Actuator::electrostatic;
   std::string family = "pulse";  ///< one or several families, see families_of(): the best wins; default_families()
   /// Own waveforms that `family` may name. Their gradients are not known, and no scene file can hold the result.
@@ -81,7 +81,7 @@ struct OptimizeOptions {
   /// end.
   const std::atomic<bool>* stop = nullptr;
   /// Called before and after the search itself, for the pull-in voltages, the baseline and the runs that verify the winner: see
-  /// Watch.
+  /// Progress.
   std::function<void(std::string_view what, double part)> on_preparation = {};
   /// Called once, when scene and options have been found valid and before the first evaluation, with the searched parameters of
   /// every family, whose number is Evaluation::problem. A budget of time excludes the time that it takes.
@@ -123,7 +123,7 @@ struct OptimizeResult {
   Closing baseline;
   std::optional<PreparedScene> best_scene;  ///< the scene of best.toml
   std::optional<Closing> best;
-  std::vector<ConfirmingRun> checks;
+  std::vector<CheckingRun> checks;
   std::vector<SearchedFamilyResult> families = {};  ///< results of the searched families
   std::string family;                               ///< family of the winner
   std::string prefix;                               ///< prefix of its parameters among those of all families: prefix_of()

@@ -29,7 +29,7 @@ double allowed(const Pace& pace, const RobustAim& aim) { return of_the_time * pa
 double relative_duration(const SearchSetting& setting, const RobustAim& aim) {
   if (!has_pace(aim)) return 1;
   const DriveWaveforms first = setting.space.waveforms(setting.space.starts().front());
-  return std::clamp(last_breakpoint(setting.given.told(setting.drives(first))) / aim.free.until, 0.5, 4.0);
+  return std::clamp(last_breakpoint(setting.given.commanded(setting.drives(first))) / aim.free.until, 0.5, 4.0);
 }
 
 RobustAim aim_at(const Pace& pace, const RobustAim& aim) {
@@ -43,8 +43,8 @@ RobustAim aim_at(const Pace& pace, const RobustAim& aim) {
 
 }  // namespace
 
-std::optional<Racer> search_at_pace(const SearchSetting& given, const Pace& pace, const RobustCost& cost, const RobustAim& aim,
-                                    SearchBudget& budget, const RaceOptions& options) {
+std::optional<Contender> search_at_pace(const SearchSetting& given, const Pace& pace, const RobustCost& cost,
+                                        const RobustAim& aim, SearchBudget& budget, const RaceOptions& options) {
   const RobustAim own = aim_at(pace, aim);
   SearchSetting setting = given;
   if (has_pace(aim)) setting.space = given.space.paced(allowed(pace, aim));
@@ -53,7 +53,7 @@ std::optional<Racer> search_at_pace(const SearchSetting& given, const Pace& pace
   const StagedCost staged(setting, cost, own, options.memory, identity);
   const double length =
       static_cast<double>(options.closings) / static_cast<double>(race_closings) / relative_duration(setting, aim);
-  Racer found{.family = pace.family, .measure = own.measure.text};
+  Contender found{.family = pace.family, .measure = own.measure.text};
   double least = std::numeric_limits<double>::infinity();
   for (const std::vector<double>& start : setting.space.starts()) {
     if (budget.over()) break;

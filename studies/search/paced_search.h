@@ -18,7 +18,7 @@ struct Pace {
 /// Searches at a pace. `setting` is that of a quasi-static family; `aim` is the aim of the whole search, whose free time is
 /// that of the plain step. None if no such waveform is within the limits, or the budget was over before it had tried one. The
 /// closings of `options` scale those of the search, as those of a race.
-[[nodiscard]] std::optional<Racer> search_at_pace(const SearchSetting& setting, const Pace& pace, const RobustCost& cost,
-                                                  const RobustAim& aim, SearchBudget& budget, const RaceOptions& options);
+[[nodiscard]] std::optional<Contender> search_at_pace(const SearchSetting& setting, const Pace& pace, const RobustCost& cost,
+                                                      const RobustAim& aim, SearchBudget& budget, const RaceOptions& options);
 
 }  // namespace softland

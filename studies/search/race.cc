@@ -45,34 +45,34 @@ class Race {
       : settings_(settings), cost_(cost), aims_(aims), options_(options), budget_(budget, options.closings) {}
 
   /// Races the searches, or runs a single one through all usual rounds.
-  RaceResult run(std::vector<Racer> racers, const std::vector<DriveWaveforms>& begun, bool alone) {
+  RaceResult run(std::vector<Contender> contenders, const std::vector<DriveWaveforms>& begun, bool alone) {
     alone_ = alone;
     length_ = static_cast<double>(options_.closings) / static_cast<double>(race_closings);
     if (length_ < least_length_of_race) return {};
     longer_ = alone || options_.are_a_budget ? length_ : longer_where_many_land * length_;
     if (alone) budget_.allow(std::lround(length_ * closings_of_rounds(0, usual_rounds)));
-    begin(racers, begun);
-    std::erase_if(racers, [](const Racer& r) { return r.x.empty(); });
+    begin(contenders, begun);
+    std::erase_if(contenders, [](const Contender& r) { return r.x.empty(); });
     const auto share = [this](const Round& round, std::size_t) {
       return RoundShare{static_cast<long>((many_ ? longer_ : length_) * round.closings), budget_.seconds_left()};
     };
-    const Tournament<Racer> tournament{
+    const Tournament<Contender> tournament{
         .budget = budget_,
         .jobs = options_.jobs,
         .share = share,
-        .search = [this](Racer& r, Turn turn, const Chain& chain, SearchBudget& part) { search(r, turn.round, chain, part); },
-        .select = [this](std::vector<Racer> all, std::size_t k) { return select(std::move(all), k); }};
-    tournament.run(race_rounds, std::move(racers));
-    std::ranges::reverse(result_.racers);
+        .search = [this](Contender& r, Turn turn, const Chain& chain, SearchBudget& part) { search(r, turn.round, chain, part); },
+        .select = [this](std::vector<Contender> all, std::size_t k) { return select(std::move(all), k); }};
+    tournament.run(race_rounds, std::move(contenders));
+    std::ranges::reverse(result_.contenders);
     result_.closings = budget_.taken();
     return std::move(result_);
   }
 
  private:
-  [[nodiscard]] const SearchSetting& setting(const Racer& r) const { return settings_[r.family]; }
-  [[nodiscard]] const RobustAim& aim(const Racer& r) const { return r.by_share ? aims_.share : aims_.tail; }
+  [[nodiscard]] const SearchSetting& setting(const Contender& r) const { return settings_[r.family]; }
+  [[nodiscard]] const RobustAim& aim(const Contender& r) const { return r.by_share ? aims_.share : aims_.tail; }
   // Identifies the devices and the aim in the memory.
-  [[nodiscard]] std::uint64_t identity(const Racer& r) const {
+  [[nodiscard]] std::uint64_t identity(const Contender& r) const {
     return random_bits(options_.seed, Stream::race, r.by_share ? 1 : 0);
   }
 
@@ -81,9 +81,9 @@ class Race {
   }
 
   // Begins every search at the best of many starts, by its measure.
-  void begin(std::vector<Racer>& racers, const std::vector<DriveWaveforms>& begun) {
+  void begin(std::vector<Contender>& contenders, const std::vector<DriveWaveforms>& begun) {
     std::map<std::size_t, std::vector<Point>> starts;  // starts of each family
-    for (const Racer& r : racers) {
+    for (const Contender& r : contenders) {
       if (starts.contains(r.family)) continue;
       std::vector<Point>& own = starts[r.family] = starting_points(setting(r), begun);
       std::ranges::move(points_of_box(setting(r).space.variables(), options_.seed, box_points), std::back_inserter(own));
@@ -94,7 +94,7 @@ class Race {
       run_tasks(
           points.size(), options_.jobs,
           [&](std::size_t i) { outcomes[i] = closed(settings_[family], points[i], first_devices, 1); }, budget_.stop());
-      for (Racer& r : racers) {
+      for (Contender& r : contenders) {
         if (r.family != family) continue;
         double least = std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -116,7 +116,7 @@ class Race {
     return outcomes;
   }
 
-  void search(Racer& r, std::size_t round, Chain chain, SearchBudget& part) const {
+  void search(Contender& r, std::size_t round, Chain chain, SearchBudget& part) const {
     const StagedCost staged(setting(r), cost_, aim(r), options_.memory, identity(r));
     chain.population = r.by_share && !alone_ ? population_by_share : 1;
     chain.seed = random_bits(options_.seed, Stream::race, 1000 * round + 2 * r.family + (r.by_share ? 1 : 0));
@@ -124,20 +124,25 @@ class Race {
   }
 
   // Judges the searches after round `k`, and returns those that go on.
-  std::vector<Racer> select(std::vector<Racer> racers, std::size_t k) {
-    const double before = racers.front().bounce_free;
-    judge(racers, race_rounds[std::min(k + 1, race_rounds.size() - 1)].devices);
+  std::vector<Contender> select(std::vector<Contender> contenders, std::size_t k) {
+    const double before = contenders.front().bounce_free;
+    judge(contenders, race_rounds[std::min(k + 1, race_rounds.size() - 1)].devices);
     if (k > 0)
-      std::ranges::transform(racers, std::back_inserter(result_.racers), [this](const Racer& r) { return described(r); });
-    if (k >= usual_rounds) return racers.front().bounce_free > before + worth_going_on ? racers : std::vector<Racer>();
-    many_ = std::ranges::any_of(racers, [&](const Racer& r) { return r.bounce_free >= (k == 0 ? enough_land : many_land); });
+      std::ranges::transform(contenders, std::back_inserter(result_.contenders),
+                             [this](const Contender& r) { return described(r); });
+    if (k >= usual_rounds)
+      return contenders.front().bounce_free > before + worth_going_on ? contenders : std::vector<Contender>();
+    many_ =
+        std::ranges::any_of(contenders, [&](const Contender& r) { return r.bounce_free >= (k == 0 ? enough_land : many_land); });
     if (k == 0 && many_) plan_longer();
-    if (!alone_) racers = k == 0 ? survivors(std::move(racers)) : best(std::move(racers), race_rounds[k + 1].contenders);
-    if (k + 1 == usual_rounds) return many_ && !alone_ ? racers : std::vector<Racer>();
-    if (alone_) return racers;
-    if (options_.on_stage && !budget_.over()) options_.on_stage(described(*std::ranges::min_element(racers, {}, rank_by(many_))));
-    for (Racer& r : racers) r.by_share = r.by_share && many_;
-    return racers;
+    if (!alone_)
+      contenders = k == 0 ? survivors(std::move(contenders)) : best(std::move(contenders), race_rounds[k + 1].contenders);
+    if (k + 1 == usual_rounds) return many_ && !alone_ ? contenders : std::vector<Contender>();
+    if (alone_) return contenders;
+    if (options_.on_stage && !budget_.over())
+      options_.on_stage(described(*std::ranges::min_element(contenders, {}, rank_by(many_))));
+    for (Contender& r : contenders) r.by_share = r.by_share && many_;
+    return contenders;
   }
 
   // Plans the closings of longer rounds, and of those that search the winner again.
@@ -148,11 +153,11 @@ class Race {
   }
 
   // Judges every search on so many devices.
-  void judge(std::vector<Racer>& racers, std::size_t devices) {
+  void judge(std::vector<Contender>& contenders, std::size_t devices) {
     run_tasks(
-        racers.size(), options_.jobs,
+        contenders.size(), options_.jobs,
         [&](std::size_t i) {
-          Racer& r = racers[i];
+          Contender& r = contenders[i];
           const std::vector<DeviceOutcome> outcomes = closed(setting(r), r.x, devices, options_.jobs);
           r.bounce_free =
               static_cast<double>(std::ranges::count_if(outcomes, is_bounce_free)) / static_cast<double>(outcomes.size());
@@ -163,25 +168,25 @@ class Race {
   }
 
   // Returns the cost that ranks the searches.
-  static double Racer::*rank_by(bool share) { return share ? &Racer::share : &Racer::tail; }
+  static double Contender::*rank_by(bool share) { return share ? &Contender::share : &Contender::tail; }
 
   // Returns the best search of every family, and the best of the others by the other criterion.
-  [[nodiscard]] std::vector<Racer> survivors(std::vector<Racer> racers) const {
-    std::ranges::stable_sort(racers, {}, rank_by(many_));
-    std::vector<Racer> kept, others;
+  [[nodiscard]] std::vector<Contender> survivors(std::vector<Contender> contenders) const {
+    std::ranges::stable_sort(contenders, {}, rank_by(many_));
+    std::vector<Contender> kept, others;
     std::set<std::size_t> families;
-    for (Racer& r : racers) (families.insert(r.family).second ? kept : others).push_back(std::move(r));
+    for (Contender& r : contenders) (families.insert(r.family).second ? kept : others).push_back(std::move(r));
     if (!others.empty()) kept.push_back(*std::ranges::min_element(others, {}, rank_by(!many_)));
     return kept;
   }
 
-  [[nodiscard]] std::vector<Racer> best(std::vector<Racer> racers, std::size_t count) const {
-    std::ranges::stable_sort(racers, {}, rank_by(many_));
-    racers.resize(std::min(racers.size(), count));
-    return racers;
+  [[nodiscard]] std::vector<Contender> best(std::vector<Contender> contenders, std::size_t count) const {
+    std::ranges::stable_sort(contenders, {}, rank_by(many_));
+    contenders.resize(std::min(contenders.size(), count));
+    return contenders;
   }
 
-  [[nodiscard]] Racer described(Racer r) const {
+  [[nodiscard]] Contender described(Contender r) const {
     r.measure = aim(r).measure.text;
     r.waveforms = setting(r).space.waveforms(r.x);
     return r;
@@ -202,18 +207,19 @@ class Race {
 
 RaceResult race(const std::vector<SearchSetting>& settings, const RobustCost& cost, const RaceAims& aims, SearchBudget& budget,
                 const RaceOptions& options, const std::vector<DriveWaveforms>& begun) {
-  std::vector<Racer> racers;
+  std::vector<Contender> contenders;
   for (std::size_t family = 0; family < settings.size(); ++family) {
-    for (const bool by_share : {false, true}) racers.push_back({.family = family, .by_share = by_share});
+    for (const bool by_share : {false, true}) contenders.push_back({.family = family, .by_share = by_share});
   }
-  return Race(settings, cost, aims, budget, options).run(std::move(racers), begun, false);
+  return Race(settings, cost, aims, budget, options).run(std::move(contenders), begun, false);
 }
 
-RaceResult race_alone(const SearchSetting& setting, std::size_t family, const RobustCost& cost, const RaceAims& aims,
-                      bool by_share, const std::vector<DriveWaveforms>& begun, SearchBudget& budget, const RaceOptions& options) {
+RaceResult race_single_search(const SearchSetting& setting, std::size_t family, const RobustCost& cost, const RaceAims& aims,
+                              bool by_share, const std::vector<DriveWaveforms>& begun, SearchBudget& budget,
+                              const RaceOptions& options) {
   const std::vector<SearchSetting> settings{setting};
   RaceResult found = Race(settings, cost, aims, budget, options).run({{.by_share = by_share}}, begun, true);
-  for (Racer& r : found.racers) r.family = family;
+  for (Contender& r : found.contenders) r.family = family;
   return found;
 }
 

@@ -46,7 +46,7 @@ struct RaceAims {
 };
 
 /// The result of a search of the race.
-struct Racer {
+struct Contender {
   std::size_t family = 0;  ///< its number among the settings
   bool by_share = false;   ///< searched by RaceAims::share
   std::string measure = {};
@@ -65,11 +65,11 @@ struct RaceOptions {
   EvaluationMemory* memory = nullptr;         ///< its keys hold SearchSetting::family, which has to differ
   std::function<void(double)> progress = {};  ///< called with the part that is done, from any thread
   /// Called with the best search at the end of every round but the last; may be null.
-  std::function<void(const Racer&)> on_stage = {};
+  std::function<void(const Contender&)> on_stage = {};
 };
 
 struct RaceResult {
-  std::vector<Racer> racers;  ///< winners of all rounds, the last round first
+  std::vector<Contender> contenders;  ///< winners of all rounds, the last round first
   long closings = 0;
 };
 
@@ -79,8 +79,8 @@ struct RaceResult {
                               SearchBudget& budget, const RaceOptions& options, const std::vector<DriveWaveforms>& begun = {});
 
 /// Runs one search through all rounds, of one family by one measure. `begun` are further waveforms to begin with.
-[[nodiscard]] RaceResult race_alone(const SearchSetting& setting, std::size_t family, const RobustCost& cost,
-                                    const RaceAims& aims, bool by_share, const std::vector<DriveWaveforms>& begun,
-                                    SearchBudget& budget, const RaceOptions& options);
+[[nodiscard]] RaceResult race_single_search(const SearchSetting& setting, std::size_t family, const RobustCost& cost,
+                                            const RaceAims& aims, bool by_share, const std::vector<DriveWaveforms>& begun,
+                                            SearchBudget& budget, const RaceOptions& options);
 
 }  // namespace softland

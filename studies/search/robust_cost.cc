@@ -20,7 +20,7 @@ constexpr double worst_score = RobustCost::not_closed;
 constexpr double weight_of_time = 0.02, weight_of_scores = 0.1, weight_of_violation = 10;
 constexpr double most_violation = 10;
 
-double value_of(const DeviceOutcome& outcome, const Criterion& condition) { return outcome.of(condition.figure); }
+double value_of(const DeviceOutcome& outcome, const Condition& condition) { return outcome.of(condition.figure); }
 
 // Candidates are ranked by closings of at best this accuracy; the verdict has that of the scene.
 constexpr double ranking_accuracy = 1e-4;
@@ -37,8 +37,8 @@ PreparedScene for_ranking(const PreparedScene& given) {
 
 }  // namespace
 
-std::vector<Criterion> beside_step(std::vector<Criterion> conditions, std::span<const DeviceOutcome> of_step) {
-  for (Criterion& one : conditions) {
+std::vector<Condition> beside_step(std::vector<Condition> conditions, std::span<const DeviceOutcome> of_step) {
+  for (Condition& one : conditions) {
     if (!one.of_step) continue;
     std::vector<double> values;
     for (const DeviceOutcome& o : of_step) values.push_back(value_of(o, one));
@@ -49,16 +49,16 @@ std::vector<Criterion> beside_step(std::vector<Criterion> conditions, std::span<
 
 bool fails(const DeviceOutcome& outcome) { return !outcome.closed() || !outcome.is_held; }
 
-bool fulfils(const DeviceOutcome& outcome, const Criterion& condition) { return condition.holds(value_of(outcome, condition)); }
+bool fulfils(const DeviceOutcome& outcome, const Condition& condition) { return condition.holds(value_of(outcome, condition)); }
 
-Yield share_that_fulfils(std::span<const DeviceOutcome> outcomes, const Criterion& condition) {
+Yield share_that_fulfils(std::span<const DeviceOutcome> outcomes, const Condition& condition) {
   const auto good = std::ranges::count_if(outcomes, [&](const DeviceOutcome& o) { return fulfils(o, condition); });
   return yield_of(static_cast<std::size_t>(good), outcomes.size());
 }
 
-bool hold(std::span<const Criterion> conditions, std::span<const DeviceOutcome> outcomes) {
+bool hold(std::span<const Condition> conditions, std::span<const DeviceOutcome> outcomes) {
   return std::ranges::all_of(conditions,
-                             [&](const Criterion& one) { return share_that_fulfils(outcomes, one).value >= constrained_share; });
+                             [&](const Condition& one) { return share_that_fulfils(outcomes, one).value >= constrained_share; });
 }
 
 double waited(const DeviceOutcome& outcome, double Metrics::*figure) {
@@ -88,30 +88,32 @@ FreeTime free_time(std::span<const DeviceOutcome> of_step) {
   return {};
 }
 
-GaugedEnsemble gauge_all(const Ensemble& ensemble, const Gauges& gauges, double precision, int jobs, const Watch& watch) {
+CalibratedEnsemble calibrate_all(const Ensemble& ensemble, const MeasuredQuantities& quantities, double precision, int jobs,
+                                 const Progress& progress) {
   constexpr std::size_t together = 16;
-  GaugedEnsemble all{.devices = std::vector<SampledDevice>(ensemble.size()), .exact = std::vector<DeviceUnits>(ensemble.size())};
-  const DeviceMeter meter(ensemble.nominal(), gauges, precision);
+  CalibratedEnsemble all{.devices = std::vector<SampledDevice>(ensemble.size()),
+                         .exact = std::vector<DeviceUnits>(ensemble.size())};
+  const PullInMeter meter(ensemble.nominal(), quantities, precision);
   const auto task = [&](std::size_t chunk) {
     DeviceBuilder builder(ensemble);
     for (std::size_t k = chunk * together; k < std::min<std::size_t>(ensemble.size(), (chunk + 1) * together); ++k) {
-      if (watch.stopped()) return;
+      if (progress.stopped()) return;
       all.devices[k] = builder.device(k);
       if (all.devices[k].model) all.exact[k] = meter.exact(*all.devices[k].model);
     }
   };
-  run_tasks((ensemble.size() + together - 1) / together, jobs, task, watch.stop);
-  watch.throw_if_stopped();
+  run_tasks((ensemble.size() + together - 1) / together, jobs, task, progress.stop);
+  progress.throw_if_stopped();
   return all;
 }
 
-BuiltEnsemble known_as(GaugedEnsemble gauged, const KnownUnits& known, std::uint64_t seed) {
-  BuiltEnsemble built{.devices = std::move(gauged.devices), .units = std::vector<DeviceUnits>(gauged.exact.size())};
+BuiltEnsemble known_as(CalibratedEnsemble calibrated, const MeasuredUnits& known, std::uint64_t seed) {
+  BuiltEnsemble built{.devices = std::move(calibrated.devices), .units = std::vector<DeviceUnits>(calibrated.exact.size())};
   if (known.calibration().is_empty()) return built;
   for (std::size_t k = 0; k < built.devices.size(); ++k) {
     SampledDevice& device = built.devices[k];
     if (!device.model) continue;
-    built.units[k] = known.of(gauged.exact[k], seed, k);
+    built.units[k] = known.of(calibrated.exact[k], seed, k);
     if (built.units[k].are_known()) continue;
     device.refusal = not_measured;
     device.model.reset();
@@ -119,15 +121,17 @@ BuiltEnsemble known_as(GaugedEnsemble gauged, const KnownUnits& known, std::uint
   return built;
 }
 
-BuiltEnsemble build_all(const Ensemble& ensemble, const KnownUnits& known, std::uint64_t seed, int jobs, const Watch& watch) {
-  return known_as(gauge_all(ensemble, Gauges::of(known.calibration()), compared_precision, jobs, watch), known, seed);
+BuiltEnsemble build_all(const Ensemble& ensemble, const MeasuredUnits& known, std::uint64_t seed, int jobs,
+                        const Progress& progress) {
+  return known_as(calibrate_all(ensemble, MeasuredQuantities::of(known.calibration()), compared_precision, jobs, progress), known,
+                  seed);
 }
 
-BuiltEnsemble own_devices(const SearchSetting& setting, const KnownUnits& known, std::uint64_t count, std::uint64_t seed,
-                          std::uint64_t which, int jobs, const Watch& watch) {
+BuiltEnsemble own_devices(const SearchSetting& setting, const MeasuredUnits& known, std::uint64_t count, std::uint64_t seed,
+                          std::uint64_t which, int jobs, const Progress& progress) {
   const std::uint64_t own = random_bits(seed, Stream::fresh, which);
   const PreparedScene nominal = for_ranking(setting.given);
-  return build_all(Ensemble(nominal, count, own), known, own, jobs, watch);
+  return build_all(Ensemble(nominal, count, own), known, own, jobs, progress);
 }
 
 RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, BuiltEnsemble ensemble, Vectors vectors)
@@ -151,18 +155,18 @@ RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, Built
   for (std::size_t k = 0; k < devices(); ++k)
     kept_.push_back(ensemble_.devices[k].model ? kept(k, signals(plain, k, ensemble_.units[k])) : Kept());
   if (step_.closed()) return;
-  const Metrics& imagined = setting.scale.step;
+  const Metrics& nominal_step = setting.scale.step;
   const double drive_energy = step_.metrics.drive_energy;
   step_ = {};
   step_.metrics.drive_energy = drive_energy;
-  step_.metrics.largest_impact_velocity = imagined.largest_impact_velocity;
-  step_.metrics.initial_contact_time = imagined.initial_contact_time;
-  step_.metrics.major_bounce_height = imagined.major_bounce_height;
+  step_.metrics.largest_impact_velocity = nominal_step.largest_impact_velocity;
+  step_.metrics.initial_contact_time = nominal_step.initial_contact_time;
+  step_.metrics.major_bounce_height = nominal_step.major_bounce_height;
 }
 
 std::vector<Signal> RobustCost::signals(const std::vector<Waveform>& waveforms, std::size_t k, const DeviceUnits& units) const {
   return drives_.differ(units) ? drives_.signals(waveforms, units, ensemble_.devices[k].values)
-                               : setting_.given.driven(waveforms);
+                               : setting_.given.applied(waveforms);
 }
 
 // Finds the gains of the devices. A sampled drive has a breakpoint at each sample: drives that differ by a gain alone are
@@ -196,9 +200,9 @@ std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& wavefo
 std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& waveforms, std::size_t first, std::size_t last,
                                              double after_contact, int jobs) const {
   constexpr std::size_t together = 64;  // devices of one task
-  std::vector<Signal> nominal = gains_ ? drives_.without_gains(waveforms) : setting_.given.driven(waveforms);
+  std::vector<Signal> nominal = gains_ ? drives_.without_gains(waveforms) : setting_.given.applied(waveforms);
   const bool same_levels = hold_levels(nominal) == (gains_ ? ungained_levels_ : levels_), by_gains = gains_ && same_levels;
-  if (gains_ && !by_gains) nominal = setting_.given.driven(waveforms);
+  if (gains_ && !by_gains) nominal = setting_.given.applied(waveforms);
   std::vector<DeviceOutcome> outcomes(last - first);
   run_tasks((outcomes.size() + together - 1) / together, jobs, [&](std::size_t task) {
     const std::size_t begin = task * together, end = std::min(outcomes.size(), begin + together);
@@ -334,7 +338,7 @@ double RobustCost::value(std::span<const DeviceOutcome> outcomes, const RobustAi
   value += static_cast<double>(std::ranges::count_if(outcomes, fails)) / static_cast<double>(outcomes.size());
   const double late = std::isfinite(aim.free.until) ? std::max(0.0, waited(outcomes, aim.free.figure) / aim.free.until - 1) : 0;
   value += weight_of_time * std::min(sample_quantile(times, 0.5), late);
-  for (const Criterion& condition : aim.conditions) {
+  for (const Condition& condition : aim.conditions) {
     of_devices.clear();
     for (const DeviceOutcome& o : outcomes)
       of_devices.push_back(std::min(condition.violation(value_of(o, condition)), most_violation));

@@ -22,7 +22,7 @@
 //
 // R is the requested measure (sampling/risk.h). For a yield it is 1 less the share of devices that fulfil its condition, plus a
 // tenth of the mean of s, which leads the search where the share does not change. A condition holds when 95 % of the devices
-// fulfil it: its violation is the 95th percentile of that of the devices (config/criterion.h).
+// fulfil it: its violation is the 95th percentile of that of the devices (config/condition.h).
 //
 // A closing is scored until 60 % of a period of the first mode, or two and a half in contact, after first touch, and one period
 // in contact after the last breakpoint of its drives.
@@ -34,7 +34,7 @@
 #include <span>
 #include <vector>
 
-#include "config/criterion.h"
+#include "config/condition.h"
 #include "studies/devices/ensemble.h"
 #include "studies/devices/robustness.h"
 #include "studies/search/search_setting.h"
@@ -43,7 +43,7 @@ namespace softland {
 
 /// Gives conditions beside the plain step limits of their own: what 95 % of the devices stay below under it. Throws
 /// InvalidInput if the step has no such figure.
-[[nodiscard]] std::vector<Criterion> beside_step(std::vector<Criterion> conditions, std::span<const DeviceOutcome> of_step);
+[[nodiscard]] std::vector<Condition> beside_step(std::vector<Condition> conditions, std::span<const DeviceOutcome> of_step);
 
 /// The share of devices that has to fulfil a condition.
 inline constexpr double constrained_share = 0.95;
@@ -59,19 +59,19 @@ struct FreeTime {
 
 struct RobustAim {
   RobustMeasure measure;
-  std::vector<Criterion> conditions;
+  std::vector<Condition> conditions;
   FreeTime free = {};
 };
 
 /// Devices and their exact measured values, by these gauges and their frequency.
-struct GaugedEnsemble {
+struct CalibratedEnsemble {
   std::vector<SampledDevice> devices;
   std::vector<DeviceUnits> exact;  ///< exact units; 1 for a device that cannot be described
 };
-/// Builds and measures the devices. `precision` is that of pull-in voltages, relative. Throws Interrupted if `watch` asks to
+/// Builds and measures the devices. `precision` is that of pull-in voltages, relative. Throws Interrupted if `progress` asks to
 /// stop.
-[[nodiscard]] GaugedEnsemble gauge_all(const Ensemble& ensemble, const Gauges& gauges, double precision, int jobs,
-                                       const Watch& watch = {});
+[[nodiscard]] CalibratedEnsemble calibrate_all(const Ensemble& ensemble, const MeasuredQuantities& quantities, double precision,
+                                               int jobs, const Progress& progress = {});
 /// Precision of pull-in voltages for comparing devices: far finer than any instrument. With a film that gives way slowly, which
 /// is followed for long just above its pull-in voltage, it takes a sixth of the time of dynamic_pull_in_precision.
 inline constexpr double compared_precision = 1e-5;
@@ -83,15 +83,15 @@ struct BuiltEnsemble {
 };
 /// Returns the same devices as they are known, by a calibration that needs no other gauges. The errors are functions of `seed`
 /// and the number of the device. A device that cannot be measured is refused.
-[[nodiscard]] BuiltEnsemble known_as(GaugedEnsemble gauged, const KnownUnits& known, std::uint64_t seed);
-/// Builds the devices with their units. Throws Interrupted if `watch` asks to stop.
-[[nodiscard]] BuiltEnsemble build_all(const Ensemble& ensemble, const KnownUnits& known, std::uint64_t seed, int jobs,
-                                      const Watch& watch = {});
+[[nodiscard]] BuiltEnsemble known_as(CalibratedEnsemble calibrated, const MeasuredUnits& known, std::uint64_t seed);
+/// Builds the devices with their units. Throws Interrupted if `progress` asks to stop.
+[[nodiscard]] BuiltEnsemble build_all(const Ensemble& ensemble, const MeasuredUnits& known, std::uint64_t seed, int jobs,
+                                      const Progress& progress = {});
 
 /// Builds devices of this search alone, for ranking candidates: closings of an accuracy of 1e-4 at best. They depend on `seed`
-/// and `which`. Throws Interrupted if `watch` asks to stop.
-[[nodiscard]] BuiltEnsemble own_devices(const SearchSetting& setting, const KnownUnits& known, std::uint64_t count,
-                                        std::uint64_t seed, std::uint64_t which, int jobs, const Watch& watch);
+/// and `which`. Throws Interrupted if `progress` asks to stop.
+[[nodiscard]] BuiltEnsemble own_devices(const SearchSetting& setting, const MeasuredUnits& known, std::uint64_t count,
+                                        std::uint64_t seed, std::uint64_t which, int jobs, const Progress& progress);
 
 class RobustCost {
  public:
@@ -169,10 +169,10 @@ class RobustCost {
 [[nodiscard]] double waited(std::span<const DeviceOutcome> outcomes, double Metrics::*figure);
 
 /// True if a device fulfils a condition.
-[[nodiscard]] bool fulfils(const DeviceOutcome& outcome, const Criterion& condition);
+[[nodiscard]] bool fulfils(const DeviceOutcome& outcome, const Condition& condition);
 /// The share of devices that fulfils it.
-[[nodiscard]] Yield share_that_fulfils(std::span<const DeviceOutcome> outcomes, const Criterion& condition);
+[[nodiscard]] Yield share_that_fulfils(std::span<const DeviceOutcome> outcomes, const Condition& condition);
 /// True if constrained_share of the devices fulfils each of the conditions.
-[[nodiscard]] bool hold(std::span<const Criterion> conditions, std::span<const DeviceOutcome> outcomes);
+[[nodiscard]] bool hold(std::span<const Condition> conditions, std::span<const DeviceOutcome> outcomes);
 
 }  // namespace softland

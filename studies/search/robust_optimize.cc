@@ -74,11 +74,11 @@ std::vector<Candidate> best_apart(std::vector<Candidate> all, std::size_t count,
 
 std::uint64_t fresh_seed(std::uint64_t seed, std::uint64_t which) { return random_bits(seed, Stream::fresh, which); }
 
-class RobustSearch {
+class HalvingSearch {
  public:
   /// `step_cost` is that of the plain step, for the progress.
-  RobustSearch(const SearchSetting& setting, const RobustCost& cost, const RobustAim& aim, const OptimizeOptions& options,
-               std::function<double()> clock, double step_cost)
+  HalvingSearch(const SearchSetting& setting, const RobustCost& cost, const RobustAim& aim, const OptimizeOptions& options,
+                std::function<double()> clock, double step_cost)
       : setting_(setting),
         cost_(cost),
         options_(options),
@@ -131,7 +131,7 @@ class RobustSearch {
     for (int k = 0; k < nominal_searches && !budget_.over(); ++k) {
       const OptimizerResult found =
           minimize({.variables = variables_,
-                    .objective = [&](std::span<const double> x) { return setting_.price_at(x, options_.memory).leading; },
+                    .objective = [&](std::span<const double> x) { return setting_.cost_at(x, options_.memory).guide; },
                     .starts = setting_.space.starts()},
                    {.max_evaluations = starts_.nominal_evaluations,
                     .max_seconds = std::max(1e-3, nominal_time * options_.max_seconds),
@@ -249,7 +249,7 @@ Candidate compared(std::vector<Candidate> candidates, const SearchSetting& setti
 
 // Judges the winner and the plain step on fresh devices, over the whole window.
 void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& options, const RobustOptions& robust,
-           const Watch& watch) {
+           const Progress& progress) {
   OptimizeResult& out = result.found;
   const PreparedScene& best = *out.best_scene;
   result.verdict =
@@ -259,7 +259,7 @@ void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& 
                   .jobs = options.jobs,
                   .measures_drive_energy = options.target.measures_drive_energy(),
                   .worth_of_measuring = true},
-                 watch);
+                 progress);
   result.findings.fresh_devices = static_cast<double>(result.verdict->devices);
   if (result.verdict->interrupted) out.search.termination = Termination::interrupted;
   const std::vector<DeviceOutcome>& outcomes = result.verdict->drives.back().outcomes;
@@ -271,9 +271,9 @@ void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& 
   out.better_than_baseline = result.findings.is_told && out.best_cost < out.baseline_cost;
   const Metrics& drawn = out.best->metrics;
   out.goal_met = out.better_than_baseline && drawn.lands();
-  const std::optional<Criterion>& yield = robust.aim.measure.yield;
+  const std::optional<Condition>& yield = robust.aim.measure.yield;
   if (yield) result.findings.yield = {.text = yield->text, .share = share_that_fulfils(outcomes, *yield), .holds = true};
-  for (const Criterion& condition : robust.aim.conditions) {
+  for (const Condition& condition : robust.aim.conditions) {
     result.findings.conditions.push_back(fulfilled(outcomes, condition));
     out.goal_met = out.goal_met && result.findings.conditions.back().holds;
   }
@@ -305,7 +305,7 @@ void require_one_family(const OptimizeOptions& options) {
 
 }  // namespace
 
-FulfilledCondition fulfilled(const std::vector<DeviceOutcome>& outcomes, const Criterion& condition) {
+FulfilledCondition fulfilled(const std::vector<DeviceOutcome>& outcomes, const Condition& condition) {
   const Yield share = share_that_fulfils(outcomes, condition);
   return {.text = condition.text, .share = share, .holds = share.value >= constrained_share};
 }
@@ -313,16 +313,18 @@ FulfilledCondition fulfilled(const std::vector<DeviceOutcome>& outcomes, const C
 RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& given, const RobustOptions& asked) {
   OptimizeOptions options = given;
   require_one_family(options);
-  const Watch watch{.stop = options.stop, .progress = options.on_preparation};
+  const Progress progress{.stop = options.stop, .report = options.on_preparation};
   const SearchSetting setting =
-      search_setting(file, options.target, options.actuator, options.family, watch, {}, options.own_waveforms);
+      search_setting(file, options.target, options.actuator, options.family, progress, {}, options.own_waveforms);
   setting.check_starts(options.starts);
   fit_robust_budget(setting, options, asked.verdict);
-  const KnownUnits known = known_units(setting.given, std::array{setting.given.scene.calibration}, options.jobs, watch).front();
+  const MeasuredUnits known =
+      measured_units(setting.given, std::array{setting.given.scene.calibration}, options.jobs, progress).front();
   RobustOptions robust = asked;
-  for (const Criterion& one : robust.aim.conditions) require_asked(one, setting.given.scene.metrics.asked);
+  for (const Condition& one : robust.aim.conditions) require_asked(one, setting.given.scene.metrics.asked);
   if (robust.aim.measure.yield) require_asked(*robust.aim.measure.yield, setting.given.scene.metrics.asked);
-  const RobustCost cost(setting, robust.aim, own_devices(setting, known, robust.samples, options.seed, 0, options.jobs, watch));
+  const RobustCost cost(setting, robust.aim,
+                        own_devices(setting, known, robust.samples, options.seed, 0, options.jobs, progress));
   RobustResult result{.found = {.scene = setting.given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline},
                       .findings = {.measure = robust.aim.measure.text, .devices = static_cast<double>(robust.samples)}};
   OptimizeResult& out = result.found;
@@ -336,7 +338,7 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& given
   robust.aim.conditions = beside_step(std::move(robust.aim.conditions), of_step);
   out.baseline_cost = cost.value(of_step);
 
-  RobustSearch search(setting, cost, robust.aim, options, robust.clock, out.baseline_cost);
+  HalvingSearch search(setting, cost, robust.aim, options, robust.clock, out.baseline_cost);
   std::vector<Candidate> candidates = search.run();
   result.findings.closings = static_cast<double>(search.closings());
   out.search.evaluations = search.evaluations();
@@ -348,21 +350,21 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& given
   Candidate winner = candidates.front();
   try {
     if (out.search.termination != Termination::interrupted)
-      winner = compared(
-          std::move(candidates), setting,
-          RobustCost(setting, robust.aim, own_devices(setting, known, selection_devices, options.seed, 1, options.jobs, watch)),
-          options.jobs);
+      winner = compared(std::move(candidates), setting,
+                        RobustCost(setting, robust.aim,
+                                   own_devices(setting, known, selection_devices, options.seed, 1, options.jobs, progress)),
+                        options.jobs);
   } catch (const Interrupted&) {
     out.search.termination = Termination::interrupted;
   }
   result.findings.cost_on_searched = out.best_cost = winner.value;
   out.better_than_baseline = out.best_cost < out.baseline_cost;
   out.best_scene = setting.prepared(setting.space.waveforms(winner.x));
-  out.best = simulate(*out.best_scene, true, {.progress = options.on_preparation});
+  out.best = simulate(*out.best_scene, true, {.report = options.on_preparation});
   for (std::size_t k = 0; k < names.size(); ++k) out.parameters[names[k]] = winner.x[k];
   if (out.search.termination == Termination::interrupted) return result;
   try {
-    judge(result, cost, options, robust, watch);
+    judge(result, cost, options, robust, progress);
   } catch (const Interrupted&) {
     out.search.termination = Termination::interrupted;
   }
@@ -370,15 +372,15 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& given
 }
 
 SearchedParameters searched_parameters(const SceneFile& file, const OptimizeOptions& options, bool over_devices,
-                                       const Watch& watch) {
+                                       const Progress& progress) {
   static_cast<void>(optimizer_description(options.optimizer));
-  const std::vector<SearchSetting> settings =
-      search_settings(file, options.target, options.actuator, options.family, watch, options.conditions, options.own_waveforms);
+  const std::vector<SearchSetting> settings = search_settings(file, options.target, options.actuator, options.family, progress,
+                                                              options.conditions, options.own_waveforms);
   const SearchSetting& setting = settings.front();
   setting.check_starts(options.starts);
   if (over_devices) {
     require_one_family(options);
-    static_cast<void>(known_units(setting.given, std::array{setting.given.scene.calibration}, options.jobs, watch));
+    static_cast<void>(measured_units(setting.given, std::array{setting.given.scene.calibration}, options.jobs, progress));
     static_cast<void>(Ensemble(setting.given, 1, options.seed));
   }
   return {.columns = searched_columns(settings, options.family),

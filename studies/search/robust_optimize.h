@@ -41,7 +41,7 @@ struct FulfilledCondition {
   Yield share;         ///< share of fresh devices that fulfil it
   bool holds = false;  ///< true if constrained_share of them fulfil it
 };
-[[nodiscard]] FulfilledCondition fulfilled(const std::vector<DeviceOutcome>& outcomes, const Criterion& condition);
+[[nodiscard]] FulfilledCondition fulfilled(const std::vector<DeviceOutcome>& outcomes, const Condition& condition);
 
 /// The findings of a search over devices by one measure, as its JSON holds them.
 struct RobustFindings {
@@ -71,6 +71,6 @@ struct SearchedParameters {
 };
 /// Returns those of optimize(), or of robust_optimize() if `over_devices`. Throws what these would throw before they begin.
 [[nodiscard]] SearchedParameters searched_parameters(const SceneFile& file, const OptimizeOptions& options, bool over_devices,
-                                                     const Watch& watch);
+                                                     const Progress& progress);
 
 }  // namespace softland

@@ -32,13 +32,13 @@ void SearchBudget::leave_out(const std::function<void()>& work) {
 
 bool SearchBudget::out_of_time() const { return seconds_ < std::numeric_limits<double>::infinity() && elapsed() > seconds_; }
 
-OptimizerResult minimize_within(SearchBudget& budget, const Problem& problem, std::uint64_t seed, int jobs, const Watch& watch,
-                                std::string_view what) {
+OptimizerResult minimize_within(SearchBudget& budget, const Problem& problem, std::uint64_t seed, int jobs,
+                                const Progress& progress, std::string_view what) {
   OptimizerOptions options{.max_evaluations = budget.left(), .seed = seed, .jobs = jobs};
   options.stop = budget.stop();
   options.on_evaluation = [&](const Evaluation&) {
     budget.took(1);
-    watch.tell(what, budget.share_taken());
+    progress.tell(what, budget.share_taken());
   };
   return minimize(problem, options);
 }

@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "base/clock.h"
-#include "base/watch.h"
+#include "base/progress.h"
 #include "optimizers/problem.h"
 
 namespace softland {
@@ -72,9 +72,9 @@ class SearchBudget {
   std::atomic<bool> given_up_ = false;
 };
 
-/// Minimises within the evaluations of a budget, on `jobs` threads. `watch` is told of the share that is taken, under the name
-/// `what`.
+/// Minimises within the evaluations of a budget, on `jobs` threads. `progress` is told of the share that is taken, under the
+/// name `what`.
 [[nodiscard]] OptimizerResult minimize_within(SearchBudget& budget, const Problem& problem, std::uint64_t seed, int jobs,
-                                              const Watch& watch, std::string_view what);
+                                              const Progress& progress, std::string_view what);
 
 }  // namespace softland

@@ -14,8 +14,8 @@
 #include "base/require.h"
 #include "base/shortened.h"
 #include "config/aim.h"
-#include "config/calibration_words.h"
-#include "config/criterion.h"
+#include "config/calibration_prose.h"
+#include "config/condition.h"
 #include "config/units.h"
 #include "studies/search/searched_families.h"
 
@@ -43,19 +43,19 @@ std::uint64_t whole_number(std::string_view field, const std::string& text, std:
   return value;
 }
 
-std::vector<Criterion> conditions_of(const SearchRequest& request, std::span<const Figure> figures) {
-  std::vector<Criterion> all;
+std::vector<Condition> conditions_of(const SearchRequest& request, std::span<const Figure> figures) {
+  std::vector<Condition> all;
   for (const std::string& text : request.constrain)
-    all.push_back(read(requested("constrain"), [&] { return parse_criterion(text, figures); }));
+    all.push_back(read(requested("constrain"), [&] { return parse_condition(text, figures); }));
   return all;
 }
 
 // Reads conditions. Those on figures of both are for the nominal design and for the devices.
-void read_shared_conditions(const SearchRequest& request, std::vector<Criterion>& drawing, std::vector<Criterion>& devices) {
+void read_shared_conditions(const SearchRequest& request, std::vector<Condition>& drawing, std::vector<Condition>& devices) {
   devices = conditions_of(request, device_figures);
   for (const std::string& text : request.constrain) {
     try {
-      drawing.push_back(parse_criterion(text, conditioned_figures));
+      drawing.push_back(parse_condition(text, conditioned_figures));
     } catch (const InvalidInput&) {
       continue;  // a figure of devices alone
     }
@@ -121,9 +121,9 @@ std::string families_of_drawing(const std::string& text, const SceneFile& scene,
   return kept.empty() ? std::string(default_families(shaped_drives(scene, actuator))) : kept;
 }
 
-ForDevicesOptions race_of(const SearchRequest& request, const SceneFile& scene, OptimizeOptions& options,
-                          const std::string& families) {
-  ForDevicesOptions race{
+RobustSearchOptions race_of(const SearchRequest& request, const SceneFile& scene, OptimizeOptions& options,
+                            const std::string& families) {
+  RobustSearchOptions race{
       .families = families, .hold_step_is_chosen = request.hold_step != step_is_fixed, .is_of_before = request.hold_step.empty()};
   options.family = families_of_drawing(options.family, scene, options.actuator);
   read_shared_conditions(request, options.conditions, race.conditions);
@@ -200,7 +200,7 @@ SearchRequest or_else(SearchRequest request, const SearchRequest& other) {
   const auto fill = [](std::string_view, auto& own, const auto& word) {
     if (own == std::remove_cvref_t<decltype(own)>()) own = word;
   };
-  visit_words(fill, request, other);
+  visit_prose(fill, request, other);
   if (request.constrain.empty()) request.constrain = other.constrain;
   return request;
 }
@@ -245,7 +245,7 @@ PlannedSearch planned(const SearchRequest& request, SceneFile scene, const std::
   check_hold_step(request);
   std::optional<RobustOptions> robust;
   if (request.is_by_measure()) robust = robust_of(request);
-  std::optional<ForDevicesOptions> for_devices;
+  std::optional<RobustSearchOptions> for_devices;
   if (request.robust == by_race) for_devices = race_of(request, scene, options, families);
   const std::uint64_t seeds = seed_count(request, options);
   if (over_devices) set_calibration(scene, request.calibrate);

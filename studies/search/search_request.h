@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "config/scene.h"
-#include "studies/search/for_devices.h"
 #include "studies/search/optimize.h"
 #include "studies/search/robust_optimize.h"
+#include "studies/search/robust_search_study.h"
 
 namespace softland {
 
@@ -43,7 +43,7 @@ struct SearchRequest {
 /// Visits the words of requests, each with its name: visit(name, word of the first, of the second, ...). They are std::string,
 /// or std::optional<std::string> if they need not be given. The conditions are not among them.
 template <class Visit, class... Requests>
-void visit_words(const Visit& visit, Requests&... requests) {
+void visit_prose(const Visit& visit, Requests&... requests) {
   visit("target", requests.target...);
   visit("actuator", requests.actuator...);
   visit("waveform", requests.waveform...);
@@ -71,10 +71,10 @@ struct OwnParts {
 
 /// A search, or several that differ in their seeds, ready to run.
 struct PlannedSearch {
-  SceneFile scene;                               ///< scene with the requested calibration
-  OptimizeOptions options;                       ///< options with the first of the seeds, on one thread
-  std::optional<RobustOptions> robust;           ///< options of a search over devices by one measure
-  std::optional<ForDevicesOptions> for_devices;  ///< options of a search that races measures and families
+  SceneFile scene;                                 ///< scene with the requested calibration
+  OptimizeOptions options;                         ///< options with the first of the seeds, on one thread
+  std::optional<RobustOptions> robust;             ///< options of a search over devices by one measure
+  std::optional<RobustSearchOptions> for_devices;  ///< options of a search that races measures and families
   std::uint64_t seeds = 1;
 
   [[nodiscard]] std::uint64_t seed(std::uint64_t k) const { return options.seed + k; }

@@ -42,13 +42,13 @@ Metrics imagined_step(const PreparedScene& given, double period) {
 }
 
 // Returns g of a condition that a method follows. Searches end where g is 0, and the condition must be fulfilled there.
-double excess(const Criterion& one, const Metrics& metrics) {
+double excess(const Condition& one, const Metrics& metrics) {
   constexpr double margin = 1e-6;
   return std::clamp(one.violation(one.figure.value(metrics)) + margin, -most_broken, most_broken);
 }
 
 // Returns the derivative of excess() with respect to the figure.
-double excess_rate(const Criterion& one, const Metrics& metrics) {
+double excess_rate(const Condition& one, const Metrics& metrics) {
   if (std::abs(excess(one, metrics)) >= most_broken) return 0;
   const double scale = one.limit == 0 ? 1 : std::abs(one.limit);
   return (one.comparison == Comparison::below || one.comparison == Comparison::at_most ? 1 : -1) / scale;
@@ -74,9 +74,9 @@ struct RecordedClosing {
   Metrics metrics;
 };
 
-double broken(const std::vector<Criterion>& conditions, const Metrics& metrics) {
+double broken(const std::vector<Condition>& conditions, const Metrics& metrics) {
   double sum = 0;
-  for (const Criterion& one : conditions) sum += std::clamp(one.violation(one.figure.value(metrics)), 0.0, most_broken);
+  for (const Condition& one : conditions) sum += std::clamp(one.violation(one.figure.value(metrics)), 0.0, most_broken);
   return sum;
 }
 
@@ -126,23 +126,23 @@ bool SearchSetting::is_allowed(const DriveWaveforms& searched) const {
   const std::vector<std::string> names = given.drive_names();
   return std::all_of(searched.begin(), searched.end(), [&](const auto& one) {
     const auto k = static_cast<std::size_t>(std::find(names.begin(), names.end(), one.first) - names.begin());
-    return keeps_limits(one.first, one.second, given.told(k, one.second));
+    return keeps_limits(one.first, one.second, given.commanded(k, one.second));
   });
 }
 
-std::optional<std::vector<Signal>> SearchSetting::allowed_told(const DriveWaveforms& searched) const {
+std::optional<std::vector<Signal>> SearchSetting::allowed_commands(const DriveWaveforms& searched) const {
   const std::vector<std::string> names = given.drive_names();
-  std::vector<Signal> told = given.told(drives(searched));
+  std::vector<Signal> commanded = given.commanded(drives(searched));
   for (std::size_t k = 0; k < names.size(); ++k) {
     const auto one = searched.find(names[k]);
-    if (one != searched.end() && !keeps_limits(one->first, one->second, told[k])) return std::nullopt;
+    if (one != searched.end() && !keeps_limits(one->first, one->second, commanded[k])) return std::nullopt;
   }
-  return told;
+  return commanded;
 }
 
-bool SearchSetting::keeps_limits(const std::string& drive, const Waveform& waveform, const Signal& told) const {
-  if (std::holds_alternative<Own>(waveform) && !space.drive(drive).holds(told)) return false;
-  return violation(told, limits_for(waveform, limits.at(drive))).empty();
+bool SearchSetting::keeps_limits(const std::string& drive, const Waveform& waveform, const Signal& commanded) const {
+  if (std::holds_alternative<Own>(waveform) && !space.drive(drive).holds(commanded)) return false;
+  return violation(commanded, limits_for(waveform, limits.at(drive))).empty();
 }
 
 // A drive that still changes after the score could open the switch again unseen.
@@ -160,18 +160,18 @@ SearchCosts SearchSetting::price(const std::vector<Signal>& signals) const {
 SearchCosts SearchSetting::worst_price(const RecordedClosing& closing) const {
   SearchCosts worst = price_of(closing);
   if (richer.empty()) return worst;
-  const auto with_speed = [this](SearchCosts prices, const RecordedClosing& run) {
-    if (target.has_own_cost() || target.from_the_start() != nullptr) return prices;
-    prices.own = prices.leading += weight_of_speed * run.metrics.largest_impact_velocity / scale.step.largest_impact_velocity;
-    return prices;
+  const auto with_speed = [this](SearchCosts costs, const RecordedClosing& run) {
+    if (target.has_own_cost() || target.from_the_start() != nullptr) return costs;
+    costs.target = costs.guide += weight_of_speed * run.metrics.largest_impact_velocity / scale.step.largest_impact_velocity;
+    return costs;
   };
   worst = with_speed(worst, closing);
   for (const RicherBeam& beam : richer) {
-    if (!(worst.leading < hopeless)) break;
+    if (!(worst.guide < hopeless)) break;
     const RecordedClosing run(*this, closing.signals, beam.model, beam.closed_potential);
     const SearchCosts other = with_speed(price_of(run), run);
-    worst.leading = std::max(worst.leading, other.leading);
-    worst.own = std::max(worst.own, other.own);
+    worst.guide = std::max(worst.guide, other.guide);
+    worst.target = std::max(worst.target, other.target);
     worst.lands = worst.lands && other.lands;
   }
   return worst;
@@ -189,39 +189,39 @@ SearchCosts SearchSetting::price_of(const RecordedClosing& closing) const {
   const bool needs_all = !conditions.empty() || target.has_own_objective();
   const Metrics figures = needs_all ? with_rest_and_drives(closing.metrics, closing.signals) : closing.metrics;
   const auto by = [&](const Aim& one) { return cost(one, figures, scale, given.scene.metrics); };
-  SearchCosts prices{.leading = by(target.has_own_cost() ? Target::bounce : target)};
-  prices.own = target.has_own_cost() ? by(target) : prices.leading;
-  prices.lands = prices.leading < never_touched && figures.major_bounce_height <= given.scene.metrics.significant_rebound;
-  if (conditions.empty()) return prices;
-  if (!(prices.leading < never_touched)) {
-    prices.apart = {.leading = prices.leading, .own = prices.own, .excess = {}};
-    prices.apart->excess.assign(followed_conditions().size(), most_broken);
-    return prices;
+  SearchCosts costs{.guide = by(target.has_own_cost() ? Target::bounce : target)};
+  costs.target = target.has_own_cost() ? by(target) : costs.guide;
+  costs.lands = costs.guide < never_touched && figures.major_bounce_height <= given.scene.metrics.significant_rebound;
+  if (conditions.empty()) return costs;
+  if (!(costs.guide < never_touched)) {
+    costs.apart = {.guide = costs.guide, .target = costs.target, .excess = {}};
+    costs.apart->excess.assign(followed_conditions().size(), most_broken);
+    return costs;
   }
-  prices.apart = {.leading = prices.leading, .own = prices.own, .excess = {}};
-  for (const Criterion& one : followed_conditions()) prices.apart->excess.push_back(excess(one, figures));
+  costs.apart = {.guide = costs.guide, .target = costs.target, .excess = {}};
+  for (const Condition& one : followed_conditions()) costs.apart->excess.push_back(excess(one, figures));
   const double violation = broken(conditions, figures);
-  if (!(violation > 0)) return prices;
+  if (!(violation > 0)) return costs;
   // Penalty: less than the step between a landing and none. For the own cost, more than any landing that fulfils the
   // conditions.
   const double penalty = 3 * violation / (1 + violation);
-  prices.leading += penalty;
-  prices.own += target.has_own_cost() ? 1 + penalty : penalty;
-  return prices;
+  costs.guide += penalty;
+  costs.target += target.has_own_cost() ? 1 + penalty : penalty;
+  return costs;
 }
 
-SearchCosts SearchSetting::price_at(std::span<const double> x, EvaluationMemory* memory, LastClosing* last) const {
-  std::optional<std::vector<Signal>> told = allowed_told(space.waveforms(x));
-  if (!told) return {};
+SearchCosts SearchSetting::cost_at(std::span<const double> x, EvaluationMemory* memory, LastClosing* last) const {
+  std::optional<std::vector<Signal>> commanded = allowed_commands(space.waveforms(x));
+  if (!commanded) return {};
   const EvaluationKey key{.family = family, .x = {x.begin(), x.end()}};
   if (memory != nullptr) {
-    if (const auto known = memory->recall(key)) return {.leading = known->leading, .own = known->cost, .lands = known->lands};
+    if (const auto known = memory->recall(key)) return {.guide = known->guide, .target = known->cost, .lands = known->lands};
   }
-  auto closing = std::make_shared<const RecordedClosing>(*this, given.driven(std::move(*told)));
+  auto closing = std::make_shared<const RecordedClosing>(*this, given.applied(std::move(*commanded)));
   SearchCosts found = worst_price(*closing);
   if (last != nullptr) *last = {.x = key.x, .closing = std::move(closing)};
-  found.leading += 0.0, found.own += 0.0;  // normalise -0, whose sign a memory need not keep
-  if (memory != nullptr) memory->note(key, {.cost = found.own, .leading = found.leading, .lands = found.lands});
+  found.guide += 0.0, found.target += 0.0;  // normalise -0, whose sign a memory need not keep
+  if (memory != nullptr) memory->note(key, {.cost = found.target, .guide = found.guide, .lands = found.lands});
   return found;
 }
 
@@ -234,7 +234,7 @@ std::string SearchSetting::gradient_refusal(const Aim& aim) const {
   for (const TargetRow& row : targets) {
     if (aim.is_about(row.value) && !row.no_gradient.empty()) return std::string(row.no_gradient);
   }
-  for (const Criterion& one : conditions) {
+  for (const Condition& one : conditions) {
     const bool never_slopes = one.figure.is_count() || one.figure.conditioning == Conditioning::rest;
     if (!never_slopes && (one.comparison == Comparison::equal || one.figure.slope == nullptr))
       return fmt::format("the condition {} has no gradient", one.text);
@@ -242,9 +242,9 @@ std::string SearchSetting::gradient_refusal(const Aim& aim) const {
   return LinearizedClosing::refusal(given.model);
 }
 
-std::vector<Criterion> SearchSetting::followed_conditions() const {
-  std::vector<Criterion> followed;
-  for (const Criterion& one : conditions) {
+std::vector<Condition> SearchSetting::followed_conditions() const {
+  std::vector<Condition> followed;
+  for (const Condition& one : conditions) {
     if (one.comparison != Comparison::equal && one.figure.slope != nullptr) followed.push_back(one);
   }
   return followed;
@@ -253,7 +253,7 @@ std::vector<Criterion> SearchSetting::followed_conditions() const {
 SignalSlopes SearchSetting::signal_slopes(std::span<const double> x, const std::vector<ParameterGroup>& groups) const {
   std::vector<double> lower, upper;
   for (const Variable& v : space.variables()) lower.push_back(v.lower), upper.push_back(v.upper);
-  const auto signals_at = [&](std::span<const double> at) { return given.driven(drives(space.waveforms(at))); };
+  const auto signals_at = [&](std::span<const double> at) { return given.applied(drives(space.waveforms(at))); };
   return {signals_at, x, lower, upper, groups};
 }
 
@@ -267,22 +267,22 @@ std::vector<ParameterGroup> SearchSetting::parameter_groups() const {
 std::vector<double> SearchSetting::gradient_at(std::span<const double> x, const Aim& aim,
                                                const std::vector<ParameterGroup>& groups, const LastClosing* last) const {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<Criterion> followed = followed_conditions();
+  const std::vector<Condition> followed = followed_conditions();
   std::vector<double> gradient((1 + followed.size()) * x.size(), unknown);
   std::shared_ptr<const RecordedClosing> closing;
   if (last != nullptr && last->closing != nullptr && std::equal(x.begin(), x.end(), last->x.begin(), last->x.end())) {
     closing = last->closing;
   } else {
-    std::optional<std::vector<Signal>> told = allowed_told(space.waveforms(x));
-    if (!told) return gradient;
-    closing = std::make_shared<const RecordedClosing>(*this, given.driven(std::move(*told)));
+    std::optional<std::vector<Signal>> commanded = allowed_commands(space.waveforms(x));
+    if (!commanded) return gradient;
+    closing = std::make_shared<const RecordedClosing>(*this, given.applied(std::move(*commanded)));
   }
   LinearizedClosing motion(given.model, closing->signals, closing->tape);
   const CostSlopes slopes = cost_slopes(given.model, closing->signals, motion, given.scene.metrics);
   const auto slope = cost_slope(aim, closing->metrics, scale, given.scene.metrics, slopes);
   if (!slope) return gradient;
   std::vector<FigureSlope> rows{*slope};
-  for (const Criterion& one : followed) rows.push_back(slopes.of[one.figure.slope]);
+  for (const Condition& one : followed) rows.push_back(slopes.of[one.figure.slope]);
   const SignalSlopes by_parameters = signal_slopes(x, groups);
   const Eigen::MatrixXd by_x = motion.backward(rows, by_parameters);
   const Metrics& metrics = closing->metrics;
@@ -297,13 +297,13 @@ std::vector<double> SearchSetting::gradient_at(std::span<const double> x, const 
 
 void SearchSetting::check_starts(const std::vector<StartingWaveforms>& starts) const {
   for (const StartingWaveforms& start : starts) {
-    std::string reason = begins_elsewhere(start.waveforms, start.before, given);
+    std::string reason = initial_state_difference(start.waveforms, start.before, given);
     if (reason.empty()) reason = space.misfit(start.waveforms);
     require_request(reason.empty(), [&] { return fmt::format("{}: {}", start.name, reason); });
   }
 }
 
-bool SearchSetting::begins_plainly() const { return same_drives(given.signals(), baseline_scene.signals()); }
+bool SearchSetting::starts_as_step() const { return same_drives(given.signals(), baseline_scene.signals()); }
 
 PreparedScene SearchSetting::within_limits() const {
   PreparedScene limited = given;
@@ -324,18 +324,18 @@ void require_asked(const Figure& figure, const AskedFigures& asked, const std::s
 
 }  // namespace
 
-void require_asked(const Criterion& condition, const AskedFigures& asked) {
+void require_asked(const Condition& condition, const AskedFigures& asked) {
   require_asked(condition.figure, asked, fmt::format("{} \"{}\"", requested("constrain"), condition.text));
 }
 
 SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator actuator, const std::string& family,
-                             const Watch& watch, std::vector<Criterion> conditions, const OwnWaveforms& own) {
-  for (const Criterion& one : conditions)
+                             const Progress& progress, std::vector<Condition> conditions, const OwnWaveforms& own) {
+  for (const Condition& one : conditions)
     require_request(one.figure.conditioning != Conditioning::open, [&] {
       return fmt::format("{} \"{}\": a switch that closes has no such figure", requested("constrain"), one.text);
     });
-  PreparedScene given = prepare_and_choose(file, true, watch);
-  for (const Criterion& one : conditions) require_asked(one, given.scene.metrics.asked);
+  PreparedScene given = prepare_and_choose(file, true, progress);
+  for (const Condition& one : conditions) require_asked(one, given.scene.metrics.asked);
   for (const Aim::Part& part : target.parts()) {
     if (!part.own)
       require_asked(figure_of(part.target), given.scene.metrics.asked, fmt::format("{} {}", requested("target"), part.name()));
@@ -346,11 +346,11 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
     return requested("target") + " force: an impact on a rigid contact has an impulse, and no force to lower";
   });
   PreparedScene baseline_scene = read_back(with_waveforms(given, plain_step(given, actuator)), "baseline.toml", given);
-  Closing baseline = simulate(baseline_scene, true, watch);
-  watch.throw_if_stopped();
+  Closing baseline = simulate(baseline_scene, true, progress);
+  progress.throw_if_stopped();
 
-  std::vector<Criterion> beside;
-  for (Criterion& one : conditions) {
+  std::vector<Condition> beside;
+  for (Condition& one : conditions) {
     const double of_step = one.figure.value(baseline.metrics);
     beside.push_back(beside_step(std::move(one), of_step));
   }
@@ -401,10 +401,10 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
 }
 
 std::vector<SearchSetting> search_settings(const SceneFile& file, const Aim& target, Actuator actuator,
-                                           const std::string& families, const Watch& watch, std::vector<Criterion> conditions,
-                                           const OwnWaveforms& own) {
+                                           const std::string& families, const Progress& progress,
+                                           std::vector<Condition> conditions, const OwnWaveforms& own) {
   const std::vector<std::string> names = families_of(families);
-  std::vector<SearchSetting> all = {search_setting(file, target, actuator, names.front(), watch, std::move(conditions), own)};
+  std::vector<SearchSetting> all = {search_setting(file, target, actuator, names.front(), progress, std::move(conditions), own)};
   for (std::size_t k = 1; k < names.size(); ++k) {
     all.push_back(all.front());
     all.back().family = k;

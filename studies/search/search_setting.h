@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "config/criterion.h"
+#include "config/condition.h"
 #include "objectives/cost.h"
 #include "studies/closing/simulate.h"
 #include "studies/search/evaluation_memory.h"
@@ -43,7 +43,7 @@ struct RicherBeam {
 
 struct SearchSetting {
   Aim target;
-  std::vector<Criterion> conditions;  ///< conditions for a landing, on conditioned_figures
+  std::vector<Condition> conditions;  ///< conditions for a landing, on conditioned_figures
   PreparedScene given;                ///< the given scene
   PreparedScene baseline_scene;       ///< the scene under the plain step
   Closing baseline;
@@ -68,14 +68,14 @@ struct SearchSetting {
   /// True if the searched drives stay inside their limits.
   [[nodiscard]] bool is_allowed(const DriveWaveforms& searched) const;
   /// Commanded signals of all drives, or nothing if the searched ones leave their limits.
-  [[nodiscard]] std::optional<std::vector<Signal>> allowed_told(const DriveWaveforms& searched) const;
+  [[nodiscard]] std::optional<std::vector<Signal>> allowed_commands(const DriveWaveforms& searched) const;
   /// Options of the run of a candidate under these signals.
   [[nodiscard]] ClosingOptions run_of(const std::vector<Signal>& signals) const;
   [[nodiscard]] SearchCosts price(const std::vector<Signal>& signals) const;
   /// Prices a point of the search space on the nominal device; infinite if it leaves the limits of a driver. Results in
   /// `memory` are not simulated again; a simulated closing becomes `last`.
-  [[nodiscard]] SearchCosts price_at(std::span<const double> x, EvaluationMemory* memory = nullptr,
-                                     LastClosing* last = nullptr) const;
+  [[nodiscard]] SearchCosts cost_at(std::span<const double> x, EvaluationMemory* memory = nullptr,
+                                    LastClosing* last = nullptr) const;
   /// The gradient of a cost at a point of the search space, by the parameters, on the nominal device. The gradients of
   /// followed_conditions() come after it, as in Conditions::gradients. Exact except where touches graze; NaN where no gradient
   /// exists. `groups`, which hold for all points or are not used, and `last`, if it is of this point, give the same numbers
@@ -89,13 +89,13 @@ struct SearchSetting {
   [[nodiscard]] SignalSlopes signal_slopes(std::span<const double> x, const std::vector<ParameterGroup>& groups = {}) const;
   /// The conditions that a method with a gradient follows by itself: those on figures that have one. Counts change by jumps,
   /// and only affect the cost.
-  [[nodiscard]] std::vector<Criterion> followed_conditions() const;
+  [[nodiscard]] std::vector<Condition> followed_conditions() const;
   /// Why a cost or a condition has no gradient here, in words; empty if all have.
   [[nodiscard]] std::string gradient_refusal(const Aim& aim) const;
   /// Throws InvalidInput with the name of the first that a search cannot begin with, and the reason.
   void check_starts(const std::vector<StartingWaveforms>& starts) const;
   /// True if the scene holds no waveform but the plain step.
-  [[nodiscard]] bool begins_plainly() const;
+  [[nodiscard]] bool starts_as_step() const;
   /// The scene with the limits of searched waveforms in its drivers.
   [[nodiscard]] PreparedScene within_limits() const;
 
@@ -103,27 +103,27 @@ struct SearchSetting {
   /// Adds the figures that a run of a search does not measure.
   [[nodiscard]] Metrics with_rest_and_drives(Metrics metrics, const std::vector<Signal>& signals) const;
   [[nodiscard]] SearchCosts price_of(const RecordedClosing& closing) const;
-  [[nodiscard]] bool keeps_limits(const std::string& drive, const Waveform& waveform, const Signal& told) const;
+  [[nodiscard]] bool keeps_limits(const std::string& drive, const Waveform& waveform, const Signal& commanded) const;
   [[nodiscard]] SearchCosts worst_price(const RecordedClosing& closing) const;
 };
 
 /// Throws InvalidInput if the scene does not ask for the figure of a condition.
-void require_asked(const Criterion& condition, const AskedFigures& asked);
+void require_asked(const Condition& condition, const AskedFigures& asked);
 
-/// Throws InvalidInput for a scene or a family that cannot be searched; Interrupted if `watch` asks to stop.
+/// Throws InvalidInput for a scene or a family that cannot be searched; Interrupted if `progress` asks to stop.
 [[nodiscard]] SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator actuator, const std::string& family,
-                                           const Watch& watch, std::vector<Criterion> conditions = {},
+                                           const Progress& progress, std::vector<Condition> conditions = {},
                                            const OwnWaveforms& own = {});
 
 /// Returns one setting for each of the named families: families_of(). They differ in family and space alone.
 [[nodiscard]] std::vector<SearchSetting> search_settings(const SceneFile& file, const Aim& target, Actuator actuator,
-                                                         const std::string& families, const Watch& watch,
-                                                         std::vector<Criterion> conditions = {}, const OwnWaveforms& own = {});
+                                                         const std::string& families, const Progress& progress,
+                                                         std::vector<Condition> conditions = {}, const OwnWaveforms& own = {});
 /// The parameters of all families, by drive.name, or by family.drive.name if there are several.
 [[nodiscard]] FamilyColumns searched_columns(const std::vector<SearchSetting>& settings, const std::string& families);
 
 /// Sum of the violations of the conditions, each at most 10.
-[[nodiscard]] double broken(const std::vector<Criterion>& conditions, const Metrics& metrics);
+[[nodiscard]] double broken(const std::vector<Condition>& conditions, const Metrics& metrics);
 
 /// The scene of `prepared` in volts, with other waveforms on some drives.
 [[nodiscard]] SceneFile with_waveforms(const PreparedScene& prepared, const DriveWaveforms& waveforms);

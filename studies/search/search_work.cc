@@ -25,7 +25,7 @@ ClosingWork closing_work(const SearchSetting& setting) {
   const double points = points_beside + static_cast<double>(model.quadrature().points());
   ClosingWork most;
   for (const DriveWaveforms& searched : {DriveWaveforms(), first_waveforms(setting)}) {
-    const std::vector<Signal> signals = setting.given.driven(setting.drives(searched));
+    const std::vector<Signal> signals = setting.given.applied(setting.drives(searched));
     NoObserver nobody;
     const Work work = observe_closing(model, signals, setting.run_of(signals), nobody).work;
     const double counted =

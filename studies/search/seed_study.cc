@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "base/executor.h"
-#include "base/watch.h"
+#include "base/progress.h"
 #include "studies/devices/row_status.h"
 #include "studies/search/figure_columns.h"
 #include "studies/search/robust_optimize.h"
@@ -108,16 +108,16 @@ void SeedStudy::run(const Listener& listener) {
 // Runs one search. An interrupted search adds no row, but its evaluations are kept for the continued study.
 void SeedStudy::search(std::uint64_t k, int jobs, const Listener& listener) {
   OptimizeOptions options = search_.options;
-  const Watch watch{.stop = search_.options.stop};
+  const Progress progress{.stop = search_.options.stop};
   options.seed = search_.seed(k);
   options.jobs = jobs;
   options.memory = &evaluations_;
-  options.on_preparation = [&](std::string_view, double) { watch.throw_if_stopped(); };
+  options.on_preparation = [&](std::string_view, double) { progress.throw_if_stopped(); };
   options.on_start = {};
   const auto tell = [&] {
     if (listener.progress) listener.progress(state());
   };
-  const auto progress = [&](const OptimizeProgress& p) {
+  const auto show_progress = [&](const OptimizeProgress& p) {
     {
       const std::scoped_lock lock(mutex_);
       made_[k] = p.evaluations;
@@ -127,9 +127,9 @@ void SeedStudy::search(std::uint64_t k, int jobs, const Listener& listener) {
   };
   options.on_evaluation = [&](const Evaluation&, const OptimizeProgress& p) {
     evaluations_.check();
-    progress(p);
+    show_progress(p);
   };
-  options.on_progress = progress;
+  options.on_progress = show_progress;
   options.on_improvement = [&](const Evaluation& e, const SceneFile& best) {
     const std::scoped_lock lock(mutex_);
     if (best_cost_ <= e.value) return;
@@ -146,7 +146,7 @@ void SeedStudy::search(std::uint64_t k, int jobs, const Listener& listener) {
     } else {
       found.emplace(optimize(search_.scene, options));
     }
-    if (found->search.termination == Termination::interrupted || watch.stopped()) return;
+    if (found->search.termination == Termination::interrupted || progress.stopped()) return;
     evaluations_.check();
     store_.add(row(k, *found, closings));
   } catch (const Interrupted&) {

@@ -28,7 +28,7 @@ SearchRequest request_in(const json& plan) {
     const auto found = plan.find(std::string(name));
     if (found != plan.end() && found->is_string() && *found != "") word = found->template get<std::string>();
   };
-  visit_words(take, request);
+  visit_prose(take, request);
   if (plan.contains("constrain")) plan.at("constrain").get_to(request.constrain);
   return request;
 }
@@ -81,7 +81,7 @@ json plan_of(SearchRequest request, const PlannedSearch& search, const std::vect
       plan[std::string(name)] = word.value_or("");
     }
   };
-  visit_words(put, request);
+  visit_prose(put, request);
   if (request.hold_step.empty() || request.robust != by_race) plan.erase("hold-step");
   if (!request.constrain.empty()) plan["constrain"] = request.constrain;
   if (search.for_devices) plan[raced_families_key] = search.for_devices->families;

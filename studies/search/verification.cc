@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "objectives/figures.h"
-#include "studies/closing/confirmation.h"
+#include "studies/closing/checking_runs.h"
 #include "studies/search/modes_of_search.h"
 
 namespace softland {
@@ -35,7 +35,7 @@ Verification::Verification(const SearchSetting& setting, const OptimizeOptions& 
       target_(options.target),
       conditions_(setting.conditions),
       judges_hardness_(!options.target.has_own_objective() && !(broken(setting.conditions, setting.baseline.metrics) > 0)),
-      watch_{.progress = options.on_preparation} {
+      progress_{.report = options.on_preparation} {
   if (!judges_hardness_ || !baseline_.lands()) return;
   add({.scene = setting.baseline_scene,
        .cost = setting.baseline_cost,
@@ -46,8 +46,8 @@ Verification::Verification(const SearchSetting& setting, const OptimizeOptions& 
 }
 
 bool Verification::Verified::better_than(const Verified& other) const {
-  return std::tuple(-static_cast<int>(belief), broken, excess, figure, cost) <
-         std::tuple(-static_cast<int>(other.belief), other.broken, other.excess, other.figure, other.cost);
+  return std::tuple(-static_cast<int>(confidence), broken, excess, figure, cost) <
+         std::tuple(-static_cast<int>(other.confidence), other.broken, other.excess, other.figure, other.cost);
 }
 
 std::optional<Varied> Verification::undone_by(const PreparedScene& scene) const {
@@ -59,7 +59,7 @@ std::optional<Varied> Verification::undone_by(const PreparedScene& scene) const 
 
 void Verification::add(FoundWaveform candidate) {
   const double cost = candidate.cost;
-  Closing closing = simulate(candidate.scene, true, watch_);
+  Closing closing = simulate(candidate.scene, true, progress_);
   const Metrics& m = closing.metrics;
   Verified now{.found = std::move(candidate),
                .closing = closing,
@@ -67,15 +67,15 @@ void Verification::add(FoundWaveform candidate) {
                .figure = figure(target_, m, baseline_),
                .broken = broken(conditions_, m),
                .excess = excess(m),
-               .belief = met(m) && !(excess(m) > 0) ? Belief::meets_goal
-                         : m.lands()                ? Belief::lands
-                         : m.settled                ? Belief::settles
-                                                    : Belief::touches};
+               .confidence = met(m) && !(excess(m) > 0) ? Confidence::meets_goal
+                             : m.lands()                ? Confidence::lands
+                             : m.settled                ? Confidence::settles
+                                                        : Confidence::touches};
   if (!target_.is_sum() && (target_.is_about(Target::bounce) || target_.is_about(Target::rebound)))
     now.figure = std::max(now.figure, given_.scene.metrics.significant_rebound);
-  if (now.belief == Belief::meets_goal) {
+  if (now.confidence == Confidence::meets_goal) {
     now.failed = undone_by(now.found.scene);
-    if (!now.failed) now.belief = Belief::confirmed, now.cost = worst_.price(now.found.scene.signals()).own;
+    if (!now.failed) now.confidence = Confidence::confirmed, now.cost = worst_.price(now.found.scene.signals()).target;
   }
   if (!best_ || now.better_than(*best_)) best_ = std::move(now);
 }
@@ -88,8 +88,8 @@ bool Verification::decided(double cost) const { return confirmed() && best_->cos
 
 void Verification::move_to(OptimizeResult& result) {
   if (!best_) return;
-  result.goal_met = best_->belief >= Belief::meets_goal;
-  result.confirmed = best_->belief == Belief::confirmed;
+  result.goal_met = best_->confidence >= Confidence::meets_goal;
+  result.confirmed = best_->confidence == Confidence::confirmed;
   const Metrics& m = best_->closing.metrics;
   // If the plain step does not bounce either, only the cost can improve.
   const double own = figure(target_, m, baseline_), of_step = figure(target_, baseline_, baseline_);
@@ -98,12 +98,12 @@ void Verification::move_to(OptimizeResult& result) {
                              (!baseline_.settled && std::isfinite(baseline_.initial_contact_time));
   result.better_than_baseline =
       may_be_better && (own < of_step || (own == of_step && result.goal_met && best_->found.cost < result.baseline_cost));
-  for (const Criterion& one : conditions_) {
+  for (const Condition& one : conditions_) {
     if (softland::broken({one}, m) > 0) result.broken_conditions.push_back(one.text);
   }
   result.plain_step_wins = best_->found.is_plain_step;
   result.harder_than_step = best_->excess;
-  result.checks = confirm(best_->found.scene);
+  result.checks = run_checks(best_->found.scene);
   result.best_scene = std::move(best_->found.scene);
   result.best = std::move(best_->closing);
   result.family = std::move(best_->found.family);
@@ -115,9 +115,9 @@ void Verification::move_to(OptimizeResult& result) {
 // A confirming run measures the motion alone: its hold force and drives are those of the winner.
 bool Verification::met(const Metrics& m) const { return goal_met(target_, m, baseline_) && !(broken(known(m), m) > 0); }
 
-std::vector<Criterion> Verification::known(const Metrics& m) const {
-  std::vector<Criterion> all;
-  for (const Criterion& one : conditions_) {
+std::vector<Condition> Verification::known(const Metrics& m) const {
+  std::vector<Condition> all;
+  for (const Condition& one : conditions_) {
     if (std::isfinite(one.figure.value(m))) all.push_back(one);
   }
   return all;

@@ -33,7 +33,7 @@ class Verification {
   /// The cost of the best so far, by the worst of beams if it is confirmed; infinite if no candidate was added.
   [[nodiscard]] double best_cost() const;
   /// True if the best was confirmed by a tighter integrator and a richer beam.
-  [[nodiscard]] bool confirmed() const { return best_ && best_->belief == Belief::confirmed; }
+  [[nodiscard]] bool confirmed() const { return best_ && best_->confidence == Confidence::confirmed; }
   /// True if no candidate that costs as much or more can be better.
   [[nodiscard]] bool decided(double cost) const;
   /// True if the best meets its goal with the modes of the scene, but not with more of them.
@@ -43,7 +43,7 @@ class Verification {
 
  private:
   // The tests that a candidate has passed.
-  enum class Belief { touches, settles, lands, meets_goal, confirmed };
+  enum class Confidence { touches, settles, lands, meets_goal, confirmed };
 
   // A candidate after its run over the whole window, at the accuracy the scene asks for.
   struct Verified {
@@ -53,7 +53,7 @@ class Verification {
     double figure = 0;  // the target's own figure; rebounds that are not significant are equal
     double broken = 0;  // violation of the conditions
     double excess = 0;  // excess over the plain step, as a share of the step's figures
-    Belief belief = Belief::touches;
+    Confidence confidence = Confidence::touches;
     std::optional<Varied> failed = {};  // the variation under which the goal is not met
 
     [[nodiscard]] bool better_than(const Verified& other) const;
@@ -62,15 +62,15 @@ class Verification {
   [[nodiscard]] bool met(const Metrics& m) const;
   [[nodiscard]] double excess(const Metrics& m) const;
   [[nodiscard]] std::optional<Varied> undone_by(const PreparedScene& scene) const;
-  [[nodiscard]] std::vector<Criterion> known(const Metrics& m) const;
+  [[nodiscard]] std::vector<Condition> known(const Metrics& m) const;
 
   const SearchSetting worst_;  // prices candidates by the worst of beams
   const PreparedScene& given_;
   const Metrics& baseline_;
   Aim target_;
-  std::vector<Criterion> conditions_;
+  std::vector<Condition> conditions_;
   bool judges_hardness_;  // false for an own objective, and for conditions that the plain step breaks
-  Watch watch_;
+  Progress progress_;
   std::optional<Verified> best_;
 };
 

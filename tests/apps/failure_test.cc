@@ -10,9 +10,9 @@
 
 #include "apps/exit_status.h"
 #include "base/output_lost.h"
+#include "base/progress.h"
 #include "base/require.h"
 #include "base/shell_word.h"
-#include "base/watch.h"
 #include "program.h"
 #include "version.h"
 

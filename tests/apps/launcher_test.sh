@@ -301,11 +301,11 @@ echo 30 >>"$work/clock"
 echo \$((\$(wc -l <"$work/clock") * 151))
 BODY
 mkdir "$work/told"
-printf 'Building CXX object %s/lane_fleet_x.cc.o\n' a b c d e f g h >"$work/told/plan"
+printf 'Building CXX object %s/simd_closings_x.cc.o\n' a b c d e f g h >"$work/told/plan"
 echo 'Linking CXX executable apps/softland' >>"$work/told/plan"
-printf '0\t26000\t1\t%s/lane_fleet_x.cc.o\t0\n' a b >"$work/told/times"
-printf '26000\t52000\t1\t%s/lane_fleet_x.cc.o\t0\n' c d >>"$work/told/times"
-printf '[%s] Building CXX object %s/lane_fleet_x.cc.o\n' '1/9 26.0' a '2/9 26.0' b '3/9 52.0' c '4/9 52.1' d >"$work/told/lines"
+printf '0\t26000\t1\t%s/simd_closings_x.cc.o\t0\n' a b >"$work/told/times"
+printf '26000\t52000\t1\t%s/simd_closings_x.cc.o\t0\n' c d >>"$work/told/times"
+printf '[%s] Building CXX object %s/simd_closings_x.cc.o\n' '1/9 26.0' a '2/9 26.0' b '3/9 52.0' c '4/9 52.1' d >"$work/told/lines"
 change 'int five;' base/two.cc
 run env CMAKE_BUILD_PARALLEL_LEVEL=2 "$project/softland" modes
 check 'a long build says how long it will take, measured on this machine' err_has 'softland: building: about 1 min 20 s more on this machine'

@@ -31,7 +31,9 @@ class TuningLabs : public testing::Test {
  protected:
   static void SetUpTestSuite() { std::signal(SIGPIPE, SIG_IGN); }
 
-  static ToldShot shot(int number = 1) { return told_shot(number, 1e-4, {.signals = {{"main", Signal::constant(17)}}}); }
+  static CommandedShot shot(int number = 1) {
+    return commanded_shot(number, 1e-4, {.signals = {{"main", Signal::constant(17)}}});
+  }
   static ContactRecord fired(const std::string& command, std::chrono::milliseconds patience = 10s) {
     return *command_lab(command, patience)->fire(shot(), {});
   }
@@ -67,10 +69,10 @@ TEST_F(TuningLabs, TellACommandWhatToDoAndReadWhatCameOfIt) {
 TEST_F(TuningLabs, NameTheAmplifierBesideVoltsAtTheSwitch) {
   const SentSignals sent{.signals = {{"main", Signal::constant(18)}, {"upper", Signal::constant(9)}},
                          .amplifiers = {{"main", 20}}};
-  const json line = shot_json(told_shot(1, 1e-4, sent));
+  const json line = shot_json(commanded_shot(1, 1e-4, sent));
   EXPECT_EQ(line, json::parse(R"({"shot":1,"hold_s":1e-4,"drives":{"main":{"time_s":[0,0],"V":[0,18],"amplifier":20},)"
                               R"("upper":{"time_s":[0,0],"V":[0,9]}}})"));
-  const ToldShot read_back = read_shot(line);
+  const CommandedShot read_back = read_shot(line);
   EXPECT_EQ(shot_json(read_back), line);
   EXPECT_EQ(read_back.drives.at("main").voltage.back(), 18) << "a simulated device is driven by them";
   json wrong = line;
@@ -222,8 +224,8 @@ TEST_F(TuningLogs, LoseTheClosingThatWasBeingWrittenAndNoOther) {
 TEST_F(TuningLogs, KeepTheClosingsOfAnEarlierRun) {
   { TuningLog first(file(), {{"seed", 1}}, false); }
   const std::string before = read(file());
-  EXPECT_EQ(TuningLog(file(), {{"seed", 2}}, false).kept_aside(), here.path() / "closings-1.jsonl");
-  EXPECT_EQ(TuningLog(file(), {{"seed", 3}}, false).kept_aside(), here.path() / "closings-2.jsonl");
+  EXPECT_EQ(TuningLog(file(), {{"seed", 2}}, false).moved_to(), here.path() / "closings-1.jsonl");
+  EXPECT_EQ(TuningLog(file(), {{"seed", 3}}, false).moved_to(), here.path() / "closings-2.jsonl");
   EXPECT_EQ(read(here.path() / "closings-1.jsonl"), before);
 }
 

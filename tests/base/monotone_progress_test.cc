@@ -16,7 +16,7 @@ TEST(MonotoneProgress, NeverRunsBackWhateverItIsTold) {
   MonotoneProgress progress;
   std::map<std::string, double> shown;
   for (int i = 0; i < 10'000; ++i) {
-    const auto [name, now] = progress.told(i % 3 == 0 ? "closing" : "dynamic pull-in voltage", part(random));
+    const auto [name, now] = progress.updated(i % 3 == 0 ? "closing" : "dynamic pull-in voltage", part(random));
     const auto before = shown.find(name);
     EXPECT_TRUE(before == shown.end() || now >= before->second) << name << " " << now;
     EXPECT_TRUE(now >= 0 && now <= 1) << now;
@@ -27,11 +27,11 @@ TEST(MonotoneProgress, NeverRunsBackWhateverItIsTold) {
 
 TEST(MonotoneProgress, NamesTheRoundThatBeginsAgainAndNotAPartThatComesLate) {
   MonotoneProgress progress;
-  EXPECT_EQ(progress.told("closing", 0.5), std::pair(std::string("closing"), 0.5));
-  EXPECT_EQ(progress.told("closing", 0.4), std::pair(std::string("closing"), 0.5));
-  EXPECT_EQ(progress.told("closing", 0.1), std::pair(std::string("closing (2)"), 0.1));
-  EXPECT_EQ(progress.told("cloud", 0.2), std::pair(std::string("cloud"), 0.2));
-  EXPECT_EQ(progress.told("closing", 0.3), std::pair(std::string("closing (2)"), 0.3));
+  EXPECT_EQ(progress.updated("closing", 0.5), std::pair(std::string("closing"), 0.5));
+  EXPECT_EQ(progress.updated("closing", 0.4), std::pair(std::string("closing"), 0.5));
+  EXPECT_EQ(progress.updated("closing", 0.1), std::pair(std::string("closing (2)"), 0.1));
+  EXPECT_EQ(progress.updated("cloud", 0.2), std::pair(std::string("cloud"), 0.2));
+  EXPECT_EQ(progress.updated("closing", 0.3), std::pair(std::string("closing (2)"), 0.3));
 }
 
 }  // namespace

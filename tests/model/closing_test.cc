@@ -313,14 +313,14 @@ TEST(Closing, IsInterruptedFromOutside) {
 TEST(Closing, ShowsEveryStepToItsObserverAndEndsAtItsWord) {
   double last = -1;
   long calls = 0;
-  const auto watch = [&](double t, const double* q, const double* v) {
+  const auto progress = [&](double t, const double* q, const double* v) {
     EXPECT_GE(t, last);
     last = t;
     ++calls;
     EXPECT_TRUE(std::isfinite(q[0]) && std::isfinite(v[0]));
     return t > 20_us;
   };
-  const Trajectory t = simulate_closing(gold(), step(), {.duration = 600_us, .observer = watch});
+  const Trajectory t = simulate_closing(gold(), step(), {.duration = 600_us, .observer = progress});
   EXPECT_EQ(t.status, Status::done);
   EXPECT_EQ(calls, t.work.steps);
   EXPECT_EQ(t.points.back().time, last);

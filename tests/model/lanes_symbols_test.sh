@@ -8,7 +8,7 @@ shared() {  # OBJECT PATTERN: what others may be linked to, but for what has the
     inside && / [WVu] / { count++; if (index($0, pattern) == 0 && $0 !~ /DW\.ref\./) print }
     END { if (count == 0) print object " has nothing to look at" }'
 }
-found=$(shared lane_fleet_avx2 '_VecBuiltin<32>'; shared lane_fleet_avx512 '_VecBltnBtmsk<64>')
+found=$(shared simd_closings_avx2 '_VecBuiltin<32>'; shared simd_closings_avx512 '_VecBltnBtmsk<64>')
 [ -z "$found" ] && exit 0
 printf 'may be linked into the rest of the program:\n%s\n' "$found"
 exit 1

@@ -1249,7 +1249,7 @@ class LawAlongTheBeam : public testing::Test {
   static Law physics() {
     if constexpr (requires { Law::law; }) {
       return {.law = dispersion<decltype(Law::law)>(), .width = 20_um};
-    } else if constexpr (Law::driven) {
+    } else if constexpr (Law::drive_depends) {
       return {fringing<decltype(Law::fringing)>(20_um, 2_um)};
     } else {
       return gas_law_of_type<Law>(20_um, 65_nm);
@@ -1289,7 +1289,7 @@ TYPED_TEST(LawAlongTheBeam, HasTheDerivativesOfItsLoadAboveAndBelowTheFloor) {
 }
 
 TYPED_TEST(LawAlongTheBeam, HasTheEnergyOfItsLoadAboveAndBelowTheFloor) {
-  if constexpr (TypeParam::driven) {
+  if constexpr (TypeParam::drive_depends) {
     constexpr double differences = 1e-5;  // relative; at the floor the third derivative jumps
     const DistributedLawOf law(TestFixture::physics(), 0, 1, gap_floor);
     const Eigen::ArrayXd weights = Eigen::ArrayXd::Constant(1, 10_um);

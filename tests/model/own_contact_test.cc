@@ -9,7 +9,7 @@
 #include "base/literals.h"
 #include "model/closing.h"
 #include "model/contact/contact_law.h"
-#include "model/ensemble/fleet.h"
+#include "model/ensemble/ensemble_closings.h"
 #include "model/linearized_closing.h"
 #include "model/pull_in.h"
 #include "tests/model/gold.h"

@@ -10,7 +10,7 @@
 #include "expect_refused.h"
 #include "model/closing.h"
 #include "model/constants.h"
-#include "model/ensemble/fleet.h"
+#include "model/ensemble/ensemble_closings.h"
 #include "objectives/metrics.h"
 #include "tests/support/devices.h"
 #include "waveforms/pulse.h"

@@ -191,13 +191,13 @@ TEST(DynamicPullIn, ReportsProgressThatNeverDecreases) {
     const Switch model(device);
     double last = 0;
     int told = 0;
-    const Watch watch{.progress = [&](std::string_view what, double part) {
+    const Progress progress{.report = [&](std::string_view what, double part) {
       EXPECT_EQ(what, "dynamic pull-in voltage");
       EXPECT_TRUE(part >= last && part <= 1) << part << " after " << last;
       last = part;
       ++told;
     }};
-    const DynamicPullIn found = dynamic_pull_in(model, 0, static_pull_in(model, 0), {}, watch);
+    const DynamicPullIn found = dynamic_pull_in(model, 0, static_pull_in(model, 0), {}, progress);
     EXPECT_EQ(found.status, Status::done);
     EXPECT_GT(told, 10);
     EXPECT_GT(last, 0.9);

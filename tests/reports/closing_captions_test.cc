@@ -227,13 +227,13 @@ TEST(Captions, OfASingleRunSpeakOfTheSwitch) {
 }
 
 TEST(Change, DistinguishesBetterFromWorse) {
-  EXPECT_EQ(change(374, 44.5, true, Kind::time).words, "8.4 times shorter");
-  EXPECT_EQ(change(374, 44.5, true, Kind::time).verdict, Verdict::better);
+  EXPECT_EQ(change(374, 44.5, true, ChangeKind::time).words, "8.4 times shorter");
+  EXPECT_EQ(change(374, 44.5, true, ChangeKind::time).verdict, Verdict::better);
   EXPECT_EQ(change(1, 2, true).words, "2.0 times higher");
   EXPECT_EQ(change(1, 2, true).verdict, Verdict::worse);
   EXPECT_EQ(change(1, 2, false).verdict, Verdict::neutral);
-  EXPECT_EQ(change(57, 0, true, Kind::count).words, "none left");
-  EXPECT_EQ(change(0, 3, true, Kind::count).words, "more");
+  EXPECT_EQ(change(57, 0, true, ChangeKind::count).words, "none left");
+  EXPECT_EQ(change(0, 3, true, ChangeKind::count).words, "more");
   EXPECT_EQ(change(0, 0, true).words, "unchanged");
   EXPECT_EQ(change(100, 95, true).words, "5.0 % lower");
   EXPECT_EQ(change(1, std::nan(""), true).words, "");

@@ -191,14 +191,14 @@ TEST(Charts, CountEvaluationsWhoseIndicesHaveGaps) {
 
 TEST(Charts, OfCostsThatReachZeroAreLinear) {
   json result{{"kind", "optimize"}, {"search", {{"best_so_far", {{1, 3.0}, {9, 0.0}}}}}};
-  EXPECT_EQ(picture(read_closing(result)).charts.at(0).scale, Scale::linear);
+  EXPECT_EQ(picture(read_closing(result)).charts.at(0).scale, AxisScale::linear);
   result["search"]["best_so_far"][1][1] = 0.1;
-  EXPECT_EQ(picture(read_closing(result)).charts.at(0).scale, Scale::logarithmic);
+  EXPECT_EQ(picture(read_closing(result)).charts.at(0).scale, AxisScale::logarithmic);
 }
 
 TEST(ChartSvg, SpacesDecadesEvenlyOnALogarithmicAxis) {
   Chart chart{.id = "log"};
-  chart.x_scale = chart.scale = Scale::logarithmic;
+  chart.x_scale = chart.scale = AxisScale::logarithmic;
   chart.x_home = {1, 100};
   chart.y_home = {1, 100};
   for (const double x : {2.0, 20.0}) chart.marks.push_back({x, x, Role::fifth, ""});

@@ -11,7 +11,7 @@
 #include "document/page_files.h"
 #include "document/text.h"
 #include "reports/closing_record.h"
-#include "reports/sketch.h"
+#include "reports/device_picture.h"
 #include "sample_result.h"
 
 namespace softland {
@@ -159,14 +159,14 @@ TEST(HtmlReport, DrawsTheSwitchAndWhatEveryDriveDemands) {
 }
 
 // The assumed width of letters is above the average of any sans serif font.
-TEST(Sketch, HoldsAllOfItsWords) {
+TEST(DevicePicture, HoldsAllOfItsWords) {
   constexpr double letter = 7.5;  // width of a letter at 12.5 px
   for (const char* structure : {"cantilever", "clamped-clamped", "plate"}) {
-    const std::string drawing = internal::sketch({.structure = side_of_structure(structure),
-                                                  .length = 612.5e-6,
-                                                  .electrode_gap = 5.6312e-6,
-                                                  .contact_gap = 4.6312e-6,
-                                                  .electrodes = {{.name = "main", .span = {}}}});
+    const std::string drawing = internal::device_picture({.structure = side_of_structure(structure),
+                                                          .length = 612.5e-6,
+                                                          .electrode_gap = 5.6312e-6,
+                                                          .contact_gap = 4.6312e-6,
+                                                          .electrodes = {{.name = "main", .span = {}}}});
     static const std::regex text("<text x=\"([0-9.]+)\" y=\"[0-9.]+\" text-anchor=\"start\">([^<]*)<"),
         box("viewBox=\"0 0 ([0-9]+)");
     std::smatch wide;

@@ -22,7 +22,7 @@ const CycleRecord& cycled_record() {
     SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold.toml");
     file.set("structure.modes=1");
     const PreparedScene scene = prepare(file);
-    CycleWaveforms waveforms{.name = "mem-gold.toml", .closing = scene.told(scene.waveforms()), .opening = {}};
+    CycleWaveforms waveforms{.name = "mem-gold.toml", .closing = scene.commanded(scene.waveforms()), .opening = {}};
     complete(waveforms, scene);
     return record_of(scene, cycling(scene, waveforms, {.rate = 1e3, .scans = false, .cycles = 4, .devices = 0}), "softland test");
   }();

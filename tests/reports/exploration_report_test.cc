@@ -9,7 +9,7 @@
 
 #include "base/require.h"
 #include "browser.h"
-#include "reports/exploration_view.h"
+#include "reports/exploration_page.h"
 #include "sample_exploration.h"
 #include "sampling/statistics.h"
 #include "tests/support/xml.h"

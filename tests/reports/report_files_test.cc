@@ -47,7 +47,7 @@ TEST(FilesOfASearch, HoldWhatSourcesAreToldAndNotWhatTheyMakeOfIt_long) {
   ASSERT_THAT(names_of(report),
               IsSupersetOf({"result.json", "report.html", "gap.svg", "trajectory.csv", "best.toml", "best.csv", "drawing.toml",
                             "drawing.csv", "robustness.html", "robustness.json", "devices.csv"}));
-  const auto& devices = std::get<ForDevicesResult>(report.found.result);
+  const auto& devices = std::get<RobustSearchResult>(report.found.result);
   const PreparedScene& drawing = *devices.drawing.best_scene;
   EXPECT_EQ(text_of(report, "drawing.csv"), told_csv(drawing));
   EXPECT_NE(text_of(report, "drawing.csv"), csv(named_signals(drawing), drawing.duration)) << "the output of the source";

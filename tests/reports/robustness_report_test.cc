@@ -59,7 +59,7 @@ const Study& study() {
     s.sensitivity = sensitivity(s.nominal, s.found.drives.back(), 32, s.options);
     s.derivatives = derivatives(s.nominal, internal::exactly_measured(s.nominal, s.found.drives.back()));
     s.courses = device_courses(s.nominal, s.found.drives.back(), s.found, s.options);
-    s.box_and_chaos = box_and_chaos(s.nominal, s.found.drives.back(), s.options, {.closings_per_search = 10, .most_taught = 40});
+    s.box_and_chaos = box_and_chaos(s.nominal, s.found.drives.back(), s.options, {.closings_per_search = 10, .most_fitted = 40});
     return s;
   }();
   return made;

@@ -114,7 +114,7 @@ TEST(TuningReport, ComparesASlowApproachWithThePlainStep) {
 }
 
 TEST(TuningReport, SaysInWordsWhatWasSeenAndWhatIsExpected) {
-  EXPECT_EQ(closing_words(tuned_sample()),
+  EXPECT_EQ(closing_prose(tuned_sample()),
             "closing 6 touched at 38.60\u00a0µs without a bounce; prediction for the next: touch at 38.00 to 39.00\u00a0µs, 95th "
             "percentile of the rebound 700\u00a0pm");
   const std::string text = terminal_text(tuning_document(tuned_sample()));
@@ -124,9 +124,9 @@ TEST(TuningReport, SaysInWordsWhatWasSeenAndWhatIsExpected) {
   bounced.closings.resize(1);
   bounced.bounce_free_in_a_row = 0;
   EXPECT_THAT(terminal_text(tuning_document(bounced)), HasSubstr("After one closing none was bounce-free."));
-  EXPECT_THAT(closing_words(bounced), HasSubstr("touched at 40.00\u00a0µs with 2 bounces"));
+  EXPECT_THAT(closing_prose(bounced), HasSubstr("touched at 40.00\u00a0µs with 2 bounces"));
   bounced.next.predicted.touch_low = bounced.next.predicted.rebound_high = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(closing_words(bounced), HasSubstr("prediction for the next: touch at —, rebounds unknown"));
+  EXPECT_THAT(closing_prose(bounced), HasSubstr("prediction for the next: touch at —, rebounds unknown"));
 }
 
 TEST(TuningReport, SaysHowLateRecordsBegin) {

@@ -24,7 +24,7 @@ using Kill = WithStore;
 constexpr std::int64_t points = 60'000;
 
 // The writer's report in memory that outlives it.
-struct Told {
+struct WriterReport {
   std::atomic<bool> writes = false;  ///< true while the store is open
   std::atomic<std::int64_t> taken = 0;
   std::array<double, points> when{};  ///< time at which each row was taken [s]
@@ -36,7 +36,7 @@ struct Pace {
 };
 
 // Writes the missing rows until it is done or killed.
-[[noreturn]] void write_on(const std::filesystem::path& file, Told& told, Pace pace) {
+[[noreturn]] void write_on(const std::filesystem::path& file, WriterReport& told, Pace pace) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   StudyStore store(file, plan_of(points), origin(), Opening::resume);
   const std::vector<bool> done = store.done();
@@ -54,7 +54,7 @@ struct Pace {
 
 class Writer {
  public:
-  Writer(const std::filesystem::path& file, Told& told, Pace pace) : told_(told) {
+  Writer(const std::filesystem::path& file, WriterReport& told, Pace pace) : told_(told) {
     told.writes = false;
     child_ = ::fork();
     if (child_ == 0) write_on(file, told, pace);
@@ -73,12 +73,13 @@ class Writer {
   }
 
  private:
-  Told& told_;
+  WriterReport& told_;
   pid_t child_;
 };
 
 TEST_F(Kill, FiftyTimesEndsWithTheSameBits_slow) {
-  auto* told = new (::mmap(nullptr, sizeof(Told), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) Told;
+  auto* told =
+      new (::mmap(nullptr, sizeof(WriterReport), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) WriterReport;
   std::mt19937 random(20260131);
   std::uniform_real_distribution<double> part(0, 1);
   constexpr int kills = 50, while_opening = 12;
@@ -127,7 +128,7 @@ TEST_F(Kill, FiftyTimesEndsWithTheSameBits_slow) {
   EXPECT_EQ(StudyReader(file).by_status(), StudyReader(path("undisturbed.sqlite")).by_status());
   EXPECT_THAT(names_in(TemporaryFolder::path()),
               ::testing::IsSupersetOf({std::string("study.sqlite"), std::string("undisturbed.sqlite")}));
-  ::munmap(told, sizeof(Told));
+  ::munmap(told, sizeof(WriterReport));
 }
 
 }  // namespace

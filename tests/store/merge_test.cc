@@ -122,7 +122,7 @@ TEST_F(Merge, TellsOfSeveralProgramsAndProcessors) {
 TEST_F(Merge, StopsWhenItIsAsked) {
   make_store(path("a"), 100);
   const std::atomic<bool> stop = true;
-  EXPECT_THROW(static_cast<void>(merge_studies({path("a")}, file, origin(), {.watch = {.stop = &stop}})), Interrupted);
+  EXPECT_THROW(static_cast<void>(merge_studies({path("a")}, file, origin(), {.progress = {.stop = &stop}})), Interrupted);
   EXPECT_FALSE(fs::exists(file));
 }
 

@@ -20,12 +20,12 @@ class Beliefs : public testing::Test {
   [[nodiscard]] std::vector<Waveform> step(double share) const { return {Step{.level = share * hold_}}; }
   [[nodiscard]] std::vector<LearnedShot> records_of(const VectorXd& z) const {
     const std::vector<VectorXd> points{z};
-    const std::vector<ImaginedDevice> device = scene_.devices(points);
+    const std::vector<Particle> device = scene_.devices(points);
     std::vector<LearnedShot> shots;
     for (const double share : {1.0, 1.15, 0.9}) {
       shots.push_back({.waveforms = step(share), .record = {}});
-      const std::vector<ImaginedShot> one{{.device = &device[0], .waveforms = &shots.back().waveforms}};
-      const ImaginedClosing closing = scene_.close(one)[0];
+      const std::vector<PredictedShot> one{{.device = &device[0], .waveforms = &shots.back().waveforms}};
+      const PredictedClosing closing = scene_.close(one)[0];
       shots.back().record.edges.push_back({closing.recorded_touch(), true});
       for (const ContactOpening& o : closing.openings) {
         if (!std::isfinite(o.end) || o.end - o.begin < scene_.options().laboratory.unseen) continue;
@@ -36,7 +36,7 @@ class Beliefs : public testing::Test {
     return shots;
   }
 
-  TunedScene scene_{gold_with_two_modes(), {}, {}};
+  TuningModel scene_{gold_with_two_modes(), {}, {}};
   double hold_ = scene_.nominal().signals()[0].hold_level();
 };
 
@@ -44,12 +44,12 @@ class Beliefs : public testing::Test {
 TEST_F(Beliefs, LikelihoodIsThatOfItsFormula) {
   const TuningScales& s = scene_.scales();
   const double t0 = s.closing_time;
-  const ImaginedClosing closing{.followed = true,
-                                .touch = t0,
-                                .speed = 0.1,
-                                .fastest = 0.1,
-                                .highest = 1e-9,
-                                .openings = {{1.05 * t0, 1.10 * t0}, {1.2 * t0, 1.2 * t0 + 50e-9}}};
+  const PredictedClosing closing{.followed = true,
+                                 .touch = t0,
+                                 .speed = 0.1,
+                                 .fastest = 0.1,
+                                 .highest = 1e-9,
+                                 .openings = {{1.05 * t0, 1.10 * t0}, {1.2 * t0, 1.2 * t0 + 50e-9}}};
   const double late = 80e-9;
   const ContactRecord record{.edges = {{t0 + late, true}, {1.06 * t0, false}, {1.08 * t0, true}}};
   const std::vector<LearnedShot> shots{{.waveforms = step(1), .record = record}};
@@ -66,7 +66,7 @@ TEST_F(Beliefs, LikelihoodIsThatOfItsFormula) {
 }
 
 TEST_F(Beliefs, AMissingTouchIsVeryUnlikely) {
-  const ImaginedClosing open{.followed = true};
+  const PredictedClosing open{.followed = true};
   const std::vector<LearnedShot> touched{{.waveforms = step(1), .record = {.closing_time = 30e-6}}},
       none{{.waveforms = step(1), .record = {}}};
   EXPECT_LT(Likelihood(scene_, touched).of(std::vector{open}), -100);
@@ -75,7 +75,7 @@ TEST_F(Beliefs, AMissingTouchIsVeryUnlikely) {
 
 TEST_F(Beliefs, ALouderImpactIsAFasterOne) {
   const auto closing = [](double speed) {
-    return ImaginedClosing{.followed = true, .touch = 30e-6, .speed = speed, .fastest = speed};
+    return PredictedClosing{.followed = true, .touch = 30e-6, .speed = speed, .fastest = speed};
   };
   const auto shot = [&](double loudness) {
     return LearnedShot{.waveforms = step(1), .record = {.closing_time = 30e-6, .loudness = loudness}};
@@ -92,16 +92,16 @@ TEST_F(Beliefs, ADeviceIsRecoveredFromItsRecords_optimized) {
   const std::vector<LearnedShot> shots = records_of(z);
   Draws draws(7, 0);
   const Belief prior = Belief::prior(scene_.size(), draws);
-  const Belief belief = learned(scene_, shots, prior, draws);
+  const Belief belief = updated_belief(scene_, shots, prior, draws);
   EXPECT_NEAR(std::accumulate(belief.weights.begin(), belief.weights.end(), 0.0), 1, 1e-12);
   // The belief predicts the quantities on which a landing depends: here the touch time of a waveform that was not shot.
   const std::vector<Waveform> other = step(0.95);
   const auto touches = [&](const std::vector<VectorXd>& points) {
-    const std::vector<ImaginedDevice> devices = scene_.devices(points);
-    std::vector<ImaginedShot> all;
-    for (const ImaginedDevice& device : devices) all.push_back({.device = &device, .waveforms = &other});
+    const std::vector<Particle> devices = scene_.devices(points);
+    std::vector<PredictedShot> all;
+    for (const Particle& device : devices) all.push_back({.device = &device, .waveforms = &other});
     std::vector<double> times;
-    for (const ImaginedClosing& closing : scene_.close(all)) times.push_back(closing.touch);
+    for (const PredictedClosing& closing : scene_.close(all)) times.push_back(closing.touch);
     return times;
   };
   const double truth = touches({z})[0], nominal = touches({VectorXd::Zero(scene_.size())})[0];
@@ -123,9 +123,9 @@ TEST_F(Beliefs, ALateTriggerIsLearnedAsADelay_optimized) {
   VectorXd z = VectorXd::Zero(scene_.size());
   z[scene_.size() - 1] = late / scene_.delay_deviation();
   const std::vector<LearnedShot> shots = records_of(z);
-  const auto gaps_and_delay = [&](const TunedScene& scene) {
+  const auto gaps_and_delay = [&](const TuningModel& scene) {
     Draws draws(7, 0);
-    const Belief belief = learned(scene, shots, Belief::prior(scene.size(), draws), draws);
+    const Belief belief = updated_belief(scene, shots, Belief::prior(scene.size(), draws), draws);
     return std::pair{scene.devices(std::vector<VectorXd>{belief.moments.mean})[0].sampled.model->device().gap.contact /
                          scene.nominal().scene.device.gap.contact,
                      scene.delay(belief.moments.mean)};
@@ -136,7 +136,7 @@ TEST_F(Beliefs, ALateTriggerIsLearnedAsADelay_optimized) {
   EXPECT_FALSE(!(std::abs(gap - 1) <= one_percent)) << gap;
   LaboratoryErrors sure;
   sure.trigger_delay = 0;
-  const auto [other_gap, none] = gaps_and_delay(TunedScene(gold_with_two_modes(), {.laboratory = sure}, {}));
+  const auto [other_gap, none] = gaps_and_delay(TuningModel(gold_with_two_modes(), {.laboratory = sure}, {}));
   EXPECT_LT(std::abs(none), late / 4) << "the user says that there is none";
 }
 
@@ -147,11 +147,11 @@ class Misfits : public Beliefs {
   [[nodiscard]] std::vector<LearnedShot> recorded(const VectorXd& z, Draws& draws) const {
     std::vector<LearnedShot> shots = records_of(z);
     const std::vector<VectorXd> points{z};
-    const std::vector<ImaginedDevice> device = scene_.devices(points);
+    const std::vector<Particle> device = scene_.devices(points);
     const Likelihood likelihood(scene_, {});
     for (LearnedShot& shot : shots) {
-      const std::vector<ImaginedShot> one{{.device = &device[0], .waveforms = &shot.waveforms}};
-      const ImaginedClosing closing = scene_.close(one)[0];
+      const std::vector<PredictedShot> one{{.device = &device[0], .waveforms = &shot.waveforms}};
+      const PredictedClosing closing = scene_.close(one)[0];
       shot.record = {};
       if (closing.closes())
         shot.record.closing_time = closing.recorded_touch() + likelihood.touch_deviation(closing.speed) * draws.normal();

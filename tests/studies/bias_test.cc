@@ -123,7 +123,7 @@ TEST(Bias, CountsForDevicesMeasuredByIt) {
   const SceneFile file = small_beam(
       {R"(waveform.piezo={family="step", level="-1.5 V"})", R"(spread."piezo.d31"={distribution="normal", cov="10 %"})"});
   const PreparedScene p = prepare(file);
-  const DeviceMeter meter(p, {.pull_in = true});
+  const PullInMeter meter(p, {.pull_in = true});
   EXPECT_NEAR(meter.pull_in(), p.pull_in.at("main").dynamically.voltage, 1e-6 * meter.pull_in());
   // A stronger piezo layer lowers the pull-in voltage only if it is biased.
   Device stronger = p.scene.device;

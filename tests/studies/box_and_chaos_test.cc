@@ -22,8 +22,8 @@ struct Judged {
   RobustnessOptions options;
   Robustness found;
   [[nodiscard]] const DriveRobustness& drive() const { return found.drives.back(); }
-  [[nodiscard]] BoxAndChaos ways(const BoxAndChaosOptions& effort, const Watch& watch = {}) const {
-    return box_and_chaos(nominal, drive(), options, effort, watch);
+  [[nodiscard]] BoxAndChaos ways(const BoxAndChaosOptions& effort, const Progress& progress = {}) const {
+    return box_and_chaos(nominal, drive(), options, effort, progress);
   }
 };
 Judged judged(const SceneFile& file, std::uint64_t samples, const Calibration& calibration = {}) {
@@ -44,7 +44,7 @@ const Judged& gold() {
   return all;
 }
 const BoxAndChaos& gold_ways() {
-  static const BoxAndChaos ways = gold().ways({.closings_per_search = 60, .most_taught = 100});
+  static const BoxAndChaos ways = gold().ways({.closings_per_search = 60, .most_fitted = 100});
   return ways;
 }
 
@@ -123,7 +123,7 @@ TEST(Box, HasADeviceThatDoesNotCloseAsItsWorst) {
   std::size_t closed = 0;
   for (const DeviceOutcome& o : wide.drive().outcomes) closed += o.closed();
   EXPECT_LT(closed, 64U);
-  EXPECT_EQ(ways.chaos[0].taught, closed);
+  EXPECT_EQ(ways.chaos[0].fitted, closed);
   EXPECT_EQ(ways.left_out, 64 - closed);
 }
 
@@ -131,7 +131,7 @@ TEST(Box, DoesNotDependOnThreads) {
   Judged other = gold();
   for (const int jobs : {1, 3}) {
     other.options.jobs = jobs;
-    const BoxAndChaos ways = other.ways({.closings_per_search = 60, .most_taught = 100});
+    const BoxAndChaos ways = other.ways({.closings_per_search = 60, .most_fitted = 100});
     EXPECT_EQ(ways.closings, gold_ways().closings);
     for (std::size_t i = 0; i < ways.ranges.size(); ++i) {
       EXPECT_EQ(ways.ranges[i].most.values, gold_ways().ranges[i].most.values);
@@ -151,7 +151,7 @@ TEST(BoxAndChaos, EndWhenAskedToStop) {
 TEST(Chaos, AgreesWithTheSampleWhereTheFigureIsSmooth) {
   const FigureChaos& chaos = gold_ways().chaos[0];
   const FigureStatistics& sampled = gold().drive().figures[&Metrics::initial_contact_time];
-  EXPECT_EQ(chaos.taught, 100U);
+  EXPECT_EQ(chaos.fitted, 100U);
   EXPECT_EQ(chaos.unseen, 300U);
   EXPECT_GT(chaos.q2, 0.9999);
   EXPECT_GT(chaos.q2_unseen, 0.999);

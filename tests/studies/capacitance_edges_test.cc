@@ -10,8 +10,8 @@
 #include "model/closing.h"
 #include "model/constants.h"
 #include "studies/inverse/practice_device.h"
-#include "studies/inverse/tuned_scene.h"
 #include "studies/inverse/tuner.h"
+#include "studies/inverse/tuning_model.h"
 #include "tests/studies/scenes.h"
 
 namespace softland {
@@ -98,21 +98,21 @@ TEST(CapacitanceEdges, ABeliefPredictsTheRecordOfThePracticeDevice) {
   SceneFile file = plate();
   const PracticeDevice device(file, {.seed = 4, .laboratory = laboratory});
   laboratory.edge_error = 1e-9;
-  const TunedScene scene(file, {.laboratory = laboratory, .effort = 0.02}, {});
+  const TuningModel scene(file, {.laboratory = laboratory, .effort = 0.02}, {});
   EXPECT_FALSE(scene.is_in_lanes());
   const std::vector<Waveform> step{Step{.level = 110}};
   const PracticeClosing shown = device.close(1, step, scene.hold_time());
   ASSERT_EQ(shown.record.error, "");
-  const ImaginedDevice same{.z = Eigen::VectorXd::Zero(scene.size()), .sampled = device.device()};
-  const std::vector<ImaginedShot> shots{{.device = &same, .waveforms = &step}};
-  const ImaginedClosing imagined = scene.close(shots)[0];
-  ASSERT_TRUE(imagined.is_seen_to_close());
+  const Particle same{.z = Eigen::VectorXd::Zero(scene.size()), .sampled = device.device()};
+  const std::vector<PredictedShot> shots{{.device = &same, .waveforms = &step}};
+  const PredictedClosing predicted = scene.close(shots)[0];
+  ASSERT_TRUE(predicted.is_seen_to_close());
   constexpr double of_tolerance = 1e-4;
-  EXPECT_NEAR(imagined.recorded_touch() / *first_touch(shown.record), 1, of_tolerance);
-  EXPECT_LT(imagined.recorded_touch(), (1 - of_tolerance) * imagined.touch) << "before the contact touches";
-  EXPECT_NEAR(imagined.touch / shown.motion.initial_contact_time, 1, of_tolerance);
+  EXPECT_NEAR(predicted.recorded_touch() / *first_touch(shown.record), 1, of_tolerance);
+  EXPECT_LT(predicted.recorded_touch(), (1 - of_tolerance) * predicted.touch) << "before the contact touches";
+  EXPECT_NEAR(predicted.touch / shown.motion.initial_contact_time, 1, of_tolerance);
   const auto openings_shown = openings(shown.record);
-  const auto seen = imagined.seen();
+  const auto seen = predicted.seen();
   ASSERT_FALSE(seen.openings.empty() || openings_shown.empty());
   EXPECT_NEAR(seen.openings[0].begin / openings_shown[0].begin, 1, of_tolerance);
 }

@@ -283,11 +283,11 @@ TEST(Certify, SaysNothingOfARunThatIsNotDone) {
 TEST(Simulate, AskedToStopWhileItEstimatesErrorsKeepsTheFiguresWithoutThem) {
   const PreparedScene p = prepared_gold("60 us");
   std::atomic<bool> stop{false};
-  const Watch watch{.stop = &stop, .progress = [&](std::string_view what, double part) {
-                      EXPECT_TRUE(part >= 0 && part <= 1) << what;
-                      stop = stop || what.starts_with("closing again");
-                    }};
-  const Closing c = simulate(p, true, watch), first = simulate(p, false);
+  const Progress progress{.stop = &stop, .report = [&](std::string_view what, double part) {
+                            EXPECT_TRUE(part >= 0 && part <= 1) << what;
+                            stop = stop || what.starts_with("closing again");
+                          }};
+  const Closing c = simulate(p, true, progress), first = simulate(p, false);
   EXPECT_TRUE(stop);
   EXPECT_EQ(c.metrics.status, Status::interrupted);
   EXPECT_EQ(c.metrics.impact_velocity, first.metrics.impact_velocity);

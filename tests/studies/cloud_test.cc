@@ -38,19 +38,19 @@ TEST(Cloud, IsTheSameForAnyNumberOfJobs) {
 TEST(Cloud, AskedToStopKeepsTheRunsThatAreComplete) {
   const PreparedScene p =
       prepare(gold({"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V", "simulate.duration=40 us"}));
-  const auto runs = [&](int jobs, std::atomic<bool>& stop, const Watch& watch) {
+  const auto runs = [&](int jobs, std::atomic<bool>& stop, const Progress& progress) {
     return perturbed_closings(p.model, p.signals(), {.duration = p.duration, .tolerance = 1e-10, .stop = &stop}, {.jobs = jobs},
-                              watch);
+                              progress);
   };
   for (const int jobs : {1, 2, 8}) {
     std::atomic<bool> stop = false;
     int told = 0;
-    const Watch watch{.progress = [&](std::string_view, double part) {
+    const Progress progress{.report = [&](std::string_view, double part) {
       EXPECT_GT(part, 0);
       EXPECT_LE(part, 1);
       if (++told == 3) stop = true;
     }};
-    const std::vector<Trajectory> found = runs(jobs, stop, watch);
+    const std::vector<Trajectory> found = runs(jobs, stop, progress);
     EXPECT_LT(found.size(), 16u) << jobs;
     if (jobs == 1) {
       EXPECT_EQ(found.size(), 3u);

@@ -53,11 +53,11 @@ TEST(CycleSearch, LandsEveryCycleSofterThanThePlainPair) {
 TEST(CycleSearch, LeavesASceneOfOneCycle) {
   const CycleSearchResult found = search_cycle(plate(), at(8e3));
   const PreparedScene p = prepare(found.scene.again("best.toml"));
-  const auto command = open_command(p, p.told(p.waveforms()));
+  const auto command = open_command(p, p.commanded(p.waveforms()));
   ASSERT_TRUE(command);
   EXPECT_EQ(command->time, 0.5 / 8e3);
   CycleWaveforms again{.name = "again", .closing = command->held, .opening = {}};
-  for (const Signal& s : p.told(p.waveforms()))
+  for (const Signal& s : p.commanded(p.waveforms()))
     again.opening.push_back(part_from(s, command->time, s.voltage_before(command->time)));
   const Cycles run =
       CycledSwitch(found.given, found.given.model, again).run({.period = 1 / 8e3, .on_time = 0.5 / 8e3, .cycles = 6}, false);
@@ -92,7 +92,7 @@ TEST(CycleSearch, RefusesARateThatNoWaveformFitsInto) {
 
 TEST(CycleSearch, EndsWithWhatItHasWhenItIsStopped) {
   std::atomic<bool> stop = false;
-  const CycleSearchResult found = search_cycle(plate(), at(8e3), {.stop = &stop, .progress = [&](std::string_view what, double) {
+  const CycleSearchResult found = search_cycle(plate(), at(8e3), {.stop = &stop, .report = [&](std::string_view what, double) {
                                                                     if (what == "openings") stop = true;
                                                                   }});
   EXPECT_TRUE(found.interrupted);

@@ -69,7 +69,7 @@ class Devices {
  public:
   Devices(const PreparedScene& nominal, const EnsembleDrive& drive)
       : nominal_(nominal), drive_(drive), ensemble_(nominal, 1), builder_(ensemble_), drives_(nominal) {
-    if (!drive.known.calibration().is_empty()) meter_.emplace(nominal, Gauges::of(drive.known.calibration()), 1e-11);
+    if (!drive.known.calibration().is_empty()) meter_.emplace(nominal, MeasuredQuantities::of(drive.known.calibration()), 1e-11);
   }
 
   std::vector<double> figures(const std::vector<double>& values) {
@@ -101,7 +101,7 @@ class Devices {
   Ensemble ensemble_;
   DeviceBuilder builder_;
   DeviceDrives drives_;
-  std::optional<DeviceMeter> meter_;
+  std::optional<PullInMeter> meter_;
 };
 
 struct Compared {
@@ -164,7 +164,7 @@ Compared compare_random(const Scenes& of, int switches, std::uint64_t seed) {
     if (!setting.is_allowed(waveforms)) continue;
     Calibration calibration;
     if (!of.calibration.empty()) calibration = {.pull_in_error = 0, .frequency_error = 0};
-    const EnsembleDrive drive{.waveforms = setting.drives(waveforms), .known = KnownUnits(calibration)};
+    const EnsembleDrive drive{.waveforms = setting.drives(waveforms), .known = MeasuredUnits(calibration)};
     const Derivatives closes = derivatives(setting.given, drive);
     if (!closes.why_none.empty()) continue;  // the device does not touch
     const int before = all.grazing;
@@ -440,7 +440,7 @@ TEST(Derivatives, SayWhyThereAreNone_optimized) {
   const auto found = [](std::initializer_list<std::string_view> changes, const Calibration& calibration = {}) {
     const PreparedScene p = prepare(gold_at_17_volts(changes));
     EnsembleDrive drive = own_drive(p);
-    if (!calibration.is_empty()) drive.known = known_units(p, std::array{calibration}, 1).front();
+    if (!calibration.is_empty()) drive.known = measured_units(p, std::array{calibration}, 1).front();
     return derivatives(p, drive);
   };
   const std::string thickness = spread_of({"structure.thickness"});

@@ -53,7 +53,7 @@ TEST(OmissibleEffect, IsWhatTheSceneDescribes) {
     if (effect.effect != "electrode.main.dielectric.charge") continue;
     EXPECT_EQ(effect.choice, "1 mC/m^2");
     EXPECT_DOUBLE_EQ(effect.magnitude.value, charged.model.neutral_voltage(0));
-    EXPECT_FALSE(without(charged, {effect}).scene.device.is_charged());
+    EXPECT_FALSE(copy_without(charged, {effect}).scene.device.is_charged());
   }
   EXPECT_THAT(names(omissible_effects(prepare(gold({"surface.elastic_modulus=5 N/m"})))), testing::Contains("surface"));
   EXPECT_THAT(names(omissible_effects(prepare(scene("nem-casimir.toml")))), testing::Not(testing::Contains("dispersion")))
@@ -82,22 +82,23 @@ TEST(OmissibleEffect, ContactAlongThePadGoesBackToItsCentreWhenTold) {
   EXPECT_FALSE(along.automatic);
   // The free end is deeper than the inner end by the tilt 1.5 dt / L over 5 um.
   EXPECT_NEAR(along.magnitude.value, 60e-9, 1e-12);
-  EXPECT_EQ(own(without(p, {along})).initial_contact_time, own(prepare(gold_at_17_volts())).initial_contact_time);
+  EXPECT_EQ(own(copy_without(p, {along})).initial_contact_time, own(prepare(gold_at_17_volts())).initial_contact_time);
 }
 
 TEST(Without, IsTheSceneWithoutTheSectionUnderTheSameVolts) {
   const PreparedScene p = prepare(gold_at_17_volts());
   const std::vector<OmissibleEffect> all = omissible_effects(p);
-  const PreparedScene vacuum = without(p, {all[2]});
+  const PreparedScene vacuum = copy_without(p, {all[2]});
   EXPECT_FALSE(vacuum.scene.device.gas);
   EXPECT_EQ(own(vacuum).initial_contact_time, own(prepare(without(gold_at_17_volts(), "gas"))).initial_contact_time);
-  const PreparedScene bare = without(p, all);
+  const PreparedScene bare = copy_without(p, all);
   EXPECT_EQ(bare.scene.device.electrodes[0].fringing, Fringing::none);
   EXPECT_EQ(bare.model.modes(), 1);
   EXPECT_EQ(bare.signals()[0].hold_level(), 17.771);
   // A level in Vdp keeps the voltage of the scene with all effects.
   const PreparedScene relative = prepare(gold());
-  EXPECT_EQ(without(relative, {omissible_effects(relative)[1]}).signals()[0].hold_level(), relative.signals()[0].hold_level());
+  EXPECT_EQ(copy_without(relative, {omissible_effects(relative)[1]}).signals()[0].hold_level(),
+            relative.signals()[0].hold_level());
 }
 
 constexpr std::string_view parts =
@@ -134,7 +135,7 @@ TEST(Without, APartIsTheSceneThatDoesNotHaveIt) {
   const auto t_i = [](const PreparedScene& p) { return own(p).initial_contact_time; };
   const auto leave_out = [](const PreparedScene& p, const std::string& effect) {
     for (const OmissibleEffect& one : omissible_effects(p)) {
-      if (one.effect == effect) return without(p, {one});
+      if (one.effect == effect) return copy_without(p, {one});
     }
     throw std::logic_error(effect);
   };
@@ -167,7 +168,7 @@ TEST(OmissibleEffect, MayBeABackStopAndTheDampingOfEveryContact) {
   EXPECT_EQ(stop.choice, "linear");
   EXPECT_DOUBLE_EQ(stop.magnitude.value, 1e-6);
   EXPECT_DOUBLE_EQ(stop.group.value, 1);
-  const PreparedScene open = without(p, {stop});
+  const PreparedScene open = copy_without(p, {stop});
   ASSERT_EQ(open.scene.device.contacts.size(), 2u);
   EXPECT_EQ(open.scene.device.contacts[0].side, Side::near);
   EXPECT_EQ(open.scene.device.contacts[1].side, Side::near);
@@ -177,7 +178,7 @@ TEST(OmissibleEffect, MayBeABackStopAndTheDampingOfEveryContact) {
   const std::vector<OmissibleEffect> of_one = omissible_effects(one);
   const auto back = std::ranges::find(of_one, "contact.stop", &OmissibleEffect::effect);
   ASSERT_NE(back, of_one.end());
-  EXPECT_EQ(without(one, {*back}).scene.device.contacts.size(), 1u);
+  EXPECT_EQ(copy_without(one, {*back}).scene.device.contacts.size(), 1u);
 }
 
 TEST(OmissibleEffect, MayBeTheRoughnessOfADielectric) {
@@ -188,7 +189,7 @@ TEST(OmissibleEffect, MayBeTheRoughnessOfADielectric) {
                                       "electrode.main.dielectric", "gas"));
   EXPECT_EQ(all[2].choice, "25 nm");
   EXPECT_NEAR(all[2].group.value, 0.5, 1e-12) << "25 nm of the 50 nm that the dielectric adds to the gap";
-  const PreparedScene smooth = without(p, {all[2]});
+  const PreparedScene smooth = copy_without(p, {all[2]});
   ASSERT_TRUE(smooth.scene.device.electrodes[0].dielectric);
   EXPECT_EQ(smooth.scene.device.electrodes[0].dielectric->roughness, 0);
   EXPECT_LT(own(smooth).initial_contact_time, own(p).initial_contact_time) << "the field is stronger";
@@ -218,7 +219,7 @@ TEST(OmissibleEffect, MayBeTheStretchingOfATableOfModes) {
   EXPECT_EQ(stretching.choice, "12 kN/m");
   EXPECT_NEAR(stretching.group.value, 1, 1e-12) << "a gap of 2 um over a thickness of 2 um";
   EXPECT_TRUE(p.model.stretching());
-  EXPECT_FALSE(without(p, {stretching}).model.stretching());
+  EXPECT_FALSE(copy_without(p, {stretching}).model.stretching());
 }
 
 // The spread of a stress cannot stay when the stress is set to 0.
@@ -229,7 +230,7 @@ TEST(Without, ANumberThatVariesTakesItsSpreadAlong) {
   const std::vector<OmissibleEffect> all = omissible_effects(varied);
   const auto stress = std::ranges::find(all, "structure.residual_stress", &OmissibleEffect::effect);
   ASSERT_NE(stress, all.end());
-  const PreparedScene relaxed = without(varied, {*stress});
+  const PreparedScene relaxed = copy_without(varied, {*stress});
   EXPECT_EQ(part_of<Bridge>(relaxed.scene.device.structure).residual_stress, 0);
 }
 

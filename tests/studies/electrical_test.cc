@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/require.h"
-#include "config/criterion.h"
+#include "config/condition.h"
 #include "model/contact/contact_law.h"
 #include "model/contact/resistance.h"
 #include "studies/closing/resistance_course.h"
@@ -170,7 +170,7 @@ TEST(ElectricalStudies, AConditionOnAFigureThatTheSceneLacksIsRefused) {
   const auto refusal = [](const SceneFile& file, const char* condition) -> std::string {
     try {
       static_cast<void>(search_setting(file, Target::bounce, Actuator::electrostatic, "pulse", {},
-                                       {parse_criterion(condition, conditioned_figures)}));
+                                       {parse_condition(condition, conditioned_figures)}));
     } catch (const InvalidInput& error) {
       return error.what();
     }

@@ -115,7 +115,7 @@ TEST(Ensemble, NeedsASpread) {
   EXPECT_NE(refusal([&] { static_cast<void>(Ensemble(nominal, 10)); }).find("a [spread] section must say"), std::string::npos);
 }
 
-// Returns the pull-in voltage of a device independently of DeviceMeter: by bisection for a step that touches.
+// Returns the pull-in voltage of a device independently of PullInMeter: by bisection for a step that touches.
 double pull_in_by_bisection(const Switch& model, double low, double high) {
   while (high - low > 1e-5 * high) {
     const double middle = (low + high) / 2;
@@ -140,7 +140,7 @@ TEST(Calibration, GivesEveryDeviceTheWaveformInItsOwnUnits) {
     const SampledDevice device = builder.device(k);
     const double volts = pull_in_by_bisection(*device.model, 10, 20) / own;
     const double time = nominal.model.basis().angular_frequencies()[0] / device.model->basis().angular_frequencies()[0];
-    const DeviceUnits units = DeviceMeter(nominal, {.pull_in = true}).exact(*device.model);
+    const DeviceUnits units = PullInMeter(nominal, {.pull_in = true}).exact(*device.model);
     EXPECT_NEAR(units.volts, volts, 3e-5);
     EXPECT_DOUBLE_EQ(units.time, time);
     const Metrics expected = closing(*device.model, {signal(scaled(drive[0], volts, time))});
@@ -156,7 +156,7 @@ TEST(Calibration, ErrsAsMuchAsItsMeasurements) {
   double sum = 0, squares = 0, product = 0;
   constexpr int devices = 4000;
   for (std::uint64_t k = 0; k < devices; ++k) {
-    const DeviceUnits known = DeviceMeter::measured(exact, errors, 3, k);
+    const DeviceUnits known = PullInMeter::measured(exact, errors, 3, k);
     const double by_volts = known.volts / exact.volts - 1, by_time = exact.time / known.time - 1;
     sum += by_volts;
     squares += by_volts * by_volts;
@@ -166,8 +166,8 @@ TEST(Calibration, ErrsAsMuchAsItsMeasurements) {
   EXPECT_NEAR(std::sqrt(squares / devices), 0.01, 4 * 0.01 / std::sqrt(2.0 * devices));
   EXPECT_NEAR(product / devices, 0, 4 * 0.01 * 0.005 / std::sqrt(devices)) << "the two measurements err apart";
   // A quantity that is not measured has the value of the nominal device.
-  EXPECT_EQ(DeviceMeter::measured(exact, {.pull_in_error = 0, .frequency_error = {}}, 1, 5).time, 1);
-  EXPECT_EQ(DeviceMeter::measured(exact, {.pull_in_error = 0, .frequency_error = {}}, 1, 5).volts, exact.volts);
+  EXPECT_EQ(PullInMeter::measured(exact, {.pull_in_error = 0, .frequency_error = {}}, 1, 5).time, 1);
+  EXPECT_EQ(PullInMeter::measured(exact, {.pull_in_error = 0, .frequency_error = {}}, 1, 5).volts, exact.volts);
 }
 
 // Returns the first touch under a step of the only electrode.
@@ -179,7 +179,7 @@ double touch_under(const Switch& model, double volts) {
 
 TEST(Calibration, TellsTheVoltsByAClosingTime) {
   const PreparedScene nominal = prepare(gold_at_17_volts());
-  const DeviceMeter meter(nominal, {.closing_time = true});
+  const PullInMeter meter(nominal, {.closing_time = true});
   const double step = closing_step * meter.pull_in();
   EXPECT_NEAR(meter.closing_time(), touch_under(nominal.model, step), 1e-4 * meter.closing_time());
   EXPECT_NEAR(meter.exact(nominal.model).volts, 1, 1e-4);
@@ -193,7 +193,7 @@ TEST(Calibration, TellsTheVoltsByAClosingTime) {
     EXPECT_NEAR(touch_under(nominal.model, step / units.volts), time, 1e-3 * time) << k;
     const double more = touch_under(nominal.model, step / (1.001 * units.volts));
     EXPECT_NEAR(units.volts_by_time, 0.001 / (more - time), 0.1 * units.volts_by_time) << k;
-    EXPECT_EQ(DeviceMeter::measured(units, {.time_error = 0}, 1, k).volts, units.volts);
+    EXPECT_EQ(PullInMeter::measured(units, {.time_error = 0}, 1, k).volts, units.volts);
   }
 }
 
@@ -202,21 +202,21 @@ TEST(Calibration, ByATimeErrsAsMuchAsTheClock) {
   double squares = 0;
   constexpr int devices = 4000;
   for (std::uint64_t k = 0; k < devices; ++k)
-    squares += std::pow(DeviceMeter::measured(exact, {.time_error = 50e-9}, 3, k).volts / exact.volts - 1, 2);
+    squares += std::pow(PullInMeter::measured(exact, {.time_error = 50e-9}, 3, k).volts / exact.volts - 1, 2);
   EXPECT_NEAR(std::sqrt(squares / devices), 1e-3, 4 * 1e-3 / std::sqrt(2.0 * devices));
 }
 
 // The unit of a piezo is the static deflection per volt: here from 1 mV and -1 mV at rest.
 TEST(Calibration, OfAPiezoIsByWhatAVoltDeflects) {
   const PreparedScene nominal = prepare(gold_pzt());
-  const DeviceMeter meter(nominal, {.piezo = true});
+  const PullInMeter meter(nominal, {.piezo = true});
   const auto unit_of = [](const Switch& model) {
     const auto deflection = [&](double volts) {
       return model.contact_deflection(model.open_equilibrium(std::vector{0.0, volts})->data());
     };
     return std::abs(deflection(1e-3) - deflection(-1e-3)) / 2e-3 / model.device().gap.contact;
   };
-  EXPECT_NEAR(DeviceMeter::piezo_unit(nominal.model), unit_of(nominal.model), 1e-9 * unit_of(nominal.model));
+  EXPECT_NEAR(PullInMeter::piezo_unit(nominal.model), unit_of(nominal.model), 1e-9 * unit_of(nominal.model));
   EXPECT_EQ(meter.exact(nominal.model).piezo, 1);
   const Ensemble ensemble(nominal, 4);
   DeviceBuilder builder(ensemble);
@@ -226,11 +226,11 @@ TEST(Calibration, OfAPiezoIsByWhatAVoltDeflects) {
     EXPECT_GT(std::abs(ratio - 1), 1e-3);
     EXPECT_NEAR(meter.exact(*device.model).piezo, ratio, 1e-8);
   }
-  EXPECT_EQ(DeviceMeter::piezo_unit(prepare(gold()).model), 0);
-  EXPECT_NE(refusal([] { DeviceMeter(prepare(gold()), {.piezo = true}); }).find("piezo cannot be measured: there is no [piezo]"),
+  EXPECT_EQ(PullInMeter::piezo_unit(prepare(gold()).model), 0);
+  EXPECT_NE(refusal([] { PullInMeter(prepare(gold()), {.piezo = true}); }).find("piezo cannot be measured: there is no [piezo]"),
             std::string::npos);
   const PreparedScene still = prepare(gold_pzt({"piezo.d31=0 m/V"}));
-  EXPECT_NE(refusal([&] { DeviceMeter(still, {.piezo = true}); }).find("it does not move the contact point"), std::string::npos);
+  EXPECT_NE(refusal([&] { PullInMeter(still, {.piezo = true}); }).find("it does not move the contact point"), std::string::npos);
 }
 
 // Devices that differ only in their piezo layer have nearly the same closing if they are driven in its unit.
@@ -243,8 +243,9 @@ TEST(Calibration, OfAPiezoUndoesWhatItsLayerDoes) {
   const EnsembleRun run{.duration = nominal.duration};
   const Calibration exact{.pull_in_error = 0, .piezo_error = 0}, without{.pull_in_error = 0};
   const auto outcomes = close_all(ensemble, {{.waveforms = drive, .known = exact}, {.waveforms = drive, .known = without}}, run);
-  const double alone =
-      simulate_closing(nominal.model, nominal.driven(drive), {.duration = run.duration, .tolerance = 1e-9}).touches.front().begin;
+  const double alone = simulate_closing(nominal.model, nominal.applied(drive), {.duration = run.duration, .tolerance = 1e-9})
+                           .touches.front()
+                           .begin;
   for (std::uint64_t k = 0; k < ensemble.size(); ++k) {
     EXPECT_NEAR(outcomes[0][k].metrics.initial_contact_time, alone, 1e-5 * alone) << k;
     EXPECT_GT(std::abs(outcomes[1][k].metrics.initial_contact_time / alone - 1), 1e-4) << k;
@@ -259,7 +260,7 @@ TEST(Calibration, OfAPiezoErrsApartFromWhatElseIsMeasured) {
   double squares = 0, by_volts = 0, by_time = 0;
   constexpr int devices = 4000;
   for (std::uint64_t k = 0; k < devices; ++k) {
-    const DeviceUnits known = DeviceMeter::measured(exact, three, 3, k), others = DeviceMeter::measured(exact, two, 3, k);
+    const DeviceUnits known = PullInMeter::measured(exact, three, 3, k), others = PullInMeter::measured(exact, two, 3, k);
     ASSERT_EQ(known.volts, others.volts);
     ASSERT_EQ(known.time, others.time);
     ASSERT_EQ(others.piezo, 1) << "not measured";
@@ -284,14 +285,14 @@ std::vector<DeviceUnits> grid() {
   return units;
 }
 
-TEST(KnownUnits, AreThoseOfTheCentreOfTheClass) {
-  const KnownUnits own({.pull_in_error = 0, .frequency_error = 0});
+TEST(MeasuredUnits, AreThoseOfTheCentreOfTheClass) {
+  const MeasuredUnits own({.pull_in_error = 0, .frequency_error = 0});
   EXPECT_EQ(own.of({.volts = 1.07, .time = 0.93}).volts, 1.07);
   EXPECT_TRUE(own.classes().empty());
 
-  const KnownUnits sorted({.pull_in_error = 0, .frequency_error = 0, .classes = 4}, grid());
+  const MeasuredUnits sorted({.pull_in_error = 0, .frequency_error = 0, .classes = 4}, grid());
   ASSERT_EQ(sorted.classes().size(), 4U);
-  for (const KnownUnits::Class& one : sorted.classes()) EXPECT_EQ(one.share, 0.25);
+  for (const MeasuredUnits::Class& one : sorted.classes()) EXPECT_EQ(one.share, 0.25);
   constexpr double of_the_mean = 1e-6;  // the centre is a mean of logarithms
   const DeviceUnits centre = sorted.of({.volts = 1.07, .time = 0.85});
   EXPECT_NEAR(centre.volts, 1.1, of_the_mean);
@@ -304,33 +305,33 @@ TEST(KnownUnits, AreThoseOfTheCentreOfTheClass) {
   }
   std::vector<DeviceUnits> both = weak;
   both.insert(both.end(), strong.begin(), strong.end());
-  const KnownUnits by_three({.pull_in_error = 0, .frequency_error = 0, .piezo_error = 0, .classes = 8}, both);
+  const MeasuredUnits by_three({.pull_in_error = 0, .frequency_error = 0, .piezo_error = 0, .classes = 8}, both);
   ASSERT_EQ(by_three.classes().size(), 8U);
   const DeviceUnits of_three = by_three.of({.volts = 1.07, .time = 0.85, .piezo = 0.75});
   EXPECT_NEAR(of_three.volts, 1.1, of_the_mean);
   EXPECT_NEAR(of_three.piezo, 0.7, of_the_mean);
   EXPECT_EQ(centre.piezo, 1) << "not measured";
 
-  const KnownUnits by_volts({.pull_in_error = 0, .classes = 2}, grid());
+  const MeasuredUnits by_volts({.pull_in_error = 0, .classes = 2}, grid());
   EXPECT_NEAR(by_volts.of({.volts = 1.07, .time = 0.85}, 1, 0).volts, 1.1, of_the_mean);
   EXPECT_EQ(by_volts.of({.volts = 1.07, .time = 0.85}, 1, 0).time, 1) << "the frequency is not measured";
-  EXPECT_NE(refusal([] { static_cast<void>(KnownUnits({.pull_in_error = 0, .classes = 2})); }).find("no device"),
+  EXPECT_NE(refusal([] { static_cast<void>(MeasuredUnits({.pull_in_error = 0, .classes = 2})); }).find("no device"),
             std::string::npos);
 }
 
-TEST(KnownUnits, SortWhatIsMeasuredWithItsErrors) {
+TEST(MeasuredUnits, SortWhatIsMeasuredWithItsErrors) {
   const Calibration errors{.pull_in_error = 0.1, .frequency_error = 0.1, .classes = 4};
-  const KnownUnits sorted(errors, grid()), own({.pull_in_error = 0.1, .frequency_error = 0.1});
+  const MeasuredUnits sorted(errors, grid()), own({.pull_in_error = 0.1, .frequency_error = 0.1});
   const DeviceUnits exact{.volts = 1, .time = 1};
   for (std::uint64_t k = 0; k < 20; ++k) EXPECT_EQ(sorted.of(exact, 3, k).volts, sorted.of(own.of(exact, 3, k)).volts) << k;
 }
 
 TEST(Calibration, DrivesADeviceWithTheWaveformOfItsClass) {
   const PreparedScene nominal = prepare(gold_at_17_volts({"simulate.accuracy=1e-3"}));
-  const DeviceMeter meter(nominal, {});  // measuring a frequency needs no closings
+  const PullInMeter meter(nominal, {});  // measuring a frequency needs no closings
   const Calibration sorted{.frequency_error = 0, .classes = 3};
-  const KnownUnits known = known_units(nominal, std::array{sorted}, 1).front();
-  EXPECT_EQ(known_units(nominal, std::array{sorted}, 3).front().classes()[1].centre.time, known.classes()[1].centre.time);
+  const MeasuredUnits known = measured_units(nominal, std::array{sorted}, 1).front();
+  EXPECT_EQ(measured_units(nominal, std::array{sorted}, 3).front().classes()[1].centre.time, known.classes()[1].centre.time);
   ASSERT_EQ(known.classes().size(), 3U);
   const std::vector<Waveform> drive{Step{.level = 17.771, .rise_time = 20e-6}};
   const EnsembleRun run{.duration = nominal.duration, .vectors = Vectors::none};

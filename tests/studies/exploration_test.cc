@@ -284,7 +284,7 @@ TEST(Exploration, TakesItsColumnsFromAStoreOfItsPlan) {
       {.name = "other",
        .check = [](const OtherStudy::Options&) {},
        .record =
-           [&](const SceneFile&, const OtherStudy::Options&, std::uint64_t, int, const Watch&) {
+           [&](const SceneFile&, const OtherStudy::Options&, std::uint64_t, int, const Progress&) {
              ++records;
              return OtherStudy::Record{.status = "done", .numbers = {{"touch.least_time_s", 2e-5}, {"share", 0.5}}};
            }}};

@@ -22,7 +22,7 @@ SearchSetting setting_of(const std::string& scene, Actuator actuator, const std:
 constexpr double tight = 1e-11;
 
 Metrics figures_at(const SearchSetting& s, std::span<const double> x) {
-  const std::vector<Signal> signals = s.given.driven(signals_of(s.drives(s.space.waveforms(x))));
+  const std::vector<Signal> signals = s.given.applied(signals_of(s.drives(s.space.waveforms(x))));
   MetricsObserver observer(s.scale.contact_gap, s.given.scene.metrics);
   ClosingOptions run = s.run_of(signals);
   run.tolerance = tight;
@@ -48,7 +48,9 @@ void compare(const SearchSetting& s, int wanted, std::uint64_t seed, Compared& a
   const std::vector<Variable> variables = s.space.variables();
   std::vector<double> lower, upper;
   for (const Variable& v : variables) lower.push_back(v.lower), upper.push_back(v.upper);
-  const auto signals_at = [&](std::span<const double> at) { return s.given.driven(signals_of(s.drives(s.space.waveforms(at)))); };
+  const auto signals_at = [&](std::span<const double> at) {
+    return s.given.applied(signals_of(s.drives(s.space.waveforms(at))));
+  };
   for (int tried = 0, done = 0; done < wanted && tried < 40 * wanted; ++tried) {
     std::vector<double> x;
     for (const Variable& v : variables) x.push_back(std::lerp(v.lower, v.upper, uniform(random)));
@@ -175,7 +177,7 @@ TEST(Gradient, OfOneFigureIsThatOfAll) {
   const SearchSetting s = setting_of("mem-gold.toml", Actuator::electrostatic, "pulse");
   std::vector<double> x;
   for (const Variable& v : s.space.variables()) x.push_back(std::lerp(v.lower, v.upper, 0.4));
-  const std::vector<Signal> signals = s.given.driven(signals_of(s.drives(s.space.waveforms(x))));
+  const std::vector<Signal> signals = s.given.applied(signals_of(s.drives(s.space.waveforms(x))));
   RecordedMotion tape;
   (void)observe_closing(s.given.model, signals, s.run_of(signals), tape);
   LinearizedClosing motion(s.given.model, signals, tape);
@@ -203,7 +205,7 @@ TEST(Gradient, IsThatOfTheClosingThatWasPricedLast) {
   };
   const std::vector<double> here = at(0.4), elsewhere = at(0.45);
   LastClosing last;
-  EXPECT_EQ(s.price_at(here, nullptr, &last).leading, s.price_at(here).leading);
+  EXPECT_EQ(s.cost_at(here, nullptr, &last).guide, s.cost_at(here).guide);
   EXPECT_EQ(last.x, here);
   const std::vector<double> alone = s.gradient_at(here, Target::bounce);
   ASSERT_TRUE(std::isfinite(alone[0]));
@@ -212,14 +214,14 @@ TEST(Gradient, IsThatOfTheClosingThatWasPricedLast) {
   const auto known = last.closing;
   std::vector<double> outside = here;
   outside[0] = 1e6;
-  (void)s.price_at(outside, nullptr, &last);
+  (void)s.cost_at(outside, nullptr, &last);
   EXPECT_EQ(last.closing, known) << "nothing was closed";
 }
 TEST(Gradient, OfConditionsIsThatOfTheirFigures) {
-  std::vector<Criterion> conditions;
+  std::vector<Condition> conditions;
   for (const char* text :
        {"t_i < 30 us", "v_i <= 20 mm/s", "peak force < 50 uN", "impact energy > 1 pJ", "bounce_count == 0", "B_H < 3 nm"})
-    conditions.push_back(parse_criterion(text, conditioned_figures));
+    conditions.push_back(parse_condition(text, conditioned_figures));
   const SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold.toml");
   SearchSetting s = search_setting(file, Target::bounce, Actuator::electrostatic, "pulse", {}, conditions);
   EXPECT_EQ(s.gradient_refusal(Target::bounce), "");
@@ -236,7 +238,7 @@ TEST(Gradient, OfConditionsIsThatOfTheirFigures) {
       const double h = 1e-6 * (variables[k].upper - variables[k].lower);
       std::vector<double> up = x, down = x;
       up[k] += h, down[k] -= h;
-      const SearchCosts above = s.price_at(up), below = s.price_at(down);
+      const SearchCosts above = s.cost_at(up), below = s.cost_at(down);
       for (std::size_t c = 0; c < 3; ++c) {  // rebounds of such waveforms, and sums over all touches, are chaotic
         const double difference = (above.apart->excess[c] - below.apart->excess[c]) / (2 * h);
         double largest = 0;
@@ -255,7 +257,7 @@ TEST(Gradient, IsRefusedForConditionsWithoutDerivatives) {
   const auto refusal = [](const char* condition) {
     const SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold.toml");
     return search_setting(file, Target::bounce, Actuator::electrostatic, "pulse", {},
-                          {parse_criterion(condition, conditioned_figures)})
+                          {parse_condition(condition, conditioned_figures)})
         .gradient_refusal(Target::bounce);
   };
   EXPECT_EQ(refusal("drive energy < 1 pJ"), "the condition drive energy < 1 pJ has no gradient");

@@ -12,9 +12,9 @@ namespace {
 // The own cost has two valleys, at -0.6 and 0.6. The leading cost has only the right one, which is less deep in the own cost.
 SearchCosts prices(std::span<const double> x) {
   const double u = x[0] - 0.6, v = x[1] - 0.2;
-  const double leading = u * u + v * v;
-  const double own = leading < 0.04 ? std::abs(x[0] - 0.65) + std::abs(x[1] - 0.2) - 1 : 1 + std::abs(x[0] + 0.6);
-  return {.leading = leading, .own = own};
+  const double guide = u * u + v * v;
+  const double own = guide < 0.04 ? std::abs(x[0] - 0.65) + std::abs(x[1] - 0.2) - 1 : 1 + std::abs(x[0] + 0.6);
+  return {.guide = guide, .target = own};
 }
 
 struct StagesLog {
@@ -40,7 +40,7 @@ TEST(GuidedSearch, LogTheOwnCostOfEveryEvaluation) {
   const StagesLog log = search_in_stages({.max_evaluations = 100});
   EXPECT_EQ(log.result.evaluations, 100);
   EXPECT_EQ(log.evaluations.size(), 100U);
-  for (const auto& [index, e] : log.evaluations) EXPECT_EQ(e.value, prices(e.x).own) << index;
+  for (const auto& [index, e] : log.evaluations) EXPECT_EQ(e.value, prices(e.x).target) << index;
   double best = std::numeric_limits<double>::infinity();
   std::vector<long> improving;
   for (const auto& [index, e] : log.evaluations) {
@@ -65,11 +65,11 @@ TEST(GuidedSearch, AreTheSameWhateverTheNumberOfJobs_optimized) {
 
 TEST(GuidedSearch, AreOneWhereTheCostsAreTheSame) {
   const auto bowl = [](std::span<const double> x) {
-    return SearchCosts{.leading = x[0] * x[0] + x[1], .own = x[0] * x[0] + x[1]};
+    return SearchCosts{.guide = x[0] * x[0] + x[1], .target = x[0] * x[0] + x[1]};
   };
   const StagesLog log = search_in_stages({.max_evaluations = 80}, Costs::same, bowl);
   const OptimizerResult alone = minimize({.variables = {{"a", -1, 1}, {"b", -1, 1}},
-                                          .objective = [&](std::span<const double> x) { return bowl(x).own; },
+                                          .objective = [&](std::span<const double> x) { return bowl(x).target; },
                                           .starts = {{-0.6, 0.9}}},
                                          {.max_evaluations = 80});
   EXPECT_EQ(log.result.x, alone.x);
@@ -82,7 +82,7 @@ TEST(GuidedSearch, GoOnFromTheBestPointsWhereNoneHasLandedAndMoreIsGranted) {
   for (const bool lands : {true, false}) {
     const auto bowl = [&](std::span<const double> x) {
       const double cost = x[0] * x[0] + x[1] * x[1];
-      return SearchCosts{.leading = cost, .own = cost, .lands = lands};
+      return SearchCosts{.guide = cost, .target = cost, .lands = lands};
     };
     std::map<long, Evaluation> seen;
     GuidedSearch stages(bowl, [&](const Evaluation& e) { seen.emplace(e.index, e); });
@@ -104,7 +104,7 @@ TEST(GuidedSearch, KnowTheSurestOfThePromisingPoints) {
   const auto next = stages.surest_below(below, {surest->x});
   ASSERT_TRUE(next);
   EXPECT_NE(next->x, surest->x);
-  EXPECT_LE(prices(surest->x).leading, prices(next->x).leading);
+  EXPECT_LE(prices(surest->x).guide, prices(next->x).guide);
   EXPECT_FALSE(stages.surest_below(result.value, {}));
 }
 
@@ -112,7 +112,7 @@ TEST(GuidedSearch, GoOnFromTheBestPointsInAFurtherRun) {
   std::map<long, Evaluation> seen;
   const auto bowl = [](std::span<const double> x) {
     const double cost = x[0] * x[0] + x[1] * x[1];
-    return SearchCosts{.leading = cost, .own = cost};
+    return SearchCosts{.guide = cost, .target = cost};
   };
   GuidedSearch stages(bowl, [&](const Evaluation& e) { seen.emplace(e.index, e); });
   const Problem problem{.variables = {{"a", -1, 1}, {"b", -1, 1}}, .starts = {{-0.6, 0.9}}};
@@ -128,18 +128,18 @@ TEST(GuidedSearch, GoOnFromTheBestPointsInAFurtherRun) {
 TEST(GuidedSearch, FollowOneCostAloneWhereTold) {
   GuidedSearch stages(prices, [](const Evaluation&) {});
   const Problem problem{.variables = {{"a", -1, 1}, {"b", -1, 1}}, .starts = {{-0.6, 0.9}}};
-  const OptimizerResult first = stages.run(problem, {.max_evaluations = 400}, Costs::leading);
+  const OptimizerResult first = stages.run(problem, {.max_evaluations = 400}, Costs::guide);
   EXPECT_EQ(first.evaluations, 400);
-  const auto leading = stages.best(Costs::leading);
-  ASSERT_TRUE(leading);
-  EXPECT_NEAR(leading->cost, 0, 1e-6);
-  EXPECT_EQ(leading->cost, prices(leading->evaluation.x).leading);
-  const OptimizerResult all = stages.run(problem, {.max_evaluations = 400}, Costs::own, 0, 400);
-  const auto own = stages.best(Costs::own);
+  const auto guide = stages.best(Costs::guide);
+  ASSERT_TRUE(guide);
+  EXPECT_NEAR(guide->cost, 0, 1e-6);
+  EXPECT_EQ(guide->cost, prices(guide->evaluation.x).guide);
+  const OptimizerResult all = stages.run(problem, {.max_evaluations = 400}, Costs::target, 0, 400);
+  const auto own = stages.best(Costs::target);
   ASSERT_TRUE(own);
   EXPECT_NEAR(own->cost, -1, 1e-3);
   EXPECT_EQ(all.value, own->cost);
-  EXPECT_LT(own->cost, prices(leading->evaluation.x).own);
+  EXPECT_LT(own->cost, prices(guide->evaluation.x).target);
 }
 
 TEST(GuidedSearch, EndWithTheFirstWhenToldToStop) {
@@ -158,7 +158,7 @@ TEST(GuidedSearch, KeepAnInfeasiblePointAndOneThatThrows) {
   const auto failing = [](std::span<const double> x) -> SearchCosts {
     if (x[0] > 0.5) throw std::runtime_error("too far");
     if (x[0] > 0.2) return {};
-    return {.leading = x[0] * x[0], .own = x[1] * x[1]};
+    return {.guide = x[0] * x[0], .target = x[1] * x[1]};
   };
   const StagesLog log = search_in_stages({.max_evaluations = 600}, Costs::both, failing);
   EXPECT_EQ(log.result.first_exception, "too far");

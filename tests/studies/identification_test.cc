@@ -103,16 +103,16 @@ TEST(Measurements, WithErrorsHaveLessValue_optimized) {
 
 TEST(Measurements, KeepWhatIsJudgedWhenStopped_optimized) {
   std::atomic<bool> stop = false;
-  Watch watch{.stop = &stop, .progress = [&](std::string_view what, double part) {
-                if (what.starts_with("judging") && part > 0.3) stop = true;
-              }};
-  const IdentificationStudy part = identify(recipe(), quick(1), watch);
+  Progress progress{.stop = &stop, .report = [&](std::string_view what, double part) {
+                      if (what.starts_with("judging") && part > 0.3) stop = true;
+                    }};
+  const IdentificationStudy part = identify(recipe(), quick(1), progress);
   EXPECT_TRUE(part.interrupted);
   EXPECT_TRUE(part.predictions.front().is_judged);
   EXPECT_FALSE(part.predictions.back().is_judged);
   EXPECT_TRUE(std::isfinite(part.predictions.back().volts_miss)) << "told, though not judged";
   stop = true;
-  EXPECT_THROW(static_cast<void>(identify(recipe(), quick(1), watch)), Interrupted);
+  EXPECT_THROW(static_cast<void>(identify(recipe(), quick(1), progress)), Interrupted);
 }
 
 // The landing by the piezo is from softland optimize --waveform catch. The devices differ in their layers.

@@ -8,7 +8,7 @@
 #include <iterator>
 #include <limits>
 
-#include "model/ensemble/fleet.h"
+#include "model/ensemble/ensemble_closings.h"
 #include "model/ensemble/lane_drives.h"
 #include "sampling/statistics.h"
 #include "scenes.h"
@@ -28,12 +28,12 @@ std::vector<Vectors> vectors_here() {
   return all;
 }
 
-struct Fleet {
+struct TestEnsemble {
   static constexpr double forever = std::numeric_limits<double>::infinity();
   PreparedScene nominal;
   std::vector<SampledDevice> devices;
 
-  Fleet(const SceneFile& file, std::uint64_t count) : nominal(prepare(file)) {
+  TestEnsemble(const SceneFile& file, std::uint64_t count) : nominal(prepare(file)) {
     const Ensemble ensemble(nominal, count);
     DeviceBuilder builder(ensemble);
     for (std::uint64_t k = 0; k < count; ++k) devices.push_back(builder.device(k));
@@ -59,10 +59,10 @@ struct Fleet {
       void touch(const Touch&) override {}
       void rebound(double, double, double) override {}
     } nobody;
-    std::vector<FleetClosing> closings;
+    std::vector<EnsembleClosing> closings;
     for (const SampledDevice& device : devices)
       closings.push_back({.model = &*device.model, .drives = signals, .duration = nominal.duration, .observer = &nobody});
-    return static_cast<std::size_t>(std::ranges::count_if(close_in_lanes(closings, tolerance, vectors), &FleetEnd::followed));
+    return static_cast<std::size_t>(std::ranges::count_if(close_in_lanes(closings, tolerance, vectors), &EnsembleEnd::followed));
   }
 };
 
@@ -292,13 +292,13 @@ std::vector<Case> cases() {
 TEST(Lanes, CloseAsOneAtATimeDoes) {
   for (const auto& [name, file, looser] : cases()) {
     SCOPED_TRACE(name);
-    const Fleet fleet(file, 40);
-    ASSERT_EQ(why_not_in_lanes(fleet.nominal.model), "");
-    const std::vector<Signal> signals = fleet.nominal.signals();
-    const std::vector<DeviceOutcome> one_by_one = fleet.close(signals, Vectors::none, 1e-6);
+    const TestEnsemble ensemble(file, 40);
+    ASSERT_EQ(why_not_in_lanes(ensemble.nominal.model), "");
+    const std::vector<Signal> signals = ensemble.nominal.signals();
+    const std::vector<DeviceOutcome> one_by_one = ensemble.close(signals, Vectors::none, 1e-6);
     for (const Vectors vectors : vectors_here()) {
-      EXPECT_EQ(fleet.followed(signals, vectors, 1e-6), fleet.devices.size());
-      expect_alike(fleet.close(signals, vectors, 1e-6), one_by_one, looser);
+      EXPECT_EQ(ensemble.followed(signals, vectors, 1e-6), ensemble.devices.size());
+      expect_alike(ensemble.close(signals, vectors, 1e-6), one_by_one, looser);
     }
   }
 }
@@ -308,12 +308,12 @@ TEST(Lanes, CloseAsOneAtATimeDoes) {
 TEST(Lanes, MeasureTheDriveEnergyAsOneAtATimeDoes) {
   for (const auto& [name, file, looser] : cases()) {
     SCOPED_TRACE(name);
-    const Fleet fleet(file, 16);
-    const std::vector<Signal> signals = fleet.nominal.signals();
-    const std::vector<DeviceOutcome> one_by_one = fleet.close(signals, Vectors::none, 1e-9);
+    const TestEnsemble ensemble(file, 16);
+    const std::vector<Signal> signals = ensemble.nominal.signals();
+    const std::vector<DeviceOutcome> one_by_one = ensemble.close(signals, Vectors::none, 1e-9);
     for (const Vectors vectors : vectors_here()) {
       std::vector<double> energies;
-      for (std::size_t k = 0; const DeviceOutcome& o : fleet.close(signals, vectors, 1e-6, true)) {
+      for (std::size_t k = 0; const DeviceOutcome& o : ensemble.close(signals, vectors, 1e-6, true)) {
         const double expected = one_by_one[k++].metrics.drive_energy;
         EXPECT_EQ(std::isnan(o.metrics.drive_energy), std::isnan(expected));
         if (!std::isnan(expected)) energies.push_back(off(o.metrics.drive_energy, expected));
@@ -348,11 +348,11 @@ TEST(Lanes, MeasureTheForceAsOneAtATimeDoes) {
       SCOPED_TRACE(fmt::format("{} {}", &file - files.data(), window));
       SceneFile short_one = file;
       short_one.set(fmt::format("simulate.duration={}", window));
-      const Fleet fleet(short_one, 60);
-      const std::vector<Signal> signals = fleet.nominal.signals();
-      const std::vector<DeviceOutcome> one_by_one = fleet.close(signals, Vectors::none, 1e-8);
+      const TestEnsemble ensemble(short_one, 60);
+      const std::vector<Signal> signals = ensemble.nominal.signals();
+      const std::vector<DeviceOutcome> one_by_one = ensemble.close(signals, Vectors::none, 1e-8);
       for (const Vectors vectors : vectors_here()) {
-        const std::vector<DeviceOutcome> lanes = fleet.close(signals, vectors, 1e-8);
+        const std::vector<DeviceOutcome> lanes = ensemble.close(signals, vectors, 1e-8);
         for (std::size_t k = 0; k < lanes.size(); ++k) {
           SCOPED_TRACE(k);
           const Metrics &a = lanes[k].metrics, &b = one_by_one[k].metrics;
@@ -376,15 +376,15 @@ TEST(Lanes, MeasureTheForceAsOneAtATimeDoes) {
 TEST(Lanes, GiveTheSameBitsWhateverTheirNumberAndCompany) {
   for (const auto& [name, file, looser] : cases()) {
     SCOPED_TRACE(name);
-    Fleet fleet(file, 37);
-    const std::vector<Signal> signals = fleet.nominal.signals();
+    TestEnsemble ensemble(file, 37);
+    const std::vector<Signal> signals = ensemble.nominal.signals();
     std::vector<std::vector<std::string>> all;
     for (const Vectors vectors : vectors_here()) {
-      const std::vector<std::string> together = digits(fleet.close(signals, vectors, 1e-5));
-      Fleet alone = fleet;
-      alone.devices = {fleet.devices[11]};
+      const std::vector<std::string> together = digits(ensemble.close(signals, vectors, 1e-5));
+      TestEnsemble alone = ensemble;
+      alone.devices = {ensemble.devices[11]};
       EXPECT_EQ(digits(alone.close(signals, vectors, 1e-5))[0], together[11]);
-      Fleet reversed = fleet;
+      TestEnsemble reversed = ensemble;
       std::reverse(reversed.devices.begin(), reversed.devices.end());
       std::vector<std::string> back = digits(reversed.close(signals, vectors, 1e-5));
       std::reverse(back.begin(), back.end());
@@ -404,15 +404,15 @@ TEST(LaneDrives, SmoothRunsOfSamplesAndKeepTheirIntegral) {
   std::vector<std::pair<double, double>> points;
   for (int i = 0; i <= 60; ++i) points.emplace_back(1e-6 * i, 20 * std::sin(0.06 * i));
   const Signal drive =
-      driven(Signal::piecewise_linear(points), {.sample_rate = 25e6, .bits = 14, .bandwidth = 1e6}, {.max_voltage = 25}, 1e-3);
-  const std::vector<fleet::LanePiece> exact = fleet::pieces_of(drive);
-  const fleet::SmoothedDrive smooth = fleet::smoothed(exact);
+      applied(Signal::piecewise_linear(points), {.sample_rate = 25e6, .bits = 14, .bandwidth = 1e6}, {.max_voltage = 25}, 1e-3);
+  const std::vector<simd::LanePiece> exact = simd::pieces_of(drive);
+  const simd::SmoothedDrive smooth = simd::smoothed(exact);
   EXPECT_NEAR(smooth.window, 2 / 25e6, 1e-12) << "two samples";
   EXPECT_LT(smooth.pieces.size(), 1.1 * static_cast<double>(exact.size()));
 
   const auto voltage = [&](double time) {
-    const auto after = std::ranges::upper_bound(smooth.pieces, time, {}, &fleet::LanePiece::begin);
-    const fleet::LanePiece& p = *std::prev(after);
+    const auto after = std::ranges::upper_bound(smooth.pieces, time, {}, &simd::LanePiece::begin);
+    const simd::LanePiece& p = *std::prev(after);
     const double s = time - p.begin;
     return p.value + s * (p.slope + s * (p.square + s * p.cube)) + p.tail[0] * std::exp(-p.decay[0] * s);
   };
@@ -433,47 +433,47 @@ TEST(LaneDrives, SmoothRunsOfSamplesAndKeepTheirIntegral) {
 TEST(Lanes, GiveDrivesWithAGainTheBitsOfTheirOwnSignals) {
   for (const auto& [name, file, looser] : cases()) {
     SCOPED_TRACE(name);
-    const Fleet fleet(file, 9);
-    const std::vector<Signal> signals = fleet.nominal.signals();
+    const TestEnsemble ensemble(file, 9);
+    const std::vector<Signal> signals = ensemble.nominal.signals();
     std::vector<Signal> halves;
     for (const Signal& one : signals) halves.push_back(scaled(one, 0.5));
     if (std::ranges::any_of(values_before(signals), [](double volts) { return volts != 0; })) continue;
     std::vector<DeviceClosing> by_gains;
-    for (const SampledDevice& device : fleet.devices) {
-      const double steady = hold_of(*device.model, signals).steady_force(fleet.nominal.scene.metrics);
+    for (const SampledDevice& device : ensemble.devices) {
+      const double steady = hold_of(*device.model, signals).steady_force(ensemble.nominal.scene.metrics);
       by_gains.push_back({.device = &device,
                           .signals = &halves,
                           .gains = std::vector<double>(signals.size(), 2),
-                          .run = {.duration = fleet.nominal.duration, .tolerance = 1e-5, .steady_force = steady}});
+                          .run = {.duration = ensemble.nominal.duration, .tolerance = 1e-5, .steady_force = steady}});
     }
     std::vector<Vectors> all = vectors_here();
     all.push_back(Vectors::none);
     for (const Vectors vectors : all)
-      EXPECT_EQ(digits(close_devices(by_gains, fleet.nominal.scene.metrics, vectors)),
-                digits(fleet.close(signals, vectors, 1e-5)));
+      EXPECT_EQ(digits(close_devices(by_gains, ensemble.nominal.scene.metrics, vectors)),
+                digits(ensemble.close(signals, vectors, 1e-5)));
   }
 }
 
 // All lanes evaluate sines and cubics if one of them has them.
 TEST(Lanes, GiveTheSameBitsBesideOtherDrives) {
   const std::vector<Case> all = cases();
-  const Fleet fleet(gold_at_17_volts(), 9);
+  const TestEnsemble ensemble(gold_at_17_volts(), 9);
   std::vector<std::vector<Signal>> drives;
   for (const Case& one : all)
     if (one.name == "step" || one.name == "dither" || one.name == "spline") drives.push_back(prepare(one.file).signals());
   ASSERT_EQ(drives.size(), 3U);
   std::vector<DeviceClosing> mixed;
-  for (std::size_t k = 0; k < fleet.devices.size(); ++k) {
+  for (std::size_t k = 0; k < ensemble.devices.size(); ++k) {
     const std::vector<Signal>& signals = drives[k % drives.size()];
-    const double steady = hold_of(*fleet.devices[k].model, signals).steady_force(fleet.nominal.scene.metrics);
-    mixed.push_back({.device = &fleet.devices[k],
+    const double steady = hold_of(*ensemble.devices[k].model, signals).steady_force(ensemble.nominal.scene.metrics);
+    mixed.push_back({.device = &ensemble.devices[k],
                      .signals = &signals,
-                     .run = {.duration = fleet.nominal.duration, .tolerance = 1e-5, .steady_force = steady}});
+                     .run = {.duration = ensemble.nominal.duration, .tolerance = 1e-5, .steady_force = steady}});
   }
   for (const Vectors vectors : vectors_here()) {
-    const std::vector<std::string> together = digits(close_devices(mixed, fleet.nominal.scene.metrics, vectors));
+    const std::vector<std::string> together = digits(close_devices(mixed, ensemble.nominal.scene.metrics, vectors));
     for (std::size_t k = 0; k < drives.size(); ++k) {
-      const std::vector<std::string> alike = digits(fleet.close(drives[k], vectors, 1e-5));
+      const std::vector<std::string> alike = digits(ensemble.close(drives[k], vectors, 1e-5));
       for (std::size_t n = k; n < mixed.size(); n += drives.size()) EXPECT_EQ(together[n], alike[n]) << k << " " << n;
     }
   }
@@ -498,11 +498,11 @@ TEST(Lanes, FollowABackStopThatIsTouched) {
   const Trajectory run = observe_closing(p.model, p.signals(), {.duration = p.duration}, seen);
   EXPECT_GT(seen.stop.touches, 0);
   EXPECT_GT(run.first_touch, 85e-6) << "after the swing";
-  const Fleet fleet(stopped->file, 20);
+  const TestEnsemble ensemble(stopped->file, 20);
   constexpr double window = 25e-6;
-  const std::vector<DeviceOutcome> one_by_one = fleet.close(p.signals(), Vectors::none, 1e-6, false, window);
+  const std::vector<DeviceOutcome> one_by_one = ensemble.close(p.signals(), Vectors::none, 1e-6, false, window);
   for (const Vectors vectors : vectors_here()) {
-    const std::vector<DeviceOutcome> lanes = fleet.close(p.signals(), vectors, 1e-6, false, window);
+    const std::vector<DeviceOutcome> lanes = ensemble.close(p.signals(), vectors, 1e-6, false, window);
     for (std::size_t k = 0; k < lanes.size(); ++k) {
       const Metrics &a = lanes[k].metrics, &b = one_by_one[k].metrics;
       EXPECT_LT(off(a.initial_contact_time, b.initial_contact_time), 1e-6);
@@ -535,14 +535,14 @@ TEST(Lanes, LeaveTheRestToOneAtATime) {
       {gold_at_17_volts({"metrics.closed_force=1 uN"}), "a key that says when the connection is electrically closed"}};
   for (const auto& [file, why] : others) {
     SCOPED_TRACE(why);
-    const Fleet fleet(file, 2);
-    EXPECT_EQ(why_not_in_lanes(fleet.nominal.model), why);
-    const std::vector<Signal> signals = fleet.nominal.signals();
+    const TestEnsemble ensemble(file, 2);
+    EXPECT_EQ(why_not_in_lanes(ensemble.nominal.model), why);
+    const std::vector<Signal> signals = ensemble.nominal.signals();
     for (const Vectors vectors : vectors_here())
-      EXPECT_EQ(digits(fleet.close(signals, vectors, 1e-5)), digits(fleet.close(signals, Vectors::none, 1e-5)));
+      EXPECT_EQ(digits(ensemble.close(signals, vectors, 1e-5)), digits(ensemble.close(signals, Vectors::none, 1e-5)));
   }
   // Voltages that press the beam onto the electrode, and an impossible device.
-  Fleet pressed(gold_at_17_volts(), 6);
+  TestEnsemble pressed(gold_at_17_volts(), 6);
   pressed.devices[2] = {.values = {}, .model = {}, .refusal = "none"};
   const std::vector<Signal> signals{Signal::constant(400)};
   const std::vector<DeviceOutcome> one_by_one = pressed.close(signals, Vectors::none, 1e-5);

@@ -14,7 +14,7 @@
 #include "studies/closing/auto_settings.h"
 #include "studies/closing/plain_step.h"
 #include "studies/search/bang_bang.h"
-#include "studies/search/free_flight.h"
+#include "studies/search/first_touch_problem.h"
 #include "studies/search/search_setting.h"
 #include "tests/studies/scenes.h"
 
@@ -189,7 +189,7 @@ TEST(LeastTime, KeepsTheSlewOfTheDriver) {
 TEST(LandingsAtRest, BringAPiezoToRestWithoutJumps_slow) {
   const SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold-pzt.toml");
   const PreparedScene p = prepare_and_choose(file, true);
-  const auto found = landings_at_rest(p, Actuator::pzt, 1.3e-3, {});
+  const auto found = rest_to_rest_starts(p, Actuator::pzt, 1.3e-3, {});
   ASSERT_GE(found.size(), 4U);
   const DriverLimits& limits = p.drives.at("piezo").limits.value();
   const double period = 2 * pi / p.model.basis().angular_frequencies()[0],
@@ -215,7 +215,7 @@ TEST(LandingsAtRest, AreNoneWhereTheFlightIsNotFollowed) {
   const auto of = [](std::initializer_list<const char*> settings) {
     SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold-pzt.toml");
     for (const char* setting : settings) file.set(setting);
-    return landings_at_rest(prepare_and_choose(file, true), Actuator::pzt, 1.3e-3, {}).size();
+    return rest_to_rest_starts(prepare_and_choose(file, true), Actuator::pzt, 1.3e-3, {}).size();
   };
   EXPECT_EQ(of({"structure.modes=5"}), 0U);
   EXPECT_EQ(of({"driver.piezo.bandwidth=2 MHz"}), 0U);
@@ -230,9 +230,9 @@ PreparedScene ramped_plate(const std::string& level) {
 }
 
 // At the contact the pull equals the spring force: a larger pull would press on a plate that comes to rest there.
-TEST(FreeFlight, LandsUnderTheVoltageThatHoldsWithoutPressing) {
+TEST(FirstTouchProblem, LandsUnderTheVoltageThatHoldsWithoutPressing) {
   const PreparedScene p = ramped_plate("100 V");
-  const auto landing = FreeFlight(p, Actuator::electrostatic).landing();
+  const auto landing = FirstTouchProblem(p, Actuator::electrostatic).landing();
   ASSERT_TRUE(landing.has_value());
   const Structure& s = p.scene.device.structure;
   const Gap& gap = p.scene.device.gap;
@@ -261,12 +261,12 @@ TEST(LeastTime, CoastsWhereAChargeLeavesNoField) {
   EXPECT_NEAR(signal(found.waveforms.at("main")).voltage(0.99 * found.time), neutral, 0.5);
 }
 
-TEST(FreeFlight, HasTheSlopesOfACharge) {
+TEST(FirstTouchProblem, HasTheSlopesOfACharge) {
   for (const bool is_ramped : {false, true}) {
     SceneFile file = spring_plate({charged_nitride});
     if (is_ramped) file.set("driver.main.max_slew=20 V/us"), file.set("waveform.main.rise_time=6 us");
     const PreparedScene p = prepare_and_choose(file, true);
-    FreeFlight flight(p, Actuator::electrostatic);
+    FirstTouchProblem flight(p, Actuator::electrostatic);
     ASSERT_EQ(flight.ramps(), is_ramped);
     const Eigen::VectorXd x = Eigen::VectorXd::Constant(2, 0.3), c = Eigen::VectorXd::Constant(1, 0.4),
                           multipliers = Eigen::VectorXd::Constant(2, 0.7), step = Eigen::VectorXd::Constant(1, 1e-4);

@@ -12,7 +12,7 @@
 #include "base/random.h"
 #include "model/constants.h"
 #include "studies/closing/auto_settings.h"
-#include "studies/closing/confirmation.h"
+#include "studies/closing/checking_runs.h"
 #include "studies/search/limit.h"
 #include "studies/search/optimize.h"
 #include "tests/studies/scenes.h"
@@ -121,7 +121,7 @@ TEST(WorstOfModes, IsTheHighestOfTheCostsOfEveryBeam) {
     const Trajectory closing = simulate_closing(setting.given.model, signals, run);
     double fastest = 0;
     for (const Touch& touch : closing.touches) fastest = std::max(fastest, touch.impact_velocity);
-    return setting.price(signals).own + 0.04 * fastest / setting.scale.step.largest_impact_velocity;
+    return setting.price(signals).target + 0.04 * fastest / setting.scale.step.largest_impact_velocity;
   };
   const double own = with_speed(plain);
   double expected = own;
@@ -134,20 +134,20 @@ TEST(WorstOfModes, IsTheHighestOfTheCostsOfEveryBeam) {
       alone.run.closed_potential = closed->potential;
     expected = std::max(expected, with_speed(alone));
   }
-  EXPECT_NEAR(worst.price(signals).own, expected, 1e-9);
+  EXPECT_NEAR(worst.price(signals).target, expected, 1e-9);
   EXPECT_GT(expected, 1.05 * own);
   EXPECT_TRUE(plain.price(signals).lands);
   EXPECT_FALSE(worst.price(signals).lands);
   const auto x = plain.space.parameters(plain.given.drives.waveforms());
   ASSERT_TRUE(x);
-  EXPECT_NEAR(worst.price_at(*x).own, expected, 1e-9);
+  EXPECT_NEAR(worst.cost_at(*x).target, expected, 1e-9);
   EXPECT_FALSE(worst.gradient_refusal(Target::bounce).empty());
 }
 
 TEST(Confirmation, IsByTheIntegratorByRicherBeamsAndByGasLawsWhoseLimitsHold_slow) {
   const auto names = [](const SceneFile& file) {
     std::vector<std::string> all;
-    for (const ConfirmingRun& run : confirm(prepare_and_choose(file, true))) all.push_back(run.name);
+    for (const CheckingRun& run : run_checks(prepare_and_choose(file, true))) all.push_back(run.name);
     return all;
   };
   using Names = std::vector<std::string>;
@@ -191,7 +191,7 @@ TEST(WorstOfModes, LandsThePiezoSwitchWithAnyNumberOfModes_slow) {
     EXPECT_GT(r.evaluations_of_modes, 0);
     EXPECT_LE(r.best->metrics.permanent_contact_time, latest) << length;
     EXPECT_LE(r.best->metrics.impact_velocity, 10e-3) << length;
-    for (const ConfirmingRun& run : r.checks) {
+    for (const CheckingRun& run : r.checks) {
       if (run.varied == Varied::gas) continue;
       EXPECT_EQ(run.metrics.bounce_count, 0) << length << ", " << run.name;
       EXPECT_LE(run.metrics.impact_velocity, 10e-3) << length << ", " << run.name;
@@ -210,7 +210,7 @@ TEST(WorstOfModes, GoesOnWhereALandingBelongsToTheModesOfItsScene) {
   EXPECT_GT(free.evaluations_of_modes, 50) << "half the budget with gentle edges, then the worst of beams";
   EXPECT_EQ(free.best_scene->drives.at("piezo").limits.value().max_slew, std::numeric_limits<double>::infinity())
       << "the driver's own";
-  EXPECT_EQ(free.confirmed, std::ranges::all_of(free.checks, [](const ConfirmingRun& run) {
+  EXPECT_EQ(free.confirmed, std::ranges::all_of(free.checks, [](const CheckingRun& run) {
               return run.varied == Varied::gas || run.metrics.bounce_count == 0;
             }));
 }

@@ -107,7 +107,7 @@ TEST(Optimize, StepsAPiezoThatIsTheOnlyDriveToItsHoldLevel_optimized) {
 TEST(Optimize, FulfilsItsConditionsOrSaysWhichItBreaks_optimized) {
   const std::span<const Figure> figures = conditioned_figures;
   const auto with = [&](const char* condition, long budget) {
-    return search(quick(), {.conditions = {parse_criterion(condition, figures)}}, budget).result;
+    return search(quick(), {.conditions = {parse_condition(condition, figures)}}, budget).result;
   };
   const OptimizeResult impossible = with("t_i < 1 us", 30);
   EXPECT_THAT(impossible.broken_conditions, testing::ElementsAre("t_i < 1 us"));
@@ -377,7 +377,7 @@ TEST(Optimize, IsNoHarderThanAPlainStepThatLands_optimized) {
 TEST(Optimize, MayBeHarderThanAPlainStepThatIsNoAnswer_optimized) {
   const SceneFile file = scenes_whose_step_lands().front();
   const OptimizeResult r = optimize(
-      file, {.conditions = {parse_criterion("t_i < 55 us", conditioned_figures)}, .family = "dual-pulse", .max_evaluations = 40});
+      file, {.conditions = {parse_condition("t_i < 55 us", conditioned_figures)}, .family = "dual-pulse", .max_evaluations = 40});
   ASSERT_TRUE(r.best);
   EXPECT_FALSE(r.plain_step_wins);
 }
@@ -408,7 +408,7 @@ TEST(Optimize, RunsTheBestSoFarToItsEndWhenToldToStop) {
   EXPECT_EQ(r.best->metrics.status, Status::done);
   EXPECT_GT(r.best->metrics.impact_velocity, 0);
   ASSERT_EQ(r.checks.size(), 6U);
-  for (const ConfirmingRun& check : r.checks) EXPECT_EQ(check.metrics.status, Status::done) << check.name;
+  for (const CheckingRun& check : r.checks) EXPECT_EQ(check.metrics.status, Status::done) << check.name;
 }
 
 TEST(Optimize, WarnsOfTheSceneInTheUsersFileAndOnce) {

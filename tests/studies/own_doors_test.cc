@@ -15,9 +15,9 @@
 #include "objectives/own_objective.h"
 #include "studies/closing/simulate.h"
 #include "studies/devices/robustness.h"
-#include "studies/search/for_devices.h"
 #include "studies/search/optimize.h"
 #include "studies/search/robust_cost.h"
+#include "studies/search/robust_search_study.h"
 #include "studies/search/search_setting.h"
 #include "tests/studies/scenes.h"
 #include "waveforms/own_waveform.h"
@@ -81,9 +81,9 @@ TEST(OwnObjective, OfAFigureIsTheTargetOfThatFigure) {
   SearchSetting own = built_in;
   own.target = by(share_of_drive);
   for (const std::vector<double>& x : built_in.space.starts()) {
-    const SearchCosts a = built_in.price_at(x), b = own.price_at(x);
-    EXPECT_EQ(a.own, b.own);
-    EXPECT_EQ(a.leading, b.leading);
+    const SearchCosts a = built_in.cost_at(x), b = own.cost_at(x);
+    EXPECT_EQ(a.target, b.target);
+    EXPECT_EQ(a.guide, b.guide);
   }
 }
 
@@ -128,7 +128,7 @@ TEST(OwnObjective, TakesTheShareOfASumThatItsWeightSays) {
   SearchSetting both = one;
   both.target = sum;
   const std::vector<double> x = one.space.starts().front();
-  EXPECT_NEAR(both.price_at(x).own, one.price_at(x).own, 1e-12 * one.price_at(x).own);
+  EXPECT_NEAR(both.cost_at(x).target, one.cost_at(x).target, 1e-12 * one.cost_at(x).target);
 }
 
 TEST(OwnObjective, ThatDoesNotAskForALandingIsAllThatCounts) {
@@ -141,9 +141,9 @@ TEST(OwnObjective, ThatDoesNotAskForALandingIsAllThatCounts) {
         return 3.0;
       },
       false);
-  const SearchCosts prices = own.price_at(plain.space.starts().front());
-  EXPECT_EQ(prices.own, 0.75);
-  EXPECT_EQ(prices.leading, prices.own);
+  const SearchCosts prices = own.cost_at(plain.space.starts().front());
+  EXPECT_EQ(prices.target, 0.75);
+  EXPECT_EQ(prices.guide, prices.target);
   for (const double known : {seen.initial_contact_time, seen.hold_force, seen.capacitance, seen.peak_voltage, seen.peak_slew,
                              seen.drive_energy, seen.landing_excess})
     EXPECT_TRUE(std::isfinite(known));
@@ -154,9 +154,9 @@ TEST(OwnObjective, ThatIsNegativeIsRefusedAndAnUnknownOneIsInfeasible) {
       search_setting(quick_gold(), by([](const Metrics&, const Metrics&) { return 1.0; }), Actuator::electrostatic, "pulse", {});
   const std::vector<double> x = own.space.starts().front();
   own.target = by([](const Metrics&, const Metrics&) { return -0.1; });
-  EXPECT_EQ(refusal([&] { (void)own.price_at(x); }), "the own objective 'by' gives -0.1; it must be >= 0");
+  EXPECT_EQ(refusal([&] { (void)own.cost_at(x); }), "the own objective 'by' gives -0.1; it must be >= 0");
   own.target = by([](const Metrics&, const Metrics&) { return std::numeric_limits<double>::quiet_NaN(); });
-  EXPECT_EQ(own.price_at(x).own, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(own.cost_at(x).target, std::numeric_limits<double>::infinity());
   EXPECT_EQ(own.gradient_refusal(own.target), "an own objective has no gradient");
   EXPECT_EQ(refusal([] { (void)Aim(std::shared_ptr<const OwnObjective>()); }), "an own objective must not be null");
 }
@@ -237,12 +237,12 @@ TEST(OwnObjective, IsAskedOnceForAllDevicesOfACandidate) {
 }
 
 TEST(OwnObjective, ForDevicesIsRacedAsTheTargetOfItsFigure_slow) {
-  const ForDevicesOptions devices{.verdict = 64, .families = "pulse", .closings = 2000};
+  const RobustSearchOptions devices{.verdict = 64, .families = "pulse", .closings = 2000};
   OptimizeOptions options{.target = Target::drive, .family = "pulse", .max_evaluations = 100, .jobs = 2};
   SceneFile scene = quick_gold();
-  const ForDevicesResult built_in = optimize_for_devices(scene, options, devices);
+  const RobustSearchResult built_in = robust_search(scene, options, devices);
   options.target = by(share_of_drive);
-  const ForDevicesResult own = optimize_for_devices(scene, options, devices);
+  const RobustSearchResult own = robust_search(scene, options, devices);
   EXPECT_EQ(own.drawing.parameters, built_in.drawing.parameters);
   EXPECT_EQ(own.best.plain_step_wins, built_in.best.plain_step_wins);
   ASSERT_EQ(own.rows.size(), built_in.rows.size());
@@ -330,7 +330,7 @@ TEST(OwnWaveform, IsRefusedWhereItDoesNotEndOnTheHoldLevelOrCannotBeWritten) {
   SceneFile file = same.scene;
   EXPECT_EQ(refusal([&] { file.set_waveform("main", own(same.ramp)); }),
             "waveform.main: the own waveform 'own-ramp' cannot be written into a scene file");
-  EXPECT_THAT(refusal([&] { (void)optimize_for_devices(same.scene, {.family = "own-ramp", .own_waveforms = {same.ramp}}, {}); }),
+  EXPECT_THAT(refusal([&] { (void)robust_search(same.scene, {.family = "own-ramp", .own_waveforms = {same.ramp}}, {}); }),
               HasSubstr("own waveforms"));
   SearchSetting setting = search_setting(same.scene, Target::bounce, Actuator::electrostatic, "own-ramp", {}, {}, {same.ramp});
   EXPECT_EQ(setting.gradient_refusal(Target::bounce), "the own waveform 'own-ramp' has no gradient");

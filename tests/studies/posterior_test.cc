@@ -15,7 +15,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-constexpr double rounding = 1e-14;  // of numbers of the order of 1
+constexpr double rounding = 1e-14;  // numbers of the order of 1 are rounded by less
 
 Matrix2d covariance() { return Matrix2d{{4, 1.2}, {1.2, 1}}; }
 

@@ -25,7 +25,7 @@ class Race : public testing::Test {
   explicit Race(const SceneFile& file = gold({"simulate.duration=150 us", "structure.modes=2", "waveform.main.level=18 V",
                                               "driver.main.max_voltage=25 V"}))
       : settings_(search_settings(file, Target::bounce, Actuator::electrostatic, "pulse+catch", {})),
-        cost_(settings_.front(), aims_.tail, own_devices(settings_.front(), KnownUnits(), 32, 5, 0, 1, {})) {}
+        cost_(settings_.front(), aims_.tail, own_devices(settings_.front(), MeasuredUnits(), 32, 5, 0, 1, {})) {}
 
   RaceResult run(RaceOptions options, BudgetLimits limits = {}) {
     options.closings = race_closings / 4;
@@ -34,9 +34,9 @@ class Race : public testing::Test {
     EXPECT_EQ(budget.taken(), found.closings);
     return found;
   }
-  [[nodiscard]] double cost_of(const Racer& racer) const {
-    const SearchSetting& setting = settings_[racer.family];
-    return cost_.value(cost_.close(setting.drives(racer.waveforms), 0, 32, 1), aims_.tail);
+  [[nodiscard]] double cost_of(const Contender& contender) const {
+    const SearchSetting& setting = settings_[contender.family];
+    return cost_.value(cost_.close(setting.drives(contender.waveforms), 0, 32, 1), aims_.tail);
   }
 
   RaceAims aims_{.tail = {.measure = parse_robust_measure("cvar:0.9", device_figures), .conditions = {}},
@@ -77,7 +77,7 @@ class Remembered final : public EvaluationMemory {
 
 TEST_F(Race, EndsWithTheSameBitsWhateverTheJobsAndTheMemory_optimized) {
   const RaceResult one = run({.seed = 3});
-  ASSERT_FALSE(one.racers.empty());
+  ASSERT_FALSE(one.contenders.empty());
   Remembered memory;
   const RaceResult two = run({.seed = 3, .jobs = 2, .memory = &memory});
   EXPECT_GT(memory.noted, 100U);
@@ -87,20 +87,20 @@ TEST_F(Race, EndsWithTheSameBitsWhateverTheJobsAndTheMemory_optimized) {
   const RaceResult again = run({.seed = 3, .jobs = 2, .memory = &memory});
   EXPECT_EQ(memory.noted, noted) << "all is known";
   for (const RaceResult* other : {&two, &again}) {
-    ASSERT_EQ(other->racers.size(), one.racers.size());
+    ASSERT_EQ(other->contenders.size(), one.contenders.size());
     EXPECT_EQ(other->closings, one.closings);
-    for (std::size_t i = 0; i < one.racers.size(); ++i) {
-      EXPECT_EQ(other->racers[i].x, one.racers[i].x) << i;
-      EXPECT_EQ(other->racers[i].measure, one.racers[i].measure) << i;
+    for (std::size_t i = 0; i < one.contenders.size(); ++i) {
+      EXPECT_EQ(other->contenders[i].x, one.contenders[i].x) << i;
+      EXPECT_EQ(other->contenders[i].measure, one.contenders[i].measure) << i;
     }
   }
-  EXPECT_NE(run({.seed = 4}).racers.front().x, one.racers.front().x);
+  EXPECT_NE(run({.seed = 4}).contenders.front().x, one.contenders.front().x);
 }
 
 TEST_F(Race, EndsBetterThanItBegins_optimized) {
   const RaceResult found = run({.seed = 1, .jobs = 2});
   double least = std::numeric_limits<double>::infinity(), of_starts = least;
-  for (const Racer& racer : found.racers) least = std::min(least, cost_of(racer));
+  for (const Contender& contender : found.contenders) least = std::min(least, cost_of(contender));
   for (const SearchSetting& setting : settings_) {
     for (const std::vector<double>& x : setting.space.starts())
       of_starts = std::min(of_starts, cost_.value(cost_.close(setting.drives(setting.space.waveforms(x)), 0, 32, 1), aims_.tail));
@@ -112,14 +112,14 @@ TEST_F(Race, EndsBetterThanItBegins_optimized) {
 
 TEST_F(Race, EndsWhenItIsAskedTo) {
   std::atomic<bool> stop = true;
-  EXPECT_TRUE(run({}, {.stop = &stop}).racers.empty());
-  EXPECT_TRUE(run({}, {.seconds = 0}).racers.empty());
+  EXPECT_TRUE(run({}, {.stop = &stop}).contenders.empty());
+  EXPECT_TRUE(run({}, {.seconds = 0}).contenders.empty());
 }
 
 TEST_F(Race, WithTooFewClosingsIsNotRun) {
   SearchBudget budget({});
   const RaceResult none = race(settings_, cost_, aims_, budget, {.closings = 1000});
-  EXPECT_TRUE(none.racers.empty());
+  EXPECT_TRUE(none.contenders.empty());
   EXPECT_EQ(none.closings, 0);
 }
 
@@ -141,7 +141,7 @@ TEST_F(RaceOfNearlyEqualDevices, TakesLongerUnlessItsClosingsAreABudget_optimize
   const RaceResult longer = run({.seed = 1, .jobs = 2, .progress = note}),
                    shorter = run({.are_a_budget = true, .seed = 1, .jobs = 2});
   EXPECT_GT(static_cast<double>(longer.closings), 1.3 * static_cast<double>(shorter.closings));
-  EXPECT_GT(longer.racers.front().bounce_free, 0.5);
+  EXPECT_GT(longer.contenders.front().bounce_free, 0.5);
   EXPECT_LT(parts[parts.size() * 8 / 10], 0.999) << "what is to come is known";
 }
 

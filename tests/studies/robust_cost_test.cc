@@ -136,7 +136,7 @@ TEST(RobustCost, OfEveryTargetIsKnownOnEveryScene_optimized) {
     ++scenes;
     for (const Target target : every_target) {
       const SearchSetting setting = search_setting(with_keys_for(target, file), target, Actuator::electrostatic, "pulse", {});
-      const KnownUnits known;
+      const MeasuredUnits known;
       for (const char* measure : {"cvar:0.9", "quantile:0.9", "mean+2sigma", "worst"}) {
         const RobustAim aim{.measure = parse_robust_measure(measure, device_figures), .conditions = {}};
         const RobustCost cost(setting, aim, build_all(Ensemble(setting.given, 16, 1), known, 1, 1));

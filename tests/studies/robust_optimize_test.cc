@@ -19,7 +19,7 @@ SceneFile quick() { return gold({"simulate.duration=150 us"}); }
 RobustAim aim(std::string_view measure, std::initializer_list<std::string_view> conditions = {}) {
   const std::span<const Figure> figures = device_figures;
   RobustAim all{.measure = parse_robust_measure(measure, figures), .conditions = {}};
-  for (const std::string_view text : conditions) all.conditions.push_back(parse_criterion(text, figures));
+  for (const std::string_view text : conditions) all.conditions.push_back(parse_condition(text, figures));
   return all;
 }
 

@@ -74,13 +74,13 @@ TEST(SearchBudget, IsWhatAMinimisationTakesAndTells) {
   SearchBudget budget({.evaluations = 30});
   budget.took(5);
   std::vector<double> parts;
-  const Watch watch{.progress = [&](std::string_view what, double part) {
+  const Progress progress{.report = [&](std::string_view what, double part) {
     EXPECT_EQ(what, "points");
     parts.push_back(part);
   }};
   const auto square = [](std::span<const double> x) { return x[0] * x[0]; };
   const OptimizerResult found =
-      minimize_within(budget, {.variables = {{"x", -1, 2}}, .objective = square}, 1, 1, watch, "points");
+      minimize_within(budget, {.variables = {{"x", -1, 2}}, .objective = square}, 1, 1, progress, "points");
   EXPECT_EQ(found.evaluations, 25);
   EXPECT_EQ(budget.left(), 0);
   ASSERT_EQ(parts.size(), 25U);

@@ -87,7 +87,7 @@ void expect_within_limits(const PreparedScene& prepared, Actuator actuator, cons
 int expect_shared_slopes(const PreparedScene& prepared, const std::string& family) {
   const SearchSpace space(prepared, Actuator::both, family, first_touch);
   const auto signals_at = [&](std::span<const double> x) {
-    return prepared.driven(signals_of(prepared.in_drive_order(space.waveforms(x))));
+    return prepared.applied(signals_of(prepared.in_drive_order(space.waveforms(x))));
   };
   std::vector<double> lower, upper;
   for (const Variable& v : space.variables()) lower.push_back(v.lower), upper.push_back(v.upper);

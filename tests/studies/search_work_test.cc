@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "studies/search/for_devices.h"
+#include "studies/search/robust_search_study.h"
 #include "studies/search/search_request.h"
 #include "tests/studies/scenes.h"
 
@@ -91,7 +91,7 @@ SearchEstimate estimate_over_devices(const SceneFile& file) {
   options.on_estimate = [&](const SearchEstimate& estimate) { told = estimate; };
   options.on_start = [](const FamilyColumns&) { throw Enough(); };
   try {
-    (void)optimize_for_devices(file, options, {.families = "knots", .closings = race_closings, .counts_work = true});
+    (void)robust_search(file, options, {.families = "knots", .closings = race_closings, .counts_work = true});
   } catch (const Enough&) {
   }
   return told;
@@ -116,8 +116,8 @@ TEST(SearchWork, OfASlowSceneHasItsTableOfDevices_slow) {
   const SceneFile file = sampled_gold("25 MHz");
   ASSERT_GT(closing_work(setting_of(file)).counted, usual_work(Shaped::electrode)) << "a slow scene";
   const OptimizeOptions options{.family = "pulse", .max_evaluations = 300, .counts_work = true, .seed = 1, .jobs = 2};
-  const ForDevicesResult found =
-      optimize_for_devices(file, options, {.verdict = 200, .families = "catch", .closings = race_closings, .counts_work = true});
+  const RobustSearchResult found =
+      robust_search(file, options, {.verdict = 200, .families = "catch", .closings = race_closings, .counts_work = true});
   ASSERT_GE(found.rows.size(), 3U);
   EXPECT_EQ(found.rows[0].name, "plain step");
   EXPECT_EQ(found.rows[2].name, "for the devices");

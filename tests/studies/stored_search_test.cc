@@ -118,8 +118,8 @@ TEST_F(StoredSearches, KnowAPointOfAFamilyByTheValuesOfAllColumns) {
               testing::ElementsAre(testing::IsNan(), testing::IsNan(), 2, testing::IsNan(), testing::IsNan()));
   {
     EvaluationStore store(file(), {{"a", 1}}, 10, 1, columns, {});
-    store.note({.family = 1, .x = {2}}, {.cost = 0.5, .leading = 0.25});
-    store.note({.family = 0, .x = {2, 3}}, {.cost = 0.75, .leading = 0.25});
+    store.note({.family = 1, .x = {2}}, {.cost = 0.5, .guide = 0.25});
+    store.note({.family = 0, .x = {2, 3}}, {.cost = 0.75, .guide = 0.25});
     EXPECT_EQ(store.recall({.family = 1, .x = {2}})->cost, 0.5);
     EXPECT_FALSE(store.recall({.family = 1, .x = {3}}));
     EXPECT_FALSE(store.recall({.family = 0, .x = {2}}));

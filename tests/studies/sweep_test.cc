@@ -91,12 +91,12 @@ TEST(StaticSweep, GivesThePointsUntilItIsAskedToStop) {
   const Switch model(read_scene(spring_plate()).device);
   std::atomic<bool> stop = false;
   std::vector<double> parts;
-  const Watch watch{.stop = &stop, .progress = [&](std::string_view, double part) {
-                      parts.push_back(part);
-                      stop = part > 0.25;
-                    }};
+  const Progress progress{.stop = &stop, .report = [&](std::string_view, double part) {
+                            parts.push_back(part);
+                            stop = part > 0.25;
+                          }};
   const SweepRange range{.first = 0, .last = 80, .points = 33};
-  const auto cut = static_sweep(model, 0, {}, range, watch);
+  const auto cut = static_sweep(model, 0, {}, range, progress);
   EXPECT_EQ(cut.size(), parts.size());
   EXPECT_LT(cut.size(), 66U);
   const auto whole = static_sweep(model, 0, {}, range);

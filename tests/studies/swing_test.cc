@@ -13,7 +13,7 @@
 #include "scenes.h"
 #include "studies/closing/prepared.h"
 #include "studies/search/bang_bang.h"
-#include "studies/search/joint_swings.h"
+#include "studies/search/joint_rest_to_rest_starts.h"
 
 namespace softland {
 namespace {
@@ -74,7 +74,7 @@ void expect_soft_touches(const PreparedScene& p, const SearchSpace& space, std::
   DriveWaveforms steps;
   for (const DriveSearch& s : space.drives()) steps.emplace(s.drive, Step{.level = s.hold});
   const double of_step = landing(steps).impact_velocity;
-  const auto swings = joint_swings(p, space);
+  const auto swings = joint_rest_to_rest_starts(p, space);
   std::size_t soft = 0;
   for (const auto& swing : swings) {
     EXPECT_EQ(space.misfit(swing), "");
@@ -96,7 +96,7 @@ TEST(JointSwings, OfElectrodesOnBothSidesTouchSoftly) {
 
 TEST(JointSwings, AreNoneOfAnElectrodeAlone) {
   const PreparedScene p = prepare(gold(), true);
-  EXPECT_TRUE(joint_swings(p, SearchSpace(p, Actuator::electrostatic, "catch", 34.3e-6)).empty());
+  EXPECT_TRUE(joint_rest_to_rest_starts(p, SearchSpace(p, Actuator::electrostatic, "catch", 34.3e-6)).empty());
 }
 
 TEST(Swing, IsNoneWhereThePullDoesNotReachTheContact) {

@@ -9,7 +9,7 @@
 
 #include "sampling/statistics.h"
 #include "studies/inverse/practice_device.h"
-#include "studies/inverse/tuned_scene.h"
+#include "studies/inverse/tuning_model.h"
 #include "tests/studies/scenes.h"
 
 namespace softland {
@@ -135,7 +135,7 @@ TEST(Tuners, AClosingNarrowsTheBelief_optimized) {
 
 TEST(Tuners, AtNoLevelMoreThanOneDeviceInAThousandCollapses_optimized) {
   const SceneFile file = gold({"structure.modes=2", "contact.effective_modulus=0.01 GPa", "driver.main.max_voltage=60 V"});
-  const TunedScene scene(file, cheap(), {});
+  const TuningModel scene(file, cheap(), {});
   const double safe = scene.safe_level(NormalBelief::standard(scene.size()));
   ASSERT_LT(safe, scene.nominal().limits(0).max_voltage);
   const Tuner tuner(file, cheap());
@@ -259,12 +259,12 @@ TEST(Tuners, GapsOfAnotherRatioThanTheSceneAreFound_slow) {
 TEST(Tuners, AnEarlierTouchIsFoundWhereItIsAskedFor_optimized) {
   TunerOptions options{.effort = 0.1};
   const Tuner usual(gold_with_two_modes(), options);
-  options.touch = parse_criterion("initial_contact_time < 0.88 step", all_figures);
+  options.touch = parse_condition("initial_contact_time < 0.88 step", all_figures);
   const Tuner bound(gold_with_two_modes(), options);
   constexpr double clearly = 0.985;
   EXPECT_LT(bound.next().predicted.touch_median, clearly * usual.next().predicted.touch_median);
   for (const char* other : {"initial_contact_time > 20 us", "impact_velocity < 1 mm/s"}) {
-    options.touch = parse_criterion(other, all_figures);
+    options.touch = parse_condition(other, all_figures);
     EXPECT_THROW(Tuner(gold_with_two_modes(), options), InvalidInput) << other;
   }
 }
@@ -295,7 +295,7 @@ TEST(Tuners, ARequestedEarlyTouchIsReached_optimized) {
   TunerOptions options = by_piezo();
   options.actuator = Actuator::both;
   EXPECT_EQ(Tuner(gold_pzt_with_two_modes(), options).approach(), Approach::quasi_static);
-  options.touch = parse_criterion("initial_contact_time < 1.5 step", all_figures);
+  options.touch = parse_condition("initial_contact_time < 1.5 step", all_figures);
   EXPECT_EQ(Tuner(gold_pzt_with_two_modes(), options).approach(), Approach::fast);
 }
 

@@ -31,10 +31,10 @@ error = "0.5 %"
 )";
 
 // Options of small studies; a study without an entry has its defaults.
-Told told_of(const std::string& study) {
+Arguments arguments_of(const std::string& study) {
   static const std::string measured = testing::TempDir() + "softland_shown_again_bench.toml";
   std::ofstream(measured) << bench;
-  const std::map<std::string, Told> all{
+  const std::map<std::string, Arguments> all{
       {"pull-in", {{"sweep", {"0 V:20 V:9"}}}},
       {"limit", {}},
       {"release", {{"budget", {"60"}}, {"samples", {"8"}}}},
@@ -43,7 +43,7 @@ Told told_of(const std::string& study) {
       {"fit", {{"data", {measured}}, {"starts", {"2"}}, {"unknown", {"structure.youngs_modulus", "structure.thickness"}}}},
       {"calibrate", {{"samples", {"16"}}, {"steps", {"1.2"}}}}};
   const auto found = all.find(study);
-  return found == all.end() ? Told{} : found->second;
+  return found == all.end() ? Arguments{} : found->second;
 }
 
 // Returns a scene with few modes. The one for `calibrate` has another waveform, since the plain step is no recipe.
@@ -57,19 +57,19 @@ SceneFile scene_of(const std::string& study) {
 }
 
 Outcome outcome_of(const Study& study, const SceneFile& scene) {
-  const Watch watch;
-  return study.ask(told_of(study.name))({.scene = scene,
-                                         .name = "gold.toml",
-                                         .command = "softland " + std::string(study.name) + " gold.toml",
-                                         .watch = watch,
-                                         .prepared =
-                                             [&](bool default_limits) {
-                                               return std::make_shared<const PreparedScene>(
-                                                   prepare_and_choose(scene, default_limits, watch));
-                                             },
-                                         .load = [](const std::string& path) { return SceneFile::load(path); },
-                                         .waveforms_of = {},
-                                         .text = [&] { return scene.text(); }});
+  const Progress progress;
+  return study.ask(arguments_of(study.name))({.scene = scene,
+                                              .name = "gold.toml",
+                                              .command = "softland " + std::string(study.name) + " gold.toml",
+                                              .progress = progress,
+                                              .prepared =
+                                                  [&](bool default_limits) {
+                                                    return std::make_shared<const PreparedScene>(
+                                                        prepare_and_choose(scene, default_limits, progress));
+                                                  },
+                                              .load = [](const std::string& path) { return SceneFile::load(path); },
+                                              .waveforms_of = {},
+                                              .text = [&] { return scene.text(); }});
 }
 
 class EveryStudy : public testing::TestWithParam<const Study*> {};

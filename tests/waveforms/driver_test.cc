@@ -56,13 +56,13 @@ double integrated(const Signal& input, double time_constant, double time) {
 }
 
 TEST(Driver, OfNoModelAppliesTheCommandedVoltage) {
-  const Signal told = signal(Pulse{.levels = {40_V, 0_V}, .times = {20_us}, .edge = 1_us});
-  EXPECT_EQ(driven(told, {}, limits, 1).pieces(), told.pieces());
-  EXPECT_TRUE(driven(Signal(), {.sample_rate = 1e6, .bits = 3}, limits, 1).is_zero()) << "told nothing it gives nothing";
+  const Signal commanded = signal(Pulse{.levels = {40_V, 0_V}, .times = {20_us}, .edge = 1_us});
+  EXPECT_EQ(applied(commanded, {}, limits, 1).pieces(), commanded.pieces());
+  EXPECT_TRUE(applied(Signal(), {.sample_rate = 1e6, .bits = 3}, limits, 1).is_zero()) << "told nothing it gives nothing";
 }
 
 TEST(Driver, OfABandwidthAnswersAStepWithAnExponential) {
-  const Signal out = driven(Signal::constant(40_V), of_time_constant(tau), limits, 1);
+  const Signal out = applied(Signal::constant(40_V), of_time_constant(tau), limits, 1);
   for (const double t : {0.0, 0.1e-6, 1e-6, 5e-6, 30e-6})
     EXPECT_NEAR(out.voltage(t), 40 * (1 - std::exp(-t / tau)), 40 * kDriverRounding) << t;
   EXPECT_EQ(out.voltage(1), 40);
@@ -72,9 +72,9 @@ TEST(Driver, OfABandwidthAnswersAStepWithAnExponential) {
 }
 
 TEST(Driver, ChargesItsLoadThroughItsResistance) {
-  const Signal out = driven(Signal::constant(40_V), {.source_resistance = 1e7, .load = 2e-13}, limits, 1);
+  const Signal out = applied(Signal::constant(40_V), {.source_resistance = 1e7, .load = 2e-13}, limits, 1);
   EXPECT_NEAR(out.voltage(2e-6), 40 * (1 - std::exp(-1.0)), 40 * kDriverRounding);
-  EXPECT_EQ(driven(Signal::constant(40_V), {.source_resistance = 1e7, .load = 0}, limits, 1).pieces(),
+  EXPECT_EQ(applied(Signal::constant(40_V), {.source_resistance = 1e7, .load = 0}, limits, 1).pieces(),
             Signal::constant(40_V).pieces());
 }
 
@@ -91,13 +91,13 @@ TEST(Driver, ChargesWhatLiesBesideItsLoad) {
   constexpr double resistance = 1e6, load = 14e-15, beside = 3e-12, slope = 40 / 40e-6;
   const DriverModel model{.source_resistance = resistance, .parallel_capacitance = beside, .load = load};
   EXPECT_DOUBLE_EQ(model.charging_time(), 3.014e-6);
-  const Signal out = driven(signal(Step{.level = 40_V, .rise_time = 40_us}), model, limits, 1);
+  const Signal out = applied(signal(Step{.level = 40_V, .rise_time = 40_us}), model, limits, 1);
   for (const double t : {0.5e-6, 3e-6, 20e-6})
     EXPECT_NEAR(out.voltage(t), charged(slope, resistance, load + beside, t), 40 * 1e-8) << t;
 }
 
 TEST(Driver, OfABandwidthFollowsARampLateByItsTimeConstant) {
-  const Signal out = driven(signal(Step{.level = 40_V, .rise_time = 40_us}), of_time_constant(tau), limits, 1);
+  const Signal out = applied(signal(Step{.level = 40_V, .rise_time = 40_us}), of_time_constant(tau), limits, 1);
   const double slope = 40 / 40e-6;
   for (const double t : {1e-6, 10e-6, 39e-6})
     EXPECT_NEAR(out.voltage(t), slope * (t - tau * (1 - std::exp(-t / tau))), 40 * kDriverRounding) << t;
@@ -105,8 +105,8 @@ TEST(Driver, OfABandwidthFollowsARampLateByItsTimeConstant) {
 
 TEST(Driver, OfABandwidthTakesThreeDecibelsOfASineOfThatFrequency) {
   const double omega = 1 / tau;
-  const Signal told = signal(Harmonic{.base = 0, .amplitude = 6_V, .angular_frequency = omega});
-  const Signal out = driven(told, of_time_constant(tau), limits, 1);
+  const Signal commanded = signal(Harmonic{.base = 0, .amplitude = 6_V, .angular_frequency = omega});
+  const Signal out = applied(commanded, of_time_constant(tau), limits, 1);
   for (double t = 200e-6; t < 230e-6; t += 1e-6)
     EXPECT_NEAR(out.voltage(t), 6 / std::sqrt(2.0) * std::sin(omega * t - std::numbers::pi / 4), 600 * kDriverRounding) << t;
 }
@@ -132,7 +132,7 @@ TEST(Driver, FiltersEveryFamilyAsItsEquationDoes) {
                                    signal(endless),
                                    signal(sweeping)};
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const Signal out = driven(inputs[i], of_time_constant(tau), limits, 1);
+    const Signal out = applied(inputs[i], of_time_constant(tau), limits, 1);
     // The trapezoidal rule has an error of 1e-6 V, and so have the cubics of sweeping pieces.
     for (const double t : {1e-6, 7e-6, 22e-6, 44e-6, 61e-6})
       EXPECT_NEAR(out.voltage(t), integrated(inputs[i], tau, t), 1e-5) << i << " at " << t;
@@ -144,7 +144,7 @@ TEST(Driver, FiltersEveryFamilyAsItsEquationDoes) {
 TEST(Driver, FiltersACurveThatOutlastsItsTransients) {
   constexpr double quick = 0.1e-6;  // decays long before the end of a piece
   const Signal curve = signal(BSpline{.levels = {0, 40, 1, 7, 30}, .duration = 50_us});
-  const Signal out = driven(curve, of_time_constant(quick), limits, 1);
+  const Signal out = applied(curve, of_time_constant(quick), limits, 1);
   EXPECT_GT(out.pieces().size(), curve.pieces().size());
   for (const double t : {6e-6, 13e-6, 24e-6, 31e-6, 49e-6}) EXPECT_NEAR(out.voltage(t), integrated(curve, quick, t), 1e-5) << t;
 }
@@ -157,7 +157,7 @@ TEST(Driver, OfBandwidthAndResistanceHasTwoPoles) {
     DriverModel model = of_time_constant(a);
     model.load = 1e-12;
     model.source_resistance = second / model.load;
-    return driven(Signal::constant(1_V), model, limits, 1);
+    return applied(Signal::constant(1_V), model, limits, 1);
   };
   for (const double t : {0.3e-6, 2e-6, 9e-6, 40e-6, 85e-6}) {
     EXPECT_NEAR(out(b).voltage(t), 1 - (a * std::exp(-t / a) - b * std::exp(-t / b)) / (a - b), kDriverRounding) << t;
@@ -167,21 +167,21 @@ TEST(Driver, OfBandwidthAndResistanceHasTwoPoles) {
 }
 
 TEST(Driver, HoldsEverySampleUntilTheNextOne) {
-  const Signal told = signal(Step{.level = 40_V, .rise_time = 10_us});
-  const Signal out = driven(told, {.sample_rate = 1e6}, limits, 1);
-  for (double t = 0.05e-6; t < 15e-6; t += 0.1e-6) EXPECT_EQ(out.voltage(t), told.voltage(std::floor(t * 1e6) / 1e6)) << t;
+  const Signal commanded = signal(Step{.level = 40_V, .rise_time = 10_us});
+  const Signal out = applied(commanded, {.sample_rate = 1e6}, limits, 1);
+  for (double t = 0.05e-6; t < 15e-6; t += 0.1e-6) EXPECT_EQ(out.voltage(t), commanded.voltage(std::floor(t * 1e6) / 1e6)) << t;
   EXPECT_EQ(out.hold_level(), 40);
 }
 
 TEST(Driver, RoundsSamplesToHalfAStep) {
-  const Signal told = signal(Harmonic{.base = 20_V, .amplitude = 17_V, .angular_frequency = 1e5, .end = 80_us});
-  const Signal out = driven(told, {.sample_rate = 10e6, .bits = 6}, limits, 1);
+  const Signal commanded = signal(Harmonic{.base = 20_V, .amplitude = 17_V, .angular_frequency = 1e5, .end = 80_us});
+  const Signal out = applied(commanded, {.sample_rate = 10e6, .bits = 6}, limits, 1);
   const double step = 60.0 / 63;
   double worst = 0;
   for (int k = 0; k < 900; ++k) {
     const double t = k / 10e6, volts = out.voltage(t), code = (volts + 10) / step;
     EXPECT_NEAR(code, std::round(code), 1e-9) << t;
-    worst = std::max(worst, std::abs(volts - told.voltage(t)));
+    worst = std::max(worst, std::abs(volts - commanded.voltage(t)));
   }
   EXPECT_LE(worst, step / 2 * (1 + 1e-9));
   EXPECT_GT(worst, step / 3);
@@ -189,26 +189,26 @@ TEST(Driver, RoundsSamplesToHalfAStep) {
 
 TEST(Driver, WithSamplesAndBitsIsIdempotent) {
   const DriverModel model{.sample_rate = 3e6, .bits = 8};
-  const Signal told = signal(BSpline{.levels = {0, 40, 1, 7, 30}, .duration = 50_us});
-  const Signal once = driven(told, model, limits, 1);
-  EXPECT_EQ(driven(once, model, limits, 1).pieces(), once.pieces());
+  const Signal commanded = signal(BSpline{.levels = {0, 40, 1, 7, 30}, .duration = 50_us});
+  const Signal once = applied(commanded, model, limits, 1);
+  EXPECT_EQ(applied(once, model, limits, 1).pieces(), once.pieces());
   EXPECT_GT(once.pieces().size(), 50U);
 }
 
 TEST(Driver, GoesFromSampleToSampleNoFasterThanItsSlewLimit) {
   DriverLimits slow = limits;
   slow.max_slew = 5e6;
-  const Signal told = signal(Step{.level = 40_V, .rise_time = 10_us});  // 4 V/us
-  const Signal out = driven(told, {.sample_rate = 1e6}, slow, 1);
+  const Signal commanded = signal(Step{.level = 40_V, .rise_time = 10_us});  // 4 V/us
+  const Signal out = applied(commanded, {.sample_rate = 1e6}, slow, 1);
   EXPECT_NEAR(out.peak_slew(), 5e6, 5e6 * 1e-9);
   EXPECT_NEAR(out.voltage(3.5e-6), 8 + 5 * 0.5, 40 * kDriverRounding);
   EXPECT_NEAR(out.voltage(3.9e-6), 12, 40 * kDriverRounding);
   // At the slew limit a jump takes several samples.
-  const Signal jump = driven(Signal::constant(40_V), {.sample_rate = 1e6}, slow, 1);
+  const Signal jump = applied(Signal::constant(40_V), {.sample_rate = 1e6}, slow, 1);
   EXPECT_NEAR(jump.voltage(4e-6), 20, 40 * kDriverRounding);
   EXPECT_NEAR(jump.voltage(8e-6), 40, 40 * kDriverRounding);
   EXPECT_EQ(jump.hold_level(), 40);
-  const Signal two = driven(signal(Pulse{.levels = {40_V, 10_V}, .times = {3_us}}), {.sample_rate = 1e6}, slow, 1);
+  const Signal two = applied(signal(Pulse{.levels = {40_V, 10_V}, .times = {3_us}}), {.sample_rate = 1e6}, slow, 1);
   EXPECT_NEAR(two.voltage(2.9e-6), 14.5, 40 * kDriverRounding);
   EXPECT_NEAR(two.voltage(3.5e-6), 12.5, 40 * kDriverRounding);
   EXPECT_NEAR(two.voltage(4.1e-6), 10, 40 * kDriverRounding);
@@ -217,18 +217,18 @@ TEST(Driver, GoesFromSampleToSampleNoFasterThanItsSlewLimit) {
 TEST(Driver, FollowsARampAsSteepAsItsSlewLimitLateByASample) {
   DriverLimits slow = limits;
   slow.max_slew = 5e6;
-  const Signal out = driven(signal(Step{.level = 40_V, .rise_time = 8_us}), {.sample_rate = 1e6}, slow, 1);
+  const Signal out = applied(signal(Step{.level = 40_V, .rise_time = 8_us}), {.sample_rate = 1e6}, slow, 1);
   for (double t = 1.3e-6; t < 9e-6; t += 0.4e-6) EXPECT_NEAR(out.voltage(t), 5e6 * (t - 1e-6), 40 * kDriverRounding) << t;
 }
 
 TEST(Driver, FiltersHeldSamplesExactly) {
-  const Signal told = signal(Step{.level = 40_V, .rise_time = 10_us});
+  const Signal commanded = signal(Step{.level = 40_V, .rise_time = 10_us});
   DriverModel model = of_time_constant(tau);
   model.sample_rate = 1e6;
-  const Signal out = driven(told, model, limits, 1);
+  const Signal out = applied(commanded, model, limits, 1);
   double expected = 0;
   for (int k = 0; k < 10; ++k) {
-    const double input = told.voltage(k / 1e6);
+    const double input = commanded.voltage(k / 1e6);
     expected = input + (expected - input) * std::exp(-1e-6 / tau);
     EXPECT_NEAR(out.voltage((k + 1) / 1e6), expected, 40 * kDriverRounding) << k;
   }
@@ -236,10 +236,10 @@ TEST(Driver, FiltersHeldSamplesExactly) {
 
 TEST(Driver, SamplesASineThatNeverEndsUpToTheEnd) {
   const Signal endless = signal(Harmonic{.base = 3_V, .amplitude = 2_V, .angular_frequency = 1e6});
-  const Signal out = driven(endless, {.sample_rate = 10e6}, limits, 50_us);
+  const Signal out = applied(endless, {.sample_rate = 10e6}, limits, 50_us);
   EXPECT_EQ(out.voltage(49.95_us), endless.voltage(499 / 10e6));
   EXPECT_EQ(out.hold_level(), 3);
-  test::expect_invalid([&] { (void)driven(endless, {.sample_rate = 1e12}, limits, 1); },
+  test::expect_invalid([&] { (void)applied(endless, {.sample_rate = 1e12}, limits, 1); },
                        {"has 1000000000000 samples", "it must have at most 10000000"});
 }
 
@@ -248,32 +248,32 @@ TEST(Driver, AppliesTheCommandedVoltageBeforeItBegins) {
   const DriverModel sampled{.sample_rate = 1e6}, filtered = of_time_constant(tau), charging{.source_resistance = 1, .load = tau};
   const DriverModel all{.sample_rate = 1e6, .bits = 12, .bandwidth = filtered.bandwidth, .source_resistance = 1, .load = tau};
   for (const DriverModel& model : {sampled, filtered, charging, all}) {
-    const Signal still = driven(stands, model, limits, 1), output = driven(rises, model, limits, 1);
+    const Signal still = applied(stands, model, limits, 1), output = applied(rises, model, limits, 1);
     EXPECT_EQ(output.before(), 20_V);
     // Twelve bits round by 7 mV.
     for (const double time : {0.0, 1e-6, 1e-4}) EXPECT_NEAR(still.voltage(time), 20_V, 8e-3);
     EXPECT_NEAR(output.voltage(1), 40_V, 8e-3);
   }
-  EXPECT_NEAR(driven(rises, filtered, limits, 1).voltage(tau), 40 - 20 * std::exp(-1), 1e-9);
+  EXPECT_NEAR(applied(rises, filtered, limits, 1).voltage(tau), 40 - 20 * std::exp(-1), 1e-9);
   const DriverLimits slow{.min_voltage = -10, .max_voltage = 50, .max_slew = 1e6};
-  EXPECT_NEAR(driven(rises, sampled, slow, 1).voltage(10e-6), 30_V, 1e-9) << "at 1 V/us from where it stood";
+  EXPECT_NEAR(applied(rises, sampled, slow, 1).voltage(10e-6), 30_V, 1e-9) << "at 1 V/us from where it stood";
 }
 
 // The converter samples the commanded voltage. Gain, offset and delay act after the converter and before the filters.
 TEST(Driver, AppliesItsErrorsAfterItsConverterAndBeforeItsFilters) {
-  const Signal told = signal(Step{.level = 40_V, .rise_time = 10_us});
+  const Signal commanded = signal(Step{.level = 40_V, .rise_time = 10_us});
   DriverModel model = of_time_constant(tau);
   model.sample_rate = 1e6;
   model.bits = 4;
   const SourceErrors errors{.gain = 1.1, .offset = 0.5, .delay = 0.3e-6};
-  const Signal samples = held(told, model, limits, 1);
-  EXPECT_EQ(driven(told, model, limits, 1, errors).pieces(),
+  const Signal samples = held(commanded, model, limits, 1);
+  EXPECT_EQ(applied(commanded, model, limits, 1, errors).pieces(),
             internal::filtered(with_errors(samples, errors), 1 / (2 * std::numbers::pi * *model.bandwidth)).pieces());
-  EXPECT_EQ(driven(told, model, limits, 1, {}).pieces(), driven(told, model, limits, 1).pieces());
+  EXPECT_EQ(applied(commanded, model, limits, 1, {}).pieces(), applied(commanded, model, limits, 1).pieces());
   model.bandwidth.reset();
-  EXPECT_GT(driven(Signal::constant(limits.max_voltage), model, limits, 1, errors).maximum(), limits.max_voltage)
+  EXPECT_GT(applied(Signal::constant(limits.max_voltage), model, limits, 1, errors).maximum(), limits.max_voltage)
       << "an amplifier gives more than is asked for";
-  EXPECT_EQ(driven(Signal(), model, limits, 1, errors).hold_level(), 0.5) << "told nothing it gives its offset";
+  EXPECT_EQ(applied(Signal(), model, limits, 1, errors).hold_level(), 0.5) << "told nothing it gives its offset";
 }
 
 const std::vector<std::pair<const char*, Waveform>>& of_every_family() {
@@ -304,14 +304,14 @@ TEST(Driver, SamplesItsOwnSamplesToTheSameBits) {
     int which = 0;
     for (const DriverModel& model : converters()) {
       SCOPED_TRACE(std::string(name) + ", source " + std::to_string(which++));
-      const Signal told = signal(waveform), samples = told_samples(told, model, limits, end);
+      const Signal commanded = signal(waveform), samples = commanded_samples(commanded, model, limits, end);
       const std::string file = csv({{"main", samples}}, end, {{"main", *model.sample_rate}});
       const Table again = parse_table(file, "again.csv", "main");
       for (std::size_t k = 0; k < again.time.size(); ++k) ASSERT_EQ(again.time[k], static_cast<double>(k) / *model.sample_rate);
       EXPECT_EQ(again.voltage.back(), samples.hold_level());
       const SourceErrors errors{.gain = 1.02, .offset = 0.1, .delay = 33e-9};
       for (const SourceErrors& own : {SourceErrors{}, errors}) {
-        EXPECT_EQ(driven(signal(again), model, limits, end, own).pieces(), driven(told, model, limits, end, own).pieces());
+        EXPECT_EQ(applied(signal(again), model, limits, end, own).pieces(), applied(commanded, model, limits, end, own).pieces());
       }
       if (!model.bits) continue;
       const std::string integers = codes({{"main",
@@ -345,10 +345,10 @@ TEST(Driver, SamplesItsOwnSamplesToTheSameBits) {
 TEST(Driver, PermitsTheSamplesOfAPermittedSignal) {
   const DriverLimits slow{.min_voltage = -10, .max_voltage = 50, .max_slew = 20e6};
   const DriverModel coarse{.sample_rate = 25e6, .bits = 8};
-  const Signal told = signal(Step{.level = 37_V, .rise_time = 37 / 20e6});
-  ASSERT_EQ(violation(told, slow), "");
+  const Signal commanded = signal(Step{.level = 37_V, .rise_time = 37 / 20e6});
+  ASSERT_EQ(violation(commanded, slow), "");
   const Signal samples =
-      signal(parse_table(csv({{"main", told_samples(told, coarse, slow, 1e-5)}}, 1e-5, {{"main", 25e6}}), "x", "main"));
+      signal(parse_table(csv({{"main", commanded_samples(commanded, coarse, slow, 1e-5)}}, 1e-5, {{"main", 25e6}}), "x", "main"));
   EXPECT_NE(violation(samples, slow), "");
   EXPECT_EQ(violation(samples, limits_of_samples(slow, coarse)), "");
   EXPECT_EQ(limits_of_samples(slow, {.bandwidth = 1e6}).max_slew, slow.max_slew);

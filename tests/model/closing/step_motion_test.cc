@@ -225,21 +225,21 @@ TEST(TouchRecord, TakesThePeakBetweenTheKnots) {
   EXPECT_NEAR(record.last().peak_energy, contact_energy(gold().contact(), 5_nm), 1e-5 * record.last().peak_energy);
 }
 
-TEST(Course, HandsOverInOrderAndTakesBackWhatAnEventOvertook) {
+TEST(PendingKnots, HandsOverInOrderAndTakesBackWhatAnEventOvertook) {
   Listener listener;
-  Course course(gold().device(), 0, listener);
-  course.push({.time = 0});
-  course.hand_over();
-  for (const double t : {1.0, 2.0, 3.0}) course.push({.time = t});
-  course.take_back(2, 0);
-  EXPECT_EQ(course.last().time, 1);
-  course.take_back(0, 1);
-  EXPECT_EQ(course.last().time, 1) << "where the step begins stays";
-  course.push({.time = 1.5});
-  course.last_waiting().time = 1.6;
-  course.hand_over();
+  PendingKnots pending_knots(gold().device(), 0, listener);
+  pending_knots.push({.time = 0});
+  pending_knots.hand_over();
+  for (const double t : {1.0, 2.0, 3.0}) pending_knots.push({.time = t});
+  pending_knots.take_back(2, 0);
+  EXPECT_EQ(pending_knots.last().time, 1);
+  pending_knots.take_back(0, 1);
+  EXPECT_EQ(pending_knots.last().time, 1) << "where the step begins stays";
+  pending_knots.push({.time = 1.5});
+  pending_knots.last_waiting().time = 1.6;
+  pending_knots.hand_over();
   EXPECT_EQ(listener.times, (std::vector{0.0, 1.0, 1.6}));
-  EXPECT_EQ(course.last().time, 1.6);
+  EXPECT_EQ(pending_knots.last().time, 1.6);
 }
 
 }  // namespace

@@ -1,0 +1,51 @@
+// Reads from text what a search under process variation minimises or requires: a statistic ("cvar:0.9"), or a condition on a
+// figure of merit ("permanent_contact_time < 60 us").
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "objectives/figures.h"
+#include "sampling/risk.h"
+
+namespace softland {
+
+enum class Comparison { below, at_most, equal, at_least, above };
+
+/// A condition on a figure of one closing.
+struct Condition {
+  Figure figure;
+  Comparison comparison = Comparison::below;
+  double limit = 0;      ///< limit [SI unit of the figure, or a factor on the figure of the plain step]
+  std::string text;      ///< the text as given
+  bool of_step = false;  ///< true if the limit is a factor on the figure of the plain step: see beside_step()
+
+  /// Returns the violation relative to the limit (absolute if the limit is 0); 0 or less if the condition holds. Returns
+  /// infinity for a value that is not finite, as a failed closing has.
+  [[nodiscard]] double violation(double value) const;
+  [[nodiscard]] bool holds(double value) const;
+};
+
+/// Reads a condition such as "t_p < 60 us", or one relative to the plain step such as "t_i < 3 step". Throws InvalidInput with
+/// the broken rule.
+[[nodiscard]] Condition parse_condition(std::string_view text, std::span<const Figure> figures);
+
+/// Makes the limit of a condition relative to the plain step absolute; `of_step` is the figure of the step. Throws InvalidInput
+/// if the step does not have the figure, or if it is 0.
+[[nodiscard]] Condition beside_step(Condition condition, double of_step);
+
+/// The statistic over simulated devices that a search minimises.
+struct RobustMeasure {
+  Risk risk;  ///< statistic of the cost of a closing; with `yield`, over the devices that violate that condition
+  std::optional<Condition> yield;  ///< condition that as many devices as possible shall fulfil
+  std::string text;                ///< the text as given
+};
+
+/// Reads cvar:LEVEL, quantile:LEVEL, mean+Ksigma, worst, yield:CONDITION, yield (no significant rebound). Throws InvalidInput
+/// with the broken rule.
+[[nodiscard]] RobustMeasure parse_robust_measure(std::string_view text, std::span<const Figure> figures);
+
+}  // namespace softland

@@ -1,0 +1,10 @@
+// Compiled for processors with AVX2 and FMA alone: see ensemble_closings.cc.
+#include "model/ensemble/simd_closings.h"
+
+namespace softland::simd {
+
+void run_avx2(const LaneLayout& layout, LaneClosing* closings, std::size_t count) {
+  run_in<std::experimental::simd<double, std::experimental::simd_abi::deduce_t<double, 4>>>(layout, closings, count);
+}
+
+}  // namespace softland::simd

@@ -1,0 +1,211 @@
+#include "reports/closing_prose.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "document/quantity.h"
+
+namespace softland::internal {
+namespace {
+
+/// A figure is quoted with "about" beyond this estimated error: half a bounce, one per cent of a time. An unknown error counts
+/// as beyond after more than a few rebounds.
+constexpr double doubtful_count = 0.5;
+constexpr double doubtful_time = 0.01;
+constexpr double few_rebounds = 5;
+
+std::string times_word(double count) { return count == 1 ? "once" : whole(count) + " times"; }
+
+std::string closes(const Actor& actor, const std::string& how) {
+  return actor.object.empty() ? fmt::format("{} closes {}", actor.subject, how)
+                              : fmt::format("{} closes {} {}", actor.subject, actor.object, how);
+}
+
+/// Returns the words for the moving switch: "the switch", or "with the plain step it" for a waveform that moves it.
+std::string moving(const Actor& actor) {
+  return actor.object.empty() ? actor.subject : fmt::format("with {} {}", actor.subject, actor.object);
+}
+
+bool doubtful(const FigureValues& figures, double error, double limit) {
+  return std::isfinite(error) ? error > limit : figures[&Metrics::bounce_count] > few_rebounds;
+}
+
+/// Returns "bounces about 79 times".
+std::string bounces(const FigureValues& figures, const FigureValues& errors) {
+  const bool about = doubtful(figures, errors[&Metrics::bounce_count], doubtful_count);
+  return fmt::format("bounces {}{}", about ? "about " : "", times_word(figures[&Metrics::bounce_count]));
+}
+
+/// Returns the settling time, with "about" where it is doubtful.
+std::string settling(const FigureValues& figures, const FigureValues& errors) {
+  const double settled = figures[&Metrics::permanent_contact_time];
+  const double error = errors[&Metrics::permanent_contact_time];
+  return (doubtful(figures, error, doubtful_time * settled) ? "about " : "") + quantity_within(settled, error, "s");
+}
+
+std::string first_touch(const FigureValues& figures) { return quantity(figures[&Metrics::initial_contact_time], "s"); }
+std::string impact(const FigureValues& figures) {
+  return "an impact velocity of " + quantity(figures[&Metrics::impact_velocity], "m/s");
+}
+
+/// Returns the smallest distance to the contact plane [m] of a run that never touched; NaN without its curve.
+double closest(const CurveRecord& curve) {
+  double least = std::numeric_limits<double>::quiet_NaN();
+  for (const double gap : curve.gap) least = std::fmin(least, gap);
+  return least;
+}
+
+}  // namespace
+
+bool touches(const FigureValues& figures) { return std::isfinite(figures[&Metrics::initial_contact_time]); }
+
+bool settles(const FigureValues& figures) {
+  return figures[&Metrics::settled] != 0 && std::isfinite(figures[&Metrics::permanent_contact_time]);
+}
+
+bool ends_at_touch(const FigureValues& figures) { return touches(figures) && !std::isfinite(figures[&Metrics::bounce_count]); }
+
+bool touches_in_part(const RunRecord& run) { return run.figures && run.status == "not_settled" && ends_at_touch(*run.figures); }
+
+bool began_closed(const RunRecord& run) {
+  if (!run.figures || touches(*run.figures)) return false;
+  return run.status == "not_settled" || (run.status == "done" && std::isfinite((*run.figures)[&Metrics::open_settling_time]));
+}
+
+bool is_clean(const FigureValues& figures) {
+  return touches(figures) && settles(figures) && figures[&Metrics::bounce_count] == 0;
+}
+
+double rebound_height(const FigureValues& figures) {
+  const double height = figures[&Metrics::major_bounce_height];
+  return height < resolution("m") ? 0 : height;
+}
+
+double figure_of_run(const RunRecord& run, Figure::Member member) {
+  return run.figures ? (*run.figures)[member] : Metrics::unset;
+}
+
+namespace {
+
+std::string open_clause(const Actor& actor, const FigureValues& figures) {
+  const double settling = figures[&Metrics::open_settling_time];
+  return fmt::format("{} stays open, as commanded, with a static deflection of {}{}", moving(actor),
+                     quantity(figures[&Metrics::static_deflection], "m"),
+                     std::isfinite(settling) ? ", and comes to rest after " + quantity(settling, "s")
+                                             : ", and has not come to rest when the window ends");
+}
+
+// A run that began closed has no landing, only an opening.
+std::string opening_clause(const Actor& actor, const FigureValues& figures, const std::string& end) {
+  const double settling = figures[&Metrics::open_settling_time];
+  if (!std::isfinite(settling))
+    return fmt::format("{} begins closed and has not come to rest in its open position when the window ends{}", moving(actor),
+                       end.empty() ? "" : " at " + end);
+  return fmt::format("{} begins closed, opens and is at rest from {} on, with a static deflection of {}", moving(actor),
+                     quantity(settling, "s"), quantity(figures[&Metrics::static_deflection], "m"));
+}
+
+// Says how the run opens on command; empty where nothing commands it to.
+std::string opening_on_command(const FigureValues& figures) {
+  const double command = figures[&Metrics::open_command], opening = figures[&Metrics::opening_time];
+  if (!std::isfinite(command)) return {};
+  const std::string at = "the command to open at " + quantity(command, "s");
+  if (!std::isfinite(opening)) return "; it does not open after " + at;
+  std::string words = fmt::format("; it opens {} after {}", quantity(opening, "s"), at);
+  const auto bounces = static_cast<int>(figures[&Metrics::release_bounces]);
+  if (bounces > 0) words += fmt::format(", with {} {}", bounces, bounces > 1 ? "bounces" : "bounce");
+  const double rest = figures[&Metrics::release_settling_time];
+  return words + (std::isfinite(rest) ? fmt::format(", and is at rest {} after the command", quantity(rest, "s"))
+                                      : ", and has not come to rest when the window ends");
+}
+
+std::string landing_prose(const Actor& actor, const RunRecord& run, const FigureValues& figures, const std::string& end) {
+  const double height = rebound_height(figures);
+  if (is_clean(figures)) {
+    const std::string words = closes(actor, "bounce-free at " + first_touch(figures));
+    return height > 0 ? words + " (highest rebound " + quantity(height, "m") + ")" : words;
+  }
+  std::string words = fmt::format("{} first touches at {}", moving(actor), first_touch(figures));
+  if (figures[&Metrics::bounce_count] > 0) {
+    words += ", then " + bounces(figures, run.errors);
+    if (height > 0) words += " up to " + quantity(height, "m");
+  } else if (height > 0) {
+    words += ", then rebounds by up to " + quantity(height, "m");
+  }
+  if (settles(figures)) return words + " and settles after " + settling(figures, run.errors);
+  if (std::isfinite(figures[&Metrics::open_command])) return words + " and has not settled when it is commanded to open";
+  return words + " and has not settled when the window ends" + (end.empty() ? "" : " at " + end) +
+         " (later bounces are not counted)";
+}
+
+}  // namespace
+
+std::string closing_clause(const Actor& actor, const RunRecord& run, double window) {
+  if (run.status == "collapsed_at_rest")
+    return moving(actor) +
+           " has no stable equilibrium to start from at the voltages before t = 0 (an open one, unless before_state asks for a "
+           "closed one)";
+  if (run.status == "collapsed_onto_electrode") {
+    const bool through = !run.figures || touches(*run.figures);
+    return moving(actor) + (through ? " collapses onto the electrode, past its contact"
+                                    : " collapses onto an electrode before it touches its contact");
+  }
+  if (run.status == "numerical_failure") return moving(actor) + " could not be simulated to the end";
+  if (!run.figures) return "there are no figures for " + actor.subject;
+  const FigureValues& figures = *run.figures;
+  const std::string end = std::isfinite(window) ? quantity(window, "s") : std::string();
+  if (run.status == "open") return open_clause(actor, figures);
+  if (began_closed(run)) return opening_clause(actor, figures, end);
+  if (!touches(figures)) {
+    return fmt::format("{} does not close{}{}", actor.subject, actor.object.empty() ? "" : " " + actor.object,
+                       end.empty() ? "" : " within " + end);
+  }
+  if (touches_in_part(run)) {
+    return fmt::format("{} first touches at {} with {}; the contacts that make the connection are never closed together{}",
+                       moving(actor), first_touch(figures), impact(figures), end.empty() ? "" : " within " + end);
+  }
+  if (ends_at_touch(figures)) {
+    return fmt::format(
+        "{} reaches the contact plane at {} with {}; the run ends there, because the scene has no [contact] section",
+        moving(actor), first_touch(figures), impact(figures));
+  }
+  return landing_prose(actor, run, figures, end) + opening_on_command(figures);
+}
+
+std::string landing_clause(const std::string& subject, const RunRecord& run) {
+  if (!run.figures) return {};
+  const FigureValues& figures = *run.figures;
+  if (!touches(figures)) {
+    const double least = closest(run.curve), open = figures[&Metrics::open_settling_time];
+    if (began_closed(run) || least <= 0)
+      return subject + " begins closed" +
+             (std::isfinite(open) ? " and is open and at rest from " + quantity(open, "s") + " on" : "");
+    return subject + " never touches" + (std::isfinite(least) ? ": the smallest gap is " + quantity(least, "m") : "");
+  }
+  if (touches_in_part(run)) return fmt::format("{} touches with {} but never closes the connection", subject, impact(figures));
+  if (ends_at_touch(figures))
+    return fmt::format("{} first touches at {} with {}", subject, first_touch(figures), impact(figures));
+  const double height = rebound_height(figures);
+  if (is_clean(figures)) {
+    const std::string above = height > 0 ? fmt::format(" but for rebounds of at most {}", quantity(height, "m")) : "";
+    return fmt::format("{} lands at {} with {} and stays closed{}", subject, first_touch(figures), impact(figures), above);
+  }
+  std::string words = subject + " ";
+  words += figures[&Metrics::bounce_count] > 0 ? bounces(figures, run.errors) : "rebounds";
+  if (height > 0) words += fmt::format(", up to {}", quantity(height, "m"));
+  return words + (settles(figures) ? ", until " + settling(figures, run.errors) : ", and has not settled when the window ends");
+}
+
+std::string capitalised(std::string words) {
+  if (!words.empty() && words[0] >= 'a' && words[0] <= 'z') words[0] = static_cast<char>(words[0] - 'a' + 'A');
+  return words;
+}
+
+std::string joined(const std::string& first, const std::string& second) {
+  if (first.empty() && second.empty()) return {};
+  if (first.empty() || second.empty()) return capitalised(first + second) + ".";
+  return capitalised(first) + "; " + second + ".";
+}
+
+}  // namespace softland::internal

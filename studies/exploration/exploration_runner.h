@@ -1,0 +1,73 @@
+// Computes the points of a part of a plan into its store.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "base/progress.h"
+#include "studies/exploration/stored_exploration.h"
+
+namespace softland {
+
+/// The progress of an exploration.
+struct ExplorationProgress {
+  std::int64_t points = 0;  ///< number of points of the part
+  std::int64_t known = 0;   ///< number of points in the store at the beginning
+  std::int64_t computed = 0;
+  std::int64_t reused = 0;     ///< number of rows taken over from earlier plans
+  std::int64_t earlier = 0;    ///< number of rows of earlier plans: at most as many can be reused
+  double seconds = 0;          ///< time since the beginning [s]
+  double computing = 0;        ///< time since the first new point was begun [s]
+  double waited_on_store = 0;  ///< total time for which threads waited for the store [s]
+
+  [[nodiscard]] std::int64_t there() const { return known + computed + reused; }
+  [[nodiscard]] std::int64_t remaining() const { return points - there(); }
+};
+
+struct ExplorationRunnerOptions {
+  Shard shard = {};
+  int jobs = 1;
+  const std::atomic<bool>* stop = nullptr;                             ///< ends the exploration early; the points so far are kept
+  std::function<void(const ExplorationProgress&)> on_point = nullptr;  ///< called under a lock after every point
+};
+
+class ExplorationRunner {
+ public:
+  /// Keeps references. The store must belong to stored_plan(exploration, options.shard).
+  ExplorationRunner(Exploration& exploration, StudyStore& store, const ExplorationRunnerOptions& options);
+
+  /// Computes the points that the store lacks. The rows do not depend on the number of threads. Throws as StudyStore::add()
+  /// does.
+  void run();
+  [[nodiscard]] ExplorationProgress progress() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  [[nodiscard]] std::int64_t point(std::int64_t i) const { return i * options_.shard.count + options_.shard.index - 1; }
+  template <class Work>
+  auto timed(Work&& work);
+  [[nodiscard]] ExplorationProgress so_far() const;
+  void take(std::int64_t k);
+  void note_first();
+
+  Exploration& exploration_;
+  StudyStore& store_;
+  ExplorationRunnerOptions options_;
+  std::vector<bool> done_;
+  bool reuses_;
+  int inner_jobs_ = 1;
+  Progress progress_;
+  mutable std::mutex mutex_;  // guards the progress, and the time at which computing began
+  ExplorationProgress told_;
+  std::atomic<double> store_seconds_ = 0;
+  Clock::time_point begin_ = Clock::now();
+  std::optional<Clock::time_point> first_computed_;
+};
+
+}  // namespace softland

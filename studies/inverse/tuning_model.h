@@ -1,0 +1,208 @@
+// A scene prepared for a belief about one of its devices: the quantities in which the device may differ, as independent
+// standard normal coordinates z, and the closings of such devices.
+//
+// The quantities of [spread] keep their distributions. These quantities vary as well, if the scene has them and [spread] does
+// not:
+//
+//   gain of each shaped drive              normal, LaboratoryErrors::gain_error
+//   gas.viscosity                          lognormal, 5 %
+//   stiffness or modulus of the contacts   lognormal, 10 %
+//   contact gaps over electrode gap        normal, 3 %, beside the factor that they may share
+//   trigger delay                          normal, LaboratoryErrors::trigger_delay, plus 0.3 % of the closing time of the plain
+//                                          step
+//
+// Contacts that make the connection together share one quantity of each kind. If devices of the same wafer were tuned before,
+// the coordinates are those of the prediction for the next device (wafer.h). Jitter is random for every edge and no quantity of
+// the device, so it is left out.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "studies/devices/ensemble.h"
+#include "studies/inverse/tuner.h"
+#include "studies/inverse/wafer.h"
+
+namespace softland {
+
+/// Returns the section of a contact: "contact", or "contact.NAME" if there are several.
+[[nodiscard]] inline std::string path_of(const Contact& contact) {
+  return contact.name.empty() ? "contact" : "contact." + contact.name;
+}
+
+/// The scales of a scene by which costs and errors are measured.
+struct TuningScales {
+  double closing_time = 0;  ///< T_0: first touch of the plain step on the nominal device [s]
+  double gap = 0;           ///< contact gap [m]
+  double rebound = 0;       ///< significant rebound [m]
+  double rise = 0;  ///< capacitance of the closed state less that of the open one [F]; 0 if the capacitance is not recorded
+  double latest_touch = std::numeric_limits<double>::infinity();  ///< requested latest first touch [s]
+  /// Permanent contact time of the plain step on the nominal device [s]; NaN unless the approach is quasi-static.
+  double permanent_contact = std::numeric_limits<double>::quiet_NaN();
+  [[nodiscard]] double speed() const { return gap / closing_time; }  ///< [m/s]
+};
+
+/// A simulated device of a belief.
+struct Particle {
+  Eigen::VectorXd z;
+  SampledDevice sampled;
+  double delay = 0;  ///< delay of its records behind the drives [s]
+};
+
+/// A closing as an instrument without errors records it.
+template <class Openings>
+struct SeenClosing {
+  double touch = std::numeric_limits<double>::quiet_NaN();  ///< first closing of the contact after the drives begin [s]
+  /// Impact velocity at that time [m/s]. From the capacitance it is the rate of the capacitance over its rise, times the
+  /// contact gap.
+  double speed = std::numeric_limits<double>::quiet_NaN();
+  Openings openings = {};  ///< openings, in time after the drives begin [s]
+};
+
+/// A simulated closing of a device of a belief, without errors of measurement.
+struct PredictedClosing {
+  bool followed = false;                                      ///< true if simulated to the end of its window
+  double touch = std::numeric_limits<double>::quiet_NaN();    ///< first touch after the drives begin [s]; NaN without touch
+  double speed = std::numeric_limits<double>::quiet_NaN();    ///< impact velocity of the first touch [m/s]
+  double fastest = std::numeric_limits<double>::quiet_NaN();  ///< largest impact velocity of all touches [m/s]
+  double highest = 0;                                         ///< highest rebound [m]
+  std::vector<ContactOpening> openings = {};                  ///< openings, in time after the drives begin [s]
+  double delay = 0;                                           ///< delay of its record behind the drives [s]
+  /// The closing as its capacitance shows it; none if the instrument records the contact.
+  std::optional<SeenClosing<std::vector<ContactOpening>>> by_capacitance = {};
+  [[nodiscard]] bool closes() const { return followed && touch == touch; }
+  [[nodiscard]] SeenClosing<std::span<const ContactOpening>> seen() const {
+    if (by_capacitance) return {by_capacitance->touch, by_capacitance->speed, by_capacitance->openings};
+    return {touch, speed, openings};
+  }
+  /// True if a record of the closing shows that the switch closes.
+  [[nodiscard]] bool is_seen_to_close() const { return followed && !std::isnan(seen().touch); }
+  /// Returns the time of the first touch in a record [s]; NaN without touch.
+  [[nodiscard]] double recorded_touch() const { return seen().touch - delay; }
+  /// Returns the time from which on the contact stays closed [s]; infinite if it is open at the end.
+  [[nodiscard]] double stays_from() const { return openings.empty() ? touch : std::max(touch, openings.back().end); }
+};
+
+/// A device under one waveform for every drive.
+struct PredictedShot {
+  const Particle* device = nullptr;
+  const std::vector<Waveform>* waveforms = nullptr;
+  double gain = 1;  ///< gain of all sources in this shot
+};
+
+class TuningModel {
+ public:
+  /// Throws what Tuner throws.
+  TuningModel(const SceneFile& file, const TunerOptions& options, const Progress& progress);
+  TuningModel(const TuningModel&) = delete;
+  TuningModel& operator=(const TuningModel&) = delete;
+
+  [[nodiscard]] const TunerOptions& options() const { return options_; }
+  /// Returns the scene with the spread of all quantities but the trigger delay, prepared for closings with an accuracy of 1e-4.
+  [[nodiscard]] const PreparedScene& nominal() const { return nominal_; }
+  [[nodiscard]] const TuningScales& scales() const { return scales_; }
+  /// Returns the approach of the waveforms: fast, unless another one is chosen.
+  [[nodiscard]] Approach approach() const { return approach_; }
+  /// True if a shaped drive can move the switch to its contact through stable equilibria.
+  [[nodiscard]] bool has_stable_path() const { return std::isfinite(step_stays_from_); }
+  /// Chooses the approach. Throws InvalidInput for a quasi-static approach of a scene without a stable path.
+  void choose(Approach approach);
+  [[nodiscard]] bool spread_is_assumed() const { return spread_is_assumed_; }
+  /// True if closings are computed in lanes.
+  [[nodiscard]] bool is_in_lanes() const {
+    return why_not_in_lanes(nominal_.model).empty() && options_.vectors != Vectors::none &&
+           !options_.laboratory.sees_capacitance();
+  }
+  /// Returns the number of coordinates; the last one is the trigger delay.
+  [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(nominal_.scene.spread.variables.size()) + 1; }
+  /// True for a coordinate that does not change the units of voltage and time: viscosity, contact stiffness, trigger delay.
+  [[nodiscard]] bool is_nuisance(Eigen::Index k) const { return nuisances_[static_cast<std::size_t>(k)]; }
+  /// Returns a standard deviation of the trigger delay before the first record [s].
+  [[nodiscard]] double delay_deviation() const;
+  /// Returns the trigger delay of a device at z, by which its records begin late [s].
+  [[nodiscard]] double delay(const Eigen::VectorXd& z) const { return delay_deviation() * spread_point(z)[size() - 1]; }
+
+  /// Replaces the coordinates by those in which this belief about z is standard normal.
+  void begin_with(const NormalBelief& prior);
+  [[nodiscard]] const std::optional<NormalBelief>& prior() const { return prior_; }
+  /// Converts a belief in the current coordinates to the coordinates of the spread.
+  [[nodiscard]] NormalBelief in_spread(const NormalBelief& belief) const;
+
+  /// Returns the values of the varied quantities at z (DeviceSpread::to_values).
+  [[nodiscard]] std::vector<double> values(const Eigen::VectorXd& z) const;
+  /// Returns contact gap over electrode gap of a device with these values, relative to the scene. None if [spread] has the
+  /// contact gap as a quantity of its own.
+  [[nodiscard]] std::optional<double> gap_ratio(std::span<const double> values) const;
+  /// Returns "gap.contact / gap.electrode", for a scene that has such a ratio.
+  [[nodiscard]] std::string gap_ratio_name() const {
+    return nominal_.scene.spread.variables[gap_ratio_->contact].name + " / gap.electrode";
+  }
+  /// Returns the deviation of the ratio at z from that of the scene, in units of gap_ratio_deviation; none if the scene has no
+  /// ratio.
+  [[nodiscard]] std::optional<double> gap_ratio_coordinate(const Eigen::VectorXd& z) const;
+  /// Returns the nearest point to z with the ratio of the scene; z if the scene has no ratio.
+  [[nodiscard]] Eigen::VectorXd with_gap_ratio_of_scene(const Eigen::VectorXd& z) const;
+  /// Standard deviation of the ratio. On devices of [spread] the ratio is constant.
+  static constexpr double gap_ratio_deviation = 0.03;
+  [[nodiscard]] std::vector<Particle> devices(std::span<const Eigen::VectorXd> points, const Progress& progress = {}) const;
+  /// Returns the applied voltages of a shot.
+  [[nodiscard]] std::vector<Signal> signals(const PredictedShot& shot) const;
+  /// Simulates the closings, in order. An outcome does not depend on the other shots. Throws Interrupted if `progress` asks to
+  /// stop.
+  [[nodiscard]] std::vector<PredictedClosing> close(std::span<const PredictedShot> shots, const Progress& progress = {}) const;
+  /// Returns the time for which a closing with a touch is simulated after the last breakpoint [s].
+  [[nodiscard]] double hold_time() const;
+
+  /// Units of a device at z over those of the nominal one, to first order in the logarithm. The unit of the commanded voltages
+  /// is the static pull-in voltage of the closing electrode over the gain of its source. The unit of time is the period of the
+  /// first mode.
+  struct Units {
+    double volts = 1, time = 1;
+  };
+  [[nodiscard]] Units units(const Eigen::VectorXd& z) const;
+  /// Returns the derivative of ln volts by the coordinates of the spread.
+  [[nodiscard]] const Eigen::VectorXd& volts_slope() const { return volts_slope_; }
+  /// The level of that electrode below which at most one in a thousand devices of this distribution of z collapses onto the
+  /// electrode [V]; infinite if none does.
+  [[nodiscard]] double safe_level(const NormalBelief& belief) const;
+
+ private:
+  [[nodiscard]] PreparedScene prepared(const SceneFile& given, const Progress& progress);
+  void loosen_contact_gap(DeviceSpread& spread, const std::vector<std::string>& gaps);
+  void find_units(const Progress& progress);
+  [[nodiscard]] Eigen::VectorXd spread_point(const Eigen::VectorXd& z) const {
+    return prior_ ? Eigen::VectorXd(prior_->mean + prior_factor_ * z) : z;
+  }
+
+  TunerOptions options_;
+  bool spread_is_assumed_ = false;
+  struct GapRatio {
+    std::size_t contact;                // index of the variable of the contact gap
+    std::optional<std::size_t> shared;  // index of the variable of the other gaps, if the contact gap varies with them
+  };
+  std::optional<GapRatio> gap_ratio_;
+  PreparedScene nominal_;
+  std::vector<bool> nuisances_;
+  std::unique_ptr<const Ensemble> ensemble_;
+  std::unique_ptr<const DeviceDrives> drives_;
+  TuningScales scales_;
+  Approach approach_ = Approach::fast;
+  double step_stays_from_ =
+      std::numeric_limits<double>::quiet_NaN();  // permanent contact time of the plain step [s]; NaN without a stable path
+  std::optional<std::size_t> electrode_;         // index of the electrode that closes the switch, among the drives
+  Eigen::VectorXd volts_slope_, time_slope_, pulled_through_slope_;
+  std::optional<NormalBelief> prior_;
+  Eigen::MatrixXd prior_factor_;                                     // factor L of the prior: L L^T is its covariance
+  double pulled_through_ = std::numeric_limits<double>::infinity();  // collapse voltage of the nominal device [V]
+};
+
+}  // namespace softland

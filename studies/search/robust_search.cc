@@ -1,0 +1,651 @@
+#include "studies/search/robust_search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <iterator>
+#include <span>
+#include <utility>
+
+#include "base/executor.h"
+#include "base/require.h"
+#include "config/assumed_spread.h"
+#include "sampling/statistics.h"
+#include "studies/search/family_search.h"
+#include "studies/search/modes_of_search.h"
+#include "studies/search/search_work.h"
+#include "studies/search/step_comparison.h"
+#include "studies/search/usual_room.h"
+
+namespace softland {
+namespace {
+
+constexpr std::uint64_t devices_of_choice = 512, least_of_verdict = 500;
+constexpr std::size_t most_of_race = 3;                       // most candidates that a race places, by either measure
+constexpr double most_times = 5, most_times_of_landings = 7;  // multiples of the plain step's 95th percentile closing time
+constexpr double margin = 0.98;                               // share of the step's figures, in the choice
+constexpr double more_open = 0.005;                           // permitted excess of the share of open devices
+constexpr double ranked_by_share = 0.25;                      // bounce-free share from which on it ranks
+constexpr std::uint64_t measured_devices = 128;               // devices of a search with a per-device calibration
+constexpr double coarse_error = 0.01, fine_error = 0.002;     // relative errors of measurements
+constexpr double least_times_of_error = 20;
+constexpr std::array errors_of_pull_in{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02};  // relative errors of Vdp
+constexpr double most_rows = 4;                                                   // rows with a per-device calibration
+constexpr std::size_t devices_by_error = 256;                                     // first devices of the verdict
+constexpr std::uint64_t which_searched = 0, which_chosen = 1, which_measured = 2;
+constexpr double least_of_race = 0.4, end_of_race = 0.75;  // shares of a budget of time
+constexpr std::string_view quasi_static_short = "quasi-static:2",
+                           approaches = "+quasi-static+quasi-static:2";  // families searched where there is a stable path
+constexpr std::string_view usual_prefix = "usual_limit.";
+constexpr double alike = 1.05;               // multiple of the least cost that the devices of the choice do not tell from it
+constexpr double little_more = 1.25;         // multiple of the least cost up to which a sooner waveform wins without a path
+constexpr std::uint64_t path_devices = 512;  // devices that tell the share with a stable path
+// Paces of the quasi-static approach: the time to a steady contact, in units of that of the plain step. The approach takes half
+// of it, all of it, or twice as much.
+constexpr double fast = 0.49, slow = 1.96;
+constexpr double usual_closings_at_pace = 30'000;  // closings of a search at one of them: longer waveforms get fewer
+
+bool closes(const DeviceOutcome& o) { return o.closed(); }
+
+// True for a condition that bounds a time from above.
+bool is_about_time(const Condition& one) {
+  const bool is_upper = one.comparison == Comparison::below || one.comparison == Comparison::at_most;
+  return is_upper && one.figure.unit == "s" && one.limit > 0;
+}
+
+// Returns the settings of the families that the scene has room for, and their names joined by +.
+std::pair<std::vector<SearchSetting>, std::string> settings_of_race(const SceneFile& file, const OptimizeOptions& options,
+                                                                    const RobustSearchOptions& devices,
+                                                                    const Progress& progress) {
+  const bool chosen = !devices.families.empty();
+  const std::string wanted =
+      chosen ? devices.families : std::string(raced_families) + std::string(devices.is_of_before ? "" : approaches);
+  const std::vector<std::string> names = families_of(wanted);
+  if (chosen) return {search_settings(file, options.target, options.actuator, wanted, progress), wanted};
+  std::vector<SearchSetting> settings{search_setting(file, options.target, options.actuator, names.front(), progress)};
+  std::string kept = names.front();
+  for (std::size_t k = 1; k < names.size(); ++k) {
+    if (is_quasi_static(names[k]) && options.actuator == Actuator::pzt && !devices.hold_step_is_chosen) continue;
+    try {
+      SearchSpace space(settings.front().given, options.actuator, names[k], settings.front().scale.step.initial_contact_time);
+      settings.push_back(settings.front());
+      settings.back().family = settings.size() - 1;
+      settings.back().space = std::move(space);
+      kept += "+" + names[k];
+    } catch (const InvalidInput&) {
+      continue;
+    }
+  }
+  return {std::move(settings), kept};
+}
+
+bool same_candidate(const ChosenFrom& a, const ChosenFrom& b) {
+  return a.family == b.family && a.parameters == b.parameters && !a.parameters.empty();
+}
+
+}  // namespace
+
+double quantile(const std::vector<DeviceOutcome>& outcomes, std::string_view key, double probability) {
+  std::vector<double> values;
+  for (const DeviceOutcome& o : outcomes) values.push_back(o.of(figure_of(key)));
+  return sample_quantile(values, probability);
+}
+double quantile_95(const std::vector<DeviceOutcome>& outcomes, std::string_view key) { return quantile(outcomes, key, 0.95); }
+
+bool lands_better(const DevicesRow& a, const DevicesRow& b) {
+  const double lands = std::max(a.judged.bounce_free.value, b.judged.bounce_free.value);
+  if (lands >= lands_half) return a.judged.bounce_free.value > b.judged.bounce_free.value;
+  return quantile_95(a.judged.outcomes, judged_figures[0]) < quantile_95(b.judged.outcomes, judged_figures[0]);
+}
+
+double share_of(const std::vector<DeviceOutcome>& outcomes, bool (*holds)(const DeviceOutcome&)) {
+  return static_cast<double>(std::ranges::count_if(outcomes, holds)) / static_cast<double>(outcomes.size());
+}
+
+RobustSearch::Bounds::Bounds(const std::vector<DeviceOutcome>& step)
+    : first_touch(quantile_95(step, key_of(&Metrics::initial_contact_time))), open(1 - share_of(step, closes)) {
+  for (const std::string_view key : judged_figures) figures.push_back(quantile_95(step, key));
+}
+
+bool RobustSearch::Bounds::keeps(const std::vector<DeviceOutcome>& own, double significant, bool in_time) const {
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    const double value = quantile_95(own, judged_figures[i]);
+    if (judged_figures[i] == key_of(&Metrics::major_bounce_height) && value <= significant) continue;
+    if (value > margin * figures[i]) return false;
+  }
+  if (1 - share_of(own, closes) > open + more_open) return false;
+  const double times = share_of(own, is_bounce_free) >= lands_half ? most_times_of_landings : most_times;
+  return !in_time || !std::isfinite(first_touch) ||
+         quantile_95(own, key_of(&Metrics::initial_contact_time)) <= times * first_touch;
+}
+
+RobustSearch::RobustSearch(const SceneFile& file, const OptimizeOptions& options, const RobustSearchOptions& devices,
+                           std::function<void(std::string_view what, double part)> tell)
+    : options_(options),
+      devices_(devices),
+      progress_{.stop = options.stop, .report = std::move(tell)},
+      budget_({.seconds = options.max_seconds, .stop = options.stop}) {
+  SceneFile varied = file;
+  spread_assumed_ = assume_spread(varied);
+  auto [settings, families] = settings_of_race(varied, options, devices, progress_);
+  const std::vector<SearchSetting> gentle = with_gentle_edges(settings, options.actuator, families);
+  settings_ = begins_gently(gentle, options.starts) ? gentle : std::move(settings);
+  names_ = families_of(families);
+  // Raced families come first: the others are searched at paces of their own.
+  while (raced_ < names_.size() && !is_quasi_static(names_[raced_])) ++raced_;
+  if (raced_ < names_.size()) approach_ = settings_[raced_].space.quasi_static()->approach();
+  if (!devices_.is_of_before) usual_room_ = within_usual_room(raced_settings(), options_.actuator, names_);
+  known_ = measured_units(first().given, std::array{first().given.scene.calibration}, options.jobs, progress_).front();
+  fit_budget();
+}
+
+// Sets the closings of the race and the devices of the verdict. The race gets the usual closings scaled to the work of one, but
+// never too few for a search to be meaningful. The verdict shrinks in proportion, but keeps enough devices for its 95th
+// percentiles.
+void RobustSearch::fit_budget() {
+  race_length_ = devices_.closings;
+  verdict_ = devices_.verdict;
+  if (!devices_.counts_work) return;
+  const double usual = usual_work(shaped_drives(first().given.scene.file, options_.actuator));
+  const bool in_lanes = why_not_in_lanes(first().given.model).empty();
+  const double work = closing_work(first()).counted * (in_lanes ? 1 : usual_lanes);
+  const auto shortest = static_cast<long>(std::ceil(least_length_of_race * static_cast<double>(race_closings)));
+  race_length_ = std::min(devices_.closings, std::max(within_work(devices_.closings, work, usual), shortest));
+  if (!devices_.verdict_is_asked) {
+    const double share = static_cast<double>(race_length_) / static_cast<double>(devices_.closings);
+    verdict_ = std::max(std::min(devices_.verdict, least_of_verdict),
+                        static_cast<std::uint64_t>(share * static_cast<double>(devices_.verdict)));
+  }
+}
+
+SearchEstimate RobustSearch::estimate(SearchEstimate nominal) const {
+  // Rows of the verdict over the whole window count as several closings of a search.
+  constexpr double rows = 20;
+  const double one = device_share * (approach_ ? slow_approach : 1) * nominal.closing;
+  const double searches = usual_room_.empty() || devices_.are_a_budget ? 1.5 : 2.25;
+  const double closings = searches * static_cast<double>(race_length_) + rows * static_cast<double>(verdict_);
+  nominal.closings = race_length_;
+  nominal.has_fewer = nominal.has_fewer || race_length_ < devices_.closings;
+  nominal.seconds = std::min(nominal.seconds + closings * one, options_.max_seconds * options_.jobs);
+  return nominal;
+}
+
+FamilyColumns RobustSearch::columns() const {
+  std::string families;
+  for (const std::string& name : names_) families += (families.empty() ? "" : "+") + name;
+  FamilyColumns all = searched_columns(settings_, families);
+  // Append the families within the usual limits after the others.
+  for (std::size_t k = 0; k < usual_room_.size(); ++k) {
+    all.families.push_back(all.families[k]);
+    for (std::string& name : all.families.back()) name.insert(0, usual_prefix);
+  }
+  for (std::vector<std::string>& own : all.families) {
+    for (std::string& name : own) name.insert(0, raced_prefix);
+  }
+  return all;
+}
+
+void RobustSearch::run(std::size_t before, std::function<void()> looked, double reserved) {
+  for (std::size_t k = 0; k < settings_.size(); ++k) settings_[k].family = before + k;
+  for (std::size_t k = 0; k < usual_room_.size(); ++k) usual_room_[k].family = before + settings_.size() + k;
+  looked_ = std::move(looked);
+  race_families(reserved);
+  choose();
+  if (!budget_.given_up() && known_->calibration().is_empty()) measure_ahead();
+}
+
+void RobustSearch::race_families(double reserved) {
+  progress_.tell("building devices", 0);
+  cost_.emplace(first(), tail_aim_,
+                own_devices(first(), *known_, raced_devices, options_.seed, which_searched, options_.jobs, progress_));
+  others_.emplace(first(), tail_aim_,
+                  own_devices(first(), *known_, devices_of_choice, options_.seed, which_chosen, options_.jobs, progress_));
+  const double begun = budget_.elapsed();
+  const std::vector<DeviceOutcome> step = closed(*cost_, {});
+  reserve_for_verdict((budget_.elapsed() - begun) / static_cast<double>(step.size()), reserved);
+  FreeTime free;
+  if (!devices_.is_of_before) {
+    std::vector<DeviceOutcome> all = cost_->close_by_step(options_.jobs);
+    step_on_others_ = others_->close_by_step(options_.jobs);
+    all.insert(all.end(), step_on_others_.begin(), step_on_others_.end());
+    free = free_time(all);
+    budget_.took(static_cast<long>(all.size()));
+  }
+  make_aims(step, free);
+  bounds_.emplace(closed(*others_, {}));
+  progress_.tell("searching for the devices", 0);
+  search_paces();
+  if (raced_ > 0) race_all();
+  progress_.throw_if_stopped();
+}
+
+std::vector<SearchSetting> RobustSearch::raced_settings() const {
+  return {settings_.begin(), settings_.begin() + static_cast<std::ptrdiff_t>(raced_)};
+}
+
+// Races within the usual limits first if the scene's are wider. The wider race begins with their winner, which it could miss by
+// itself.
+void RobustSearch::race_all() {
+  const std::vector<SearchSetting> raced = raced_settings();
+  RaceOptions own = race_options();
+  if (!approach_) own.on_stage = [this](const Contender& leader) { look(leader); };
+  std::vector<DriveWaveforms> begun;
+  if (!usual_room_.empty()) {
+    RaceOptions first = own;
+    SearchBudget half(*before_verdict_, before_verdict_->left(), before_verdict_->seconds_left() / 2);
+    own.closings /= 2;
+    const bool has_room_for_both = static_cast<double>(own.closings) >= least_length_of_race * static_cast<double>(race_closings);
+    if (has_room_for_both && devices_.are_a_budget) first.closings /= 2;
+    race_in_usual_room_ = race(usual_room_, *cost_, aims_, has_room_for_both ? half : *before_verdict_, first);
+    if (!race_in_usual_room_.contenders.empty()) begun.push_back(race_in_usual_room_.contenders.front().waveforms);
+  }
+  race_ = race(raced, *cost_, aims_, *before_verdict_, own, begun);
+}
+
+std::vector<Pace> RobustSearch::paces_of_search() const {
+  // Each pace uses the shaper that suits it, if both are searched.
+  const auto of = [this](double times) {
+    constexpr double short_below = 0.75;
+    const bool is_short = times < short_below && names_.back() == quasi_static_short;
+    return Pace{.of_step = times, .family = is_short ? settings_.size() - 1 : raced_};
+  };
+  double allowed = std::numeric_limits<double>::infinity();
+  for (const Condition& one : conditions_) {
+    if (is_about_time(one)) allowed = std::min(allowed, one.limit);
+  }
+  if (std::isfinite(allowed) && free_.until > 0) return {of(allowed / free_.until)};
+  return {of(1), of(fast), of(slow)};
+}
+
+// Searches the quasi-static approach at each pace.
+void RobustSearch::search_paces() {
+  if (raced_ == settings_.size()) return;
+  share_with_path_ = softland::share_with_path(first().given, *approach_, path_devices, options_.seed, options_.jobs, progress_);
+  const std::vector<Pace> paces = paces_of_search();
+  RobustAim aim = tail_aim_;
+  aim.free = free_;
+  std::vector<std::optional<Contender>> found(paces.size());
+  RaceOptions options = race_options();
+  const double planned = static_cast<double>(paces.size()) * usual_closings_at_pace * static_cast<double>(options.closings) /
+                         static_cast<double>(race_closings);
+  SearchBudget budget(*before_verdict_, std::lround(planned));
+  options.progress = [&](double) { progress_.tell("searching a quasi-static approach", budget.share_taken()); };
+  run_tasks(
+      paces.size(), options_.jobs,
+      [&](std::size_t i) {
+        RaceOptions own = options;
+        if (i == 0) own.on_stage = [this](const Contender& leader) { look(leader); };
+        found[i] = search_at_pace(settings_[paces[i].family], paces[i], *cost_, aim, budget, own);
+      },
+      options_.stop);
+  progress_.throw_if_stopped();
+  for (std::optional<Contender>& one : found) {
+    if (one) paced_.push_back(*std::move(one));
+  }
+}
+
+void RobustSearch::make_aims(const std::vector<DeviceOutcome>& step, const FreeTime& free) {
+  conditions_ = beside_step(devices_.conditions, step);
+  at_most_step_ = at_most_step(step, first().given.scene.metrics.significant_rebound);
+  const double step_time = quantile_95(step, key_of(&Metrics::initial_contact_time));
+  const std::span<const Figure> figures = device_figures;
+  tail_aim_ = {.measure = parse_robust_measure("cvar:0.9", figures), .conditions = conditions_};
+  // A bound on time in the user's conditions takes the place of the price.
+  free_ = free;
+  tail_aim_.free = free;
+  if (std::ranges::any_of(conditions_, is_about_time)) tail_aim_.free.until = std::numeric_limits<double>::infinity();
+  aims_ = {.tail = tail_aim_,
+           .share = {.measure = parse_robust_measure("yield", figures), .conditions = conditions_, .free = tail_aim_.free}};
+  if (!std::isfinite(step_time) || says_when_to_close()) return;
+  const auto bound = [&](double times) {
+    return parse_condition(fmt::format("initial_contact_time < {:.17g} s", times * step_time), figures);
+  };
+  aims_.tail.conditions.push_back(bound(most_times));
+  aims_.share.conditions.push_back(bound(most_times_of_landings));
+}
+
+// True if a condition of the user bounds the first touch; it takes the place of the usual bound.
+bool RobustSearch::says_when_to_close() const {
+  return std::ranges::any_of(
+      conditions_, [](const Condition& one) { return one.figure.member == Figure::Member(&Metrics::initial_contact_time); });
+}
+
+// Ends the searches early enough within a budget of time that the verdict fits into it. They keep a part of the budget in any
+// case. `closing` is the time that one device takes [s].
+void RobustSearch::reserve_for_verdict(double closing, double reserved) {
+  constexpr double rows = 20;  // work of the verdict in windows of a search: three whole ones, three calibrated rows, the front
+  const double verdict = rows * static_cast<double>(verdict_) * closing, all = options_.max_seconds;
+  const double end = std::clamp(all - verdict, least_of_race * all, end_of_race * all) - reserved;
+  before_verdict_.emplace(budget_, budget_.left(), end - budget_.elapsed());
+}
+
+RaceOptions RobustSearch::race_options() {
+  return {.closings = race_length_,
+          .are_a_budget = devices_.are_a_budget,
+          .seed = options_.seed,
+          .jobs = options_.jobs,
+          .memory = options_.memory,
+          .progress = [this](double part) { progress_.tell("searching for the devices", part); }};
+}
+
+std::vector<DeviceOutcome> RobustSearch::closed(const RobustCost& cost, const DriveWaveforms& waveforms) {
+  budget_.took(static_cast<long>(cost.devices()));
+  return cost.close(first().drives(waveforms), 0, cost.devices(), options_.jobs);
+}
+
+DriveWaveforms RobustSearch::all_drives(DriveWaveforms searched) const {
+  searched.merge(first().baseline_scene.drives.waveforms());
+  return searched;
+}
+
+ChosenFrom RobustSearch::candidate_of(const Contender& contender) const {
+  ChosenFrom c{.measure = contender.measure,
+               .family = names_[contender.family],
+               .waveforms = contender.waveforms,
+               .parameters = {},
+               .variables = settings_[contender.family].space.variables(),
+               .closings = contender.closings};
+  for (std::size_t i = 0; i < contender.x.size(); ++i) c.parameters[c.variables[i].name] = contender.x[i];
+  return c;
+}
+
+// Adds the best of a race by either measure to the pool.
+void RobustSearch::take(std::vector<ChosenFrom>& pool, RaceResult& raced, bool is_in_usual_room) const {
+  for (const bool by_share : {false, true}) {
+    std::ranges::stable_sort(raced.contenders, {}, [&](const Contender& r) { return by_share ? r.share : r.tail; });
+    for (std::size_t i = 0; i < std::min(most_of_race, raced.contenders.size()); ++i) {
+      ChosenFrom one = candidate_of(raced.contenders[i]);
+      one.is_in_usual_room = is_in_usual_room;
+      if (std::ranges::none_of(pool, [&](const ChosenFrom& other) { return same_candidate(one, other); }))
+        pool.push_back(std::move(one));
+    }
+  }
+}
+
+// Places the winners of the races on the devices of the choice.
+void RobustSearch::choose() {
+  progress_.tell("choosing on other devices", 0);
+  std::vector<ChosenFrom> pool;
+  for (const Contender& one : paced_) pool.push_back(candidate_of(one));
+  take(pool, race_in_usual_room_, true);
+  take(pool, race_, false);
+  for (ChosenFrom& one : pool) place(std::move(one));
+}
+
+// Judges an intermediate candidate on the devices of the choice. Reports it if it leads and is no harder than the plain step.
+void RobustSearch::look(const Contender& contender) {
+  if (budget_.given_up() || devices_.is_of_before || progress_.stopped()) return;
+  std::vector<DeviceOutcome> outcomes = on_others(contender.waveforms);
+  Placed placed = judged(candidate_of(contender), outcomes);
+  looked_at_.push_back(placed);
+  if (!leader_ || placed.is_before(*leader_)) {
+    leader_ = std::move(placed);
+    if (leader() != nullptr && devices_.on_leading) {
+      devices_.on_leading({.family = leader_->candidate.family,
+                           .of_step = step_on_others_,
+                           .own = std::move(outcomes),
+                           .waited_for = free_.figure,
+                           .scene = with_waveforms(first().baseline_scene, contender.waveforms)});
+    }
+  }
+  if (looked_) std::exchange(looked_, {})();
+}
+
+const ChosenFrom* RobustSearch::leader() const {
+  return leader_ && leader_->candidate.is_good_enough ? &leader_->candidate : nullptr;
+}
+
+std::vector<ChosenFrom> RobustSearch::looked_at() const {
+  std::vector<ChosenFrom> all;
+  for (const Placed& one : looked_at_) all.push_back(one.candidate);
+  return all;
+}
+
+void RobustSearch::place(ChosenFrom one) {
+  progress_.throw_if_stopped();
+  const auto known = std::ranges::find_if(looked_at_, [&](const Placed& other) { return same_candidate(one, other.candidate); });
+  if (known == looked_at_.end()) {
+    placed_.push_back(judged(one, on_others(one.waveforms)));
+    return;
+  }
+  Placed again = *known;
+  again.candidate.measure = one.measure;
+  again.candidate.is_in_usual_room = one.is_in_usual_room;
+  again.candidate.closings = one.closings;
+  placed_.push_back(std::move(again));
+}
+
+std::vector<DeviceOutcome> RobustSearch::on_others(const DriveWaveforms& waveforms) {
+  budget_.took(static_cast<long>(others_->devices()));
+  return others_->close_until(first().drives(waveforms), free_.until, options_.jobs);
+}
+
+// Judges a candidate by its outcomes on the devices of the choice.
+RobustSearch::Placed RobustSearch::judged(ChosenFrom one, const std::vector<DeviceOutcome>& outcomes) const {
+  RobustAim aim = aims_.tail;
+  if (approach_) aim.conditions = conditions_;  // a slow touch does no harm if it is soft
+  one.bounce_free = share_of(outcomes, is_bounce_free);
+  one.tail = others_->value(outcomes, aim);
+  one.measured = others_->measured(outcomes, aim);
+  one.first_touch = quantile_95(outcomes, key_of(&Metrics::initial_contact_time));
+  one.impact_speed = quantile_95(outcomes, key_of(&Metrics::largest_impact_velocity));
+  one.median_touch = quantile(outcomes, key_of(&Metrics::initial_contact_time), 0.5);
+  one.waited = waited(outcomes, free_.figure);
+  const bool lands = one.bounce_free >= lands_half && !approach_;
+  const double rank = lands ? -one.bounce_free : one.tail, significant = first().given.scene.metrics.significant_rebound;
+  const bool in_time = !approach_ && !says_when_to_close();
+  one.is_good_enough = bounds_->keeps(outcomes, significant, in_time) && hold(conditions_, outcomes);
+  return {std::move(one), lands, rank};
+}
+
+bool RobustSearch::Placed::is_before(const Placed& other) const {
+  if (candidate.is_good_enough != other.candidate.is_good_enough) return candidate.is_good_enough;
+  if (lands_half != other.lands_half) return lands_half;
+  return rank < other.rank;
+}
+
+// Moves the soonest candidate to the front among those that cost a little more than the least. Voltages beyond the usual limits
+// find sooner candidates at that cost: none of them goes before the winner within the usual limits if it costs more.
+void RobustSearch::prefer_sooner(std::vector<Placed>& sorted) {
+  const auto soonest = [&](double most, bool in_usual_room) {
+    double least = std::numeric_limits<double>::infinity();
+    auto found = sorted.end();
+    for (auto one = sorted.begin(); one != sorted.end(); ++one) {
+      const ChosenFrom& c = one->candidate;
+      if (!c.is_good_enough || (in_usual_room && !c.is_in_usual_room)) continue;
+      least = std::min(least, one->rank);
+      if (!(one->rank <= std::min(most, little_more * least))) continue;
+      if (found == sorted.end() || c.median_touch < found->candidate.median_touch) found = one;
+    }
+    return found;
+  };
+  const auto usual = soonest(std::numeric_limits<double>::infinity(), true);
+  const double most = usual == sorted.end() ? std::numeric_limits<double>::infinity() : usual->rank;
+  const auto first = soonest(most, false);
+  std::rotate(sorted.begin(), first, first + 1);
+}
+
+std::vector<ChosenFrom> RobustSearch::placed() const {
+  std::vector<Placed> sorted = placed_;
+  std::ranges::stable_sort(sorted, [](const Placed& a, const Placed& b) { return a.is_before(b); });
+  // Without a stable path the fall from the fold sets the limit, so that waiting longer gains little.
+  if (!approach_ && free_.until > 0 && !sorted.empty() && sorted.front().candidate.is_good_enough && !sorted.front().lands_half)
+    prefer_sooner(sorted);
+  // The few devices without a path make costs alike: prefer the candidate with the softest 95th percentile among those.
+  if (approach_ && !sorted.empty() && sorted.front().candidate.is_good_enough) {
+    auto softest = sorted.begin();
+    for (auto one = sorted.begin(); one != sorted.end(); ++one) {
+      const bool is_alike = one->candidate.is_good_enough && one->rank <= alike * sorted.front().rank;
+      if (is_alike && one->candidate.impact_speed < softest->candidate.impact_speed) softest = one;
+    }
+    std::rotate(sorted.begin(), softest, softest + 1);
+  }
+  std::vector<ChosenFrom> all;
+  for (Placed& one : sorted) all.push_back(std::move(one.candidate));
+  return all;
+}
+
+std::size_t RobustSearch::good_enough() const {
+  return static_cast<std::size_t>(std::ranges::count_if(placed_, [](const Placed& one) { return one.candidate.is_good_enough; }));
+}
+
+// Measures ahead what the rows with a per-device calibration need of the devices of the verdict.
+void RobustSearch::measure_ahead() {
+  try {
+    meter_.emplace(first().given, MeasuredQuantities{.closing_time = true});
+  } catch (const InvalidInput&) {
+    return;  // no electrode pulls in
+  }
+  (void)calibrated({.pull_in_error = coarse_error});
+  if (tells_time()) (void)calibrated({.time_error = usual_time_error});
+}
+
+// True if the closing time resolves the device. A switch that is too quick for the instrument needs a recipe for a more precise
+// Vdp and period.
+bool RobustSearch::tells_time() const { return meter_->closing_time() > least_times_of_error * usual_time_error; }
+
+CalibratedSearch RobustSearch::in_measured_units(const ChosenFrom& winner, const DriveWaveforms& drawing) {
+  const Calibration coarse{.pull_in_error = coarse_error};
+  const Calibration both{.pull_in_error = coarse_error, .frequency_error = coarse_error};
+  const Calibration fine{.pull_in_error = fine_error, .frequency_error = fine_error};
+  const Calibration by_time{.time_error = usual_time_error};
+  if (!meter_) return {};
+  CalibratedSearch all{.pull_in = meter_->pull_in(), .closing_time = meter_->closing_time()};
+  const bool times = tells_time();
+  const auto found = searched_in(winner, drawing, std::array{coarse, times ? by_time : fine});
+  if (!found[0]) return all;
+  const auto row = [&](const char* name, const DriveWaveforms& waveforms, const Calibration& knowledge, bool is_searched) {
+    progress_.tell("verdict on devices that are measured", static_cast<double>(all.rows.size()) / most_rows);
+    all.rows.push_back(row_of(name, waveforms, knowledge, is_searched));
+  };
+  row("Vdp to 1 %", *found[0], coarse, true);
+  row("Vdp and period to 1 %", *found[0], both, false);
+  if (found[1]) row("Vdp and period to 0.2 %", *found[1], fine, !times);
+  if (found[1] && times) row("closing time to 50 ns", *found[1], by_time, true);
+  std::vector waveforms{*found[0]};
+  if (found[1]) waveforms.push_back(*found[1]);
+  all.by_error = judged_by_error(waveforms, winner.waveforms);
+  const bool time_wins = found[1] && times && lands_better(all.rows.back(), all.rows.front());
+  all.best = time_wins ? all.rows.size() - 1 : 0;
+  all.best_waveforms = time_wins ? *found[1] : *found[0];
+  return all;
+}
+
+// Searches for each of these calibrations, side by side. None if a search found nothing.
+std::array<RobustSearch::Found, 2> RobustSearch::searched_in(const ChosenFrom& winner, const DriveWaveforms& drawing,
+                                                             const std::array<Calibration, 2>& calibrations) {
+  const auto family = std::ranges::find(names_, winner.family);
+  const std::size_t k = family == names_.end() ? 0 : static_cast<std::size_t>(family - names_.begin());
+  const std::vector<MeasuredUnits> known = measured_units(first().given, calibrations, options_.jobs, progress_);
+  std::array<Found, 2> all;
+  std::array<std::atomic<double>, 2> parts{};
+  run_tasks(
+      all.size(), options_.jobs,
+      [&](std::size_t i) {
+        const RobustCost cost(
+            first(), aims_.tail,
+            own_devices(first(), known[i], measured_devices, options_.seed, which_measured, options_.jobs, progress_));
+        RaceOptions own = race_options();
+        own.memory = nullptr;  // its keys do not distinguish units
+        own.progress = [&, i](double part) {
+          parts[i] = part;
+          progress_.tell("searching for devices that are measured", (parts[0] + parts[1]) / 2);
+        };
+        const auto searched = [&](const RaceAims& aims) {
+          if (settings_[k].space.quasi_static() != nullptr) return searched_at_pace(cost, aims, k, own);
+          return race_single_search(settings_[k], k, cost, aims, winner.bounce_free >= ranked_by_share,
+                                    {winner.waveforms, drawing}, *before_verdict_, own);
+        };
+        RaceResult found = searched(aims_);
+        if (!found.contenders.empty() && is_harder_than_step(cost, found.contenders.front().waveforms))
+          found = searched(no_harder());
+        if (!found.contenders.empty()) all[i] = found.contenders.front().waveforms;
+      },
+      options_.stop);
+  progress_.throw_if_stopped();
+  return all;
+}
+
+RaceResult RobustSearch::searched_at_pace(const RobustCost& cost, const RaceAims& aims, std::size_t family, RaceOptions options) {
+  constexpr long shorter = 3;  // divisor of the closings of a search in volts
+  RobustAim aim = tail_aim_;
+  aim.free = free_;
+  for (const Condition& one : aims.tail.conditions) {
+    if (one.figure.member != Figure::Member(&Metrics::initial_contact_time)) aim.conditions.push_back(one);
+  }
+  options.closings /= shorter;
+  RaceResult all;
+  if (auto found = search_at_pace(settings_[family], {.of_step = 1, .family = family}, cost, aim, *before_verdict_, options))
+    all.contenders.push_back(*std::move(found));
+  return all;
+}
+
+// True if the waveforms are harder than the plain step on the devices of a search with a per-device calibration.
+bool RobustSearch::is_harder_than_step(const RobustCost& cost, const DriveWaveforms& waveforms) const {
+  const std::vector<DeviceOutcome> outcomes = cost.close(first().drives(waveforms), 0, cost.devices(), 1);
+  return !hold(at_most_step_, outcomes);
+}
+
+RaceAims RobustSearch::no_harder() const {
+  RaceAims aims = aims_;
+  for (RobustAim* aim : {&aims.tail, &aims.share}) std::ranges::copy(at_most_step_, std::back_inserter(aim->conditions));
+  return aims;
+}
+
+DevicesRow RobustSearch::row_of(const char* name, const DriveWaveforms& waveforms, const Calibration& knowledge,
+                                bool searched_for_it) {
+  const MeasuredUnits known = measured_units(first().given, std::array{knowledge}, options_.jobs, progress_).front();
+  const RobustCost fresh = verdict_devices(known);
+  std::vector<DeviceOutcome> outcomes = closed(fresh, waveforms);
+  progress_.throw_if_stopped();
+  return {.name = name,
+          .knowledge = knowledge,
+          .searched_for_it = searched_for_it,
+          .judged_whole = false,
+          .judged = internal::summarised({.name = name, .waveforms = all_drives(waveforms), .calibration = knowledge}, known,
+                                         std::move(outcomes))};
+}
+
+// Computes the results of the best of these waveforms for ever larger errors of Vdp. The waveform in volts needs no Vdp.
+std::vector<CalibrationError> RobustSearch::judged_by_error(const std::vector<DriveWaveforms>& waveforms,
+                                                            const DriveWaveforms& in_volts) {
+  std::vector<CalibrationError> judged;
+  const CalibratedEnsemble& all = calibrated({.pull_in_error = coarse_error});
+  const auto end = static_cast<std::ptrdiff_t>(std::min(devices_by_error, all.devices.size()));
+  const CalibratedEnsemble few{.devices = {all.devices.begin(), all.devices.begin() + end},
+                               .exact = {all.exact.begin(), all.exact.begin() + end}};
+  const RobustCost unmeasured(first(), aims_.tail, known_as(few, MeasuredUnits(), options_.seed));
+  const std::vector<DeviceOutcome> least = closed(unmeasured, in_volts);
+  for (const double error : errors_of_pull_in) {
+    const Calibration knowledge{.pull_in_error = error};
+    const RobustCost fresh(first(), aims_.tail, known_as(few, MeasuredUnits(knowledge), options_.seed));
+    CalibrationError best{
+        .error = error, .bounce_free = share_of(least, is_bounce_free), .impact_speed = quantile_95(least, judged_figures[0])};
+    for (const auto& waveform : waveforms) {
+      const std::vector<DeviceOutcome> outcomes = closed(fresh, waveform);
+      best.bounce_free = std::fmax(best.bounce_free, share_of(outcomes, is_bounce_free));
+      best.impact_speed = std::fmin(best.impact_speed, quantile_95(outcomes, judged_figures[0]));
+    }
+    progress_.throw_if_stopped();
+    judged.push_back(best);
+    progress_.tell("verdict by the error of Vdp", static_cast<double>(judged.size()) / errors_of_pull_in.size());
+  }
+  return judged;
+}
+
+RobustCost RobustSearch::verdict_devices(const MeasuredUnits& known) {
+  return {first(), aims_.tail, known_as(calibrated(known.calibration()), known, options_.seed)};
+}
+
+// Returns the devices of the verdict, measured once for all calibrations.
+const CalibratedEnsemble& RobustSearch::calibrated(const Calibration& knowledge) {
+  std::optional<CalibratedEnsemble>& all = knowledge.time_error ? calibrated_by_time_ : calibrated_by_pull_in_;
+  if (!all)
+    all = calibrate_all(Ensemble(first().given, verdict_, options_.seed), MeasuredQuantities::of(knowledge), compared_precision,
+                        options_.jobs, progress_);
+  return *all;
+}
+
+}  // namespace softland

@@ -1,0 +1,646 @@
+#include "studies/search/robust_search_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <future>
+#include <iterator>
+#include <utility>
+
+#include "base/executor.h"
+#include "base/require.h"
+#include "studies/closing/plain_step.h"
+#include "studies/search/step_comparison.h"
+
+namespace softland {
+namespace {
+
+constexpr std::size_t scouted_on = 16, ranked_on = 64;  // devices: candidates of the nominal search
+constexpr std::size_t kept_of_scouted = 24;             // candidates, by either measure
+constexpr std::size_t most_of_ranked = 2;               // candidates, by either measure
+constexpr std::size_t most_judged = 3;                  // winners, until one is not worse than the plain step
+constexpr std::size_t most_of_front = 6;
+constexpr double end_of_drawing = 0.3;  // share of a budget of time
+
+constexpr const char *fast_row = "fast", *soft_row = "soft";
+// Time that devices of a choice may take until a steady contact, over that under the plain step.
+constexpr double fast_within = 0.5, usual_within = 1, soft_within = 2;
+constexpr double by_chance = 1.02;      // most that devices of another sample wait longer, as a factor
+constexpr double worth_choosing = 0.9;  // a choice below this share of the default's impact velocity or time is another one
+constexpr double fewer_bounce_free = 0.05;
+constexpr std::size_t drawn_devices = 50, instants_of_course = 240;
+constexpr double units_of_gap = 5000;  // units in the contact gap
+constexpr double after_steady = 1.1;   // multiple of the time until steady contact up to which courses are drawn
+
+DevicesFindings::Row told(const DevicesRow& row) {
+  const DriveRobustness& drive = row.judged;
+  DevicesFindings::Row r{.name = row.name,
+                         .pull_in_error = row.knowledge.pull_in_error.value_or(Metrics::unset),
+                         .frequency_error = row.knowledge.frequency_error.value_or(Metrics::unset),
+                         .piezo_error = row.knowledge.piezo_error.value_or(Metrics::unset),
+                         .time_error = row.knowledge.time_error.value_or(Metrics::unset),
+                         .searched_for_it = row.searched_for_it,
+                         .bounce_free = drive.bounce_free.value,
+                         .open = std::max(0.0, 1 - drive.closing.value - drive.collapsed.value),
+                         .collapsed = drive.collapsed.value};
+  for (const Figure& f : device_figures) {
+    if (f.asked != nullptr && drive.figures[f].devices == 0) continue;
+    const bool needs_the_end = f.key == key_of(&Metrics::steady_force_time) || f.key == key_of(&Metrics::permanent_contact_time);
+    if (needs_the_end && !row.judged_whole) continue;
+    const auto& quantiles = drive.figures[f].quantiles;
+    const std::string key(f.key);
+    r.at_50[key] = quantiles[1].value, r.at_95[key] = quantiles[2].value, r.at_99[key] = quantiles[3].value;
+  }
+  for (const auto& [height, key] : DevicesFindings::yield_heights) {
+    const auto rebounds_less = [most = height](const DeviceOutcome& o) {
+      return o.closed() && o.is_held && o.metrics.major_bounce_height <= most;
+    };
+    if (drive.outcomes.empty()) continue;
+    r.yield[key] =
+        static_cast<double>(std::ranges::count_if(drive.outcomes, rebounds_less)) / static_cast<double>(drive.outcomes.size());
+  }
+  return r;
+}
+
+class RobustSearchStudy {
+ public:
+  RobustSearchStudy(const SceneFile& file, const OptimizeOptions& options, const RobustSearchOptions& devices)
+      : file_(file),
+        options_(options),
+        devices_(devices),
+        progress_{.stop = options.stop, .report = [this](std::string_view what, double part) { tell(what, part); }},
+        searched_(file, options, devices, progress_.report) {}
+
+  RobustSearchResult run() {
+    OptimizeResult drawing = searched_for_drawing();
+    result_.emplace(RobustSearchResult{.varied = first().given, .drawing = drawing, .best = std::move(drawing)});
+    try {
+      if (result_->drawing.best_scene && !progress_.stopped()) {
+        choose_of_all();
+        judge();
+      }
+    } catch (const Interrupted&) {  // the results so far stand
+    }
+    searched_.give_up();
+    if (beside_.valid()) beside_.wait();  // its findings are read from here on
+    if (progress_.stopped() && result_->rows.empty()) take_leader();
+    result_->interrupted = progress_.stopped();
+    if (!result_->rows.empty()) tell_findings();
+    return *std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] const SearchSetting& first() const { return searched_.first(); }
+  // Tells the progress of the search for the nominal design alone while that runs.
+  void tell(std::string_view what, double part) const {
+    if (options_.on_preparation && !searches_drawing_) options_.on_preparation(what, part);
+  }
+
+  OptimizeResult searched_for_drawing() {
+    drawing_options_ = options_of_drawing();
+    try {
+      OptimizeResult drawing = optimize(file_, drawing_options_);
+      searches_drawing_ = false;
+      return drawing;
+    } catch (...) {
+      searched_.give_up();
+      throw;
+    }
+  }
+
+  // Options of the nominal search. It keeps the waveforms that may do better on devices, and names its parameters among those
+  // of all searches.
+  OptimizeOptions options_of_drawing() {
+    OptimizeOptions own = options_;
+    own.keep_tried = true;
+    if (std::isfinite(own.max_seconds)) own.max_seconds = searched_.budget().seconds_left(end_of_drawing);
+    own.max_seconds = std::max(own.max_seconds, 1e-3);
+    own.on_improvement = {};  // best.toml is for devices
+    own.on_estimate = [this](const SearchEstimate& of_drawing) {
+      if (options_.on_estimate) options_.on_estimate(searched_.estimate(of_drawing));
+    };
+    own.on_start = [this](const FamilyColumns& of_drawing) {
+      FamilyColumns all = of_drawing;
+      std::ranges::copy(searched_.columns().families, std::back_inserter(all.families));
+      if (options_.on_start) options_.on_start(all);
+      drawing_options_.memory = options_.memory;  // the memory may exist only from now on
+      search_beside(of_drawing.families.size());
+    };
+    return own;
+  }
+
+  // Starts the search over devices first. The search for the nominal design begins when a first waveform was judged on devices,
+  // which leaves a core idle at times.
+  void search_beside(std::size_t before) {
+    const bool is_beside = options_.jobs > 1, is_timed = std::isfinite(options_.max_seconds);
+    const double of_drawing = is_timed ? end_of_drawing * options_.max_seconds : 0;
+    std::promise<void> looked;
+    const std::future<void> look = looked.get_future();
+    beside_ = std::async(is_beside ? std::launch::async : std::launch::deferred,
+                         [this, before, reserved = is_beside ? 0 : of_drawing, given = std::move(looked)]() mutable {
+                           std::promise<void> own = std::move(given);  // nobody waits beyond the end of this
+                           searched_.run(
+                               before, [&own] { own.set_value(); }, reserved);
+                         });
+    if (!is_beside) {
+      beside_.wait();
+    } else if (is_timed) {
+      static_cast<void>(look.wait_for(std::chrono::duration<double>(of_drawing)));
+    } else {
+      look.wait();
+    }
+    searches_drawing_ = true;
+  }
+
+  // Takes what led when the search was stopped before the verdict.
+  void take_leader() {
+    const ChosenFrom* leader = searched_.leader();
+    if (leader == nullptr) return;
+    OptimizeResult& best = result_->best;
+    best.best_scene = read_back(scene_of(leader->waveforms), "best.toml", best.scene);
+    best.best = simulate(*best.best_scene, true);
+    best.checks.clear();
+    best.goal_met = goal_met(options_.target, best.best->metrics, best.baseline.metrics);
+    best.confirmed = false;
+    best.better_than_baseline = true;
+    best.best_cost = leader->tail;
+    best.baseline_cost = searched_.cost().value(searched_.step_on_others(), searched_.aims().tail);
+    best.family = leader->family;
+    best.prefix.clear();
+    best.parameters = leader->parameters;
+    best.variables = leader->variables;
+  }
+
+  void choose_of_all() {
+    beside_.get();
+    for (ChosenFrom& one : ranked_again()) searched_.place(std::move(one));
+    result_->candidates = searched_.placed();
+  }
+
+  [[nodiscard]] DriveWaveforms drawing_waveforms() const {
+    return first().space.searched(result_->drawing.best_scene->drives.waveforms());
+  }
+
+  // Ranks what the nominal search has tried on devices.
+  std::vector<ChosenFrom> ranked_again() {
+    std::vector<ChosenFrom> all;
+    for (TriedWaveform& one : result_->drawing.tried)
+      all.push_back(
+          {.measure = "drawing", .family = one.family, .waveforms = std::move(one.waveforms), .parameters = {}, .variables = {}});
+    result_->drawing.tried.clear();
+    all = best_on(std::move(all), scouted_on, kept_of_scouted);
+    all = best_on(std::move(all), ranked_on, most_of_ranked);
+    ChosenFrom drawing{.measure = "drawing",
+                       .family = result_->drawing.family,
+                       .waveforms = drawing_waveforms(),
+                       .parameters = result_->drawing.parameters,
+                       .variables = result_->drawing.variables};
+    all.insert(all.begin(), std::move(drawing));
+    return all;
+  }
+
+  // Returns the best `kept` by either measure.
+  std::vector<ChosenFrom> best_on(std::vector<ChosenFrom> all, std::size_t devices, std::size_t kept) {
+    struct Ranked {
+      double tail, share;
+      std::size_t number;
+    };
+    std::vector<Ranked> ranked(all.size());
+    run_tasks(
+        all.size(), options_.jobs,
+        [&](std::size_t i) {
+          const std::vector<DeviceOutcome> outcomes = searched_.cost().close(first().drives(all[i].waveforms), 0, devices, 1);
+          ranked[i] = {searched_.cost().value(outcomes, searched_.aims().tail),
+                       searched_.cost().value(outcomes, searched_.aims().share), i};
+        },
+        options_.stop);
+    progress_.throw_if_stopped();
+    searched_.budget().took(static_cast<long>(all.size() * devices));
+    std::vector<ChosenFrom> best;
+    std::vector<bool> taken(all.size(), false);
+    for (const bool by_share : {false, true}) {
+      std::ranges::stable_sort(ranked, {}, [&](const Ranked& r) { return by_share ? r.share : r.tail; });
+      for (std::size_t i = 0; i < std::min(kept, ranked.size()); ++i) {
+        if (taken[ranked[i].number]) continue;
+        taken[ranked[i].number] = true;
+        best.push_back(all[ranked[i].number]);
+      }
+    }
+    return best;
+  }
+
+  void judge() {
+    const CalibratedSearch measured = searched_.in_measured_units(result_->candidates.front(), drawing_waveforms());
+    tell("verdict on fresh devices", 0);
+    result_->free = searched_.free();
+    result_->approach = searched_.approach();
+    make_choices();
+    result_->varied = over_whole_window(first().given);
+    std::vector<NamedDrive> drives{{.name = for_the_drawing, .waveforms = searched_.all_drives(drawing_waveforms())}};
+    for (const DeviceChoice& one : result_->choices) {
+      if (one.name != default_choice) drives.push_back(named(one.name.c_str(), one.candidate));
+    }
+    if (undelayed_) drives.push_back(named(undelayed_row, *undelayed_));
+    drives.push_back(of_candidate(0));  // the report is about the last one
+    result_->verdict = robustness(result_->varied, drives, verdict_options(), progress_);
+    result_->interrupted = result_->verdict.interrupted;
+    add_row(plain_step_row, plain_step(first().given, options_.actuator));
+    add_row(for_the_drawing, drawing_waveforms());
+    add_row(for_the_devices, result_->candidates.front().waveforms);
+    decide();
+    decide_choices();
+    if (undelayed_) add_row(undelayed_row, undelayed_->waveforms);
+    add(measured);
+    front();
+    draw_courses();
+    result_->findings.windows = hold_windows(first().given, verdict_options(), progress_);
+  }
+
+  // Returns the softest candidate whose devices wait at most `times` as long as under the plain step; null if no candidate
+  // does.
+  [[nodiscard]] const ChosenFrom* softest_within(double times, const std::vector<ChosenFrom>& candidates) const {
+    const ChosenFrom* best = nullptr;
+    for (const ChosenFrom& one : candidates) {
+      if (!one.is_good_enough || !(one.waited <= by_chance * times * searched_.free().until)) continue;
+      if (best == nullptr || one.measured < best->measured) best = &one;
+    }
+    return best;
+  }
+
+  [[nodiscard]] bool drive_alike(const ChosenFrom& a, const ChosenFrom& b) const {
+    const PreparedScene& given = first().given;
+    return same_drives(given.commanded(first().drives(a.waveforms)), given.commanded(first().drives(b.waveforms)));
+  }
+
+  // Makes the first candidate the default, and adds a sooner and a softer one where they differ from it.
+  void make_choices() {
+    const ChosenFrom& usual = result_->candidates.front();
+    const double until = searched_.free().until, tau = usual.waited / until;
+    const auto add = [&](const char* name, const ChosenFrom* one) {
+      if (one == nullptr || (name != default_choice && drive_alike(*one, usual))) return;
+      result_->choices.push_back({.name = name, .candidate = *one});
+    };
+    const bool is_late = tau > by_chance * usual_within;
+    const ChosenFrom* fast = softest_within(is_late ? usual_within : fast_within, result_->candidates);
+    const std::vector<ChosenFrom> on_the_way = searched_.looked_at();
+    if (is_late && fast == nullptr) fast = softest_within(usual_within, on_the_way);
+    if (until > 0 && fast != nullptr && fast->waited < worth_choosing * usual.waited) add(fast_row, fast);
+    add(default_choice, &usual);
+    const ChosenFrom* const soft = softest_within(soft_within, result_->candidates);
+    const bool is_softer = soft != nullptr && soft->impact_speed < worth_choosing * usual.impact_speed &&
+                           soft->bounce_free > usual.bounce_free - fewer_bounce_free;
+    if (until > 0 && !is_late && is_softer) add(soft_row, soft);
+    if (options_.actuator != Actuator::pzt || !searched_.approach() || searched_.approach()->holder.empty()) return;
+    for (const ChosenFrom& one : result_->candidates) {
+      if (undelayed_ || is_quasi_static(one.family) || !one.is_good_enough) continue;
+      undelayed_ = one;
+    }
+    if (undelayed_ && drive_alike(*undelayed_, usual)) undelayed_.reset();
+  }
+
+  [[nodiscard]] NamedDrive named(const char* name, const ChosenFrom& one) const {
+    return {.name = name, .waveforms = searched_.all_drives(one.waveforms), .calibration = searched_.known().calibration()};
+  }
+
+  // Returns the scene over a window that holds the whole of every waveform that is judged, and is at least as long as the plain
+  // step bounces.
+  [[nodiscard]] PreparedScene over_whole_window(PreparedScene given) const {
+    double last = 0;
+    const auto consider = [&](const ChosenFrom& one) {
+      last = std::max(last, last_breakpoint(first().given.commanded(first().drives(one.waveforms))));
+    };
+    for (const DeviceChoice& one : result_->choices) consider(one.candidate);
+    const double needed = last + 2 * given.model.basis().in_contact_period() + (last > given.duration ? 0.1 * last : 0);
+    const double bounces = 1.2 * searched_.free().until;
+    if (const double window = std::max(needed, bounces); window > given.duration) {
+      const double digits = std::pow(10, std::floor(std::log10(window)) - 1);
+      given.duration = std::ceil(window / digits) * digits;
+      given.scene.simulate.duration = given.duration;
+      given.scene.file.assign("simulate.duration", Quantity{.value = given.duration, .dimension = dimension::time});
+    }
+    return given;
+  }
+
+  // Takes the waveform of a row with less knowledge of the device if it lands better: more knowledge allows it too.
+  static void inherit(DevicesRow& row, const DevicesRow& other) {
+    const auto includes = [](const std::optional<double>& more, const std::optional<double>& less) {
+      return !less || (more && *more <= *less);
+    };
+    const Calibration &own = row.knowledge, &known = other.knowledge;
+    const bool knows_more = includes(own.pull_in_error, known.pull_in_error) &&
+                            includes(own.frequency_error, known.frequency_error) &&
+                            includes(own.piezo_error, known.piezo_error) && includes(own.time_error, known.time_error);
+    if (!knows_more || !lands_better(other, row)) return;
+    row.judged = other.judged;
+    row.judged_whole = other.judged_whole;
+    row.searched_for_it = false;
+  }
+
+  static bool is_worth_measuring(const DevicesRow& measured, const DevicesRow& own) {
+    const double lands = measured.judged.bounce_free.value;
+    if (std::max(lands, own.judged.bounce_free.value) >= lands_half) return lands > own.judged.bounce_free.value;
+    const auto speed = [](const DevicesRow& row) {
+      return quantile_95(row.judged.outcomes, key_of(&Metrics::largest_impact_velocity));
+    };
+    return speed(measured) < worth_choosing * speed(own);
+  }
+
+  void add(const CalibratedSearch& measured) {
+    result_->pull_in = measured.pull_in;
+    result_->closing_time = measured.closing_time;
+    findings().by_error = measured.by_error;
+    if (measured.rows.empty()) return;
+    const DevicesRow own = row_of_devices();
+    std::vector<DevicesRow> rows;
+    for (DevicesRow row : measured.rows) {
+      inherit(row, own);
+      for (const DevicesRow& other : rows) inherit(row, other);
+      rows.push_back(std::move(row));
+    }
+    std::ranges::copy(rows, std::back_inserter(result_->rows));
+    const DevicesRow& best = rows[measured.best];
+    if (!is_worth_measuring(best, own)) return;
+    findings().measured = best.name;
+    result_->calibrated = with_waveforms(result_->drawing.baseline_scene, measured.best_waveforms);
+    result_->calibrated->set(best.knowledge.time_error ? fmt::format("calibration.{}.error=\"50 ns\"", measured_time)
+                                                       : fmt::format("calibration.{}.error=\"1 %\"", measured_pull_in));
+  }
+
+  [[nodiscard]] RobustnessOptions verdict_options() const {
+    return {.samples = searched_.verdict(),
+            .seed = options_.seed,
+            .jobs = options_.jobs,
+            .measures_drive_energy = options_.target.measures_drive_energy()};
+  }
+  [[nodiscard]] NamedDrive of_candidate(std::size_t n) const { return named(for_the_devices, result_->candidates[n]); }
+
+  // Adds the row of a judged drive, found by its name or by equal signals.
+  void add_row(const char* name, const DriveWaveforms& waveforms) {
+    const std::vector<DriveRobustness>& drives = result_->verdict.drives;
+    auto found = std::ranges::find(drives, std::string_view(name), &DriveRobustness::name);
+    if (found == drives.end()) {
+      const PreparedScene& given = first().given;
+      const std::vector<Signal> own = given.commanded(given.in_drive_order(searched_.all_drives(waveforms)));
+      found = std::ranges::find_if(drives, [&](const DriveRobustness& other) {
+        return same_drives(own, given.commanded(given.in_drive_order(other.waveforms)));
+      });
+    }
+    if (found != drives.end()) result_->rows.push_back({.name = name, .knowledge = found->known.calibration(), .judged = *found});
+  }
+
+  [[nodiscard]] DevicesRow& row_of_devices() {
+    return *std::ranges::find(result_->rows, std::string_view(for_the_devices), &DevicesRow::name);
+  }
+
+  // Decides the winner: the first candidate that is not worse than the plain step, else the step itself.
+  void decide() {
+    const double significant = first().given.scene.metrics.significant_rebound;
+    std::vector<DriveRobustness>& drives = result_->verdict.drives;
+    const DriveRobustness step = drives.front();
+    std::vector<std::string>& worse_in = findings().worse_in;
+    const auto compare = [&] {
+      const std::vector<std::string_view> keys =
+          softland::worse_in(row_of_devices().judged.outcomes, step.outcomes, significant, options_.seed);
+      worse_in.assign(keys.begin(), keys.end());
+    };
+    std::size_t n = 0;
+    for (compare(); !worse_in.empty() && n + 1 < std::min(searched_.good_enough(), most_judged) && !progress_.stopped();
+         compare()) {
+      Robustness next = robustness(result_->varied, {of_candidate(++n)}, verdict_options(), progress_);
+      result_->interrupted = next.interrupted;
+      row_of_devices().judged = next.drives.back();
+      std::erase_if(drives, [](const DriveRobustness& one) { return one.name == for_the_devices; });
+      drives.push_back(std::move(next.drives.back()));
+    }
+    result_->best.plain_step_wins = !worse_in.empty();
+    if (result_->best.plain_step_wins) {
+      row_of_devices().judged = step;
+      win({});
+    } else {
+      result_->chosen = result_->candidates[n];
+      prefer_sooner(step);
+      const ChosenFrom& winner = *result_->chosen;
+      win(winner.waveforms);
+      result_->best.family = winner.family;
+      result_->best.prefix.clear();
+      result_->best.parameters = winner.parameters;
+      result_->best.variables = winner.variables;
+      note_delay(winner);
+    }
+    for (const Condition& condition : searched_.conditions())
+      findings().conditions.push_back(fulfilled(row_of_devices().judged.outcomes, condition));
+  }
+
+  // Replaces the winner by a sooner choice that is not worse than it, nor than the plain step.
+  void prefer_sooner(const DriveRobustness& step) {
+    const double significant = first().given.scene.metrics.significant_rebound;
+    const auto fast = std::ranges::find(result_->choices, std::string_view(fast_row), &DeviceChoice::name);
+    std::vector<DriveRobustness>& drives = result_->verdict.drives;
+    const auto judged = std::ranges::find(drives, std::string_view(fast_row), &DriveRobustness::name);
+    if (fast == result_->choices.end() || judged == drives.end()) return;
+    const auto is_worse_than = [&](const std::vector<DeviceOutcome>& other) {
+      return !softland::worse_in(judged->outcomes, other, significant, options_.seed).empty();
+    };
+    if (is_worse_than(row_of_devices().judged.outcomes) || is_worse_than(step.outcomes)) return;
+    result_->chosen = fast->candidate;
+    result_->choices.erase(fast);
+    judged->name = for_the_devices;
+    row_of_devices().judged = *judged;
+    findings().worse_in.clear();
+    DriveRobustness winner = std::move(*judged);
+    drives.erase(judged);
+    std::erase_if(drives, [](const DriveRobustness& one) { return one.name == for_the_devices; });
+    drives.push_back(std::move(winner));
+  }
+
+  void note_delay(const ChosenFrom& winner) {
+    const std::optional<StableApproach>& approach = searched_.approach();
+    if (options_.actuator != Actuator::pzt || !is_quasi_static(winner.family) || approach->holder.empty()) return;
+    const Signal step = signal(winner.waveforms.at(approach->holder));
+    for (const double time : step.breakpoints()) {
+      if (std::isnan(findings().step_delay) && time > 0) findings().step_delay = time;
+    }
+  }
+
+  // Judges the choices on the fresh devices, and leaves out those that a sooner one equals in speed, rebound and force.
+  void decide_choices() {
+    std::vector<DeviceChoice> all = std::exchange(result_->choices, {});
+    if (result_->best.plain_step_wins) return;
+    const double significant = first().given.scene.metrics.significant_rebound;
+    const std::vector<DriveRobustness>& drives = result_->verdict.drives;
+    const double of_step = waited(drives.front().outcomes, result_->free.figure);
+    std::vector<DeviceChoice> kept;
+    for (DeviceChoice& one : all) {
+      const bool is_default = one.name == default_choice;
+      if (is_default) one.candidate = *result_->chosen;
+      const std::string_view row = is_default ? std::string_view(for_the_devices) : std::string_view(one.name);
+      const auto found = std::ranges::find(drives, row, &DriveRobustness::name);
+      one.judged = found != drives.end() ? *found : row_of_devices().judged;
+      one.tau = waited(one.judged.outcomes, result_->free.figure) / of_step;
+      const auto equals = [&](const DeviceChoice& sooner) {
+        return softland::worse_in(sooner.judged.outcomes, one.judged.outcomes, significant, options_.seed).empty();
+      };
+      const bool harder_than_step =
+          !is_default && !softland::worse_in(one.judged.outcomes, drives.front().outcomes, significant, options_.seed).empty();
+      if (harder_than_step || (!is_default && std::ranges::any_of(kept, equals))) continue;
+      kept.push_back(std::move(one));
+    }
+    for (DeviceChoice& one : kept) {
+      if (one.name == default_choice) continue;
+      one.scene = scene_of(one.candidate.waveforms);
+      result_->rows.push_back({.name = one.name, .knowledge = one.judged.known.calibration(), .judged = one.judged});
+    }
+    result_->choices = std::move(kept);
+  }
+
+  // Returns the scene of these waveforms in volts, over the window of the verdict.
+  [[nodiscard]] SceneFile scene_of(const DriveWaveforms& waveforms) const {
+    SceneFile file = with_waveforms(result_->drawing.baseline_scene, waveforms);
+    if (result_->varied.duration > first().given.duration)
+      file.assign("simulate.duration", Quantity{.value = result_->varied.duration, .dimension = dimension::time});
+    return file;
+  }
+
+  // Simulates and confirms the winner on the nominal device.
+  void win(const DriveWaveforms& waveforms) {
+    OptimizeResult& best = result_->best;
+    const OptimizeResult& drawing = result_->drawing;
+    best.best_scene = read_back(scene_of(waveforms), "best.toml", drawing.scene);
+    best.best = simulate(*best.best_scene, true, progress_);
+    best.checks = run_checks(*best.best_scene);
+    const Metrics& m = best.best->metrics;
+    best.goal_met = goal_met(options_.target, m, drawing.baseline.metrics);
+    best.confirmed = best.goal_met && std::ranges::all_of(best.checks, [](const CheckingRun& run) {
+                       return run.varied == Varied::gas || run.metrics.lands();
+                     });
+    best.better_than_baseline = !best.plain_step_wins;
+    best.harder_than_step = hardness_beyond_step(m, drawing.baseline.metrics);
+    best.best_cost = searched_.cost().value(row_of_devices().judged.outcomes, searched_.aims().tail);
+    best.baseline_cost = searched_.cost().value(result_->verdict.drives.front().outcomes, searched_.aims().tail);
+  }
+
+  // Draws the courses until both drives carry a steady force, if they do.
+  void draw_courses() {
+    if (result_->best.plain_step_wins) return;
+    const DriveRobustness &step = result_->verdict.drives.front(), &own = row_of_devices().judged;
+    double end = 0;
+    for (const DriveRobustness* one : {&step, &own})
+      end = std::fmax(end, after_steady * waited(one->outcomes, &Metrics::steady_force_time));
+    end = std::fmin(end, result_->varied.duration);
+    const double unit = result_->varied.model.contact_gap() / units_of_gap;
+    const auto courses = [&](const DriveRobustness& drive) {
+      std::vector<std::vector<int>> all;
+      for (const std::vector<double>& gap :
+           gap_courses(result_->varied, drive, drawn_devices, instants_of_course, end, verdict_options(), progress_).gaps) {
+        std::vector<int>& course = all.emplace_back();
+        for (const double g : gap) course.push_back(static_cast<int>(std::lround(g / unit)));
+      }
+      return all;
+    };
+    findings().courses = {.end = end, .unit = unit, .step = courses(step), .own = courses(own)};
+  }
+
+  // Finds the candidates that no other beats in both time and softness, and judges them on the devices of the verdict.
+  void front() {
+    std::vector<const ChosenFrom*> kept;
+    for (const ChosenFrom& one : result_->candidates) {
+      const bool beaten = std::ranges::any_of(result_->candidates, [&](const ChosenFrom& other) {
+        return other.first_touch <= one.first_touch && other.impact_speed <= one.impact_speed &&
+               (other.first_touch < one.first_touch || other.impact_speed < one.impact_speed);
+      });
+      if (!beaten && std::isfinite(one.first_touch) && kept.size() < most_of_front) kept.push_back(&one);
+    }
+    const RobustCost fresh = searched_.verdict_devices(searched_.known());
+    for (const ChosenFrom* one : kept) {
+      progress_.throw_if_stopped();
+      tell("verdict on candidates", static_cast<double>(findings().front.size()) / static_cast<double>(kept.size()));
+      const std::vector<DeviceOutcome> outcomes = searched_.closed(fresh, one->waveforms);
+      findings().front.push_back({.first_touch = quantile_95(outcomes, key_of(&Metrics::initial_contact_time)),
+                                  .impact_speed = quantile_95(outcomes, key_of(&Metrics::largest_impact_velocity)),
+                                  .bounce_free = share_of(outcomes, is_bounce_free),
+                                  .candidate = fmt::format("{} by {}", one->family, one->measure)});
+    }
+    std::ranges::stable_sort(findings().front, {}, &FrontPoint::first_touch);
+  }
+
+  // Collects the findings that were not noted on the way.
+  void tell_findings() {
+    DevicesFindings& d = findings();
+    const std::optional<Closing>& drawn = result_->drawing.best;
+    d.spread_assumed = searched_.spread_assumed();
+    d.count = static_cast<double>(result_->verdict.devices);
+    d.seed = static_cast<double>(options_.seed);
+    d.closings = static_cast<double>(searched_.budget().taken());
+    if (result_->chosen) d.measure = result_->chosen->measure, d.waveform = result_->chosen->family;
+    d.better_than_plain_step = !result_->best.plain_step_wins;
+    if (drawn) d.drawing = FigureValues(drawn->metrics), d.drawing_status = to_string(drawn->metrics.status);
+    d.drawing_goal_met = result_->drawing.goal_met;
+    for (const DevicesRow& row : result_->rows) d.rows.push_back(told(row));
+    for (const DeviceChoice& one : result_->choices)
+      d.choices.push_back({.name = one.name,
+                           .file = one.name == default_choice ? "best.toml" : one.name + ".toml",
+                           .waveform = one.candidate.family,
+                           .tau = one.tau});
+    if (const std::optional<StableApproach>& approach = result_->approach) {
+      std::vector<std::string> drives{approach->drive};
+      if (!approach->holder.empty()) drives.push_back(approach->holder);
+      d.stable_path = {.drives = drives,
+                       .share = searched_.share_with_path(),
+                       .reaches = approach->reaches,
+                       .limit = approach->limit,
+                       .touch_places = approach->touch_places(),
+                       .rise = shortest_rise(result_->varied)};
+    }
+    if (const DevicesFindings::Row* own = d.row(for_the_devices)) {
+      const double height = own->at_95.at(std::string(key_of(&Metrics::major_bounce_height)));
+      const double significant = result_->varied.scene.metrics.significant_rebound;
+      d.goal_met = height <= significant;
+      d.missed_by = std::max(0.0, height - significant);
+    }
+    for (const ChosenFrom& one : result_->candidates)
+      d.race.push_back({.measure = one.measure,
+                        .waveform = one.family,
+                        .closings = one.closings,
+                        .bounce_free = one.bounce_free,
+                        .cost = one.tail});
+  }
+
+  [[nodiscard]] DevicesFindings& findings() { return result_->findings; }
+
+  const SceneFile& file_;
+  const OptimizeOptions& options_;
+  const RobustSearchOptions& devices_;
+  Progress progress_;
+  std::atomic<bool> searches_drawing_ = false;
+  RobustSearch searched_;
+  OptimizeOptions drawing_options_;
+  std::optional<RobustSearchResult> result_;  // none before the search for the nominal design
+  std::optional<ChosenFrom> undelayed_;       // the best whose electrode steps at t = 0, if others may step later
+  std::future<void> beside_;                  // the last member: what it uses outlives it
+};
+
+}  // namespace
+
+void share_budget(OptimizeOptions& options, RobustSearchOptions& devices) {
+  constexpr long share_of_drawing = 5;  // divisor
+  const long all = options.max_evaluations;
+  options.max_evaluations = std::max(1L, all / share_of_drawing);
+  devices.closings = all - options.max_evaluations;
+  devices.are_a_budget = true;
+}
+
+bool RobustSearchResult::plain_step_lands() const {
+  return !verdict.drives.empty() && quantile_95(verdict.drives.front().outcomes, key_of(&Metrics::major_bounce_height)) <=
+                                        varied.scene.metrics.significant_rebound;
+}
+
+RobustSearchResult robust_search(const SceneFile& file, const OptimizeOptions& options, const RobustSearchOptions& devices) {
+  require(
+      options.own_waveforms.empty(),
+      "own waveforms are searched for the drawing, or over devices by one measure: the race of families over devices does not "
+      "take them");
+  return RobustSearchStudy(file, options, devices).run();
+}
+
+}  // namespace softland
