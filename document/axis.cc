@@ -22,7 +22,7 @@ Points drawable(const Points& points) {
   return all;
 }
 
-double Axis::transformed(double value) const { return scale == Scale::linear ? value : std::log10(value); }
+double Axis::transformed(double value) const { return scale == AxisScale::linear ? value : std::log10(value); }
 
 double Axis::pixel(double value) const {
   constexpr double farthest = 1e7;  // any paper ends before this [px]
@@ -67,7 +67,7 @@ std::vector<double> linear_ticks(double low, double high, int wanted) {
 
 std::vector<double> ticks(const Axis& axis, int wanted) {
   if (!std::isfinite(axis.low) || !std::isfinite(axis.high) || axis.low > axis.high) return {};
-  if (axis.scale == Scale::linear) return linear_ticks(axis.low, axis.high, wanted);
+  if (axis.scale == AxisScale::linear) return linear_ticks(axis.low, axis.high, wanted);
   if (!(axis.low > 0)) return {};
   std::vector<double> out;
   const int first = static_cast<int>(std::ceil(std::log10(axis.low) - 1e-9));

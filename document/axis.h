@@ -18,7 +18,7 @@ inline constexpr const char* muted = "#5f6b76";  // colour of ticks and frames
 
 /// Maps data to pixels along one axis.
 struct Axis {
-  Scale scale = Scale::linear;
+  AxisScale scale = AxisScale::linear;
   double low = 0, high = 1;  // ends of the axis in units of the data
   double pixel_low = 0, pixel_high = 1;
 

@@ -24,7 +24,7 @@ using CurveTables = std::map<std::string, CurveTable>;
 /// are for other pictures than those of results. The role `limit` shows the limit of a source. The roles `device` and
 /// `device_before` are thin: one of many devices under the winner, and under the plain step.
 enum class Role { best, baseline, evaluations, third, fourth, fifth, measured, limit, device, device_before };
-enum class Scale { linear, logarithmic };
+enum class AxisScale { linear, logarithmic };
 
 struct Series {
   std::string table;
@@ -56,8 +56,8 @@ struct Chart {
   std::string x_unit;  ///< unit of x; empty: a count
   std::string y_label;
   std::string y_unit;
-  Scale scale = Scale::linear;                  ///< scale of y
-  Scale x_scale = Scale::linear;                ///< scale of x; logarithmic: the curves join dots
+  AxisScale scale = AxisScale::linear;          ///< scale of y
+  AxisScale x_scale = AxisScale::linear;        ///< scale of x; logarithmic: the curves join dots
   std::array<double, 2> x_home{0, 1};           ///< range shown before any zoom
   std::array<double, 2> x_whole{0, 1};          ///< whole range of the data
   std::optional<std::array<double, 2>> y_home;  ///< range of y before any zoom; not set: from the data in view

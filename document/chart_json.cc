@@ -38,7 +38,7 @@ const char* role_name(Role role) {
   return "evaluations";
 }
 
-const char* scale_name(Scale scale) { return scale == Scale::linear ? "linear" : "log"; }
+const char* scale_name(AxisScale scale) { return scale == AxisScale::linear ? "linear" : "log"; }
 
 // Returns the rows of a column, packed unless its values span many decades: these are numbers of six digits.
 json rows_json(const std::vector<double>& column, const std::vector<std::size_t>& rows, bool logarithmic) {
@@ -77,7 +77,7 @@ json chart_json(const Picture& picture, std::size_t rows) {
   json tables = json::object();
   std::set<std::string> logarithmic;  // tables of charts whose axes are both logarithmic
   for (const Chart& chart : picture.charts) {
-    if (chart.x_scale == Scale::linear) continue;
+    if (chart.x_scale == AxisScale::linear) continue;
     for (const Series& one : chart.series) logarithmic.insert(one.table);
   }
   for (const auto& [name, table] : picture.tables) {

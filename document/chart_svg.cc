@@ -80,7 +80,7 @@ std::vector<std::array<double, 2>> visible(const Axis& x, const Axis& y, const s
     column.clear();
   };
   for (std::size_t row = begin; row < end; ++row) {
-    if (!std::isfinite(ys[row]) || (y.scale == Scale::logarithmic && !(ys[row] > 0))) continue;
+    if (!std::isfinite(ys[row]) || (y.scale == AxisScale::logarithmic && !(ys[row] > 0))) continue;
     const std::array<double, 2> point{x.pixel(xs[row]), y.pixel(ys[row])};
     if (!column.empty() && std::floor(point[0]) != std::floor(column.front()[0])) flush();
     column.push_back(point);
@@ -98,13 +98,13 @@ std::array<double, 2> range_in_view(const CurveTables& tables, const Chart& char
     const std::vector<double>& ys = table.at(one.column);
     for (std::size_t row = 0; row < xs.size(); ++row) {
       if (!std::isfinite(ys[row]) || xs[row] < chart.x_home[0] || xs[row] > chart.x_home[1]) continue;
-      if (chart.scale == Scale::logarithmic && !(ys[row] > 0)) continue;
+      if (chart.scale == AxisScale::logarithmic && !(ys[row] > 0)) continue;
       lowest = std::min(lowest, ys[row]);
       highest = std::max(highest, ys[row]);
     }
   }
-  if (lowest > highest) return {chart.scale == Scale::logarithmic ? 0.1 : 0.0, 1.0};
-  if (chart.scale == Scale::logarithmic) return {lowest / 1.5, highest * 1.5};
+  if (lowest > highest) return {chart.scale == AxisScale::logarithmic ? 0.1 : 0.0, 1.0};
+  if (chart.scale == AxisScale::logarithmic) return {lowest / 1.5, highest * 1.5};
   lowest = std::min(lowest, 0.0);
   highest = std::max(highest, 0.0);
   const double margin = highest > lowest ? 0.06 * (highest - lowest) : 1.0;

@@ -126,7 +126,11 @@ class Cells {
     const double ratio = n > 2 && positive ? log_ratio(n - 1) / static_cast<double>(n - 1) : 0;
     const double first = n > 2 && positive ? log_ratio(1) : 1;
     const bool logarithmic = n > 2 && positive && values_[n - 1] / values_[0] > 3 && std::abs(first - ratio) < 0.01 * ratio;
-    axis_ = {.scale = logarithmic ? Scale::logarithmic : Scale::linear, .low = 0, .high = 1, .pixel_low = from, .pixel_high = to};
+    axis_ = {.scale = logarithmic ? AxisScale::logarithmic : AxisScale::linear,
+             .low = 0,
+             .high = 1,
+             .pixel_low = from,
+             .pixel_high = to};
     const auto between = [&](double a, double b) { return logarithmic ? std::sqrt(a) * std::sqrt(b) : std::midpoint(a, b); };
     const auto beyond = [&](double inner, double end) {
       return within(logarithmic ? end * (std::sqrt(end) / std::sqrt(inner)) : end + (end / 2 - inner / 2));
@@ -264,7 +268,7 @@ std::string legend(const HeatMap& map, const ColourRange& range, const Prefix& p
     out += fmt::format("<rect x=\"{:.1f}\" y=\"{:.2f}\" width=\"16\" height=\"{:.2f}\" fill=\"{}\"/>\n", x,
                        bottom - (k + 1) * tall, tall + 0.4, scale_colour((k + 0.5) / steps_of_scale));
   }
-  const Axis axis{.scale = Scale::linear, .low = range.low, .high = range.high, .pixel_low = bottom, .pixel_high = map_above};
+  const Axis axis{.scale = AxisScale::linear, .low = range.low, .high = range.high, .pixel_low = bottom, .pixel_high = map_above};
   for (const double tick : ticks(axis, 8))
     out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x + 22, axis.pixel(tick) + 4,
                        plain_number(tick / prefix.factor, 5));
@@ -321,7 +325,7 @@ std::vector<ContourLine> contour_lines(const std::vector<double>& values, std::s
 
 std::vector<double> contour_levels(const std::vector<double>& values, int wanted) {
   const ColourRange range = colour_range(values);
-  std::vector<double> levels = ticks({.scale = Scale::linear, .low = range.low, .high = range.high}, wanted);
+  std::vector<double> levels = ticks({.scale = AxisScale::linear, .low = range.low, .high = range.high}, wanted);
   std::erase_if(levels, [&](double level) { return level <= range.low || level >= range.high; });
   return levels;
 }

@@ -535,7 +535,7 @@ TEST(Check, PrintsTheKnudsenNumberOfTheScenesOwnGas) {
   const Workplace here;
   const auto check = [&](const char* setting) { return here.run({"check", "gold.toml", "--set", setting}).out; };
   EXPECT_THAT(check("gas.mean_free_path=\"70 nm\""),
-              HasSubstr("Knudsen number       0.02 at the rest gap, 0.0467 closed (mean free path 70\u00a0nm)"));
+              HasSubstr("Knudsen number       0.02 at the rest gap, 0.0467 in the closed state (mean free path 70\u00a0nm)"));
   // mu / p sqrt(pi R_g T / 2) with the viscosity of the scene.
   EXPECT_THAT(check("gas.pressure=\"1 kPa\""), HasSubstr("(mean free path 6.84\u00a0µm)"));
 }

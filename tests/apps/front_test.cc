@@ -84,7 +84,7 @@ TEST_F(Front, HasAPageWithTheWaveformsOfItsPoints_optimized) {
   static_cast<void>(done(search("front.sqlite", 80)));
   const Outcome o = here.run({"report", "front.sqlite", "--quiet"});
   ASSERT_EQ(o.status, 0) << o.err;
-  EXPECT_THAT(o.out, HasSubstr("Front: "));
+  EXPECT_THAT(o.out, HasSubstr("Pareto front: "));
   EXPECT_THAT(o.out, HasSubstr("* is the knee"));
   const std::string page = read(here.path() / "front-report/report.html");
   EXPECT_THAT(page, HasSubstr("id=\"front\""));

@@ -134,7 +134,7 @@ TEST_F(TuningLabs, SayHowACommandEndedThatGaveNoAnswer) {
   EXPECT_THAT(refusal("no-such-command"), HasSubstr("ended with status 127 before it answered shot 1"));
   EXPECT_THAT(refusal("read -r line; exec >&-; sleep 100"),
               HasSubstr("closed its standard input or output before it answered shot 1"));
-  EXPECT_THAT(refusal("sleep 100", 100ms), HasSubstr("did not answer shot 1 in 100\u00a0ms; --timeout says how long to wait"));
+  EXPECT_THAT(refusal("sleep 100", 100ms), HasSubstr("did not answer shot 1 within 100\u00a0ms; a longer --timeout"));
 }
 
 // The whole process group is ended: a pipeline has several processes, and one may ignore the signal.

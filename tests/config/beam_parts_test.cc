@@ -242,8 +242,7 @@ TEST(BeamParts, NameTheirLengthWhereSomethingLiesBeyondIt) {
               HasSubstr("contact.at = \"260 um\": must lie on the beam: its sections are 250 um long"));
   EXPECT_EQ(message(std::string(built_scene), {"structure.length=250 um"}),
             "--set structure.length=250 um: [structure]: missing key 'width' (a length such as \"20 um\"); "
-            "structure.length took "
-            "the place of structure.sections");
+            "structure.length replaced structure.sections");
 }
 
 TEST(BeamParts, NeedNoThicknessOfTheStructureWhereAllHaveTheirOwn) {
@@ -336,8 +335,9 @@ TEST(RestShapeOfAScene, MayBeSetAndMayVary) {
 TEST(RestShapeOfAScene, ThatCannotBeIsRefusedWithItsPlace) {
   EXPECT_EQ(message(std::string(bent_scene)), "");
   const std::string table = "x.toml:5: structure.rest_shape.";
-  EXPECT_THAT(bent_refusal("\"-200 nm\"]", "\"-200 nm\", \"0 nm\"]"),
-              AllOf(StartsWith(table + "heights = ["), HasSubstr("there are 4 of them for 3 positions")));
+  EXPECT_THAT(
+      bent_refusal("\"-200 nm\"]", "\"-200 nm\", \"0 nm\"]"),
+      AllOf(StartsWith(table + "heights = ["), HasSubstr("one height for each position, but there are 4 for 3 positions")));
   EXPECT_THAT(bent_refusal("\"0 um\", \"100 um\"", "\"1 um\", \"100 um\""),
               AllOf(StartsWith(table + "positions = ["), HasSubstr("rise from 0 m")));
   EXPECT_THAT(bent_refusal("\"100 um\", \"tip\"", "\"250 um\", \"tip\""),
@@ -349,9 +349,9 @@ TEST(RestShapeOfAScene, ThatCannotBeIsRefusedWithItsPlace) {
               AllOf(StartsWith(table + "heights = ["), HasSubstr("value 2: expected a length [m], got a voltage [V]")));
   EXPECT_THAT(bent_refusal(", heights = [\"0 nm\", \"30 nm\", \"-200 nm\"]", ""),
               HasSubstr("x.toml:5: [structure.rest_shape]: missing key 'heights'"));
-  EXPECT_THAT(
-      bent_refusal("thickness", "stress_gradient = \"0 Pa/m\"\nthickness"),
-      AllOf(StartsWith("x.toml:5: structure.rest_shape = {"), HasSubstr("cannot stand beside structure.stress_gradient")));
+  EXPECT_THAT(bent_refusal("thickness", "stress_gradient = \"0 Pa/m\"\nthickness"),
+              AllOf(StartsWith("x.toml:5: structure.rest_shape = {"),
+                    HasSubstr("must not be given together with structure.stress_gradient")));
   EXPECT_THAT(
       bent_refusal("thickness",
                    "layers = [{ face = \"far\", span = [\"0 um\", \"tip\"], thickness = \"0.1 um\", youngs_modulus = \"70 "

@@ -255,7 +255,7 @@ TEST(Bench, RefusesWhatItCannotMean) {
   expect_refused(begin + "value = 17.1\nerror = \"1 %\"", "expected a voltage in quotes");
   expect_refused(begin + "value = \"1 V\"\nerror = \"0 V\"", "must be above 0");
   expect_refused(begin + "value = \"-1 V\"\nerror = \"1 %\"", "a pull_in must be above 0");
-  expect_refused(begin + "value = \"1 V\"\nerror = \"1 %\"\nlevel = \"3 V\"", "a pull_in has none");
+  expect_refused(begin + "value = \"1 V\"\nerror = \"1 %\"\nlevel = \"3 V\"", "must not be given for a pull_in");
   expect_refused(begin + "value = \"1 V\"\nerror = \"1 %\"\nmode = 2", "applies to a frequency only");
   expect_refused(begin + "value = \"1 V\"\nerror = \"1 %\"\neror = 2", "unknown key (did you mean 'error'?)");
   expect_refused(begin + "file = \"none.csv\"\nerror = \"1 %\"", "measurement.file = \"none.csv\"");

@@ -89,8 +89,8 @@ TEST(FileRows, KeysShiftAndScaleThem) {
 TEST(FileRows, WhatIsAmbiguousIsRefusedWithTheKey) {
   FileScene(scope, "").refused({"waveform.main.file", "scope.csv", "2 channels", "column = "});
   FileScene("x-axis,1\nsecond,Volt\n-2E-06,0\n-1E-06,3\n0E-06,4\n1E-06,5\n", "")
-      .refused({"2 rows before t = 0", "no rest", "shift = \"first\""});
-  FileScene("1.5\n2.5\n3.5\n", "").refused({"no times", "interval"});
+      .refused({"2 rows before t = 0", "from 0 V to 3 V, but must be constant", "shift = \"first\""});
+  FileScene("1.5\n2.5\n3.5\n", "").refused({"neither times nor an interval", "interval = "});
   EXPECT_EQ(FileScene("1.5\n2.5\n3.5\n", "interval = \"1 us\"\n").table().time, (std::vector<double>{0, 1e-6, 2e-6}));
   FileScene("t,U\n0,x\n1,2\n2,3\n3,4\n", "").refused({"scope.csv:2", "column 2"});
 }
@@ -126,7 +126,7 @@ TEST(FileRows, ALongRecordIsThinnedToWhatTheSourceCanPass) {
   EXPECT_LT(of.table().time.size(), 4000U);
   EXPECT_EQ(of.table().time.back(), 19999e-9);
   EXPECT_THAT(of.scene().warnings, testing::Contains(HasSubstr("thinned from 20000 to")));
-  EXPECT_THAT(of.scene().warnings, testing::Contains(HasSubstr("behind the bandwidth of 1 MHz they differ by less than")));
+  EXPECT_THAT(of.scene().warnings, testing::Contains(HasSubstr("with the bandwidth of 1 MHz they differ by less than")));
 }
 
 TEST(ReadKeys, AreThoseOfAWaveform) {

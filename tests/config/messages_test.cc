@@ -183,7 +183,7 @@ const std::string factor = "[waveform.dispersion]\nfamily = \"step\"\n";
 INSTANTIATE_TEST_SUITE_P(Surface, BadFile, testing::Values(
     Edit{"[gas]", "[load]\nvoltage = \"5 V\"\n[gas]", "x.toml:14: [load]: missing key 'resistance' (a resistance such as \"50 ohm\")"},
     Edit{"[gas]", "[surface]\n[gas]", "x.toml:22: [piezo]: must not be combined with [surface], which is for a beam without layers"},
-    Edit{"[gas]", "[surface]\nelastic_modulus = \"-1 MN/m\"\n[gas]", "x.toml:14: [surface]: leaves a bending rigidity of -1.623e-10 N m^2"},
+    Edit{"[gas]", "[surface]\nelastic_modulus = \"-1 MN/m\"\n[gas]", "x.toml:14: [surface]: leaves a bending rigidity of -1.623e-10 N m^2, which must be above 0"},
     Edit{"[gas]", "[surface]\nresidual_stress = \"10 N/m\"\ncantilever_load = \"compression\"\n[gas]", "x.toml:14: [surface]: leaves -5 MPa along the beam, which buckles at -4.106 MPa"}));
 
 INSTANTIATE_TEST_SUITE_P(Dispersion, BadFile, testing::Values(

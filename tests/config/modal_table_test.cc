@@ -103,7 +103,9 @@ TEST_F(ModalScene, TellsWhatItTookFromTheFileOfAnotherProgram) {
   EXPECT_THAT(refusal(edited(text, "axis = \"x\"\n", "")), HasSubstr("structure.axis is needed"));
   EXPECT_THAT(refusal(text, {"structure.length_unit=V"}),
               HasSubstr("--set structure.length_unit=V: must be the unit of a length"));
-  EXPECT_THAT(refusal(text, {"structure.mass=1 ng"}), HasSubstr("mass-normalised already, by the generalised mass"));
+  EXPECT_THAT(
+      refusal(text, {"structure.mass=1 ng"}),
+      HasSubstr("structure.mass: must be omitted, because the modes of the file are mass-normalised, by the generalised mass"));
 }
 
 // A result contains the table itself, so that it can be read anywhere, bit for bit.
@@ -239,7 +241,7 @@ TEST_F(ModalScene, RefusesListsThatAreNoTable) {
               HasSubstr("at least three positions that increase from 0"));
   EXPECT_THAT(refusal(held(edited(right, "[[0,", "[[1,"))), HasSubstr("a shape must be finite and 0 at the clamp"));
   EXPECT_THAT(refusal(held(right + "axis = \"x\"\n")), HasSubstr("this scene holds its modes itself"));
-  EXPECT_THAT(refusal(held(right + "file = \"modes.csv\"\n")), HasSubstr("cannot stand beside"));
+  EXPECT_THAT(refusal(held(right + "file = \"modes.csv\"\n")), HasSubstr("must not be given together with structure.positions"));
 }
 
 }  // namespace

@@ -174,7 +174,7 @@ const std::vector<std::array<double, 2>> strange_ends{{1.8e-6, std::nextafter(1.
                                                       {2, 1}};
 
 TEST(Ticks, OfAnyEndsAreFewAndBetweenThem) {
-  for (const Scale scale : {Scale::linear, Scale::logarithmic}) {
+  for (const AxisScale scale : {AxisScale::linear, AxisScale::logarithmic}) {
     for (const auto& [low, high] : strange_ends) {
       for (const int wanted : {3, 5, 8, 9}) {
         const std::vector<double> found = ticks({.scale = scale, .low = low, .high = high}, wanted);
@@ -186,11 +186,11 @@ TEST(Ticks, OfAnyEndsAreFewAndBetweenThem) {
       }
     }
   }
-  EXPECT_EQ(ticks({.scale = Scale::linear, .low = -1.7e308, .high = 1.7e308}, 8).size(), 7u);
+  EXPECT_EQ(ticks({.scale = AxisScale::linear, .low = -1.7e308, .high = 1.7e308}, 8).size(), 7u);
 }
 
 TEST(AxisOfAPicture, GivesAFinitePixelForEveryNumber) {
-  for (const Scale scale : {Scale::linear, Scale::logarithmic}) {
+  for (const AxisScale scale : {AxisScale::linear, AxisScale::logarithmic}) {
     for (const auto& [low, high] : strange_ends) {
       const Axis axis{.scale = scale, .low = low, .high = high, .pixel_low = 100, .pixel_high = 20};
       for (const double value : {low, high, 0.0, -1.0, 1e308, -1e308, 5e-324, kInfinity, kNaN}) {
@@ -199,7 +199,7 @@ TEST(AxisOfAPicture, GivesAFinitePixelForEveryNumber) {
       }
     }
   }
-  const Axis axis{.scale = Scale::linear, .low = -1.6e308, .high = 1.6e308, .pixel_low = 100, .pixel_high = 20};
+  const Axis axis{.scale = AxisScale::linear, .low = -1.6e308, .high = 1.6e308, .pixel_low = 100, .pixel_high = 20};
   EXPECT_DOUBLE_EQ(axis.pixel(0), 60);
   EXPECT_DOUBLE_EQ(axis.pixel(0.8e308), 40);
 }

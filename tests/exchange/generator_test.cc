@@ -70,7 +70,7 @@ TEST(GeneratorFile, HoldsAsManySamplesAsTheInstrumentTakes) {
     expect_invalid(
         [&] { (void)generator_file(format, {.name = "main", .rate = 1e6, .volts = std::vector<double>(format.most + 1, 1.0)}); },
         {std::to_string(format.most), std::string(format.instrument), "sample rate of at most"});
-    expect_invalid([&] { (void)generator_file(format, {.name = "main", .rate = 1e6, .volts = {}}); }, {"no samples"});
+    expect_invalid([&] { (void)generator_file(format, {.name = "main", .rate = 1e6, .volts = {}}); }, {"at least one sample"});
   }
 }
 

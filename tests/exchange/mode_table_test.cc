@@ -133,11 +133,12 @@ TEST(ModeTable, RefusesWithTheRule) {
     return refusal_of(sample_named(name).content, keys);
   };
   // These files are incomplete.
-  EXPECT_THAT(keyed("comsol", [](ModeKeys& k) { k.mass.reset(); }), HasSubstr("structure.mass gives that of the structure"));
+  EXPECT_THAT(keyed("comsol", [](ModeKeys& k) { k.mass.reset(); }),
+              HasSubstr("does not give the modal masses; give structure.mass"));
   EXPECT_THAT(keyed("frd", [](ModeKeys& k) { k.mass = 1e-12; }),
               HasSubstr("structure.mass: must be omitted, because the modes of the file are mass-normalised"));
-  EXPECT_THAT(keyed("rom", [](ModeKeys& k) { k.length_unit.reset(); }), HasSubstr("structure.length_unit says it"));
-  EXPECT_THAT(keyed("rom", [](ModeKeys& k) { k.clamp.reset(); }), HasSubstr("structure.clamp says where the clamp is"));
+  EXPECT_THAT(keyed("rom", [](ModeKeys& k) { k.length_unit.reset(); }), HasSubstr("give structure.length_unit"));
+  EXPECT_THAT(keyed("rom", [](ModeKeys& k) { k.clamp.reset(); }), HasSubstr("give structure.clamp"));
   EXPECT_THAT(keyed("frd", [](ModeKeys& k) { k.axis = ""; }), HasSubstr("structure.axis is needed"));
   EXPECT_THAT(keyed("frd", [](ModeKeys& k) { k.direction = "up"; }),
               HasSubstr("structure.direction = \"up\": must be x, y or z"));
@@ -151,9 +152,9 @@ TEST(ModeTable, RefusesWithTheRule) {
   EXPECT_THAT(refusal_of(test::sample_uff(2, false), sample_named("uff").keys),
               HasSubstr("modes of 25 kHz, 156 kHz at 6 nodes, but no positions"));
   // These files contain no modes.
-  EXPECT_THAT(edited("comsol", "w (m)", "acpr.p_t (Pa)"), HasSubstr("\"acpr.p_t (Pa) @ freq=25000\" is no displacement"));
+  EXPECT_THAT(edited("comsol", "w (m)", "acpr.p_t (Pa)"), HasSubstr("\"acpr.p_t (Pa) @ freq=25000\" must be a displacement"));
   EXPECT_THAT(refusal_of("$SENE    \n      25     1.0000\n", {}), HasSubstr("(.pcs), no modes; they stand in the .rom"));
-  EXPECT_THAT(refusal_of("time_s,main\n0,1\n", {}), HasSubstr("no known file of modes"));
+  EXPECT_THAT(refusal_of("time_s,main\n0,1\n", {}), HasSubstr("unknown kind of file; modes are read from"));
   // These files are contradictory.
   EXPECT_THAT(edited("frd", " -1         7 2.0", " -1        7 2.0"),
               HasSubstr("the line of a node must have 49 columns, and has 48"));

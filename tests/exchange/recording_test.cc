@@ -145,7 +145,7 @@ TEST(Recording, OfSeveralSourcesOneIsChosen) {
       "b\n";
   refused(circuit, {"a.Vdrive, b.Vdrive"});
   EXPECT_EQ(read(circuit, {.column = "b.Vdrive"}).channels.front().values, (std::vector<double>{0, 7}));
-  refused("V1 a 0 PWL(0 0 1u 5) R=0\n", {"R=0", "not read"});
+  refused("V1 a 0 PWL(0 0 1u 5) R=0\n", {"R=0", "must not follow", "only points are read"});
   refused("V1 a 0 PWL(0 0 1u\n", {"ends within"});
   refused("0 0\n1u 5 6\n2u 7\n", {"x.csv"});
 }

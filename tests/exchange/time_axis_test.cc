@@ -106,7 +106,7 @@ TEST(TimeAxis, SourcesThatAgreeToAnIntervalAreTaken) {
     axis_refused(head(fmt::format("Sample Interval,1e-4\nStart,{}\n", start)),
                  {"\"Start\"", "first row", "interval = \"uneven\""});
   for (const double interval : {1.05e-4, 0.95e-4, 1e-7, 0.1})
-    axis_refused(head(fmt::format("Sample Interval,{}\n", interval)), {"\"Sample Interval\"", "drift", "time_unit"});
+    axis_refused(head(fmt::format("Sample Interval,{}\n", interval)), {"\"Sample Interval\"", "deviate by", "time_unit"});
   // A time of day is not the time of a sample.
   EXPECT_NO_THROW((void)read_axis(head("Sample Interval,1e-4\nStart Time: 14:09:15\n")));
   EXPECT_EQ(read_axis(head("Sample Interval,1\n"), {.uneven = true}).times[1], 1e-4);
@@ -171,7 +171,7 @@ TEST(TimeAxis, TheUnitAboveIsThatOfTheTimes) {
     }
   }
   axis_refused(head("Horizontal Units,ms\nSample Interval,5\n"), {"\"Sample Interval\"", "time_unit"});
-  axis_refused(head("Horizontal Units,V\n"), {"in V and no time"});
+  axis_refused(head("Horizontal Units,V\n"), {"in V", "not a unit of time", "time_unit"});
   axis_refused("Horizontal Units,ms\nSample Interval,1e-3\nVolts\n1.5\n2.5\n3.5\n", {"1 us or 1 ms", "interval = "});
   // The unit in the name of a column must be that of the header, unless an interval in seconds confirms it.
   const std::string own = "Time (s),CH1\n" + numbers;

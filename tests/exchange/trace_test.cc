@@ -38,15 +38,15 @@ TEST(Trace, ToldWhatIsTaken) {
   EXPECT_EQ(
       trace_in("t,A\n0,1.5\n1,2\n2,3\n").told,
       "columns, \"A\": 3 samples, every 1 s, from 0 s to 2 s; the file names no unit: V is assumed; the file names no unit of "
-      "time: s taken");
+      "time: s is assumed");
 }
 
 TEST(Trace, TimesThatRepeatGoBackOrDriftAreRefused) {
   trace_refused("t (s),U (V)\n0,1\n0,2\n1,3\n", {"x.csv:3", "is given twice", "interval = "});
-  trace_refused("t (s),U (V)\n0,1\n2,2\n1,3\n", {"x.csv:4", "goes back", "skip", "interval = "});
+  trace_refused("t (s),U (V)\n0,1\n2,2\n1,3\n", {"x.csv:4", "decreases from 2 s to 1 s", "skip", "interval = "});
   trace_refused("Sample Interval,2e-6\nt (s),U (V)\n0,1\n1e-6,2\n2e-6,3\n3e-6,4\n",
-                {"2 us apart", "drift", "interval = \"2 us\""});
-  trace_refused("1.5\n2.5\n3.5\n", {"no times", "interval = "});
+                {"2 us apart", "deviate by 3 us", "interval = \"2 us\""});
+  trace_refused("1.5\n2.5\n3.5\n", {"neither times nor an interval", "interval = "});
   std::string odd = "t (s),U (V)\n";
   for (int i = 0; i < 20; ++i) odd += std::to_string(i + (i > 15 ? 1 : 0)) + ".0,1\n";
   trace_refused(odd, {"x.csv:18", "most rows", "interval = \"uneven\""});
@@ -68,7 +68,7 @@ TEST(Trace, MissingValuesAtTheEndsAndBetween) {
   const Trace trace = trace_in("t (s),U (V),W (V)\n0,,1\n1,2,1\n2,,1\n3,4,1\n4,,1\n", {.column = "U"});
   EXPECT_EQ(trace.times, (std::vector<double>{1, 3}));
   EXPECT_THAT(trace.told, testing::HasSubstr("3 rows without a number are left out, the first in line 2"));
-  trace_refused("t (s),U (V)\n0,1\n1,inf\n2,3\n", {"x.csv:3", "column 2", "not finite"});
+  trace_refused("t (s),U (V)\n0,1\n1,inf\n2,3\n", {"x.csv:3", "column 2", "must be finite"});
   EXPECT_EQ(trace_in("t (s),U (V)\n0,1\n1,2\n2,inf\n").values, (std::vector<double>{1, 2}));
 }
 

@@ -167,7 +167,7 @@ TEST(Vcd, IsRefusedWithFileLineAndRule) {
   refused("$timescale 1 ns $end\nwire\n", {"x.vcd:2", "\"wire\"", "declaration"});
   refused("$timescale 1 ns $end\n$var event 1 ! a $end\n$enddefinitions $end\n#0\n1!\n", {"a variable that is a number"});
   refused(head + "#0\n1?\n#1\n", {"x.vcd:5", "\"?\"", "declared by $var"});
-  refused(head + "#10\n1!\n#9\n0!\n", {"x.vcd:6", "before #10", "back"});
+  refused(head + "#10\n1!\n#9\n0!\n", {"x.vcd:6", "before #10", "must not decrease"});
   refused(head + "#-1\n1!\n", {"x.vcd:4", "\"#-1\"", "2^64"});
   refused(head + "#99999999999999999999\n1!\n", {"2^64"});
   refused(head + "#0\nb12 !\n#1\n", {"x.vcd:5", "bits"});

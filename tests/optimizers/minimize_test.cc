@@ -229,8 +229,8 @@ TEST_P(Minimize, HasADescriptionOfOneLine) {
   EXPECT_THAT(std::string(optimizer_description(GetParam())), testing::Not(testing::HasSubstr("\n")));
 }
 
-const std::string there_are = [] {
-  std::string text = "there are ";
+const std::string choices = [] {
+  std::string text = "choose one of ";
   for (const std::string_view name : optimizer_names())
     text += (name == optimizer_names().front() ? "" : ", ") + std::string(name);
   return text;
@@ -240,7 +240,7 @@ TEST(OptimizerNames, AutoComesFirst) { EXPECT_EQ(optimizer_names().front(), "aut
 
 TEST(OptimizerNames, AnUnknownNameIsAnsweredWithTheNamesThereAre) {
   EXPECT_EQ(message_of(box(1, 0, 1, bowl), {.optimizer = "simplex"}),
-            std::string("optimizer \"simplex\" is unknown; ") + there_are);
+            std::string("optimizer \"simplex\" is unknown; ") + choices);
   EXPECT_THROW(static_cast<void>(optimizer_description("simplex")), InvalidInput);
 }
 
@@ -251,7 +251,7 @@ TEST(OptimizerNames, MethodsThatCannotBeTrustedAreRefusedWithTheReason) {
       {"Praxis", "it is not repeatable"},          {"cobyla", "it can hang between evaluations, where no budget reaches it"}};
   for (const auto& [name, reason] : reasons) {
     EXPECT_EQ(message_of(box(1, 0, 1, bowl), {.optimizer = name}),
-              "optimizer \"" + name + "\" is refused: " + reason + "; " + there_are);
+              "optimizer \"" + name + "\" is refused: " + reason + "; " + choices);
   }
 }
 

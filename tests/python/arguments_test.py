@@ -125,7 +125,7 @@ class Arguments(unittest.TestCase):
     def test_what_functions_of_the_user_give(self) -> None:
         with self.assertRaisesRegex(softland.InvalidInput, r"own waveform 'wrong' returned 'volts' \(str\); it must return an array of numbers"):
             softland.OwnWaveform("wrong", lambda t, x: "volts", [1e-6])
-        with self.assertRaisesRegex(softland.InvalidInput, r"breakpoints of the own waveform 'wrong' gave 'times' \(str\)"):
+        with self.assertRaisesRegex(softland.InvalidInput, r"breakpoints of the own waveform 'wrong' returned 'times' \(str\)"):
             softland.OwnWaveform("wrong", lambda t, x: t, lambda x: "times")
         with self.assertRaisesRegex(softland.InvalidInput, "no breakpoints, so that it would keep its voltage at t = 0 s, 0 V"):
             softland.OwnWaveform("zero", lambda t, x: 1e6 * np.minimum(t, 20e-6), [])

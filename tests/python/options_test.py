@@ -84,7 +84,7 @@ class Options(unittest.TestCase):
 
     def test_what_stands_in_the_way_of_a_value_is_said_in_the_names_of_python(self):
         scene = softland.shipped("mem-gold")
-        with self.assertRaisesRegex(softland.InvalidInput, r"^impact_velocity 0.0 m/s: must be a speed above 0 m/s"):
+        with self.assertRaisesRegex(softland.InvalidInput, r"^impact_velocity 0.0 m/s: must be a velocity above 0 m/s"):
             scene.limit(impact_velocity=0)
         with self.assertRaisesRegex(softland.InvalidInput, r"^samples 0: must be a whole number from 1 on"):
             scene.robustness(samples=0)

@@ -81,7 +81,7 @@ class Recordings(unittest.TestCase):
         np.testing.assert_allclose(softland.contact_edges(times, volts, 1.0, merge="1 us"), [[1.5e-6, 1]], rtol=1e-12)
         below = softland.contact_edges(times, 4 - volts, 3.0, closed="below")
         np.testing.assert_array_equal(below, softland.contact_edges(times, volts, 1.0))
-        with self.assertRaisesRegex(softland.InvalidInput, "closed at t = 0"):
+        with self.assertRaisesRegex(softland.InvalidInput, "must be open at t = 0"):
             softland.contact_edges(times, volts, 1.0, closed="below")
         with self.assertRaises(softland.InvalidInput):
             softland.contact_edges(times[::-1], volts, 1.0)

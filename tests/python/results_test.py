@@ -97,7 +97,7 @@ class Results(unittest.TestCase):
     def test_an_exploration_that_cannot_be_is_refused_by_name(self):
         scene = softland.load(GOLD)
         for vary, more, words in (
-            ({}, {}, "nothing varies"),
+            ({}, {}, "no key varies"),
             ({"gap.breadth": "1 um:2 um:3"}, {}, "gap.breadth"),
             ({"gap.contact": "1.9 um,2 um"}, {"study": "beauty"}, "study beauty: must be"),
             ({"gap.contact": "1.9 um,2 um"}, {"options": {"samples": 5}}, "belongs to study robustness"),

@@ -51,9 +51,9 @@ class Program:
         return verbs
 
     def choices(self, *words):
-        """The names in the refusal of '?': "(known: a, b)", "must be one of a, b or c, or ...", "there are a, b and c"."""
+        """The names in the refusal of '?': "(known: a, b)", "choose one of a, b", "must be one of a, b or c, or ...", "there are a and b"."""
         said = self.says(*words)
-        listed = re.search(r"\(known: ([^)]*)\)|must be (?:one of )?(.*)|there are (.*)", said)
+        listed = re.search(r"\(known: ([^)]*)\)|choose one of (.*)|must be (?:one of )?(.*)|there are (.*)", said)
         if not listed:
             raise SystemExit(f"record: no list of choices in what '{' '.join(words)}' is told: {said.strip()}")
         text = next(group for group in listed.groups() if group)

@@ -126,7 +126,7 @@ TEST(DevicesReport, DrawsDevicesUnderTheStepAndTheWaveformSideBySide) {
   EXPECT_GE(step.at("low")[2], 700e-9);
   EXPECT_LE(step.at("high")[2], 800e-9);
   for (const std::string& text : {page_html(closing_document(r)), svg_devices(r)}) {
-    EXPECT_THAT(text, HasSubstr("band from the 5th to the 95th percentile"));
+    EXPECT_THAT(text, testing::ContainsRegex("band from the 5th to( |</text>\n<text [^>]*>)the 95th percentile"));
     EXPECT_THAT(text, HasSubstr("clip-devices-best"));
   }
   DevicesFindings changed = *r.search->devices;  // a file that a user has edited

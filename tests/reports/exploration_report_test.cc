@@ -223,7 +223,7 @@ TEST(ExplorationPage, EscapesWhatComesFromOutside) {
 TEST(ExplorationText, TellsTheFrontWithItsKnee) {
   const std::string text = terminal_text(exploration_document(sample_cloud(400)));
   EXPECT_THAT(text, HasSubstr("400 points over structure.thickness, gap.electrode, "));
-  EXPECT_THAT(text, HasSubstr("Front: "));
+  EXPECT_THAT(text, HasSubstr("Pareto front: "));
   EXPECT_THAT(text, HasSubstr("hypervolume "));
   EXPECT_THAT(text, HasSubstr("* is the knee"));
 }

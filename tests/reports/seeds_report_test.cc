@@ -54,7 +54,7 @@ TEST(SeedsReport, TellsTheSpreadAndWhatFails) {
   rank(seeds, Target::bounce, 1e-9, false);
   EXPECT_EQ(internal::seeds_caption(seeds),
             "4 of 5 searches are done. The best is that of seed 1, with cost 0.1. Cost: median 0.25, quartiles 0.175 and 0.325, "
-            "from 0.1 to 0.4. 2 of 4 fail: 3 (goal not met), 4 (no better than the plain step).");
+            "from 0.1 to 0.4. 2 of 4 fail; their seeds are 3 (goal not met), 4 (no better than the plain step).");
   const SeedsRecord record{.origin = origin_of("optimize", ""), .seeds = seeds};
   const nlohmann::json j = json_of(record)["seeds"];
   EXPECT_EQ(text_of(read_seeds(json_of(record))), text_of(record));

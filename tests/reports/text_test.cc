@@ -157,7 +157,7 @@ TEST(TextReport, GivesIllConditionedFiguresAsMedianAndRange) {
     std::replace(text.begin(), text.end(), '\n', ' ');
     return text;
   };
-  EXPECT_THAT(words(), HasSubstr("a cloud of 16 runs"));
+  EXPECT_THAT(words(), HasSubstr("statistics are those of 16 runs"));
   EXPECT_THAT(words(),
               HasSubstr("The runs diverge at rebound 7 (85.20\u00a0µs, 1.01\u00a0nm high), close to the height from which "
                         "rebounds count."));

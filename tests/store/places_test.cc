@@ -157,9 +157,9 @@ TEST_F(Place, OfAStoreWhoseNumbersCannotBeIsRefused) {
         std::pair{"ALTER TABLE study DROP COLUMN seed", "no such column: seed"},
         std::pair{"DELETE FROM results WHERE point = 9", "it has 9 rows, and 10 were written"},
         std::pair{"UPDATE tally SET status = 'dome' WHERE status = 'done'", "0 rows are dome, and 9 were written"},
-        std::pair{"UPDATE results SET bounce_count = 3 WHERE point = 4", "the row of point 4 is not"},
-        std::pair{"UPDATE results SET status = 'lost' WHERE point = 4", "the row of point 4 is not"},
-        std::pair{"UPDATE results SET point = 77 WHERE point = 4", "the row of point 77 is not"}}) {
+        std::pair{"UPDATE results SET bounce_count = 3 WHERE point = 4", "the row of point 4 has changed"},
+        std::pair{"UPDATE results SET status = 'lost' WHERE point = 4", "the row of point 4 has changed"},
+        std::pair{"UPDATE results SET point = 77 WHERE point = 4", "the row of point 77 has changed"}}) {
     fs::remove(file);
     make_store(file, 10);
     run_sql(file, sql);

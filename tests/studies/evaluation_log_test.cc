@@ -43,7 +43,7 @@ class LogOfASearch : public testing::Test {
   std::vector<Evaluation> reported_, improving_;
   std::vector<long> told_;
   double best_ = 0;
-  SceneFile scene_ = gold();
+  SceneFile scene_ = scene("mem-gold.toml");
   EvaluationLog log_{options_, budget_, 2,
                      [this](const Evaluation& e) { return e.value < 5 ? std::optional(scene_) : std::nullopt; }};
 };

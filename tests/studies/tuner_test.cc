@@ -320,7 +320,7 @@ TEST(Tuners, ContactsThatTwiceStayOpenAreUnexpected_optimized) {
   EXPECT_EQ(tuner.surprises(), std::vector<double>{0});
   tuner.learn({});
   ASSERT_TRUE(tuner.broken_assumption());
-  EXPECT_THAT(*tuner.broken_assumption(), testing::HasSubstr("no device of its spread touches as was recorded"));
+  EXPECT_THAT(*tuner.broken_assumption(), testing::HasSubstr("no device of the spread touches as recorded"));
 }
 
 // Devices of a wafer that is 4 % too thick, with variations of 0.1 %. Counts closings up to the second of two bounce-free ones

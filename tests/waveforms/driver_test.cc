@@ -359,8 +359,8 @@ TEST(Codes, OfOneFileHaveOneRate) {
   Coded other = one;
   other.sample_rate = 2e6;
   EXPECT_EQ(codes({{"a", one}, {"b", one}}), "index,a,b\n0,1,1\n");
-  test::expect_invalid([&] { (void)codes({{"a", one}, {"b", other}}); }, {"one rate"});
-  test::expect_invalid([&] { (void)codes({}); }, {"no samples"});
+  test::expect_invalid([&] { (void)codes({{"a", one}, {"b", other}}); }, {"2000000 Hz", "1000000 Hz", "the same rate"});
+  test::expect_invalid([&] { (void)codes({}); }, {"at least one drive with samples"});
 }
 
 }  // namespace

@@ -141,7 +141,7 @@ TEST(Csv, SamplesASineToATenThousandthOfThePeak) {
 }
 
 TEST(Csv, RefusesNamesThatBreakTheHeader) {
-  expect_invalid([] { (void)csv({}, 1); }, {"no waveform"});
+  expect_invalid([] { (void)csv({}, 1); }, {"at least one waveform"});
   expect_invalid([] { (void)csv({{"a,b", Signal()}}, 1); }, {"\"a,b\"", "comma"});
   expect_invalid([] { (void)csv({{"", Signal()}}, 1); }, {"\"\"", "empty"});
   expect_invalid([] { (void)csv({{"a", Signal()}}, kNaN); }, {"nan s"});
@@ -154,7 +154,7 @@ TEST(SpicePwl, HasOneSubcircuitPerDrive) {
   EXPECT_THAT(spice_pwl({{"main", signal(kStep)}}, 1e-9), testing::Not(HasSubstr("1e-12"))) << "of a switch of nanoseconds";
   EXPECT_THAT(text, HasSubstr(".subckt softland_top_2 plus minus\n"));
   expect_invalid([] { (void)spice_pwl({{"a-b", Signal()}, {"A_B", Signal()}}, 1); }, {"\"a-b\"", "softland_a_b"});
-  expect_invalid([] { (void)spice_pwl({}, 1); }, {"no waveform"});
+  expect_invalid([] { (void)spice_pwl({}, 1); }, {"at least one waveform"});
 }
 
 TEST(SpicePwl, TimesIncreaseStrictlyEvenWhenJumpsAreARoundingErrorApart) {

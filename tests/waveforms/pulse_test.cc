@@ -58,7 +58,7 @@ TEST(Pulse, EdgesThatMeetLeaveNoPieceBetween) {
 }
 
 TEST(Pulse, NamesParameterValueAndRule) {
-  expect_invalid([] { (void)signal(Pulse{}); }, {"levels", "at least one"});
+  expect_invalid([] { (void)signal(Pulse{}); }, {"levels", "must not be empty"});
   expect_invalid([] { (void)signal(Pulse{.levels = {1, 2}}); }, {"times", "0 for 2 levels", "one fewer"});
   expect_invalid([] { (void)signal(Pulse{.levels = {1, kNaN}, .times = {1}}); }, {"level 2", "nan V"});
   expect_invalid([] { (void)signal(Pulse{.levels = {kNaN, 1}, .times = {1}}); }, {"level 1", "nan V"});

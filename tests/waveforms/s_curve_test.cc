@@ -53,7 +53,7 @@ TEST(SCurve, WithoutAnEdgeJumps) {
 }
 
 TEST(SCurve, NamesParameterValueAndRule) {
-  expect_invalid([] { (void)signal(SCurve{}); }, {"levels of an S-curve", "at least one"});
+  expect_invalid([] { (void)signal(SCurve{}); }, {"levels of an S-curve", "must not be empty"});
   expect_invalid([] { (void)signal(SCurve{.levels = {1, 2}}); }, {"times of an S-curve", "0 for 2 levels"});
   expect_invalid([] { (void)signal(SCurve{.levels = {1, kNaN}, .times = {1}}); }, {"level 2 of an S-curve", "nan V"});
   expect_invalid([] { (void)signal(SCurve{.levels = {1}, .edge = -1}); }, {"edge of an S-curve", "-1 s", ">= 0"});

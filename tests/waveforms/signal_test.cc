@@ -187,7 +187,7 @@ TEST(Signal, RefusesBadPieces) {
   expect_invalid([] { of({{.value = kNaN}}); }, {"value of piece 1", "nan", "finite"});
   expect_invalid([] { of({{}, {.begin = kNaN}}); }, {"begin of piece 2", "nan"});
   expect_invalid([] { of({{.phase = kInfinity}}); }, {"phase", "inf"});
-  expect_invalid([] { of({{.slope = 1.5}}); }, {"slope of the last piece", "1.5 V/s", "level"});
+  expect_invalid([] { of({{.slope = 1.5}}); }, {"slope of the last piece", "1.5 V/s", "must be constant"});
   expect_invalid([] { of({{.amplitude_slope = 2, .angular_frequency = 1}}); }, {"amplitude_slope of the last piece", "2 V/s"});
   expect_invalid([] { of({{.amplitude = 2, .angular_frequency = -7}}); }, {"angular_frequency", "-7 rad/s", "> 0"});
   expect_invalid([] { Signal::constant(kNaN); }, {"nan"});

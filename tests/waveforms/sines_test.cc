@@ -69,7 +69,7 @@ TEST(Sines, OfOneHalfWaveReachItsAmplitude) {
 }
 
 TEST(Sines, NameParameterValueAndRule) {
-  expect_invalid([] { (void)signal(Sines{.duration = 1}); }, {"amplitudes of sines", "at least one"});
+  expect_invalid([] { (void)signal(Sines{.duration = 1}); }, {"amplitudes of sines", "must not be empty"});
   expect_invalid([] { (void)signal(Sines{.amplitudes = {1, kNaN}, .duration = 1}); }, {"amplitude 2 of sines", "nan V"});
   expect_invalid([] { (void)signal(Sines{.amplitudes = {1}}); }, {"duration of sines", "0 s", "> 0"});
   expect_invalid([] { (void)signal(Sines{.amplitudes = {1}, .start = -1, .duration = 1}); }, {"start of sines", "-1 s"});

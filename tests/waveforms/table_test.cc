@@ -34,7 +34,7 @@ TEST(Table, TwoRowsOfOneTimeAreAJump) {
 TEST(Table, OfOneRowIsAConstant) { EXPECT_EQ(signal(Table{.time = {0}, .voltage = {7}}).pieces(), Signal::constant(7).pieces()); }
 
 TEST(Table, NamesRowValueAndRule) {
-  expect_invalid([] { (void)signal(Table{}); }, {"no rows"});
+  expect_invalid([] { (void)signal(Table{}); }, {"at least one row"});
   expect_invalid([] { (void)signal(Table{.time = {0, 1}, .voltage = {0}}); }, {"2 times and 1 voltages"});
   expect_invalid([] { (void)signal(Table{.time = {1e-6}, .voltage = {0}}); }, {"first row", "1e-06 s", "must be 0"});
   expect_invalid([] { (void)signal(Table{.time = {kNaN}, .voltage = {0}}); }, {"first row", "nan s"});
