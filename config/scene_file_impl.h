@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,6 +17,9 @@
 #include "config/units.h"
 
 namespace softland::internal {
+
+/// Largest number of parts of a key's path.
+inline constexpr std::size_t deepest_path = 16;
 
 /// Returns a path of keys as text, parts quoted where TOML needs it: spread."structure.thickness".
 [[nodiscard]] std::string join_path(const std::string& path, std::string_view key);
@@ -36,6 +40,8 @@ namespace softland::internal {
 [[nodiscard]] std::string inline_text(const toml::node& node);
 /// Returns a whole scene as TOML, in the order of the schema.
 [[nodiscard]] std::string write_scene(const toml::table& root);
+/// Returns a table, a list or a value as JSON.
+[[nodiscard]] nlohmann::json to_json(const toml::node& node);
 /// Returns a table that holds the value of a TOML text under `value_key`. Throws InvalidInput.
 [[nodiscard]] toml::table parse_value(std::string_view toml_text);
 inline constexpr std::string_view value_key = "v";

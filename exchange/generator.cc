@@ -92,7 +92,7 @@ constexpr std::array formats{
 std::span<const GeneratorFormat> generator_formats() { return formats; }
 
 std::string generator_file(const GeneratorFormat& format, GeneratorSamples samples) {
-  require(!samples.volts.empty(), "must have at least one sample to export");
+  require(!samples.volts.empty(), "a generator file needs at least one sample");
   require(samples.volts.size() <= format.most, [&] {
     return fmt::format("{} samples: a {} takes at most {}; choose a sample rate of at most {} S/s", samples.volts.size(),
                        format.instrument, format.most,

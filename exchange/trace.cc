@@ -168,8 +168,8 @@ void drop_missing(const Recording& recording, const Channel& channel, Trace& tra
     ++between;
   }
   require(between == 0 || !channel.missing.is_overrange, [&] {
-    return fmt::format("{}:{}: column {}: \"{}\" must be finite between finite numbers, but is overrange, inf or nan",
-                       recording.file, channel.missing.line, channel.column, printable_line(channel.name));
+    return fmt::format("{}:{}: column {}: \"{}\" must be finite, since it stands between finite numbers", recording.file,
+                       channel.missing.line, channel.column, printable_line(channel.name));
   });
   told +=
       fmt::format("; {} rows without a number are left out, the first in line {}", channel.missing.count, channel.missing.line);

@@ -164,8 +164,8 @@ std::string front_prose(const ExplorationReport& report, const ExploredFront& fr
     std::vector<std::string> reference;
     for (std::size_t i = 0; i < front.reference.size(); ++i)
       reference.push_back(explored_text(report.columns[report.aims[i].column], front.reference[i]));
-    words += fmt::format("; hypervolume {} of the box between the best and the worst values, which are {}",
-                         internal::percent(front.share), fmt::join(reference, ", "));
+    words += fmt::format("; hypervolume {} of the box from the best to the worst values ({})", internal::percent(front.share),
+                         fmt::join(reference, ", "));
   }
   return words + ".";
 }

@@ -67,7 +67,7 @@ std::string amplifier_prose(const Drive& drive, double factor) {
   return fmt::format(
       "amplifier of drive '{}': voltages in the file are those at the switch divided by {}{}", drive.name,
       plain_number(factor, 6),
-      is_other ? fmt::format(", not over the {} of [driver.{}]", plain_number(*drive.amplifier, 6), drive.name) : "");
+      is_other ? fmt::format(", not by the {} of [driver.{}]", plain_number(*drive.amplifier, 6), drive.name) : "");
 }
 
 void set_sampling(SceneFile& file, const std::vector<std::string>& drives, const Sampling& sampling) {

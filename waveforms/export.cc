@@ -18,7 +18,7 @@ namespace {
 constexpr double sine_tolerance = 1e-4;
 
 void require_signals(const std::map<std::string, Signal>& signals) {
-  require(!signals.empty(), "must have at least one waveform to export");
+  require(!signals.empty(), "an export needs at least one waveform");
 }
 
 void require_end(double end) {
@@ -148,7 +148,7 @@ std::string csv(const std::map<std::string, Signal>& signals, double end, const 
 }
 
 std::string codes(const std::map<std::string, Coded>& drives) {
-  require(!drives.empty(), "must have at least one drive with samples to export");
+  require(!drives.empty(), "an export of codes needs at least one drive with samples");
   const double rate = drives.begin()->second.sample_rate;
   double last = 0;
   std::string text = "index";

@@ -219,7 +219,7 @@ TEST_F(Explore, RefusesWhatItCannotExplore) {
   const std::string vary = levels + "2";
   write(at("bad.toml"), "[plan]\nscene = \"gold.toml\"\nstudy = \"optimise\"\n");
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
-      {{"explore", "gold.toml"}, "nothing varies"},
+      {{"explore", "gold.toml"}, "no key varies"},
       {{"explore", "gold.toml", "--vary", "gap.contact=1 um:2 um"}, "--vary gap.contact=1 um:2 um: must be KEY=LOW:HIGH:N"},
       {{"explore", "gold.toml", "--vary", vary, "--study", "fly"}, "--study fly: must be simulate"},
       {{"explore", "gold.toml", "--vary", vary, "--samples", "3"}, "--samples 3: belongs to study robustness"},
@@ -229,7 +229,7 @@ TEST_F(Explore, RefusesWhatItCannotExplore) {
       {{"explore", "gold.toml", "--list", "none.csv"}, "none.csv"},
       {{"explore", "gold.toml", "--list", "none.csv", "--vary", vary}, "gives all points: omit --vary, --sample and --pareto"},
       {{"explore", "gold.toml", "--vary", vary, "--out", "there.sqlite"}, "there.sqlite: exists already"},
-      {{"explore", "gold.toml", "--vary", "gap.contact=1 um,2 um", "--out", "there.sqlite", "--resume"}, "of other columns"},
+      {{"explore", "gold.toml", "--vary", "gap.contact=1 um,2 um", "--out", "there.sqlite", "--resume"}, "with other columns"},
       {{"explore", "there.sqlite"}, "give --resume to continue it"},
       {{"explore", "gold.toml", "--vary", vary, "--out", "new.sqlite", "--json", "new.sqlite"},
        "is the store itself; name another"},

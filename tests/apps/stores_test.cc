@@ -155,7 +155,7 @@ TEST_F(Table, NamesWhatItCannotTake) {
              "--select point,bounces: unknown column \"bounces\"; choose from point, gap_contact_m, ");
   expect_bad({"table", "a.sqlite", "--out", "a.sqlite"}, "--out a.sqlite: is a store");
   expect_bad({"table", "a.sqlite", "--out", "no folder/a.csv"}, "no folder/a.csv: cannot write in its folder");
-  expect_bad({"table", "gold.toml"}, "gold.toml: must be a store of softland");
+  expect_bad({"table", "gold.toml"}, "gold.toml: is not a store of softland");
   expect_bad({"table", "nothing"}, "nothing: the file does not exist");
   EXPECT_EQ(printed({"table", "a.sqlite", "--csv", "--select", "point", "--where", "point > 8"}), "point\n9\n");
 }
@@ -180,7 +180,7 @@ TEST_F(StatusVerb, TellsHowFarAStudyIs) {
   EXPECT_EQ(both["stores"][1]["sessions"][0]["rows"], 10);
   EXPECT_EQ(both["stores"][1]["sessions"][0]["program"], test::origin().program);
   EXPECT_EQ(both["stores"][1]["plan"], content_key("grid of 10 points").hexadecimal());
-  expect_bad({"status", "a.sqlite", "gold.toml"}, "gold.toml: must be a store of softland");
+  expect_bad({"status", "a.sqlite", "gold.toml"}, "gold.toml: is not a store of softland");
 }
 
 TEST_F(MergeVerb, MakesOneStoreOfParts) {

@@ -479,7 +479,7 @@ TEST_F(TuneVerb, NamesTheOptionThatItCannotTake) {
       {{"--device", "x", "--format", "csv"}, "--format, --sample-rate, --bits and --amplifier require --by-hand"},
       {{"--by-hand", "--amplifier", "0"}, "--amplifier"},
       {{"--device", "x", "--actuator", "hand"}, "--actuator hand: must be electrostatic"},
-      {{"--device", "x", "--resume"}, "closings.jsonl: the file does not exist"}};
+      {{"--device", "x", "--resume"}, "closings.jsonl: there is no such file"}};
   for (const auto& [words, rule] : refused) {
     const Outcome o = here.run(std::vector<std::string>{"tune", "plate.toml"} + words);
     EXPECT_EQ(o.status, 2) << rule;

@@ -230,7 +230,7 @@ TEST_F(TuningLogs, KeepTheClosingsOfAnEarlierRun) {
 }
 
 TEST_F(TuningLogs, SayWhyTheyCannotGoOn) {
-  EXPECT_THAT(refused(), AllOf(StartsWith("resume: "), HasSubstr("the file does not exist")));
+  EXPECT_THAT(refused(), AllOf(StartsWith("resume: "), HasSubstr("no such file")));
   { TuningLog first(file(), {{"seed", 1}}, false); }
   EXPECT_THAT(refused({{"seed", 2}}), HasSubstr("closings.jsonl:1: its closings are of another seed: 1 instead of 2"));
   const std::string header = read(file());

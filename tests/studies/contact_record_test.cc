@@ -52,7 +52,7 @@ TEST(ContactRecords, AnInvalidRecordIsRefusedWithItsKey) {
   EXPECT_THAT(record_fault({.edges = {{1, true}}, .closing_time = 1}), HasSubstr("beside"));
   EXPECT_THAT(record_fault({.closing_time = -1}), HasSubstr("closing_time_s"));
   EXPECT_THAT(record_fault({.closing_time = 1, .bounce_count = -1}), HasSubstr("bounce_count"));
-  EXPECT_THAT(record_fault({.bounce_count = 1}), HasSubstr("never closed"));
+  EXPECT_THAT(record_fault({.bounce_count = 1}), HasSubstr("bounce_count: must be 0 for a contact that stayed open"));
   EXPECT_THAT(record_fault({.closing_time = 1, .loudness = 0}), HasSubstr("loudness"));
   EXPECT_THAT(record_fault({.edges = {{1, false}}, .error = "no trigger"}), IsEmpty());
 }

@@ -20,7 +20,7 @@ Eigen::Index coordinate(const TuningModel& scene, std::string_view name) {
   return std::ranges::find(all, name, &SpreadVariable::name) - all.begin();
 }
 
-TEST(TunedScenes, TheOriginIsTheNominalDevice) {
+TEST(TuningModels, TheOriginIsTheNominalDevice) {
   const TuningModel scene(gold_with_two_modes(), {.vectors = Vectors::none}, {});
   const std::vector<VectorXd> origin{VectorXd::Zero(scene.size())};
   const std::vector<Particle> devices = scene.devices(origin);
@@ -34,7 +34,7 @@ TEST(TunedScenes, TheOriginIsTheNominalDevice) {
               1, median_of_lognormal);
 }
 
-TEST(TunedScenes, TheGapsShareTheirFactorAndTheContactGapHasOneOfItsOwn) {
+TEST(TuningModels, TheGapsShareTheirFactorAndTheContactGapHasOneOfItsOwn) {
   const TuningModel scene(gold_with_two_modes(), {.vectors = Vectors::none}, {});
   const auto factors = [&](const VectorXd& z) {
     const std::vector<VectorXd> points{z};
@@ -50,7 +50,7 @@ TEST(TunedScenes, TheGapsShareTheirFactorAndTheContactGapHasOneOfItsOwn) {
   EXPECT_NEAR(alone, 1.03, rounding);
 }
 
-TEST(TunedScenes, TheContactsThatMakeTheConnectionHaveOneFactorTogether) {
+TEST(TuningModels, TheContactsThatMakeTheConnectionHaveOneFactorTogether) {
   const TuningModel tuned(scene("new/two-contacts.toml", {"structure.modes=2"}), {}, {});
   const auto factors = [&](const char* name) {
     const std::vector<VectorXd> points{VectorXd::Unit(tuned.size(), coordinate(tuned, name))};
@@ -90,7 +90,7 @@ TEST(LandingCosts, PriceTheTouchOfAFastApproachAndTheContactOfASlowOne) {
   EXPECT_GT(landing_cost(soft, scales).time, 10) << "a touch that was asked for earlier";
 }
 
-TEST(TunedScenes, AScenesOwnSpreadIsNotVariedTwice) {
+TEST(TuningModels, AScenesOwnSpreadIsNotVariedTwice) {
   const TuningModel scene(gold({"structure.modes=2", "spread.\"gas.viscosity\"={distribution=\"normal\",cov=\"1 %\"}"}),
                           {.vectors = Vectors::none}, {});
   const auto& all = scene.nominal().scene.spread.variables;
@@ -100,7 +100,7 @@ TEST(TunedScenes, AScenesOwnSpreadIsNotVariedTwice) {
   EXPECT_EQ(std::ranges::count(all, "gas.viscosity", &SpreadVariable::name), 1);
 }
 
-TEST(TunedScenes, AClosingInLanesIsThatOfTheDeviceAlone) {
+TEST(TuningModels, AClosingInLanesIsThatOfTheDeviceAlone) {
   const TuningModel one_by_one(gold_with_two_modes(), {.vectors = Vectors::none}, {}), in_lanes(gold_with_two_modes(), {}, {});
   if (!in_lanes.is_in_lanes()) GTEST_SKIP() << "skipped: no AVX2";
   std::vector<VectorXd> points;
@@ -123,7 +123,7 @@ TEST(TunedScenes, AClosingInLanesIsThatOfTheDeviceAlone) {
   }
 }
 
-TEST(TunedScenes, ADelayMovesTheRecordAndNothingElse) {
+TEST(TuningModels, ADelayMovesTheRecordAndNothingElse) {
   const TuningModel scene(gold_with_two_modes(), {}, {});
   const std::vector<VectorXd> points{VectorXd::Zero(scene.size()), VectorXd::Unit(scene.size(), scene.size() - 1)};
   const std::vector<Waveform> step{Step{.level = scene.nominal().signals()[0].hold_level()}};
@@ -137,7 +137,7 @@ TEST(TunedScenes, ADelayMovesTheRecordAndNothingElse) {
   EXPECT_EQ(closings[1].openings.size(), closings[0].openings.size());
 }
 
-TEST(TunedScenes, UnitsFollowThePullInVoltageAndThePeriod) {
+TEST(TuningModels, UnitsFollowThePullInVoltageAndThePeriod) {
   const TuningModel scene(gold_with_two_modes(), {.vectors = Vectors::none}, {});
   const auto of = [&](const char* name) {
     const VectorXd z = VectorXd::Unit(scene.size(), coordinate(scene, name));
@@ -152,7 +152,7 @@ TEST(TunedScenes, UnitsFollowThePullInVoltageAndThePeriod) {
   EXPECT_NEAR(of("driver.main.gain").first.volts, 1 / 1.005, second_order);
 }
 
-TEST(TunedScenes, AtASafeLevelNoneOfAThousandDevicesCollapses) {
+TEST(TuningModels, AtASafeLevelNoneOfAThousandDevicesCollapses) {
   const TuningModel scene(gold({"structure.modes=2", "contact.effective_modulus=1 GPa"}), {.vectors = Vectors::none}, {});
   const double safe = scene.safe_level(NormalBelief::standard(scene.size()));
   const double known =
@@ -164,7 +164,7 @@ TEST(TunedScenes, AtASafeLevelNoneOfAThousandDevicesCollapses) {
   EXPECT_LT(safe, known);
 }
 
-TEST(TunedScenes, AScenesWithoutAContactIsRefused) {
+TEST(TuningModels, AScenesWithoutAContactIsRefused) {
   SceneFile file = gold_with_two_modes();
   file.erase("contact");
   EXPECT_THROW(TuningModel(file, {}, {}), InvalidInput);

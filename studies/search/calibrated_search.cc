@@ -1,0 +1,183 @@
+// The part of RobustSearch with a per-device calibration: searches for devices whose units are measured, and their verdicts.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "base/executor.h"
+#include "base/require.h"
+#include "studies/search/robust_search.h"
+#include "studies/search/step_comparison.h"
+
+namespace softland {
+namespace {
+
+constexpr std::uint64_t measured_devices = 128;            // devices of a search with a per-device calibration
+constexpr double coarse_error = 0.01, fine_error = 0.002;  // relative errors of measurements
+constexpr double least_times_of_error = 20;
+constexpr std::array errors_of_pull_in{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02};  // relative errors of Vdp
+constexpr double most_rows = 4;                                                   // rows with a per-device calibration
+constexpr std::size_t devices_by_error = 256;                                     // first devices of the verdict
+constexpr double ranked_by_share = 0.25;                                          // bounce-free share from which on it ranks
+constexpr std::uint64_t which_measured = 2;  // seed of the devices: robust_search.cc has others
+
+}  // namespace
+
+// Measures ahead what the rows with a per-device calibration need of the devices of the verdict.
+void RobustSearch::measure_ahead() {
+  try {
+    meter_.emplace(first().given, MeasuredQuantities{.closing_time = true});
+  } catch (const InvalidInput&) {
+    return;  // no electrode pulls in
+  }
+  (void)calibrated({.pull_in_error = coarse_error});
+  if (tells_time()) (void)calibrated({.time_error = usual_time_error});
+}
+
+// True if the closing time resolves the device. A switch that is too quick for the instrument needs a recipe for a more precise
+// Vdp and period.
+bool RobustSearch::tells_time() const { return meter_->closing_time() > least_times_of_error * usual_time_error; }
+
+CalibratedSearch RobustSearch::in_measured_units(const ChosenFrom& winner, const DriveWaveforms& drawing) {
+  const Calibration coarse{.pull_in_error = coarse_error};
+  const Calibration both{.pull_in_error = coarse_error, .frequency_error = coarse_error};
+  const Calibration fine{.pull_in_error = fine_error, .frequency_error = fine_error};
+  const Calibration by_time{.time_error = usual_time_error};
+  if (!meter_) return {};
+  CalibratedSearch all{.pull_in = meter_->pull_in(), .closing_time = meter_->closing_time()};
+  const bool times = tells_time();
+  const auto found = searched_in(winner, drawing, std::array{coarse, times ? by_time : fine});
+  if (!found[0]) return all;
+  const auto row = [&](const char* name, const DriveWaveforms& waveforms, const Calibration& knowledge, bool is_searched) {
+    progress_.tell("verdict on devices that are measured", static_cast<double>(all.rows.size()) / most_rows);
+    all.rows.push_back(row_of(name, waveforms, knowledge, is_searched));
+  };
+  row("Vdp to 1 %", *found[0], coarse, true);
+  row("Vdp and period to 1 %", *found[0], both, false);
+  if (found[1]) row("Vdp and period to 0.2 %", *found[1], fine, !times);
+  if (found[1] && times) row("closing time to 50 ns", *found[1], by_time, true);
+  std::vector waveforms{*found[0]};
+  if (found[1]) waveforms.push_back(*found[1]);
+  all.by_error = judged_by_error(waveforms, winner.waveforms);
+  const bool time_wins = found[1] && times && lands_better(all.rows.back(), all.rows.front());
+  all.best = time_wins ? all.rows.size() - 1 : 0;
+  all.best_waveforms = time_wins ? *found[1] : *found[0];
+  return all;
+}
+
+// Searches for each of these calibrations, side by side. None if a search found nothing.
+std::array<RobustSearch::Found, 2> RobustSearch::searched_in(const ChosenFrom& winner, const DriveWaveforms& drawing,
+                                                             const std::array<Calibration, 2>& calibrations) {
+  const auto family = std::ranges::find(names_, winner.family);
+  const std::size_t k = family == names_.end() ? 0 : static_cast<std::size_t>(family - names_.begin());
+  const std::vector<MeasuredUnits> known = measured_units(first().given, calibrations, options_.jobs, progress_);
+  std::array<Found, 2> all;
+  std::array<std::atomic<double>, 2> parts{};
+  run_tasks(
+      all.size(), options_.jobs,
+      [&](std::size_t i) {
+        const RobustCost cost(
+            first(), aims_.tail,
+            own_devices(first(), known[i], measured_devices, options_.seed, which_measured, options_.jobs, progress_));
+        RaceOptions own = race_options();
+        own.memory = nullptr;  // its keys do not distinguish units
+        own.progress = [&, i](double part) {
+          parts[i] = part;
+          progress_.tell("searching for devices that are measured", (parts[0] + parts[1]) / 2);
+        };
+        const auto searched = [&](const RaceAims& aims) {
+          if (settings_[k].space.quasi_static() != nullptr) return searched_at_pace(cost, aims, k, own);
+          return race_single_search(settings_[k], k, cost, aims, winner.bounce_free >= ranked_by_share,
+                                    {winner.waveforms, drawing}, *before_verdict_, own);
+        };
+        RaceResult found = searched(aims_);
+        if (!found.contenders.empty() && is_harder_than_step(cost, found.contenders.front().waveforms))
+          found = searched(no_harder());
+        if (!found.contenders.empty()) all[i] = found.contenders.front().waveforms;
+      },
+      options_.stop);
+  progress_.throw_if_stopped();
+  return all;
+}
+
+RaceResult RobustSearch::searched_at_pace(const RobustCost& cost, const RaceAims& aims, std::size_t family, RaceOptions options) {
+  constexpr long shorter = 3;  // divisor of the closings of a search in volts
+  RobustAim aim = tail_aim_;
+  aim.free = free_;
+  for (const Condition& one : aims.tail.conditions) {
+    if (one.figure.member != Figure::Member(&Metrics::initial_contact_time)) aim.conditions.push_back(one);
+  }
+  options.closings /= shorter;
+  RaceResult all;
+  if (auto found = search_at_pace(settings_[family], {.of_step = 1, .family = family}, cost, aim, *before_verdict_, options))
+    all.contenders.push_back(*std::move(found));
+  return all;
+}
+
+// True if the waveforms are harder than the plain step on the devices of a search with a per-device calibration.
+bool RobustSearch::is_harder_than_step(const RobustCost& cost, const DriveWaveforms& waveforms) const {
+  const std::vector<DeviceOutcome> outcomes = cost.close(first().drives(waveforms), 0, cost.devices(), 1);
+  return !hold(at_most_step_, outcomes);
+}
+
+RaceAims RobustSearch::no_harder() const {
+  RaceAims aims = aims_;
+  for (RobustAim* aim : {&aims.tail, &aims.share}) std::ranges::copy(at_most_step_, std::back_inserter(aim->conditions));
+  return aims;
+}
+
+DevicesRow RobustSearch::row_of(const char* name, const DriveWaveforms& waveforms, const Calibration& knowledge,
+                                bool searched_for_it) {
+  const MeasuredUnits known = measured_units(first().given, std::array{knowledge}, options_.jobs, progress_).front();
+  const RobustCost fresh = verdict_devices(known);
+  std::vector<DeviceOutcome> outcomes = closed(fresh, waveforms);
+  progress_.throw_if_stopped();
+  return {.name = name,
+          .knowledge = knowledge,
+          .searched_for_it = searched_for_it,
+          .judged_whole = false,
+          .judged = internal::summarised({.name = name, .waveforms = all_drives(waveforms), .calibration = knowledge}, known,
+                                         std::move(outcomes))};
+}
+
+// Computes the results of the best of these waveforms for ever larger errors of Vdp. The waveform in volts needs no Vdp.
+std::vector<CalibrationError> RobustSearch::judged_by_error(const std::vector<DriveWaveforms>& waveforms,
+                                                            const DriveWaveforms& in_volts) {
+  std::vector<CalibrationError> judged;
+  const CalibratedEnsemble& all = calibrated({.pull_in_error = coarse_error});
+  const auto end = static_cast<std::ptrdiff_t>(std::min(devices_by_error, all.devices.size()));
+  const CalibratedEnsemble few{.devices = {all.devices.begin(), all.devices.begin() + end},
+                               .exact = {all.exact.begin(), all.exact.begin() + end}};
+  const RobustCost unmeasured(first(), aims_.tail, known_as(few, MeasuredUnits(), options_.seed));
+  const std::vector<DeviceOutcome> least = closed(unmeasured, in_volts);
+  for (const double error : errors_of_pull_in) {
+    const Calibration knowledge{.pull_in_error = error};
+    const RobustCost fresh(first(), aims_.tail, known_as(few, MeasuredUnits(knowledge), options_.seed));
+    CalibrationError best{
+        .error = error, .bounce_free = share_of(least, is_bounce_free), .impact_speed = quantile_95(least, judged_figures[0])};
+    for (const auto& waveform : waveforms) {
+      const std::vector<DeviceOutcome> outcomes = closed(fresh, waveform);
+      best.bounce_free = std::fmax(best.bounce_free, share_of(outcomes, is_bounce_free));
+      best.impact_speed = std::fmin(best.impact_speed, quantile_95(outcomes, judged_figures[0]));
+    }
+    progress_.throw_if_stopped();
+    judged.push_back(best);
+    progress_.tell("verdict by the error of Vdp", static_cast<double>(judged.size()) / errors_of_pull_in.size());
+  }
+  return judged;
+}
+
+RobustCost RobustSearch::verdict_devices(const MeasuredUnits& known) {
+  return {first(), aims_.tail, known_as(calibrated(known.calibration()), known, options_.seed)};
+}
+
+// Returns the devices of the verdict, measured once for all calibrations.
+const CalibratedEnsemble& RobustSearch::calibrated(const Calibration& knowledge) {
+  std::optional<CalibratedEnsemble>& all = knowledge.time_error ? calibrated_by_time_ : calibrated_by_pull_in_;
+  if (!all)
+    all = calibrate_all(Ensemble(first().given, verdict_, options_.seed), MeasuredQuantities::of(knowledge), compared_precision,
+                        options_.jobs, progress_);
+  return *all;
+}
+
+}  // namespace softland
