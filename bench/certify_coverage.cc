@@ -182,7 +182,7 @@ void run(const Options& options) {
   std::map<std::string_view, Stated> stated;
   std::map<Outcome, std::uint64_t> counts;
   std::vector<std::string> misses;
-  for (const auto& [index, scene] : scenes) {  // in order, so that the result does not depend on the threads
+  for (const auto& [index, scene] : scenes) {  // the order makes the result independent of the threads
     if (counts[Outcome::certified] == options.scenes) break;
     ++counts[scene.outcome];
     for (const auto& [key, one] : scene.tallies) tallies[key].add(one);

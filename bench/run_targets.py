@@ -22,7 +22,7 @@ SCENES = HERE.parent / "scenes"
 SEARCHES = [("mem-gold.toml", "electrostatic"), ("mem-gold-pzt.toml", "electrostatic"), ("mem-gold-pzt.toml", "pzt"),
             ("mem-gold-pzt.toml", "both"), ("nem-tin.toml", "electrostatic"), ("two-electrodes.toml", "electrostatic"),
             ("gap-closing-actuator.toml", "electrostatic")]
-# For each target: its figure, the key of the figure, and the unit in which it is printed.
+# Targets have a figure, its key, and the unit in which it is printed.
 FIGURES = {"bounce": "major_bounce_height_m", "settling": "permanent_contact_time_s", "rebound": "major_bounce_height_m",
            "count": "bounce_count", "impact": "impact_velocity_m_s", "energy": "impact_energy_J", "force": "peak_contact_force_N",
            "drive": "drive_energy_J", "steady": "steady_force_time_s"}

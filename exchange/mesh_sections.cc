@@ -109,7 +109,7 @@ std::vector<double> MeshSections::widths() const {
   const double rounding = printed * sections_.back().place;
   std::vector<double> all;
   for (std::size_t k = 0; k < sections_.size(); ++k) {
-    // In an irregular mesh, nodes near a place serve for its edges.
+    // Nodes near a place serve for its edges in an irregular mesh.
     const std::size_t reach = is_irregular() ? nearby : 0;
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (std::size_t s = k - std::min(k, reach); s <= std::min(k + reach, sections_.size() - 1); ++s) {

@@ -505,7 +505,7 @@ Eigen::RowVectorXd NormalisedModes::shape(const BeamElement& element, double xi,
     const double half = other.half();
     const bool inside = other.begin == element.begin;
     ElementRow local = (inside ? element_integrals(xi, derivative) : ends[derivative]) * (derivative == 0 ? half * half : half);
-    // Beyond the other element the beam continues straight.
+    // The beam continues straight beyond the other element.
     if (!inside && derivative == 0) local += (x - other.end) * half * ends[1];
     row.segment<functions>(functions * static_cast<Eigen::Index>(e)) = local.array() * (orders / (half * other.rigidity)).sqrt();
   }

@@ -1,5 +1,5 @@
-// Verb `tune`: tunes a waveform on one device, closing after closing. In the program a command or a person fires the shots, in
-// Python a function.
+// Verb `tune`: tunes a waveform on one device, closing after closing. A command or a person fires the shots in the program, and
+// a function in Python.
 #pragma once
 
 #include <chrono>

@@ -35,7 +35,7 @@
 #include "waveforms/export.h"    // CSV and SPICE for a generator
 #include "waveforms/waveform.h"  // Waveform: the families
 
-// What the verbs of the program do.
+// The studies behind the verbs of the program.
 #include "studies/closing/auto_settings.h"           // prepare_and_choose: a scene made ready to run
 #include "studies/closing/certify.h"                 // simulate --certify
 #include "studies/closing/effects.h"                 // effects

@@ -103,7 +103,7 @@ void ElectricalRecord::take_rest(double begin, double end, const std::function<d
 // An extremum lies in between when the margin goes towards 0 from both ends.
 template <class Margin>
 void ElectricalRecord::follow(Followed& followed, const Margin& at, double begin, double end) const {
-  // At smaller distances rounding hides a force that grows with a high power of the distance.
+  // Rounding hides a force that grows with a high power of the distance at smaller distances.
   constexpr double beside = 1e-3;  // share of the time
   constexpr int bits = 30;
   const double from = at(begin), to = at(end);

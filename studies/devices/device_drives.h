@@ -66,7 +66,7 @@ class DeviceDrives {
                                              const std::vector<double>& values) const;
   /// True if the errors of a drive vary, by its index in Switch::drives().
   [[nodiscard]] bool has_errors(std::size_t drive) const { return !sources_[drive].empty(); }
-  /// Returns the values of the varied quantities for display. For jitter that is the random time of the first edge [s].
+  /// Returns the values of the varied quantities for display. That of jitter is the random time of the first edge [s].
   [[nodiscard]] std::vector<double> shown(std::vector<double> values) const;
 
  private:

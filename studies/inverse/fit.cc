@@ -64,8 +64,8 @@ std::vector<std::vector<double>> starts_of(const FitProblem& problem, const FitO
 
 // Returns the reasons to doubt a fit.
 std::vector<std::string> doubts_of(const Fit& fit, const ManyEnds& all, const LeastSquaresEnd& best) {
-  constexpr double far = 4;              // in standard deviations of the prior
-  constexpr double largest_rms = 3;      // in errors of the data
+  constexpr double far = 4;              // [standard deviations of the prior]
+  constexpr double largest_rms = 3;      // [errors of the data]
   constexpr double as_good = 2;          // largest excess of the cost (half a sum of squares): two standard deviations
   constexpr double standard_errors = 4;  // least distance of another minimum, in standard errors
   std::vector<std::string> doubts;
@@ -167,7 +167,7 @@ TraceMisfit misfit(const Stage& stage, std::size_t measurements, const TraceWind
   return of;
 }
 
-// For each measurement, true if the scene describes the newest rows as well as those before, within chance.
+// Tells of each measurement whether the scene describes the newest rows as well as those before, within chance.
 std::vector<bool> described(const TraceMisfit& newest, const TraceMisfit& before) {
   constexpr double least = 0.15, deviations = 3;
   std::vector<bool> all;

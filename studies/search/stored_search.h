@@ -52,7 +52,7 @@ struct KnownSearch {
 [[nodiscard]] StoredSearch stored_search(const AskedSearch& asked, const nlohmann::json& known = {});
 
 /// Plans a search that continues a search in one of `stores`: the first one that the request fits, which becomes `known`.
-/// Without stores it plans a new search. Throws as stored_search() does. If no store holds the requested search, it throws
+/// It plans a new search without stores. Throws as stored_search() does. If no store holds the requested search, it throws
 /// InvalidRequest about the field `resume`, with the differences.
 [[nodiscard]] StoredSearch stored_search(const AskedSearch& asked, const std::vector<std::filesystem::path>& stores,
                                          std::optional<KnownSearch>& known);

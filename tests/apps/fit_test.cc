@@ -176,7 +176,7 @@ TEST_F(FitVerb, RefusesWhatItCannotFit) {
   expect_refused({"--data", "bench.toml", "--unknown", "structure.stifness"}, "did you mean 'stiffness'?");
   expect_refused({"--data", "bench.toml", "--loss", "l1"}, "must be huber, cauchy or none");
   expect_refused({"--data", "bench.toml", "--starts", "0"}, "--starts 0");
-  expect_refused({}, "--data: name the file");
+  expect_refused({}, "--data: must name the file of measurements");
   expect_refused({"--data", "none.toml"}, "none.toml");
   write(here.path() / "bench.toml", "[[measurement]]\nquantity = \"pull_in\"\nvalue = \"96 V\"\n");
   expect_refused({"--data", "bench.toml"}, "bench.toml:1: [[measurement]]: missing key 'error'");

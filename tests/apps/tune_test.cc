@@ -319,7 +319,7 @@ TEST_F(TuneVerb, AsksAPersonWhatTheOscilloscopeShowed_optimized) {
   const Outcome amplified = here.run({"tune", "plate.toml", "--by-hand", "--effort", "0.2", "--jobs", "1", "--out", "out",
                                       "--quiet", "--set", "driver.main.amplifier=20"});
   EXPECT_THAT(amplified.err,
-              HasSubstr("load out/shot-1.csv into the generator, main in volts at the input of an amplifier of gain 20, close"));
+              HasSubstr("load out/shot-1.csv into the generator, main in volts at the input of an amplifier of gain 20, "));
   EXPECT_NEAR(held(), held_at_switch / 20, 1e-12 * held_at_switch);
   EXPECT_TRUE(fs::exists(here.path() / "out/shot-2.csv"));
   EXPECT_FALSE(fs::exists(here.path() / "out/shot-4.csv"));
