@@ -135,7 +135,7 @@ run "$project/softland" status 4
 check 'the exit status of the program is kept' status_is 4
 sed -i 's/^processor=.*/processor=of another machine/' "$project/build/release/.options"
 run "$project/softland" modes
-check 'what was built for another processor is configured again, and asks it what it can' called 'cmake .*-U SOFTLAND_RUNS_X86_64_V3'
+check 'what was built for another processor is configured again, and asks it what it can' called 'cmake .*-U SOFTLAND_RUNS_\*'
 check 'and built' made
 run "$project/softland" modes
 check 'once' [ ! -s "$work/calls" ]

@@ -135,11 +135,7 @@ TEST(OwnWaveform, HasItsParametersAndIsCalledByItsName) {
 TEST(OwnWaveform, IsRefusedWhereItHasNoSignal) {
   expect_invalid([] { (void)own(nullptr); }, {"own waveform is null"});
   expect_invalid([] { (void)signal(Own{}); }, {"own waveform is null"});
-  expect_invalid(
-      [] {
-        (void)signal(made([](double) { return 1.0; }, {3e-6, 2e-6}));
-      },
-      {"'made'", "2e-06 s follows", "3e-06 s"});
+  expect_invalid([] { (void)signal(made([](double) { return 1.0; }, {3e-6, 2e-6})); }, {"'made'", "2e-06 s follows", "3e-06 s"});
   expect_invalid([] { (void)signal(made([](double) { return 1.0; }, {-1e-6})); }, {"'made'", "-1e-06 s"});
   const double nan = std::numeric_limits<double>::quiet_NaN();
   expect_invalid([=] { (void)signal(made([=](double t) { return t > 1e-6 ? nan : 1.0; }, {2e-6})); },
