@@ -1,18 +1,18 @@
-// Bang-bang landings of an undamped switch of one degree of freedom; the search for the real switch begins with them.
+// Bang-bang landings of an undamped switch of one degree of freedom: starting points of the search for the real switch.
 //
-//   m x'' = -U'(x),  U = U_driven on the way to x_s, U_coasting from there on
+//   m x'' = -U'(x),  U = U_driven from x_0 to x_s, U_coasting from x_s to x_c
 //
-// from rest at x_0 to rest at the contact x_c. The work-energy balance gives x_s: what the drive has done on the way to x_s takes
-// the switch, coasting, to x_c and no further,
+// from rest at x_0 to rest at the contact x_c. The work-energy balance gives x_s: the kinetic energy gained up to x_s just
+// carries the coasting switch to x_c,
 //
 //   U_driven(x_0) - U_driven(x_s) = U_coasting(x_c) - U_coasting(x_s)
 //
-// The two times are quadratures of dx / v, v^2 = 2 (energy - U) / m. With the largest pull first and the least one after it,
-// this is the quickest of all landings at zero speed. The force enters linearly, so that the best drive jumps between its
-// bounds (Pontryagin), and one jump is enough to reach a point of rest. For a plate on a spring the balance is the formula of
-// Czaplewski, Dyck, Sumali et al., J. Micromech. Microeng. 16 (2006) 1.
-// Valid without damping and contact forces, where U_coasting rises up to x_c. No solution exists where the drive does not reach
-// x_c, or coasting alone does.
+// The two times are quadratures of dx / v, v^2 = 2 (energy - U) / m. With the largest pull first and the least pull afterwards,
+// no landing at zero speed is quicker. The force enters linearly, so that the optimal drive jumps between its bounds
+// (Pontryagin), and one jump is enough to reach a point of rest. For a plate on a spring the balance is the formula of
+// Czaplewski, Dyck, Sumali et al., J. Micromech. Microeng. 16 (2006) 1. Valid without damping and contact forces, where
+// U_coasting rises up to x_c. No solution exists if the driven switch does not reach x_c, or if the switch reaches x_c by
+// coasting alone.
 #pragma once
 
 #include <cstddef>
@@ -33,17 +33,17 @@ using Potential = std::function<double(double)>;
                                                        double contact);
 
 struct BangBang {
-  double switching_position = 0;  ///< position x_s where the drive ends [m]
+  double switching_position = 0;  ///< position x_s where the driven part ends [m]
   double driven_time = 0;         ///< time from rest to x_s [s]
   double coasting_time = 0;       ///< time from x_s to rest at the contact [s]
 };
 
-/// `mass` [kg]; `from` and `contact` are x_0 and x_c [m].
+/// Returns the landing of a mass [kg] from x_0 = `from` to x_c = `contact` [m], or nothing if no solution exists.
 [[nodiscard]] std::optional<BangBang> bang_bang(const Potential& driven, const Potential& coasting, double mass, double from,
                                                 double contact);
 
 /// Computes the landing of a switch that moves in its first mode alone, from rest under the drive values `before` (none: 0).
-/// The drives have the values `driven` up to x_s, and `coasting` after it.
+/// The drives have the values `driven` up to the switching position x_s, and `coasting` after it.
 [[nodiscard]] std::optional<BangBang> bang_bang(const Switch& model, const std::vector<double>& driven,
                                                 const std::vector<double>& coasting, std::span<const double> before = {});
 

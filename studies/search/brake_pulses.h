@@ -21,18 +21,18 @@ using Corners = std::vector<std::pair<double, double>>;
 
 class BrakePulses {
  public:
-  /// Keeps a reference to `given`. `holds` are the commanded voltages before the command to open, in the order of the switch
-  /// [V]; `asker` begins the messages. Throws InvalidRequest if the scene lacks the actuator, InvalidInput if none of its
-  /// drives has limits.
+  /// Keeps a reference to `given`. `holds` are the commanded voltages before the command to open, in the order of
+  /// Switch::drives() [V]; error messages begin with `asker`. Throws InvalidRequest if the scene lacks the actuator,
+  /// InvalidInput if no drive of the actuator has limits.
   BrakePulses(const PreparedScene& given, Actuator actuator, std::vector<double> holds, std::string_view asker);
 
   [[nodiscard]] const std::vector<Variable>& variables() const { return variables_; }
-  /// Starting points: one drive brakes, by one pulse or by a push and then a braking pulse, at different times and levels. The
-  /// others stay at 0 V.
+  /// Starting points: one drive brakes, by one pulse or by a push and then a braking pulse, at different times and levels. All
+  /// other drives stay at 0 V.
   [[nodiscard]] std::vector<std::vector<double>> starts() const;
-  /// Commanded voltages at a point, one per drive of the switch.
+  /// Commanded voltages at a point of the search, one list of corners per drive of the switch.
   [[nodiscard]] std::vector<Corners> commanded(std::span<const double> x) const;
-  /// Commanded voltages of the plain opening: every drive goes to 0 V at once, or as fast as its driver can.
+  /// Commanded voltages of the plain opening: every drive goes to 0 V at once, or at its driver's slew limit.
   [[nodiscard]] const std::vector<Corners>& plain() const { return plain_; }
   [[nodiscard]] const std::vector<double>& holds() const { return holds_; }
 
@@ -40,7 +40,7 @@ class BrakePulses {
   // A drive that may brake, and the place of its parameters in a point.
   struct Brake {
     std::size_t drive = 0;
-    std::size_t first = 0;  // index of its first parameter: edge, then wait, level, duration of every pulse
+    std::size_t first = 0;  // index of the drive's first parameter: edge, then wait, level, duration of every pulse
     DriverLimits limits;
   };
 

@@ -1,11 +1,11 @@
-// The search for the closing and the opening waveform of a switch that is cycled at a rate: together, since each begins with the
-// vibration that the other one leaves.
+// The search for the closing and the opening waveform of a switch that is cycled at a rate. Both are searched together, since
+// each begins with the residual vibration of the other.
 //
-// A waveform for the closing alone is found first (optimize.h). Then pulses are found that brake the opening (brake_pulses.h), so
-// that the contact point hardly swings in the last third of the time that is left for it. Then both are improved together. The
-// cost of a pair is that of its worst cycle, of the first ones in a run from rest: of the closing as in every search
-// (objectives/cost.h), scored until the command to open. What does not close, or is closed at the end of a cycle, costs more than
-// all that do. Drives keep the limits of [driver.*].
+// A waveform for the closing alone is found first (optimize.h). Then pulses are found that brake the opening (brake_pulses.h),
+// so that the contact point hardly swings in the last third of the open part of a cycle. Then both waveforms are improved
+// together. A pair of waveforms is simulated for the first few cycles from rest, and costs as much as the worst of their
+// closings (objectives/cost.h), scored until the command to open. A pair that does not close, or is closed at the end of a
+// cycle, costs more than every pair that closes and opens. Drives stay within the limits of [driver.*].
 #pragma once
 
 #include <cstdint>
@@ -23,26 +23,27 @@
 namespace softland {
 
 struct CycleSearchOptions {
-  double rate = 0;    ///< [Hz]
-  double duty = 0.5;  ///< share of a cycle before its command to open
+  double rate = 0;    ///< cycles per second [Hz]
+  double duty = 0.5;  ///< share of a cycle before the command to open
   Aim target = Target::bounce;
-  Actuator actuator = Actuator::electrostatic;  ///< drives that both waveforms may shape
-  std::string family = {};                      ///< families of the closing: families_of(); empty: the usual ones
-  long max_evaluations = 3000;                  ///< a third each for the closing, the opening, and both
-  std::size_t cycles = 10;                      ///< simulated cycles of the pair that is found
+  Actuator actuator = Actuator::electrostatic;  ///< drives that the closing and the opening waveform may shape
+  std::string family = {};                      ///< waveform families of the closing: families_of(); empty: the default families
+  long max_evaluations = 3000;                  ///< a third each for the closing, the opening, and both together
+  std::size_t cycles = 10;                      ///< simulated cycles of the best pair of waveforms
   std::uint64_t seed = 1;
   int jobs = 1;
 };
 
 struct CycleSearchResult {
   PreparedScene given;
-  Cycling cycling;                           ///< the cycles of the plain pair, and of the best where there is one
-  std::string family;                        ///< family of the closing waveform
-  std::map<std::string, double> parameters;  ///< parameters of the best, by closing.drive.name and opening.drive.name
-  double cost = std::numeric_limits<double>::quiet_NaN();        ///< cost of the best pair
-  double plain_cost = std::numeric_limits<double>::quiet_NaN();  ///< cost of the plain pair
-  long evaluations = 0;                                          ///< evaluations of pairs
-  /// The scene of one cycle of the best pair: it closes, and opens on command. It is the plain pair's if no pair was feasible.
+  Cycling cycling;     ///< simulated cycles of the plain pair of waveforms, and of the best pair if there is one
+  std::string family;  ///< waveform family of the closing
+  std::map<std::string, double> parameters;  ///< parameters of the best pair, by closing.drive.name and opening.drive.name
+  double cost = std::numeric_limits<double>::quiet_NaN();        ///< cost of the best pair of waveforms
+  double plain_cost = std::numeric_limits<double>::quiet_NaN();  ///< cost of plain closing and plain opening
+  long evaluations = 0;                                          ///< evaluated pairs of waveforms
+  /// The scene of one cycle, a closing and an opening on command, of the best pair of waveforms; of the plain pair if no pair
+  /// was feasible.
   SceneFile scene;
   bool interrupted = false;
 
@@ -50,7 +51,7 @@ struct CycleSearchResult {
 };
 
 /// Throws InvalidInput as optimize() does, for a scene without an open state, and for a rate at which no waveform of the family
-/// fits into its part of a cycle.
+/// fits into the closed or the open part of a cycle.
 [[nodiscard]] CycleSearchResult search_cycle(const SceneFile& file, const CycleSearchOptions& options,
                                              const Progress& progress = {});
 

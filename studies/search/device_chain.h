@@ -1,8 +1,8 @@
-// A search over devices from one start by CMA-ES. Candidates are tried on ever more devices. One that does worse on the first
-// of them than the median of the candidates before is given up.
+// A search over devices from one start by CMA-ES. Candidates are tried on more and more devices. A candidate that does worse on
+// the first devices than the median of the earlier candidates is given up.
 //
-// Source for giving up candidates: O. Maron & A. W. Moore, "Hoeffding races", NIPS 1993 (the idea; our test is the median of the
-// candidates before).
+// Source for giving up candidates: O. Maron & A. W. Moore, "Hoeffding races", NIPS 1993 (the idea; the test here is the median
+// of the earlier candidates).
 #pragma once
 
 #include <array>
@@ -19,10 +19,11 @@
 
 namespace softland {
 
-/// The cost of a candidate on devices, found in stages: on 8, on 32, on all that are asked for.
+/// The cost of a candidate over varied devices, evaluated in stages: on 8 devices, on 32, and on all requested devices.
 class StagedCost {
  public:
-  /// Keeps references to `setting`, `cost` and `aim`. `memory` may be null; `seed` identifies the devices and the aim in it.
+  /// Keeps references to `setting`, `cost` and `aim`. `memory` may be null; `seed` identifies the devices and the aim in
+  /// `memory`.
   StagedCost(const SearchSetting& setting, const RobustCost& cost, const RobustAim& aim, EvaluationMemory* memory,
              std::uint64_t seed)
       : setting_(setting), cost_(cost), aim_(aim), memory_(memory), seed_(seed) {}
@@ -31,7 +32,7 @@ class StagedCost {
     double cost = std::numeric_limits<double>::infinity();  ///< infinite if a driver cannot give the waveform
     long closings = 0;
   };
-  /// Evaluates on the first `most` devices, or on as many as it takes to see that the cost exceeds `hopeless`.
+  /// Evaluates the point `x` on the first `most` devices, or on fewer if their cost already exceeds `hopeless`.
   [[nodiscard]] Tried tried(const std::vector<double>& x, std::size_t most,
                             double hopeless = std::numeric_limits<double>::infinity(), int jobs = 1) const;
   [[nodiscard]] std::vector<Variable> variables() const { return setting_.space.variables(); }
@@ -49,20 +50,20 @@ inline constexpr std::array<std::size_t, 2> stages{8, 32};
 
 struct Chain {
   std::vector<double> start = {};
-  std::size_t devices = 0;  ///< first devices that candidates are tried on
-  long closings = 0;        ///< most closings of the chain
-  double step = 0.1;        ///< first step size, as a part of the box
-  double population = 1;    ///< population of a generation, over the usual number
+  std::size_t devices = 0;  ///< number of devices that candidates are tried on
+  long closings = 0;        ///< most simulated closings of the chain
+  double step = 0.1;        ///< first step size of CMA-ES, as a share of the range of every variable
+  double population = 1;    ///< candidates of a CMA-ES generation, over the default number
   std::uint64_t seed = 1;
   int jobs = 1;  ///< threads for one candidate; does not change the result
 };
 struct ChainEnd {
-  std::vector<double> x = {};                             ///< the best point; empty where none was feasible
+  std::vector<double> x = {};                             ///< the best point; empty if no candidate was feasible
   double cost = std::numeric_limits<double>::infinity();  ///< cost of the best point
   long closings = 0;
 };
-/// Searches until the closings of the chain are taken or the budget is over. Calls `told` with every candidate, after its
-/// closings have been taken from the budget.
+/// Searches until the chain has used its number of closings or the budget is over. Calls `told` with every candidate, after the
+/// budget has counted the candidate's closings.
 [[nodiscard]] ChainEnd search_chain(const StagedCost& cost, const Chain& chain, SearchBudget& budget,
                                     const std::function<void(const std::vector<double>& x, double cost)>& told);
 

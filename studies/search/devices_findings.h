@@ -1,5 +1,6 @@
-// The findings of a search for devices, from which its reports are made: how its waveforms do on fresh devices, and what led to
-// them. The JSON of a search holds them whole (reports/closing_members.h), so that a report can be made again.
+// The findings of a search over varied devices, from which its reports are made: how its waveforms perform on fresh devices,
+// and how they were chosen. The JSON of a search holds all findings (reports/closing_members.h), so that a report can be made
+// again.
 #pragma once
 
 #include <array>
@@ -15,35 +16,35 @@
 
 namespace softland {
 
-// Names of rows.
+// Names of rows of the results: the waveform that the devices were closed with.
 inline constexpr const char *plain_step_row = "plain step", *for_the_drawing = "for the drawing",
                             *for_the_devices = "for the devices", *undelayed_row = "electrode at t = 0";
-inline constexpr const char* default_choice = "default";  ///< name of the waveform that best.toml holds
+inline constexpr const char* default_choice = "default";  ///< name of the choice whose waveform is in best.toml
 
-/// A candidate on the fresh devices.
+/// Performance of a candidate waveform on the fresh devices.
 struct FrontPoint {
   double first_touch = Metrics::unset, impact_speed = Metrics::unset;  ///< 95th percentiles [s], [m/s]
   double bounce_free = Metrics::unset;                                 ///< share of the devices
-  std::string candidate;                                               ///< "bspline:6 by cvar:0.9"
+  std::string candidate;  ///< waveform family and measure of the search: "bspline:6 by cvar:0.9"
 };
 
-/// Results where Vdp of each device is known with an error, on the first of the fresh devices. Each figure is that of the best
-/// waveform: of those that were searched with a per-device calibration, and of the winner in volts.
+/// Results on fresh devices if the dynamic pull-in voltage Vdp of each device is measured with an error. Each figure is that of
+/// the best waveform: among those searched with a per-device calibration, and the winner in volts.
 struct CalibrationError {
-  double error = 0;                                                    ///< standard deviation of the error of Vdp, relative
+  double error = 0;  ///< relative standard deviation of the measurement error of Vdp
   double bounce_free = Metrics::unset, impact_speed = Metrics::unset;  ///< share of the devices; 95th percentile [m/s]
 };
 
-/// A candidate of the choice.
+/// A candidate among which the search over devices chooses its winner.
 struct RaceEntry {
-  std::string measure, waveform;  ///< "cvar:0.9", "knots:6"; measure "drawing" for what the nominal search tried
+  std::string measure, waveform;  ///< "cvar:0.9", "knots:6"; measure "drawing" for waveforms of the search on the nominal device
   long closings = 0;
-  double bounce_free = 0, cost = 0;  ///< on the devices of the choice: share of the devices; cost
+  double bounce_free = 0, cost = 0;  ///< share of bounce-free devices, and cost, on the devices of the choice
 };
 
 /// Figures of the waveforms of a search for devices, on fresh devices.
 struct DevicesFindings {
-  /// Rebound heights below which a device counts for a yield, and their names in JSON.
+  /// A rebound height below which a device counts for a yield, and its key in JSON.
   struct YieldHeight {
     double height;  ///< [m]
     const char* key;
@@ -52,31 +53,31 @@ struct DevicesFindings {
 
   struct Row {
     std::string name;                                                         ///< "plain step", "for the drawing", "Vdp to 1 %"
-    double pull_in_error = Metrics::unset, frequency_error = Metrics::unset;  ///< relative errors; NaN: not measured
-    double piezo_error = Metrics::unset;                                      ///< relative error of the piezo's unit
-    double time_error = Metrics::unset;                                       ///< error of a closing time [s]
+    double pull_in_error = Metrics::unset, frequency_error = Metrics::unset;  ///< relative measurement errors; NaN: not measured
+    double piezo_error = Metrics::unset;  ///< relative measurement error of the piezo's effect
+    double time_error = Metrics::unset;   ///< measurement error of a closing time [s]
     bool searched_for_it = true;
     double bounce_free = Metrics::unset, open = Metrics::unset, collapsed = Metrics::unset;  ///< shares of the devices
     /// 50th, 95th and 99th percentiles, by key of device_figures; infinite if more devices do not close.
     std::map<std::string, double> at_50, at_95, at_99;
     std::map<std::string, double> yield;  ///< shares of the devices whose rebound is within yield_heights
   };
-  /// A waveform that may be chosen; its row has the same name, and "for the devices" for the default.
+  /// A waveform that the user may choose; row() names its row of results.
   struct Choice {
     std::string name, file, waveform;
-    double tau = Metrics::unset;  ///< time until a steady contact, over that of the plain step
+    double tau = Metrics::unset;  ///< time until the contact is steady, over that of the plain step
     [[nodiscard]] std::string row() const { return name == default_choice ? for_the_devices : name; }
   };
   /// How the switch can be carried to its contact through stable equilibria.
   struct StablePath {
-    std::vector<std::string> drives;       ///< drives, first the one that carries the switch
-    double share = Metrics::unset;         ///< share of the devices with such a path within the limits
+    std::vector<std::string> drives;       ///< names of the drives; the one that carries the switch comes first
+    double share = Metrics::unset;         ///< share of the devices with a stable path within the drivers' limits
     double reaches = Metrics::unset;       ///< voltage at which the nominal design touches [V]
-    double limit = Metrics::unset;         ///< limit of the driver on that side [V]
+    double limit = Metrics::unset;         ///< limit of the driver's voltage towards the contact [V]
     double touch_places = Metrics::unset;  ///< range in which 90 % of the devices touch: StableApproach::touch_places() [m]
-    double rise = Metrics::unset;          ///< least time before the first of them touches [s]
+    double rise = Metrics::unset;          ///< least time before the first device touches [s]
   };
-  /// Gaps of devices under the plain step and under best.toml, at instants that divide the time evenly.
+  /// Contact gaps of devices over time, under the plain step and under the waveform of best.toml, at equal time steps.
   struct Courses {
     double end = Metrics::unset;              ///< the last instant [s]
     double unit = Metrics::unset;             ///< unit of the gaps [m]
@@ -84,30 +85,31 @@ struct DevicesFindings {
   };
 
   bool spread_assumed = false;
-  std::string spread;  ///< the spread in words
+  std::string spread;  ///< the process variation in words
   double count = Metrics::unset, seed = Metrics::unset, closings = Metrics::unset;
-  std::string measure, waveform;  ///< measure and family of the winner; empty if the plain step wins
+  std::string measure, waveform;  ///< measure and waveform family of the winner; empty if the plain step wins
   bool better_than_plain_step = false;
-  std::vector<std::string> worse_in;  ///< figures in which the best candidate is worse, where the plain step wins
+  std::vector<std::string>
+      worse_in;  ///< figures in which the best candidate is worse than the plain step, if the plain step wins
   std::vector<Row> rows;
-  std::vector<Choice> choices;  ///< choices, the soonest first; empty if the plain step wins
+  std::vector<Choice> choices;  ///< choices, the quickest to a steady contact first; empty if the plain step wins
   std::optional<StablePath> stable_path;
-  std::optional<bool> goal_met;                ///< true if the 95th percentile of the rebounds of best.toml is not significant
-  double missed_by = Metrics::unset;           ///< excess of that percentile; 0 if the goal is met [m]
-  double step_delay = Metrics::unset;          ///< delay of the electrode's plain step, where its instant was searched [s]
-  std::optional<Courses> courses;              ///< none if the plain step wins
-  std::vector<FrontPoint> front;               ///< candidates, sorted by first touch
-  std::vector<CalibrationError> by_error;      ///< results with the least error first; none if Vdp is not measured
-  HoldWindows windows;                         ///< windows of hold levels
-  std::vector<RaceEntry> race;                 ///< candidates of the choice, the best first
-  std::vector<FulfilledCondition> conditions;  ///< conditions, and how the winner fulfils them
-  FigureValues drawing;                        ///< figures of the nominal design's waveform on the nominal device
+  std::optional<bool> goal_met;        ///< true if the 95th percentile of the rebounds of best.toml is not significant
+  double missed_by = Metrics::unset;   ///< excess of the 95th percentile of the rebounds over the goal; 0 if the goal is met [m]
+  double step_delay = Metrics::unset;  ///< delay of the electrode's plain step, if its instant was searched [s]
+  std::optional<Courses> courses;      ///< contact gaps over time; none if the plain step wins
+  std::vector<FrontPoint> front;       ///< candidates, sorted by first touch
+  std::vector<CalibrationError> by_error;      ///< results by measurement error, the least first; none if Vdp is not measured
+  HoldWindows windows;                         ///< ranges of hold voltages
+  std::vector<RaceEntry> race;                 ///< candidates for the winner, the best first
+  std::vector<FulfilledCondition> conditions;  ///< conditions of the search, and the devices on which the winner fulfils them
+  FigureValues drawing;                        ///< figures of merit of the nominal design's waveform on the nominal device
   std::string drawing_status;
   bool drawing_goal_met = false;
   std::string measured;  ///< name of the row of calibrated.toml; empty if there is no such file
   std::string next_command;
 
-  /// Returns null if no row has that name.
+  /// Returns the row of this name, or null.
   [[nodiscard]] const Row* row(std::string_view name) const;
 };
 

@@ -1,5 +1,5 @@
 // The log of a search: its evaluations in an order that does not depend on the number of threads, and the improvements among
-// them. While the search runs the log reports them to the callbacks of OptimizeOptions.
+// its evaluations. During the search the log calls the callbacks of OptimizeOptions.
 #pragma once
 
 #include <functional>
@@ -13,29 +13,30 @@
 
 namespace softland {
 
-/// Returns the evaluations that are feasible and better than all before them, in the order of their index.
+/// Returns the feasible evaluations whose cost is below that of every earlier one, in the order of their index.
 [[nodiscard]] std::vector<Evaluation> improvements_of(const std::map<long, Evaluation>& evaluations);
 
-/// Several threads may call it; the callbacks are called one at a time.
+/// Collects the evaluations of a search. Several threads may call it; the callbacks are called one at a time.
 class EvaluationLog {
  public:
-  /// Returns the scene of an evaluation, or none if its improvement is not to be reported.
+  /// Returns the scene with an evaluation's waveforms, or none if the improvement is not to be reported.
   using SceneOf = std::function<std::optional<SceneFile>(const Evaluation&)>;
-  /// Keeps references to `options` and `budget`, whose count is reported. `step_cost` is the cost of the plain step.
+  /// Keeps references to `options` and `budget`, whose number of evaluations is reported. `step_cost` is the cost of the plain
+  /// step.
   EvaluationLog(const OptimizeOptions& options, const SearchBudget& budget, double step_cost, SceneOf scene);
 
-  /// Notes an evaluation. Call it after the budget has counted it.
+  /// Adds an evaluation to the log. Call note() after the budget has counted the evaluation.
   void note(const Evaluation& evaluation);
-  /// Reports an evaluation from outside the search, which is not noted, if it is the best so far.
+  /// Reports `given`, a waveform from outside the search, if it is the best so far. The log does not store this evaluation.
   void begin_with(const Evaluation& given, const std::optional<SceneFile>& scene);
-  /// Reports the state of a search between evaluations that are noted.
+  /// Reports the progress of the search without a new evaluation.
   void tell();
 
   /// The evaluations by their index.
   [[nodiscard]] const std::map<long, Evaluation>& evaluations() const { return evaluations_; }
-  /// The evaluations whose Evaluation::problem is this.
+  /// The evaluations whose Evaluation::problem is `problem`, by their index.
   [[nodiscard]] std::map<long, Evaluation> evaluations(std::size_t problem) const;
-  /// The least index that is above those of all evaluations.
+  /// One more than the largest index of the evaluations; 0 without evaluations.
   [[nodiscard]] long next_index() const { return evaluations_.empty() ? 0 : evaluations_.rbegin()->first + 1; }
 
  private:

@@ -1,6 +1,6 @@
-// The evaluations of a search, kept by an owner that outlives it. A search is a function of its scene and options: run again,
-// it asks for the same candidates in the same order. A search that reads some of them from memory therefore ends with the same
-// bits as one that was never interrupted, and simulates only the missing ones.
+// The evaluations of a search, stored by an owner that outlives the search. A search is a function of its scene and options:
+// run again, it evaluates the same candidates in the same order. A search that reads some evaluations from this memory
+// therefore ends with the same bits as an uninterrupted search, and simulates only the missing candidates.
 #pragma once
 
 #include <cstddef>
@@ -16,24 +16,26 @@
 
 namespace softland {
 
-/// A candidate, and the devices that it is tried on.
+/// What an evaluation depends on: the waveform parameters of a candidate, and the devices on which the candidate is simulated.
 struct EvaluationKey {
-  std::size_t family = 0;     ///< its number among those that share the memory: points of different ones may be alike
-  std::vector<double> x;      ///< its searched parameters
+  std::size_t family = 0;     ///< number of the waveform family among those that share the memory
+  std::vector<double> x;      ///< searched parameters of the candidate
   std::uint64_t devices = 0;  ///< number of devices of the spread; 0: the nominal device alone
-  std::uint64_t seed = 0;     ///< seed of these devices
-  /// Cost above which a candidate on some of the devices is not tried on the rest.
+  std::uint64_t seed = 0;     ///< seed of the random devices
+  /// A candidate whose cost on the first devices exceeds this is not simulated on the rest.
   double hopeless = std::numeric_limits<double>::infinity();
 };
 
 struct EvaluationValues {
-  double cost = std::numeric_limits<double>::infinity();   ///< cost of the search itself; infinite if the waveform is infeasible
-  double guide = std::numeric_limits<double>::infinity();  ///< the cost that leads the first stage of a search; see GuidedSearch
+  double cost =
+      std::numeric_limits<double>::infinity();  ///< cost by the target of the search; infinite if the waveform is infeasible
+  double guide = std::numeric_limits<double>::infinity();  ///< cost that the first stage of a search minimises; see GuidedSearch
   bool lands = false;                                      ///< true for a closing without a significant rebound
-  long closings = 1;                                       ///< closings that the evaluation took
+  long closings = 1;                                       ///< simulated closings of the evaluation
 };
 
-/// The memory that a search asks, on any thread. Neither function throws: the owner reports what goes wrong with the storage.
+/// Interface of a memory of evaluations, called from any thread. Neither function throws: the owner reports failures of
+/// storage.
 class EvaluationMemory {
  public:
   virtual ~EvaluationMemory() = default;
@@ -41,17 +43,18 @@ class EvaluationMemory {
   virtual void note(const EvaluationKey& key, const EvaluationValues& values) noexcept = 0;
 };
 
-/// The parameters of families that share a memory or a log, as columns of a table.
+/// The parameters of the waveform families that share a memory or a log, as columns of a table.
 struct FamilyColumns {
   std::vector<std::vector<std::string>> families;  ///< parameter names of each family
 
   /// Column names, in the order of the rows.
   [[nodiscard]] std::vector<std::string> names() const;
-  /// The row of a point of one family: NaN in the columns of the others. Throws InvalidInput if x is not a point of the family.
+  /// The row of a point of one family: NaN in the columns of other families. Throws InvalidInput if x is not a point of the
+  /// family.
   [[nodiscard]] std::vector<double> row(std::size_t family, std::span<const double> x) const;
 };
 
-/// Waveforms that a search begins with.
+/// Waveforms from which a search begins.
 struct StartingWaveforms {
   std::string name;                           ///< name for messages: "--start run1/best.toml"
   DriveWaveforms waveforms;                   ///< waveforms by drive [V, s]

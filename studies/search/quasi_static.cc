@@ -10,7 +10,7 @@
 namespace softland {
 namespace {
 
-// A line from 0 to `height` between two times, and flat beyond them.
+// A function of time: 0 until `begin`, a straight line to `height` at `end`, then constant.
 struct Ramp {
   double begin, end, height;
   [[nodiscard]] double at(double time) const {
@@ -19,7 +19,7 @@ struct Ramp {
   }
 };
 
-// Returns the weights of a shaper: binomial coefficients over their sum.
+// Returns the weights of an input shaper: binomial coefficients over their sum.
 std::vector<double> shaper(std::size_t impulses) {
   std::vector<double> weights{1};
   for (std::size_t n = 1; n < impulses; ++n) {
@@ -30,12 +30,12 @@ std::vector<double> shaper(std::size_t impulses) {
   return weights;
 }
 
-// A sum of ramps, from a first value on.
+// A signal: a first value plus a sum of ramps.
 class BrokenLine {
  public:
   explicit BrokenLine(double first) : first_(first) {}
 
-  /// Adds a line from `begin` to `end` through a shaper of half a `period` between its impulses.
+  /// Adds a ramp from `begin` to `end`, filtered by an input shaper whose impulses are half a `period` apart.
   void add(double begin, double end, double height, std::size_t impulses, double period) {
     const std::vector<double> weights = shaper(impulses);
     for (std::size_t k = 0; k < weights.size(); ++k) {
@@ -43,7 +43,7 @@ class BrokenLine {
       ramps_.push_back({begin + shift, end + shift, weights[k] * height});
     }
   }
-  /// Adds an edge of this length by three lines: one through a shaper of three impulses.
+  /// Adds an edge of duration `length`: a ramp through an input shaper of three impulses.
   void add_edge(double begin, double length, double height) { add(begin, begin + length / 2, height, 3, length / 2); }
   void add_line(double begin, double end, double height) { ramps_.push_back({begin, end, height}); }
 
@@ -57,7 +57,7 @@ class BrokenLine {
     for (const Ramp& r : ramps_) sum += r.at(time);
     return sum;
   }
-  /// Returns the points where the line bends; points nearer to each other than `apart` are one.
+  /// Returns the corners of the signal as (time, value). Corners less than `apart` in time after another one are left out.
   [[nodiscard]] std::vector<std::pair<double, double>> points(double apart) const {
     std::vector<double> times{0};
     for (const Ramp& r : ramps_) times.insert(times.end(), {r.begin, r.end});
@@ -75,7 +75,8 @@ class BrokenLine {
   std::vector<Ramp> ramps_;
 };
 
-// Returns straight lines through these points, within the limits and as slow as the driver asks for.
+// Returns a piecewise linear waveform through `points` (time, voltage), clamped to the driver's voltages and slowed to its
+// slew.
 Waveform slewed(const std::vector<std::pair<double, double>>& points, double before, const DriverLimits& limits) {
   Table table{.time = {0}, .voltage = {before}};
   double time = 0;
@@ -91,8 +92,8 @@ Waveform slewed(const std::vector<std::pair<double, double>>& points, double bef
   return table;
 }
 
-// Returns the voltages of the carrying drive at which the nominal design touches, by the square of the holder's level up to
-// `most`.
+// Returns pairs: the square of a holder's level from 0 to `most`, and the carrying drive's voltage at which the nominal design
+// then touches.
 std::vector<std::pair<double, double>> touching_by_level(const PreparedScene& prepared, const StableApproach& approach,
                                                          double most) {
   constexpr int levels = 6;
@@ -108,13 +109,14 @@ std::vector<std::pair<double, double>> touching_by_level(const PreparedScene& pr
 }
 
 constexpr double slow_before = 3.5, fast_before = 1.5, beyond = 2;  // standard deviations of the touching voltage
-constexpr double least_deviation = 0.005;                           // share of the touching voltage: the contact has a height
-constexpr double nearest_points = 1e-6;                             // least distance of two points, in periods
-constexpr double step_after_line = 1.2, holder_after_line = 0.8;    // periods after the line
-constexpr double settle = 0.5;                                      // periods in which a holder rises
-constexpr double least_contact_level = 0.16, most_low = 0.5;        // shares of a holder's hold level
-constexpr std::array lower_levels{0.03, 0.12};                      // shares of a holder's hold level
-constexpr double back = 1, back_of_step = 5.7, back_after = 2;      // periods in which a piezo goes back, and waits for it
+constexpr double least_deviation = 0.005;                           // share of the touching voltage
+constexpr double nearest_points = 1e-6;  // least distance of two corners of a waveform, in periods of mode 1
+constexpr double step_after_line = 1.2,
+                 holder_after_line = 0.8;  // delay of the holder after the line through the touching voltages, in periods
+constexpr double settle = 0.5;             // rise time of a shaped holder, in periods
+constexpr double least_contact_level = 0.16, most_low = 0.5;    // levels before contact, as shares of the holder's hold level
+constexpr std::array lower_levels{0.03, 0.12};                  // levels of further starts, as shares of the holder's hold level
+constexpr double back = 1, back_of_step = 5.7, back_after = 2;  // periods in which the carrying drive returns, and waits before
 
 }  // namespace
 
@@ -136,7 +138,7 @@ QuasiStatic::QuasiStatic(const PreparedScene& prepared, Actuator actuator, Stabl
   reaches_.emplace_back(0, approach_.reaches);
   if (holding_ == Holding::shaped) reaches_ = touching_by_level(prepared, approach_, most_low * holder_hold_);
   approach_.deviation = std::max(approach_.deviation, least_deviation * std::abs(approach_.reaches));
-  constexpr double usual = 20;  // first touches of the plain step, until its contact is steady
+  constexpr double usual = 20;  // time until the force is steady, over the plain step's first touch
   for (const double times : {usual, usual / 2, 2 * usual}) starts_.push_back(closed_form(times * first_touch, approach_.low));
   bound(starts_.front(), false);
   clamp_starts();
@@ -169,7 +171,7 @@ double QuasiStatic::share(double deviations) const {
   return std::min(1 + deviations * approach_.deviation / reach, std::max(1.0, std::abs(approach_.limit) / reach));
 }
 
-// Returns the closed form of a waveform whose devices carry a steady force from `steady` on.
+// Returns the parameters by formula, for devices that carry a steady contact force from `steady` on [s].
 std::vector<double> QuasiStatic::closed_form(double steady, double low) const {
   const double rise = share(impulses_ > 2 ? -slow_before : -fast_before), end = share(beyond);
   const double risen = static_cast<double>(impulses_ + 1) / 2 - (impulses_ > 2 ? 0.5 : 0);  // periods
@@ -196,7 +198,7 @@ void QuasiStatic::bound(const std::vector<double>& start, bool is_paced) {
     variables_.push_back({std::move(name), lower, upper});
   };
   const double line = start[1];
-  constexpr double earliest = 9, latest = 6;  // deviations
+  constexpr double earliest = 9, latest = 6;  // standard deviations of the touching voltage
   between(carrier + "rise", std::max(0.3, share(-earliest)), share(1));
   is_paced ? between(carrier + "line_s", std::max(0.2 * period_, line - 2 * period_), line + 2 * period_)
            : between(carrier + "line_s", 0.2 * period_, 5 * line + 5 * period_);
@@ -230,7 +232,7 @@ QuasiStatic QuasiStatic::paced(double steady) const {
   return own;
 }
 
-// Returns lines in the square of the volts of an electrode, approximated by chords.
+// Returns the carrying drive's waveform. Ramps of an electrode are linear in its squared voltage, and approximated by chords.
 Waveform QuasiStatic::carrying(Points points) const {
   if (!is_electrode_) return slewed(points, before_, limits_);
   constexpr int chords = 5;
@@ -257,8 +259,7 @@ DriveWaveforms QuasiStatic::waveforms(std::span<const double> x) const {
   const double touching = reaches(holding_ == Holding::shaped ? x[3] : holder_before_), line = x[1];
   const auto within = [&](double voltage) { return std::clamp(voltage, limits_.min_voltage, limits_.max_voltage); };
   const double rise_voltage = within(x[0] * touching), end_voltage = within(x[2] * touching);
-  const std::size_t of_line =
-      impulses_ > 2 ? impulses_ : 1;  // impulses at the ends of the line; a short shaper is better without
+  const std::size_t of_line = impulses_ > 2 ? impulses_ : 1;  // impulses at the ends of the second ramp; 1: it is not filtered
   const double risen = static_cast<double>(impulses_ + 1) / 2 * period_;
   const double begin = impulses_ > 2 ? risen - period_ / 2 : risen, end = begin + line;
   BrokenLine carrier(strength(before_));

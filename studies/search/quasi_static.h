@@ -1,20 +1,22 @@
 // The quasi-static approach: waveforms that carry the switch to its contact slowly, through stable equilibria, so that every
-// device touches softly, and that hold it once it is closed.
+// device touches softly, and that hold the switch closed afterwards. The carrying drive moves the beam to its contact. The
+// holder is the electrode that holds the closed switch, if the carrying drive does not hold the switch by itself.
 //
-//   rise    to where the first devices nearly touch, by straight lines that leave no vibration: a line of one period T of mode 1
-//           through an input shaper of N impulses half a period apart, whose weights are binomial
-//   line    on through the voltages at which devices touch, at a constant rate, its ends through the same shaper
-//   hold    the electrode that holds the switch stands low meanwhile and rises when the contact is made; then the drive that
-//           carried the switch goes back to its hold level. An electrode that carries the switch itself rises to its hold
-//           level.
+//   rise    The carrying drive goes to a voltage at which hardly a device touches, without vibration: a ramp of one period T of
+//           mode 1 passes an input shaper of N impulses half a period apart, whose weights are binomial.
+//   line    The carrying drive goes on through the voltages at which devices touch, at a constant rate. If N > 2, this ramp
+//           passes the shaper, too.
+//   hold    The holder stays at a low level until the contact is made, and rises to its hold level; then the carrying drive goes
+//           back to its own. Without a holder, the carrying drive goes on to its hold level.
 //
-// Straight lines are lines in the quantity that drives the beam: the volts of a piezo, the square of an electrode's volts if it
+// Ramps are linear in the quantity that drives the beam: the volts of a piezo, the square of an electrode's volts if it
 // carries the switch. With two impulses (ZV) the rise takes 1.5 T, and devices whose frequencies differ by 3.5 % keep 0.7 % of
-// it as vibration. With three (ZVD) it takes 2 T and leaves 0.07 %.
+// the rise as vibration. With three (ZVD) the rise takes 2 T and leaves 0.07 %.
 //
 // Levels of the carrying drive are shares of the voltage at which the nominal design touches while the holder stands at its low
-// level, so that the two are searched apart. One set of parameters moves all drives. If the search does not shape the electrode
-// (actuator pzt), the electrode keeps its plain step, whose instant is a parameter.
+// level, so that the search varies the levels of both drives independently. One point of the search gives the waveforms of all
+// drives. If the search does not shape the electrode (actuator pzt), the holder keeps its plain step, whose instant is a
+// parameter.
 //
 // Source of the shapers: N. C. Singer & W. P. Seering, J. Dyn. Syst. Meas. Control 112 (1990) 76.
 #pragma once
@@ -33,32 +35,32 @@
 namespace softland {
 
 inline constexpr std::string_view quasi_static_family = "quasi-static";
-/// Impulses of the shaper, if no number is named.
+/// Default number of impulses of the input shaper.
 inline constexpr std::size_t usual_impulses = 3;
 
 class QuasiStatic {
  public:
-  /// `first_touch` is that of the plain step [s].
+  /// `first_touch` is the time of the first contact under the plain step [s].
   QuasiStatic(const PreparedScene& prepared, Actuator actuator, StableApproach approach, std::size_t impulses,
               double first_touch);
 
   [[nodiscard]] const StableApproach& approach() const { return approach_; }
-  /// Drives whose waveforms this makes: the one that carries first, then the holder if there is one.
+  /// Names of the drives in waveforms(): the carrying drive, then the holder if there is one.
   [[nodiscard]] std::vector<std::string> drives() const;
-  /// Names with their drive: "piezo.rise", "piezo.line_s".
+  /// Searched parameters; their names begin with the drive: "piezo.rise", "piezo.line_s".
   [[nodiscard]] const std::vector<Variable>& variables() const { return variables_; }
   [[nodiscard]] const std::vector<std::vector<double>>& starts() const { return starts_; }
   [[nodiscard]] DriveWaveforms waveforms(std::span<const double> x) const;
-  /// Returns the same with bounds about the closed form for devices that carry a steady force from `steady` on [s]. The closed
-  /// form is its start; a shaped holder adds starts with lower levels.
+  /// Returns the approach with bounds about its closed form for devices that carry a steady contact force from `steady` on [s].
+  /// The search starts at the closed form, and, with a shaped holder, also at lower levels of the holder.
   [[nodiscard]] QuasiStatic paced(double steady) const;
 
  private:
-  /// The way in which the switch is held once it is closed.
+  /// How the switch is held once it is closed.
   enum class Holding {
-    by_itself,  ///< the drive that carried it goes on to its hold level
+    by_itself,  ///< the carrying drive goes on to its hold level
     shaped,     ///< the holder's waveform is searched
-    by_step,    ///< the holder's plain step comes when the contact is made
+    by_step,    ///< the holder's plain step comes after the contact is made
   };
   using Points = std::vector<std::pair<double, double>>;  // [s, V]
 
@@ -69,15 +71,16 @@ class QuasiStatic {
   [[nodiscard]] Waveform carrying(Points points) const;
   /// The voltage at which the nominal design touches while the holder stands at `low` [V].
   [[nodiscard]] double reaches(double low) const;
-  /// The share of the touching voltage that is so many standard deviations beyond it, within the limit.
+  /// The voltage `deviations` standard deviations beyond the touching voltage, as a share of the latter, within the driver's
+  /// limit.
   [[nodiscard]] double share(double deviations) const;
 
   StableApproach approach_;
   Holding holding_ = Holding::by_itself;
   std::size_t impulses_;
   double period_ = 0;                               // period of mode 1 [s]
-  bool is_electrode_ = false;                       // true if an electrode carries
-  double neutral_ = 0;                              // its V0, see Switch::neutral_voltage() [V]
+  bool is_electrode_ = false;                       // true if the carrying drive is an electrode
+  double neutral_ = 0;                              // Switch::neutral_voltage() of the carrying drive [V]
   std::vector<std::pair<double, double>> reaches_;  // touching voltages by the holder's level squared: [V^2, V]
   double hold_ = 0, before_ = 0, holder_hold_ = 0, holder_before_ = 0;  // [V]
   DriverLimits limits_, holder_limits_;
