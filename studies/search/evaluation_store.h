@@ -1,4 +1,4 @@
-// The evaluations of a search in a store. A continued search simulates none of them again.
+// The evaluations of a search in a database file. A continued search simulates no evaluation of this file again.
 #pragma once
 
 #include <exception>
@@ -15,27 +15,27 @@
 
 namespace softland {
 
-/// Name of the store in the folder of a search.
+/// Name of the database file in the folder of a search.
 inline constexpr const char* evaluations_file = "evaluations.sqlite";
 
-/// A store with one row per simulated candidate, in the order in which the simulations ended. On request it takes over the rows
-/// of another plan in the store: that of the same search with another budget.
+/// A database file with one row per simulated candidate, in the order in which the simulations ended. On request it takes over
+/// rows of a search in the same file that differs only in its budget.
 class EvaluationStore : public EvaluationMemory {
  public:
-  /// `columns` are those of all waveform families. `points` is the largest number of evaluations of the plan; later ones are
-  /// not kept. Throws as StudyStore does.
+  /// `columns` are the parameters of all waveform families. `points` is the largest number of evaluations of the plan; later
+  /// evaluations are not stored. Throws what the constructor of StudyStore throws.
   EvaluationStore(const std::filesystem::path& file, const nlohmann::json& plan, std::int64_t points, std::uint64_t seed,
                   FamilyColumns columns, const StoredOrigin& origin);
 
   [[nodiscard]] std::optional<EvaluationValues> recall(const EvaluationKey& key) noexcept override;
   void note(const EvaluationKey& key, const EvaluationValues& values) noexcept override;
 
-  /// Return the numbers of evaluations that were simulated, and that were read from the store.
+  /// Return the number of simulated evaluations, and of evaluations that were read from the file.
   [[nodiscard]] std::int64_t computed() const;
   [[nodiscard]] std::int64_t recalled() const;
-  /// Throws the error that an evaluation met when it was stored, if any did.
+  /// Rethrows the first exception that storing or reading an evaluation caused, if any.
   void check();
-  /// Waits until all evaluations are durable, and closes the file. Throws as check() does.
+  /// Waits until all evaluations are on the disk, and closes the file. Throws what check() throws.
   void close();
 
  private:
@@ -45,7 +45,7 @@ class EvaluationStore : public EvaluationMemory {
   StudyStore store_;
   std::int64_t points_;
   mutable std::mutex mutex_;
-  std::map<ContentKey, EvaluationValues> known_;  // evaluations of this plan that the store held at the beginning
+  std::map<ContentKey, EvaluationValues> known_;  // evaluations of this plan that the file contained at the beginning
   std::int64_t next_ = 0, computed_ = 0, recalled_ = 0;
   std::exception_ptr failure_;
 };

@@ -1,5 +1,4 @@
-// The search within one family of waveforms, which may be one of several that share the budget of a search, its log and its
-// memory.
+// The search within one waveform family. Several families may share the budget, the log and the memory of one search.
 #pragma once
 
 #include <cstddef>
@@ -18,33 +17,33 @@
 
 namespace softland {
 
-/// Evaluation::problem is the number of the family.
+/// Searches one waveform family. Evaluation::problem is the number of the family.
 class FamilySearch {
  public:
-  /// Keeps references to setting and options.
+  /// Keeps references to `setting` and `options`. Calls `on_evaluation` with every evaluation.
   FamilySearch(const SearchSetting& setting, const OptimizeOptions& options,
                std::function<void(const Evaluation&)> on_evaluation);
 
-  /// Begins with these waveforms, or with those of the family that differ least from them, before its own starts. Waveforms
-  /// that it cannot begin with are skipped.
+  /// Adds a start before the family's own starts: the given waveforms, or the most similar ones of the family. Waveforms from
+  /// which a search cannot begin are skipped.
   void begin_at(const DriveWaveforms& waveforms);
-  /// Begins at this point before the others.
+  /// Adds a start before all others: the point `x` of the family.
   void begin_at_point(const std::vector<double>& x);
-  /// See GuidedSearch::run.
+  /// Runs the search: see GuidedSearch::run().
   [[nodiscard]] OptimizerResult run(const OptimizerOptions& share, Costs costs, long more, long first_index);
-  /// See GuidedSearch::best.
+  /// Returns the best evaluation by a cost: see GuidedSearch::best().
   [[nodiscard]] std::optional<GuidedSearch::Best> best(Costs costs) const;
 
-  /// The point of these waveforms; none where the family cannot describe them.
+  /// Returns the parameters of the given waveforms; none if the family cannot describe the waveforms.
   [[nodiscard]] std::optional<std::vector<double>> point(const DriveWaveforms& waveforms) const {
     return setting_.space.parameters(waveforms);
   }
   [[nodiscard]] DriveWaveforms waveforms(const Evaluation& e) const { return setting_.space.waveforms(e.x); }
-  /// The scene of an evaluation, ready to run.
+  /// Returns the scene with the waveforms of an evaluation, ready for simulation.
   [[nodiscard]] PreparedScene prepared(const Evaluation& e) const { return setting_.prepared(waveforms(e)); }
-  /// The parameters by drive.name.
+  /// Returns the waveform parameters of an evaluation, by drive.name.
   [[nodiscard]] std::map<std::string, double> named(const Evaluation& e) const;
-  /// See GuidedSearch::surest_below; `others` may be of other families, too.
+  /// Returns the evaluation of GuidedSearch::surest_below(); `others` may be evaluations of other families, too.
   [[nodiscard]] std::optional<Evaluation> surest_below(double own, const std::vector<Evaluation>& others) const;
 
  private:

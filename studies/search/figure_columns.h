@@ -1,4 +1,4 @@
-// Columns of tables and stores that hold figures of merit and searched parameters.
+// Columns of tables and database files: figures of merit and searched parameters.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace softland {
 
-/// A column of figures.
+/// A column of numbers.
 struct PointFigure {
   std::string quantity;  ///< "impact_velocity"
   std::string name;      ///< displayed name: "Impact speed"

@@ -3,10 +3,10 @@
 //   z_i = q_i s_i / g        u_i = q_i' s_i / (g omega_i)        time in 1 / omega_1
 //
 // The symbols are: q modal coordinates, omega natural frequencies, g contact gap, s_i displacement of the contact point by mode
-// i. A mode with a node there has a tenth of the largest s_i. z_i is the part of mode i in the way to the contact. A control is
-// the strength of a drive over its largest: that of Switch::strength() for an electrode, the voltage of a piezo. The motion is
-// linear in it, and the quickest control jumps between its bounds. If the driver's slew is limited, the control is the voltage
-// over its largest, and linear between knots.
+// i. A mode with a node at the contact point has a tenth of the largest s_i. z_i is the displacement of the contact point by
+// mode i, in gaps. A control is the strength of a drive over its largest strength: Switch::strength() of an electrode, the
+// voltage of a piezo. The motion is linear in the controls, and the quickest control jumps between its bounds. If the driver's
+// slew is limited, the control is the voltage over the largest voltage, and linear between knots.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,9 +27,9 @@ namespace softland {
 
 class FirstTouchProblem final : public ControlledSystem {
  public:
-  /// Keeps a reference. The drives that the actuator shapes are free within their limits, electrodes only up to `peak` volts if
-  /// the driver gives more. The other drives stand at their values in the plain step. Throws InvalidInput for a scene that
-  /// lacks the drive or its limits, whose gas film is compressible, or that does not rest above its contact.
+  /// Keeps a reference to `prepared`. The drives that the actuator shapes are the controls, within their limits and, for
+  /// electrodes, up to `peak` [V]. The other drives stay at their values in the plain step. Throws InvalidInput for a scene
+  /// that lacks the drive or its limits, whose gas film is compressible, or whose open switch does not rest above its contact.
   FirstTouchProblem(const PreparedScene& prepared, Actuator actuator, double peak = std::numeric_limits<double>::infinity());
 
   [[nodiscard]] Eigen::Index states() const override { return 2 * modes_; }
@@ -42,7 +42,7 @@ class FirstTouchProblem final : public ControlledSystem {
   [[nodiscard]] const std::vector<ControlBound>& bounds() const { return bounds_; }
   [[nodiscard]] bool ramps() const { return ramps_; }
   [[nodiscard]] double time_unit() const { return 1 / omega_[0]; }  ///< [s]
-  /// Position and velocity of the contact point in gaps and gaps per unit of time, as rows over a state.
+  /// Row vectors that give position [gap] and velocity [gap per time unit] of the contact point as products with a state.
   [[nodiscard]] const Eigen::VectorXd& tip() const { return tip_; }
   [[nodiscard]] const Eigen::VectorXd& tip_speed() const { return tip_speed_; }
   [[nodiscard]] double speed_unit() const { return gap_ * omega_[0]; }  ///< [m/s]
@@ -50,30 +50,30 @@ class FirstTouchProblem final : public ControlledSystem {
   struct Landing {
     Eigen::VectorXd state, controls;
   };
-  /// The beam at rest on the contact plane under the hold levels of all drives; none if the contact would have to pull. If the
-  /// slew is limited, the free drives hold only the least share that keeps the switch closed. A larger share would bring a
-  /// contact point to rest on the plane from behind it.
+  /// The beam at rest on the contact plane under the hold levels of all drives; none if the contact force would have to be
+  /// tensile. If the slew is limited, the controlled drives have the smallest share of their hold levels that keeps the switch
+  /// closed: with a larger share the contact point would come to rest from behind the plane.
   [[nodiscard]] std::optional<Landing> landing() const;
 
-  /// The quickest way by a single swing: full pull, and from a time on full release, so that the contact point turns back as it
+  /// The quickest single swing to the contact: full pull, then full release, so that the contact point turns back as it
   /// arrives. None if full pull does not reach the contact within `longest` [s].
   [[nodiscard]] std::optional<ControlledCourse> swing(double longest) const;
-  /// The flight under signals of all drives until it first touches, as a course of `intervals` intervals of the controls. The
-  /// controls are the signals of the free drives, clamped to their bounds. None if it does not touch within `longest` [s].
+  /// The motion until first contact under signals of all drives, with the controls in `intervals` intervals. The controls are
+  /// the signals of the controlled drives, clamped to their bounds. None if the switch does not touch within `longest` [s].
   [[nodiscard]] std::optional<ControlledCourse> flown(std::span<const Signal> signals, int intervals, double longest) const;
-  /// The voltages of the free drives at a control [V].
+  /// The voltages of the controlled drives at the controls `c`, by drive [V].
   [[nodiscard]] std::map<std::string, double> volts(const Eigen::VectorXd& c) const;
-  /// The slew limit of a free drive's driver [V/s].
+  /// The slew limit of the driver of a controlled drive [V/s].
   [[nodiscard]] double max_slew(const std::string& drive) const;
-  /// The controls that pull most, and that release most.
+  /// The values of the controls that pull most towards the contact.
   [[nodiscard]] const Eigen::VectorXd& pull() const { return pull_; }
 
  private:
   struct Free {
     std::size_t drive;
     std::string name;
-    double largest;   ///< strength, or voltage where its slew is limited
-    double sign;      ///< sign of the voltage by which an electrode acts: it pulls with either
+    double largest;   ///< largest strength, or voltage if the slew is limited
+    double sign;      ///< sign of an electrode's voltage, which does not change its pull
     double max_slew;  ///< [V/s]
   };
   [[nodiscard]] double strength(std::size_t drive, double value) const;
@@ -88,7 +88,7 @@ class FirstTouchProblem final : public ControlledSystem {
   Eigen::Index modes_;
   double gap_;
   Eigen::VectorXd omega_, per_q_, per_v_, per_acceleration_, tip_, tip_speed_, start_, pull_, release_;
-  std::vector<double> held_;  ///< strengths of all drives; those of free ones do not count
+  std::vector<double> held_;  ///< strengths of all drives; those of the controlled drives are not used
   std::vector<double> hold_;  ///< values of all drives after the landing
   std::vector<Free> free_;
   std::vector<ControlBound> bounds_;

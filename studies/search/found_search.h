@@ -10,15 +10,16 @@ namespace softland {
 struct FoundSearch {
   std::variant<OptimizeResult, RobustResult, RobustSearchResult> result;
 
-  /// The waveform found, on the nominal device.
+  /// The waveform that was found, with its closing of the nominal device.
   [[nodiscard]] const OptimizeResult& best() const;
   [[nodiscard]] OptimizeResult& best();
   [[nodiscard]] bool interrupted() const { return best().search.termination == Termination::interrupted; }
-  /// True if better than the plain step, on the devices where these were judged, else on the nominal device.
+  /// True if the found waveform is better than the plain step: on the varied devices if they were simulated, else on the
+  /// nominal one.
   [[nodiscard]] bool is_success() const;
 };
 
-/// Runs the search with the first of its seeds. A search over devices assumes a spread if the scene has no [spread]:
+/// Runs the search with the first of its seeds. A search over varied devices of a scene without [spread] takes that of
 /// assume_spread(). Throws InvalidInput as optimize() does.
 [[nodiscard]] FoundSearch run(PlannedSearch& search);
 

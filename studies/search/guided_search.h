@@ -1,6 +1,6 @@
-// A search in two stages. Two thirds of the budget go by a guide cost, which finds the right valleys; the rest goes by the
-// search's target cost, from the best points so far. Both stages are logged by the target cost, as one search. There is one
-// stage if the two costs are the same.
+// A search in two stages. The first stage spends two thirds of the budget on minimising a guide cost, which finds the right
+// minima. The second stage minimises the target cost, from the best points so far. The log shows both stages as one search by
+// the target cost. There is one stage if the two costs are the same.
 #pragma once
 
 #include <functional>
@@ -16,57 +16,59 @@
 
 namespace softland {
 
-/// Two costs of one point; infinite if it is infeasible.
+/// The two costs of one point; infinite if the point is infeasible.
 struct SearchCosts {
   double guide = std::numeric_limits<double>::infinity();
   double target = std::numeric_limits<double>::infinity();
   bool lands = false;  ///< true for a closing without a significant rebound
-  /// The same under conditions: costs without the penalty of broken ones, and each g of Conditions.
+  /// Values of a search under conditions: costs without the penalty of broken conditions, and each g of Conditions.
   struct Apart {
     double guide, target;
     std::vector<double> excess;
   };
-  std::optional<Apart> apart = {};  ///< none without conditions, and if the prices are remembered from another search
+  std::optional<Apart> apart = {};  ///< none without conditions, and if the costs come from an EvaluationMemory
 };
 
-/// Gradients of the two costs as Problem::gradient, or null; under conditions as Conditions::gradients.
+/// Gradients of the guide and the target cost as Problem::gradient, or null; under conditions as Conditions::gradients.
 struct CostGradients {
   std::function<std::vector<double>(std::span<const double>)> guide, target;
   std::size_t conditions = 0;
-  /// The costs of a point, computed again whatever is remembered.
+  /// Computes the costs of a point again, even if they are in a memory.
   std::function<SearchCosts::Apart(std::span<const double>)> apart = {};
 };
 
-/// The cost that a run minimises: the common one, the guide, the target, or the guide for two thirds of the budget and then
+/// The cost that a run minimises. `same`: guide and target are one cost; `both`: the guide for two thirds of the budget, then
 /// the target.
 enum class Costs { same, guide, target, both };
 
-/// Divisor of the budget: such a part of it goes to the target cost of a target that has one.
+/// Divisor of the budget: one part of this many is spent on the target cost, if it differs from the guide.
 inline constexpr long target_share = 3;
 
 class GuidedSearch {
  public:
-  /// `price` is as Problem::objective; `on_evaluation` as OptimizerOptions::on_evaluation, with the target cost as value.
+  /// `price` computes the costs of a point, as Problem::objective does; `on_evaluation` is as OptimizerOptions::on_evaluation,
+  /// with the target cost as value.
   GuidedSearch(std::function<SearchCosts(std::span<const double>)> price, std::function<void(const Evaluation&)> on_evaluation,
                CostGradients slopes = {})
       : price_(std::move(price)), on_evaluation_(std::move(on_evaluation)), slopes_(std::move(slopes)) {}
 
-  /// Minimises over the variables of `problem` from its starts. Its objective and the callbacks of `options` are not used.
-  /// Throws as minimize() does. Result, improvements and indices, from `first_index` on, are those of one search by the target
-  /// cost. If both costs are the same and no point lands, a second stage of `more` evaluations goes on from the best points. A
-  /// further run goes on from them too. It begins at starts that were not tried as well, and its result is that of all runs.
+  /// Minimises over the variables of `problem` from its starts. The objective of `problem` and the callbacks of `options` are
+  /// not used. Throws as minimize() does. Result, improvements and indices, from `first_index` on, are those of one search by
+  /// the target cost. If both costs are the same and no point closes without a bounce, a second stage of `more` evaluations
+  /// goes on from the best points. A further run begins at these points, and at starts that were not tried; its result is that
+  /// of all runs.
   [[nodiscard]] OptimizerResult run(Problem problem, OptimizerOptions options, Costs costs, long more = 0, long first_index = 0);
   struct Best {
     Evaluation evaluation;  ///< evaluation with the target cost as value
-    double cost = 0;        ///< guide or target cost
+    double cost = 0;        ///< guide or target cost of the evaluation, as requested
   };
-  /// Returns the evaluation with the lowest cost: by the guide for `Costs::guide`, by the target otherwise. Nothing if
-  /// none is feasible.
+  /// Returns the evaluation with the lowest guide cost for `Costs::guide`, with the lowest target cost otherwise. Nothing if no
+  /// evaluation is feasible.
   [[nodiscard]] std::optional<Best> best(Costs costs) const;
-  /// Every evaluation, by index, with the target cost as value.
+  /// All evaluations, by index, with the target cost as value.
   [[nodiscard]] const std::map<long, Evaluation>& log() const { return log_; }
-  /// Returns the point with the least guide cost, among those whose target cost is below `own` and that differ from the
-  /// `others`.
+  /// Returns the evaluation with the least guide cost, among evaluations whose target cost is below `own` and whose points
+  /// differ from `others`.
   [[nodiscard]] std::optional<Evaluation> surest_below(double own, const std::vector<std::vector<double>>& others) const;
 
  private:
@@ -81,7 +83,7 @@ class GuidedSearch {
   std::mutex mutex_;
   std::map<std::vector<double>, SearchCosts> known_;
   std::map<long, Evaluation> log_;  ///< evaluations by index
-  long first_index_ = 0;            ///< index of the stage's first evaluation
+  long first_index_ = 0;            ///< index of the first evaluation in the current stage
 };
 
 }  // namespace softland

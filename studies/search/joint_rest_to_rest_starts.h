@@ -1,10 +1,9 @@
-// Landings by a single swing in which all searched drives take part at once. They pull, and from a time on release, so that the
-// contact point turns back as it arrives (swing.h); a push then keeps it on its contact. The search of several drives, or of a
-// piezo, begins with them.
+// Waveforms of all searched drives that close the switch by a single swing: the drives pull, then release, so that the contact
+// point turns back as it arrives (swing.h). A push then keeps the switch closed. The search of several drives, or of a piezo,
+// begins with these waveforms.
 //
-// The electrode that pulls goes to its limits. The other drives could do far more than a soft landing needs, and would ring the
-// higher modes: they go through shares of their ranges. A piezo pulls and then lifts; an electrode on the far side waits and
-// then brakes.
+// The pulling electrode goes to its limits. The other drives use only shares of their ranges, since their full range would ring
+// the higher modes. A piezo pulls and then lifts; an electrode on the far side waits and then brakes.
 #pragma once
 
 #include <string>
@@ -14,8 +13,8 @@
 
 namespace softland {
 
-/// Returns one landing for each share and length of the push, if it exists. None for an electrode alone, whose families begin
-/// with it themselves, and none if the gas film is compressible.
+/// Returns waveforms for each share of the ranges and each length of the push, as far as a swing exists. None for a single
+/// electrode, whose waveform families have such starts themselves, and none if the gas film is compressible.
 [[nodiscard]] std::vector<DriveWaveforms> joint_rest_to_rest_starts(const PreparedScene& given, const SearchSpace& space);
 
 }  // namespace softland

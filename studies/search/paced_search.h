@@ -1,5 +1,5 @@
-// A search for a quasi-static approach over devices. CMA-ES begins at the closed form, on ever more devices. The pace is set by
-// the time from which on the devices have to carry a steady force.
+// A search over varied devices for a quasi-static approach. CMA-ES begins at the closed form, and uses more devices in every
+// round. The pace is given by the time from which on the devices have to carry a steady contact force.
 #pragma once
 
 #include <functional>
@@ -9,15 +9,15 @@
 
 namespace softland {
 
-/// A pace, and the family that is searched at it.
+/// The pace of a quasi-static approach, and the waveform family that is searched.
 struct Pace {
-  double of_step = 1;      ///< time in which devices have to carry a steady force, over that of the plain step
-  std::size_t family = 0;  ///< its number among the settings
+  double of_step = 1;      ///< time until devices have to carry a steady force, over that of the plain step
+  std::size_t family = 0;  ///< index of the family among the settings of the search
 };
 
-/// Searches at a pace. `setting` is that of a quasi-static family; `aim` is the aim of the whole search, whose free time is
-/// that of the plain step. None if no such waveform is within the limits, or the budget was over before it had tried one. The
-/// closings of `options` scale those of the search, as those of a race.
+/// Searches at a pace. `setting` is that of a quasi-static family; `aim` is the aim of the whole search, with the plain step's
+/// time as FreeTime. None if no waveform of this pace is within the limits, or if the budget is over before one was tried.
+/// RaceOptions::closings scales the closings of this search, as it scales those of a race.
 [[nodiscard]] std::optional<Contender> search_at_pace(const SearchSetting& setting, const Pace& pace, const RobustCost& cost,
                                                       const RobustAim& aim, SearchBudget& budget, const RaceOptions& options);
 
