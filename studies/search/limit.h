@@ -1,11 +1,11 @@
 // The limit of all drive waveforms: the least time in which a switch can touch its contact at no more than a given speed,
-// within the voltages of its drivers. A landing cannot be quicker than its touch, so that this bounds every waveform, whatever
-// its family. Robustness and the time after the touch come on top. The bound holds for the model with its number of modes: a
-// beam has more, by which a waveform can gain.
+// within the voltages of its drivers. No closing can be quicker than its first contact, so that this time is a lower bound for
+// every waveform family. Robustness and the time after the contact cost further time. The bound holds for the model with its
+// number of modes: a waveform could gain from the further modes of a real beam.
 //
-// The contact point may cross its plane at the end only. The optimum is local. It begins with the quickest single swing: full
-// pull, then full release, as a mass on a spring is stopped (Leus & Elata 2008, J. MEMS 17, 236). It is the best that was found
-// from there, or from the flight under a given waveform. Drives that the actuator does not shape stand at their hold levels
+// The contact point may cross the contact plane at the end only. The optimum is local: the better of two, found from the
+// quickest single swing, and from the motion under a given waveform. The swing is full pull, then full release, as a mass on a
+// spring is stopped (Leus & Elata 2008, J. MEMS 17, 236). Drives that the actuator does not shape stand at their hold levels
 // from t = 0 on.
 #pragma once
 
@@ -30,84 +30,89 @@ namespace softland {
 
 struct LeastTimeOptions {
   Actuator actuator = Actuator::electrostatic;
-  double impact_velocity = 1e-3;                          ///< largest speed of the first touch [m/s]
-  bool at_rest = false;                                   ///< all modes reach the closed equilibrium
-  double peak = std::numeric_limits<double>::infinity();  ///< peak of the pulling electrode, if below its driver's [V]
-  /// Waveforms of the drives, of a search for example: the optimum is also sought from their flight, if that touches.
+  double impact_velocity = 1e-3;                          ///< largest permitted speed of the first contact [m/s]
+  bool at_rest = false;                                   ///< true: all modes have to end in the closed equilibrium, at rest
+  double peak = std::numeric_limits<double>::infinity();  ///< largest voltage of the pulling electrode, if below its driver's [V]
+  /// Waveforms of the drives, for example from a search. The optimum is also sought from the motion under these waveforms, if
+  /// it touches.
   DriveWaveforms start = {};
   Progress progress = {};
 };
 
 struct LeastTime {
   /// done; no_contact: the drives cannot bring the switch to its contact in one swing; numerical_failure: the optimum was not
-  /// found, or a simulation of the waveform disagrees with it; interrupted.
+  /// found, or a simulation of its waveforms gives another result; interrupted.
   Status status = Status::not_run;
   std::string message = {};
-  bool from_start = false;                                            ///< found from LeastTimeOptions::start
-  double time = std::numeric_limits<double>::quiet_NaN();             ///< least time of the first touch [s]
-  double impact_velocity = std::numeric_limits<double>::quiet_NaN();  ///< speed of that touch [m/s]
-  /// Largest distance of any mode from its place in the closed equilibrium, in contact gaps, for a landing at rest.
+  bool from_start = false;                                 ///< true if the optimum was found from LeastTimeOptions::start
+  double time = std::numeric_limits<double>::quiet_NaN();  ///< least time of the first contact [s]
+  double impact_velocity = std::numeric_limits<double>::quiet_NaN();  ///< speed of the first contact [m/s]
+  /// For a first contact at rest: largest difference of a modal coordinate from its value in the closed equilibrium, in contact
+  /// gaps.
   double distance = std::numeric_limits<double>::quiet_NaN();
-  double permitted = std::numeric_limits<double>::quiet_NaN();  ///< permitted speed [m/s]
-  double peak = std::numeric_limits<double>::quiet_NaN();       ///< permitted peak [V]; NaN if no electrode is shaped
-  /// Touch time [s] and speed [m/s] by an integration of the closing under the waveforms, with the contact.
+  double permitted = std::numeric_limits<double>::quiet_NaN();  ///< permitted speed of the first contact [m/s]
+  double peak =
+      std::numeric_limits<double>::quiet_NaN();  ///< permitted voltage of the shaped electrode [V]; NaN if there is none
+  /// Time [s] and speed [m/s] of the first contact in a simulation of the closing under `waveforms`.
   double simulated_time = std::numeric_limits<double>::quiet_NaN(), simulated_velocity = simulated_time;
-  DriveWaveforms waveforms = {};  ///< waveforms of the shaped drives; from the touch on they pull
+  DriveWaveforms waveforms = {};  ///< waveforms of the shaped drives, which pull after the first contact
   ControlledCourse course = {};
 };
 
-/// Throws InvalidInput for a scene that first_touch_problem.h does not follow.
+/// Computes the least time of the first contact. Throws InvalidInput for a scene that FirstTouchProblem refuses.
 [[nodiscard]] LeastTime least_time(const PreparedScene& prepared, const LeastTimeOptions& options);
 
-/// Waveforms of the shaped drives that bring every mode to rest on the contact in about the least time. A drive takes a ninth,
-/// or an eighteenth, of the first mode's period from one end of its range to the other: without the jumps that ring modes which
-/// the model leaves out. The search of a piezo, or of several drives, begins with them. `impact_velocity` is as in
-/// LeastTimeOptions. Those that are not found are left out. None if first_touch_problem.h does not follow the switch, or if it
-/// has more than four modes, which would take minutes.
+/// Returns waveforms of the shaped drives that bring every mode to rest on the contact in about the least time. A drive takes a
+/// ninth, or an eighteenth, of the first mode's period from one end of its range to the other, since jumps would ring modes
+/// that the model neglects. The search of a piezo, or of several drives, begins with these waveforms. `impact_velocity` is as
+/// in LeastTimeOptions. The list is empty if FirstTouchProblem refuses the switch, or for more than four modes, which would
+/// take minutes.
 [[nodiscard]] std::vector<DriveWaveforms> rest_to_rest_starts(const PreparedScene& prepared, Actuator actuator,
                                                               double impact_velocity, const Progress& progress);
 
-/// A landing under a waveform that begins as one of least time does. It then goes on pulling, to keep the beam on its contact
-/// while its modes ring down (the catch), and ends on the hold levels.
+/// A closing whose waveforms are those of least time until first contact, then pull to keep the switch closed while its modes
+/// ring down (the catch), and end on the hold levels.
 struct LimitLanding {
   LeastTime path = {};
-  double catch_delay = 0;                ///< time from the touch to the pull; the drives stay as at the touch [s]
-  double catch_time = 0;                 ///< time from the touch to the hold levels [s]; 0: held at once
-  PreparedScene scene;                   ///< scene that is read back from its text
-  Closing closing;                       ///< closing over the scene's whole window
-  std::vector<CheckingRun> checks = {};  ///< runs with a tighter integrator and a richer beam
-  bool bounce_free = false;              ///< settles without a significant rebound, in these runs too
+  double catch_delay = 0;                ///< time from first contact to the pull; the drives stay constant meanwhile [s]
+  double catch_time = 0;                 ///< time from first contact to the hold levels [s]; 0: without a catch
+  PreparedScene scene;                   ///< scene with the waveforms, read back from its text
+  Closing closing;                       ///< closing, simulated over the whole window of the scene
+  std::vector<CheckingRun> checks = {};  ///< simulations with a tighter integrator and with more modes
+  bool bounce_free = false;              ///< settles without a significant rebound, also in `checks`
 };
 
 struct LimitOptions {
   Actuator actuator = Actuator::electrostatic;
-  std::optional<double> impact_velocity = {};  ///< permitted speed [m/s]; none: a hundredth of the plain step's
+  std::optional<double> impact_velocity = {};  ///< permitted speed of first contact [m/s]; none: a hundredth of the plain step's
   DriveWaveforms start = {};                   ///< see LeastTimeOptions
   std::map<std::string, double> before = {};   ///< voltages of the drives of `start` before t = 0, if not 0 [V]
-  bool curves = true;                          ///< computes curves over the peak voltage and the permitted speed
+  bool curves = true;                          ///< true: computes least times over peak voltage and over permitted speed
 };
 
 struct Limit {
   PreparedScene given;
   LimitOptions options;
   double impact_velocity = std::numeric_limits<double>::quiet_NaN();  ///< permitted speed [m/s]
-  ClosedState closed_state = {};                                      ///< closed state under the hold levels
-  std::string hold_warning = {};                                      ///< warning if they do not keep the switch closed
-  Metrics step;                                                       ///< figures of the plain step
-  /// How the switch can be carried to its contact through stable equilibria on the devices of [spread]; none without such a
-  /// path or without [spread]. Its speed is that within the time until the plain step's force is steady.
+  ClosedState closed_state = {};                                      ///< closed equilibrium under the hold levels
+  std::string hold_warning = {};  ///< warning if the hold levels do not keep the switch closed
+  Metrics step;                   ///< figures of merit of the plain step
+  /// How the switch can be carried to its contact through stable equilibria on the devices of [spread]; none without a stable
+  /// path or without [spread].
   std::optional<StableApproach> approach = {};
-  double quasi_static = std::numeric_limits<double>::quiet_NaN();  ///< speed of that path: quasi_static_speed() [m/s]
-  LeastTime touch;                                                 ///< least time at the permitted speed
-  LeastTime rest;                                                  ///< least time with every mode at rest
-  std::optional<LimitLanding> landing;  ///< the quickest bounce-free landing, else the one that rebounds least
+  double quasi_static =
+      std::numeric_limits<double>::quiet_NaN();  ///< impact speed of the stable approach within the time until the plain step's
+                                                 ///< force is steady: quasi_static_speed() [m/s]
+  LeastTime touch;                               ///< least time of a first contact at the permitted speed
+  LeastTime rest;                                ///< least time of a first contact with every mode at rest
+  std::optional<LimitLanding> landing;           ///< the quickest bounce-free closing, else the one that rebounds least
   std::vector<LeastTime> over_peak, over_velocity;
   bool interrupted = false;
 };
 
-/// Computes the limit. A run that is asked to stop returns the results so far. Throws InvalidInput as least_time(). Throws it
-/// if the plain step does not touch and no speed is given, if the shaped electrode pulls away from the contact, or if a given
-/// waveform begins at another rest. Throws Interrupted before the first result.
+/// Computes the limit. An interrupted run returns the results so far, or throws Interrupted before the first result. Throws
+/// InvalidInput as least_time() does, if the plain step does not touch and no speed is given, if the shaped electrode pulls
+/// away from the contact, and if a given waveform begins at another equilibrium.
 [[nodiscard]] Limit limit(const SceneFile& file, const LimitOptions& options, const Progress& progress = {});
 
 }  // namespace softland

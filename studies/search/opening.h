@@ -2,13 +2,13 @@
 //
 // The switch rests on its contact under the scene's hold levels until t = 0. The plain opening takes every drive to 0 V at
 // once, or as fast as its source can. A beam with little damping then swings about its open position by the contact gap, until
-// its gas has damped it. The search brakes it. Every drive that the actuator may shape gives two pulses, each after a wait at 0
-// V, within the limits of [driver.*], and then stays at 0 V. One pulse brings an undamped plate under a constant pull to rest
-// (Pontryagin; on the way back the bang-bang landing of bang_bang.h). The second pulse is for the modes that still ring.
+// the gas has damped the vibration. The search brakes the beam. Every drive that the actuator may shape gives two pulses, each
+// after a wait at 0 V, within the limits of [driver.*], and then stays at 0 V. One pulse brings an undamped plate under a
+// constant pull to rest (Pontryagin; the time reversal of bang_bang.h). The second pulse is for the modes that still ring.
 //
-// The cost is the residual vibration over the contact gap, plus five times its part beyond the band. Added to it are three
-// tenths of the time until the switch is open for good, in periods of its first mode. The winner is verified by a run over the
-// whole window at the scene's accuracy. Runs by a tighter integrator and with two more modes confirm it.
+// The cost is the residual vibration over the contact gap, plus five times the vibration's excess over the band about the open
+// position, plus 0.3 times the time until the switch stays open, in periods of its first mode. The best waveform is verified by
+// a simulation over the whole window at the scene's accuracy, and confirmed with a tighter integrator and with two more modes.
 #pragma once
 
 #include <cstdint>
@@ -29,17 +29,17 @@ namespace softland {
 
 struct OpeningOptions {
   Actuator actuator = Actuator::electrostatic;  ///< drives that may brake
-  double band = 0.05;  ///< part of the contact gap: nearer to its open position the switch counts as open
+  double band = 0.05;  ///< distance from the open position, as a share of the contact gap, within which the switch counts as open
   long max_evaluations = 3000;
   std::uint64_t seed = 1;
   int jobs = 1;
-  std::uint64_t devices = 200;  ///< devices of the spread that judge the waveform; 0: none
+  std::uint64_t devices = 200;  ///< varied devices on which the waveform is simulated; 0: none
 };
 
-/// An opening under some signals, one per drive of the switch.
+/// A simulated opening, under one signal per drive of the switch.
 struct Opening {
   std::vector<Signal> signals = {};
-  double voltages_end = std::numeric_limits<double>::quiet_NaN();  ///< time from which on all drives stand at 0 V [s]
+  double voltages_end = std::numeric_limits<double>::quiet_NaN();  ///< time from which on all drives are at 0 V [s]
   Trajectory trajectory;
   OpeningFigures figures;
 };
@@ -50,17 +50,16 @@ struct ConfirmingOpening {
 };
 
 /// Openings of varied devices, with the scene's spread or an assumed one (config/assumed_spread.h), and without errors of the
-/// sources. The voltages of the nominal device hold them closed and open them. A device that does not stay open counts as
-/// infinite.
+/// sources. All devices get the voltages of the nominal device. The figures of a device that does not stay open are infinite.
 struct DeviceOpenings {
-  double open = 0;     ///< share that is open for good at the end of the window
-  double in_band = 0;  ///< share that is in the band from the time on at which the drives stand
+  double open = 0;     ///< share of devices that are open and stay open at the end of the window
+  double in_band = 0;  ///< share of devices within the band as soon as all drives are at 0 V
   double settling_time = 0, residual_vibration = 0, overshoot = 0;  ///< 95th percentiles [s], [m], [m]
 };
 struct OpeningsOnDevices {
-  std::uint64_t devices = 0;  ///< number of devices that can be described and are held closed
+  std::uint64_t devices = 0;  ///< number of devices that are valid and closed under the hold levels
   bool spread_assumed = false;
-  DeviceSpread spread = {};  ///< spread of the devices
+  DeviceSpread spread = {};  ///< process variation of the devices
   DeviceOpenings plain, best;
 };
 
@@ -73,23 +72,23 @@ struct OpeningResult {
   double window = 0;          ///< [s]
   std::vector<double> holds;  ///< hold levels of the drives before t = 0 [V]
   Opening plain;
-  std::optional<Opening> best;               ///< none if no waveform opens the switch
-  std::map<std::string, double> parameters;  ///< parameters of the best, by drive.name
-  /// Scene with the commanded waveforms of the best opening, from their hold levels on, in volts; of the plain opening if there
-  /// is no best.
+  std::optional<Opening> best;               ///< opening by the best waveform; none if no waveform opens the switch
+  std::map<std::string, double> parameters;  ///< parameters of the best waveform, by drive.name
+  /// Scene with the commanded waveforms of the best opening, from the hold levels on, in volts; of the plain opening if there
+  /// is no best opening.
   std::optional<SceneFile> scene;
   std::vector<ConfirmingOpening> checks;
-  std::optional<OpeningsOnDevices> on_devices;  ///< none if not asked for, or if no waveform opens the switch
+  std::optional<OpeningsOnDevices> on_devices;  ///< none if not requested, or if no waveform opens the switch
   OptimizerResult search;
-  bool better = false;     ///< true if the best opens for good sooner than the plain opening, or else vibrates less
-  bool goal_met = false;   ///< true if in the band from the time on at which the drives stand
-  bool confirmed = false;  ///< confirmed by the other runs too
+  bool better = false;     ///< true if the best opening stays open sooner than the plain opening, or else vibrates less
+  bool goal_met = false;   ///< true if the best opening is within the band as soon as all drives are at 0 V
+  bool confirmed = false;  ///< true if `checks` confirm the result
   bool interrupted = false;
 };
 
-/// Throws InvalidInput for a scene without contact, or without an open or a closed equilibrium under its hold levels. Throws it
-/// for an actuator that the scene lacks or whose drives have no limits, and for options out of range. Throws Interrupted before
-/// the first result. Numerical trouble is reported in the result.
+/// Searches an opening waveform. Throws InvalidInput for a scene without contact, or without an open or a closed equilibrium
+/// under its hold levels, for an actuator that the scene lacks or whose drives have no limits, and for options out of range.
+/// Throws Interrupted before the first result. Numerical failures are reported in the result.
 [[nodiscard]] OpeningResult search_opening(const SceneFile& file, const OpeningOptions& options, const Progress& progress = {});
 
 }  // namespace softland

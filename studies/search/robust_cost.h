@@ -1,31 +1,31 @@
 // The cost of a drive over varied devices: a measure of risk over the costs of their closings, and conditions on their figures.
 //
-//   s_k   cost of the closing of device k, every figure over that of the plain step on the nominal device:
+//   s_k   cost of the closing of device k, every figure relative to the plain step on the nominal device:
 //           bounce             (largest touch speed + highest rebound) / 2
 //           rebound            highest rebound               impact    largest touch speed
 //           count              rebounds                      settling  permanent contact, over first contact of the step
 //           energy             impact energy                 steady    steady force time, over first contact of the step
 //           own objective      its value
 //         A device that fails costs 3, or more than any that closes. It fails if it does not close, if its hold levels do not
-//         keep it closed, if its closing cannot be followed, or if no such device can be described.
+//         keep it closed, if its closing cannot be simulated, or if its parameters describe no valid device.
 //   cost  R(s) + (share of devices that fail) + 0.02 min(median of first contact over that of the step, max(0, tau - 1))
 //         + 10 (sum over the conditions: violation, where positive)
 //
 // The waiting time of a user is tau: the 95th percentile of the time from which on the contact force is steady, over the free
-// time. The free time is that of the plain step on the same devices. The step bounces for that long, so that a slower first
-// touch costs the user nothing. If fewer than 95 % of the devices get a steady force under the step, their permanent contact
-// takes its place, or their first contact if they do not settle. A device that is not steady at the end of its run counts with
-// the end.
+// time. The free time is the same percentile under the plain step. The plain step bounces for that long, so that a slower first
+// contact costs the user nothing. If fewer than 95 % of the devices get a steady force under the step, the time of permanent
+// contact is used instead, or of first contact if they do not settle. For a device whose force is not steady when its
+// simulation ends, that end is the time.
 //
-// R of mean+sigma is that of the devices that do not fail, plus 3 (1 + factor) times the root of the share of those that do.
-// The deviation over all of them would fall again if most fail.
+// R of mean+sigma is that of the devices that do not fail, plus 3 (1 + factor) times the root of the share of failing devices.
+// The standard deviation over all devices would decrease again if most devices fail.
 //
-// R is the requested measure (sampling/risk.h). For a yield it is 1 less the share of devices that fulfil its condition, plus a
-// tenth of the mean of s, which leads the search where the share does not change. A condition holds when 95 % of the devices
-// fulfil it: its violation is the 95th percentile of that of the devices (config/condition.h).
+// R is the requested measure (sampling/risk.h). For a yield R is 1 less the share of devices that fulfil the yield's condition,
+// plus a tenth of the mean of s, which guides the search where the share does not change. A condition holds when 95 % of the
+// devices fulfil the condition: its violation is the 95th percentile of the devices' violations (config/condition.h).
 //
-// A closing is scored until 60 % of a period of the first mode, or two and a half in contact, after first touch, and one period
-// in contact after the last breakpoint of its drives.
+// A closing is scored until 0.6 periods of the first mode, or 2.5 periods in contact, after first contact, and at least until
+// one period in contact after the last breakpoint of its drives.
 #pragma once
 
 #include <cstddef>
@@ -41,20 +41,20 @@
 
 namespace softland {
 
-/// Gives conditions beside the plain step limits of their own: what 95 % of the devices stay below under it. Throws
-/// InvalidInput if the step has no such figure.
+/// Replaces limits that refer to the plain step by numbers: the 95th percentile of the figure under the plain step, whose
+/// outcomes are `of_step`. Throws InvalidInput if this percentile does not exist.
 [[nodiscard]] std::vector<Condition> beside_step(std::vector<Condition> conditions, std::span<const DeviceOutcome> of_step);
 
-/// The share of devices that has to fulfil a condition.
+/// The share of devices that have to fulfil a condition of the search.
 inline constexpr double constrained_share = 0.95;
 
-/// The time until which waiting for a contact is free.
+/// The time until contact that costs nothing; later contact is penalised.
 struct FreeTime {
-  double Metrics::*figure = &Metrics::initial_contact_time;  ///< the time that counts
-  double until = 0;  ///< 95th percentile [s]; 0: the median of first contact is priced alone, infinite: nothing is
+  double Metrics::*figure = &Metrics::initial_contact_time;  ///< the time until contact that is compared
+  double until = 0;  ///< 95th percentile [s]; 0: only the median of first contact costs, infinite: no time costs
 };
-/// Returns the time that the devices wait under the plain step, whose outcomes are `of_step`. Throws nothing: the time is 0 if
-/// 95 % of them never touch.
+/// Returns the time until contact under the plain step, whose outcomes are `of_step`. The time is 0 if fewer than 95 % of the
+/// devices touch. Throws no exception.
 [[nodiscard]] FreeTime free_time(std::span<const DeviceOutcome> of_step);
 
 struct RobustAim {
@@ -63,33 +63,34 @@ struct RobustAim {
   FreeTime free = {};
 };
 
-/// Devices and their exact measured values, by these gauges and their frequency.
+/// Devices, and the exact values of the quantities that are measured for their calibration.
 struct CalibratedEnsemble {
   std::vector<SampledDevice> devices;
-  std::vector<DeviceUnits> exact;  ///< exact units; 1 for a device that cannot be described
+  std::vector<DeviceUnits> exact;  ///< exact units of the devices; 1 for an invalid device
 };
-/// Builds and measures the devices. `precision` is that of pull-in voltages, relative. Throws Interrupted if `progress` asks to
-/// stop.
+/// Builds the devices and computes their measured quantities, pull-in voltages with the relative `precision`. Throws
+/// Interrupted if `progress` asks to stop.
 [[nodiscard]] CalibratedEnsemble calibrate_all(const Ensemble& ensemble, const MeasuredQuantities& quantities, double precision,
                                                int jobs, const Progress& progress = {});
-/// Precision of pull-in voltages for comparing devices: far finer than any instrument. With a film that gives way slowly, which
-/// is followed for long just above its pull-in voltage, it takes a sixth of the time of dynamic_pull_in_precision.
+/// Relative precision of pull-in voltages for comparing devices, far finer than any instrument. With a slow gas film, whose
+/// motion just above pull-in takes long, this precision costs a sixth of the time of dynamic_pull_in_precision.
 inline constexpr double compared_precision = 1e-5;
 
-/// Devices that are built and measured.
+/// Devices, with the units in which their waveforms are scaled by a per-device calibration.
 struct BuiltEnsemble {
   std::vector<SampledDevice> devices;
-  std::vector<DeviceUnits> units;  ///< units of a device's own drive, over those of the nominal one
+  std::vector<DeviceUnits> units;  ///< units of each device's drive, relative to the nominal device
 };
-/// Returns the same devices as they are known, by a calibration that needs no other gauges. The errors are functions of `seed`
-/// and the number of the device. A device that cannot be measured is refused.
+/// Returns the devices with their measured units: exact units plus random errors of the calibration `known`, which are
+/// functions of `seed` and the number of the device. `known` must not need other measured quantities. A device that cannot be
+/// measured is refused.
 [[nodiscard]] BuiltEnsemble known_as(CalibratedEnsemble calibrated, const MeasuredUnits& known, std::uint64_t seed);
-/// Builds the devices with their units. Throws Interrupted if `progress` asks to stop.
+/// Builds the devices with their measured units. Throws Interrupted if `progress` asks to stop.
 [[nodiscard]] BuiltEnsemble build_all(const Ensemble& ensemble, const MeasuredUnits& known, std::uint64_t seed, int jobs,
                                       const Progress& progress = {});
 
-/// Builds devices of this search alone, for ranking candidates: closings of an accuracy of 1e-4 at best. They depend on `seed`
-/// and `which`. Throws Interrupted if `progress` asks to stop.
+/// Builds devices for ranking candidates, with closings of an accuracy of 1e-4 at best. The random devices depend on `seed` and
+/// `which`. Throws Interrupted if `progress` asks to stop.
 [[nodiscard]] BuiltEnsemble own_devices(const SearchSetting& setting, const MeasuredUnits& known, std::uint64_t count,
                                         std::uint64_t seed, std::uint64_t which, int jobs, const Progress& progress);
 
@@ -99,33 +100,33 @@ class RobustCost {
   RobustCost(const SearchSetting& setting, const RobustAim& aim, BuiltEnsemble ensemble, Vectors vectors = vectors_in_use());
 
   [[nodiscard]] std::size_t devices() const { return ensemble_.devices.size(); }
-  /// Closes devices [first, last) under their own drives; `waveforms` are those of the nominal device, one per drive.
+  /// Simulates the closings of the devices `first` to `last` - 1; `waveforms` are those of the nominal device, one per drive,
+  /// before calibration.
   [[nodiscard]] std::vector<DeviceOutcome> close(const std::vector<Waveform>& waveforms, std::size_t first, std::size_t last,
                                                  int jobs) const;
   [[nodiscard]] double value(std::span<const DeviceOutcome> outcomes) const { return value(outcomes, aim_); }
-  /// The cost by another aim.
+  /// The cost of the outcomes by another aim than that of the constructor.
   [[nodiscard]] double value(std::span<const DeviceOutcome> outcomes, const RobustAim& aim) const;
-  /// The measure alone: R(s).
+  /// The measure R(s) of the outcomes alone, without time and conditions.
   [[nodiscard]] double measured(std::span<const DeviceOutcome> outcomes, const RobustAim& aim) const;
-  /// Closes all devices under the plain step until 95 % of them carry a steady force, or for the longest of such runs.
+  /// Simulates all devices under the plain step until 95 % of them carry a steady force, or for the longest permitted run.
   [[nodiscard]] std::vector<DeviceOutcome> close_by_step(int jobs) const;
-  /// Closes all devices, and follows them after first touch for the window of the scene or until `free` [s], whichever is
-  /// longer.
+  /// Simulates all devices after first contact for the window of the scene or until `free` [s], whichever is longer.
   [[nodiscard]] std::vector<DeviceOutcome> close_until(const std::vector<Waveform>& waveforms, double free, int jobs) const;
-  /// False if the measure cannot tell these devices from those that all fail: as many of them fail as it looks at, or none
+  /// False if the measure would be the same if all devices failed: a tail consists of failing devices only, or no device
   /// fulfils the condition of a yield.
   [[nodiscard]] bool is_told(std::span<const DeviceOutcome> outcomes) const;
 
-  /// s_k of a device that does not close.
+  /// Cost s_k of a device that does not close.
   static constexpr double not_closed = 3;
   [[nodiscard]] const SampledDevice& device(std::size_t k) const { return ensemble_.devices[k]; }
-  /// Closes device k in these units instead of those it was built with.
+  /// Simulates the closing of device k with its waveforms scaled by `units`.
   [[nodiscard]] DeviceOutcome close(const std::vector<Waveform>& waveforms, std::size_t k, const DeviceUnits& units) const;
-  /// s_k; that of a device that does not close if its figure is not known.
+  /// Cost s_k of a device; not_closed if the figure is not known.
   [[nodiscard]] double score(const DeviceOutcome& outcome) const;
 
  private:
-  // State of a device under its hold levels.
+  // Closed state of a device under its hold levels.
   struct Kept {
     bool is_held = true;
     double steady_force = Metrics::unset;  // [N]
@@ -149,28 +150,28 @@ class RobustCost {
   const RobustAim& aim_;
   BuiltEnsemble ensemble_;
   DeviceDrives drives_;
-  std::optional<std::vector<std::vector<double>>> gains_;  // gains of every device; none if drives differ by more
-  std::vector<double> ungained_levels_;                    // hold levels of the plain step from sources with a gain of 1
+  std::optional<std::vector<std::vector<double>>>
+      gains_;                            // gains of every device; none if their drives differ by more than gains
+  std::vector<double> ungained_levels_;  // hold levels of the plain step, from sources with a gain of 1
   Vectors vectors_;
-  DeviceOutcome step_;                               // outcome of the nominal device
-  std::optional<ClosedEquilibrium> nominal_closed_;  // equilibrium under the hold levels; none if not kept closed
+  DeviceOutcome step_;                               // outcome of the nominal device under the plain step
+  std::optional<ClosedEquilibrium> nominal_closed_;  // nominal device under the hold levels; none if not kept closed
   std::vector<double> levels_;                       // hold levels of the nominal device
-  std::vector<Kept> kept_;                           // each device, under the hold levels
-  double window_, tail_, wait_;                      // times after first touch, after the last breakpoint, for a touch [s]
+  std::vector<Kept> kept_;                           // closed state of each device under the hold levels
+  double window_, tail_, wait_;  // simulated time after first contact, after the last breakpoint, and for a contact [s]
 };
 
-/// True if a device does not close and stay closed, cannot be followed, or cannot be described.
+/// True if a device does not close and stay closed, cannot be simulated, or is invalid.
 [[nodiscard]] bool fails(const DeviceOutcome& outcome);
 
-/// Time from which on a device carries a steady contact, as FreeTime defines it [s]. It is the end of the run if the contact is
-/// not steady by then, infinite if the device fails.
+/// Time until contact of a device, by FreeTime::figure [s]: the end of the simulation if that contact was not reached, infinite
+/// if the device fails.
 [[nodiscard]] double waited(const DeviceOutcome& outcome, double Metrics::*figure);
-/// 95th percentile of that time.
+/// 95th percentile over the devices of the time until contact by FreeTime::figure [s].
 [[nodiscard]] double waited(std::span<const DeviceOutcome> outcomes, double Metrics::*figure);
 
-/// True if a device fulfils a condition.
 [[nodiscard]] bool fulfils(const DeviceOutcome& outcome, const Condition& condition);
-/// The share of devices that fulfils it.
+/// The share of devices that fulfil the condition.
 [[nodiscard]] Yield share_that_fulfils(std::span<const DeviceOutcome> outcomes, const Condition& condition);
 /// True if constrained_share of the devices fulfils each of the conditions.
 [[nodiscard]] bool hold(std::span<const Condition> conditions, std::span<const DeviceOutcome> outcomes);
