@@ -31,7 +31,7 @@ inline constexpr std::uint64_t most_searched = 100'000;  ///< largest number of 
 
 struct RobustOptions {
   RobustAim aim;
-  std::uint64_t samples = 128;                 ///< searched devices
+  std::uint64_t samples = 128;                 ///< number of devices on which candidates are tried
   std::uint64_t verdict = 2000;                ///< number of fresh devices that judge the winner
   std::function<double()> clock = wall_clock;  ///< clock of a budget of time [s]
 };

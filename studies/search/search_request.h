@@ -1,4 +1,5 @@
-// The request of a search, in the words that a command line, a plan and a store share, and the search that it describes.
+// The request of a search as text, as on the command line, in plans and in database files, and the search that the request
+// describes.
 #pragma once
 
 #include <cstdint>
@@ -15,33 +16,34 @@
 
 namespace softland {
 
-/// Words of SearchRequest::robust beside a measure: for the nominal design and for devices, or for the nominal design alone.
+/// Values of SearchRequest::robust other than a measure: search for the nominal design and over devices; or for the nominal
+/// design alone.
 inline constexpr std::string_view by_race = "auto", nominal_alone = "none";
 
-/// Words of SearchRequest::hold_step: the instant is searched with the actuator pzt, or is t = 0.
+/// Values of SearchRequest::hold_step: the instant of the electrode's plain step is searched (actuator pzt), or is t = 0.
 inline constexpr std::string_view step_is_chosen = "chosen", step_is_fixed = "fixed";
 
-/// A search request. Empty members, and none, are not given: see completed().
+/// The request of a search. Members that are empty were not given: completed() fills them in.
 struct SearchRequest {
   std::string target = {};                  ///< "bounce", "0.7 bounce + 0.3 energy"
   std::string actuator = {};                ///< "electrostatic", "pzt", "both"
-  std::string waveform = {};                ///< families: "knots+dual-pulse"
+  std::string waveform = {};                ///< waveform families: "knots+dual-pulse"
   std::string optimizer = {};               ///< "auto", or a method
   std::string robust = {};                  ///< by_race, nominal_alone, or the measure of a search over devices
-  std::string hold_step = {};               ///< instant of a plain step of the electrode: step_is_chosen or step_is_fixed
-  std::string calibrate = {};               ///< calibration of every device: "Vdp:1 %,frequency"; empty: that of the scene
+  std::string hold_step = {};               ///< instant of the electrode's plain step: step_is_chosen or step_is_fixed
+  std::string calibrate = {};               ///< per-device calibration: "Vdp:1 %,frequency"; empty: that of the scene
   std::vector<std::string> constrain = {};  ///< conditions: "peak_contact_force < 20 uN"
-  std::optional<std::string> samples = {};  ///< devices
+  std::optional<std::string> samples = {};  ///< number of devices
   std::optional<std::string> budget = {};   ///< evaluations, or closings of devices, "2500", or time, "90 s"
   std::optional<std::string> seed = {};
-  std::optional<std::string> seeds = {};  ///< number of searches, from `seed` on
+  std::optional<std::string> seeds = {};  ///< number of searches, with the seeds `seed`, `seed` + 1, ...
 
-  /// True if devices are searched by one measure.
+  /// True for a search over devices by one measure.
   [[nodiscard]] bool is_by_measure() const { return robust != by_race && robust != nominal_alone; }
 };
 
-/// Visits the words of requests, each with its name: visit(name, word of the first, of the second, ...). They are std::string,
-/// or std::optional<std::string> if they need not be given. The conditions are not among them.
+/// Calls visit(name, member of the first request, of the second, ...) for the text members of requests: std::string, or
+/// std::optional<std::string> for optional members. The conditions are not visited.
 template <class Visit, class... Requests>
 void visit_prose(const Visit& visit, Requests&... requests) {
   visit("target", requests.target...);
@@ -57,36 +59,37 @@ void visit_prose(const Visit& visit, Requests&... requests) {
   visit("seeds", requests.seeds...);
 }
 
-/// Fills in the words of `other` where none are given.
+/// Returns `request` with the empty members filled in from `other`.
 [[nodiscard]] SearchRequest or_else(SearchRequest request, const SearchRequest& other);
 
-/// Fills in the defaults, which suit the scene and each other, except for optional words.
+/// Returns `request` with defaults, which depend on the scene and on the other members, for all empty members but the optional
+/// ones.
 [[nodiscard]] SearchRequest completed(SearchRequest request, const SceneFile& scene);
 
-/// Parts that take the place of words that no text can hold.
+/// Parts of a request from the user's code, which no text can describe.
 struct OwnParts {
-  std::shared_ptr<const OwnObjective> objective = nullptr;  ///< objective in the place of the target
+  std::shared_ptr<const OwnObjective> objective = nullptr;  ///< objective that replaces the target; may be null
   OwnWaveforms waveforms = {};
 };
 
-/// A search, or several that differ in their seeds, ready to run.
+/// A search, or several searches that differ in their seeds, ready to run.
 struct PlannedSearch {
   SceneFile scene;                                 ///< scene with the requested calibration
-  OptimizeOptions options;                         ///< options with the first of the seeds, on one thread
+  OptimizeOptions options;                         ///< options of the search with the first seed, on one thread
   std::optional<RobustOptions> robust;             ///< options of a search over devices by one measure
-  std::optional<RobustSearchOptions> for_devices;  ///< options of a search that races measures and families
+  std::optional<RobustSearchOptions> for_devices;  ///< options of a search with a race of measures and families
   std::uint64_t seeds = 1;
 
   [[nodiscard]] std::uint64_t seed(std::uint64_t k) const { return options.seed + k; }
-  /// Devices that are searched by one measure, or fresh ones of the verdict; 0: none.
+  /// Number of devices on which candidates are tried by one measure, or of the race's fresh devices; 0: nominal device only.
   [[nodiscard]] std::uint64_t devices() const { return robust ? robust->samples : for_devices ? for_devices->verdict : 0; }
 };
 
 inline constexpr std::uint64_t most_seeds = 100'000;
 
-/// Reads the words of a completed() request. `families` are those of a race over devices; empty: all. A request without
-/// hold_step is of a version before the quasi-static approach, and is searched as it was then. Throws InvalidRequest with
-/// field, value and rule.
+/// Parses a completed() request. `families` are those of a race over devices; empty: all. A request without hold_step comes
+/// from a version before the quasi-static approach, and gives the search of that version. Throws InvalidRequest with field,
+/// value and rule.
 [[nodiscard]] PlannedSearch planned(const SearchRequest& request, SceneFile scene, const std::string& families = {},
                                     const OwnParts& own = {});
 
