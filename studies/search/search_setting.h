@@ -1,11 +1,11 @@
-// A scene made ready for a search: the plain step as reference of all candidates, the waveforms that may be tried, and the
-// score of a candidate on the nominal device.
+// A scene prepared for a search: the plain step as baseline, the space of waveforms that may be tried, and the cost of a
+// candidate on the nominal device.
 //
-// The baseline is a step of the searched electrode to the scene's hold level. It has no rise time unless the driver's slew
-// limit asks for one. The piezo stays at 0 V unless it is the only drive, which then steps to its hold level. Every candidate
-// is scored over a fixed time after its own first contact and until one period in contact after its last breakpoint. It must
-// touch within 2.5 times the baseline's first-touch time and stay inside the driver's limits. It is infeasible if the beam
-// comes near the electrode.
+// The baseline is a step of the searched electrode to the scene's hold level. The step has no rise time unless the driver's
+// slew is limited. The piezo stays at 0 V unless the piezo is the only drive; then it steps to its hold level. Every candidate
+// is scored over a fixed time after its first contact and until one period in contact after its waveforms' last breakpoint. A
+// candidate must touch within 2.5 times the baseline's time of first contact and stay within the drivers' limits. A candidate
+// is infeasible if the beam comes near the electrode.
 #pragma once
 
 #include <map>
@@ -25,17 +25,17 @@
 
 namespace softland {
 
-/// Costs from here on are of waveforms that never touch: see cost().
+/// Cost from which on a waveform never touches: see cost().
 inline constexpr double never_touched = 10;
 
 struct RecordedClosing;
-/// The point that was priced last, and its closing, which the gradient there reuses.
+/// The point whose cost was computed last, and its simulated closing, which the gradient at this point reuses.
 struct LastClosing {
   std::vector<double> x = {};
   std::shared_ptr<const RecordedClosing> closing = {};
 };
 
-/// A switch with more modes than the scene's.
+/// The switch of the scene, modelled with more modes.
 struct RicherBeam {
   Switch model;
   double closed_potential = std::numeric_limits<double>::quiet_NaN();  ///< see ClosingOptions
@@ -43,97 +43,99 @@ struct RicherBeam {
 
 struct SearchSetting {
   Aim target;
-  std::vector<Condition> conditions;  ///< conditions for a landing, on conditioned_figures
+  std::vector<Condition> conditions;  ///< conditions that a closing must fulfil, on conditioned_figures
   PreparedScene given;                ///< the given scene
   PreparedScene baseline_scene;       ///< the scene under the plain step
   Closing baseline;
   CostScale scale;
   double baseline_cost = 0;
-  ClosingOptions run;  ///< run of a candidate
+  ClosingOptions run;  ///< options for simulating a candidate
   SearchSpace space;
-  std::size_t family = 0;                      ///< its number among those that share a memory
-  std::map<std::string, DriverLimits> limits;  ///< limits of searched waveforms: those of the drivers, or gentler edges
-  /// Richer beams: if there are any, a candidate is priced by the worst of its closings with the scene's modes and with these.
+  std::size_t family = 0;                      ///< number of the waveform family among those that share a memory
+  std::map<std::string, DriverLimits> limits;  ///< limits of searched waveforms by drive: those of the drivers, or slower edges
+  /// Models with more modes. If there are any, the cost of a candidate is the worst over its closings with the scene's modes
+  /// and with these models.
   std::vector<RicherBeam> richer = {};
 
-  /// The scene with these waveforms of the searched drives; the others stand as in the baseline. Throws InvalidInput if a scene
-  /// file cannot hold one.
+  /// The scene with the waveforms `searched`; other drives are as in the baseline. Throws InvalidInput if a scene file cannot
+  /// describe one of the waveforms.
   [[nodiscard]] SceneFile scene(const DriveWaveforms& searched) const;
-  /// The scene at a point; none if a scene file cannot hold its waveforms.
+  /// The scene with the waveforms of the point `x`; none if a scene file cannot describe these waveforms.
   [[nodiscard]] std::optional<SceneFile> scene_at(std::span<const double> x) const;
-  /// The same ready to run: prepared_with().
+  /// The scene with the waveforms `searched`, ready to run: see prepared_with().
   [[nodiscard]] PreparedScene prepared(const DriveWaveforms& searched) const;
-  /// One waveform per drive of the switch, in its order.
+  /// One waveform per drive, in the order of Switch::drives(): `searched`, and the baseline's for the other drives.
   [[nodiscard]] std::vector<Waveform> drives(const DriveWaveforms& searched) const;
-  /// True if the searched drives stay inside their limits.
+  /// True if the waveforms stay within the limits of their drives.
   [[nodiscard]] bool is_allowed(const DriveWaveforms& searched) const;
-  /// Commanded signals of all drives, or nothing if the searched ones leave their limits.
+  /// Commanded signals of all drives, or nothing if one of `searched` leaves the limits of its drive.
   [[nodiscard]] std::optional<std::vector<Signal>> allowed_commands(const DriveWaveforms& searched) const;
-  /// Options of the run of a candidate under these signals.
+  /// Options for simulating a candidate with the given signals.
   [[nodiscard]] ClosingOptions run_of(const std::vector<Signal>& signals) const;
   [[nodiscard]] SearchCosts price(const std::vector<Signal>& signals) const;
-  /// Prices a point of the search space on the nominal device; infinite if it leaves the limits of a driver. Results in
-  /// `memory` are not simulated again; a simulated closing becomes `last`.
+  /// Computes the costs of a point of the search space on the nominal device; infinite if the waveforms leave the limits of a
+  /// driver. Costs in `memory` are not computed again; a simulated closing is stored in `last`.
   [[nodiscard]] SearchCosts cost_at(std::span<const double> x, EvaluationMemory* memory = nullptr,
                                     LastClosing* last = nullptr) const;
-  /// The gradient of a cost at a point of the search space, by the parameters, on the nominal device. The gradients of
-  /// followed_conditions() come after it, as in Conditions::gradients. Exact except where touches graze; NaN where no gradient
-  /// exists. `groups`, which hold for all points or are not used, and `last`, if it is of this point, give the same numbers
-  /// sooner.
+  /// The gradient of the cost of `aim` with respect to the parameters, at a point on the nominal device, then the gradients of
+  /// followed_conditions(), as in Conditions::gradients. Exact except at grazing contacts; NaN where no gradient exists.
+  /// `groups` and `last`, the closing at this point, only save time.
   [[nodiscard]] std::vector<double> gradient_at(std::span<const double> x, const Aim& aim,
                                                 const std::vector<ParameterGroup>& groups = {},
                                                 const LastClosing* last = nullptr) const;
-  /// The parameters, grouped by the pieces of the signals that they move.
+  /// The parameters, grouped by the pieces of the signals that a parameter changes.
   [[nodiscard]] std::vector<ParameterGroup> parameter_groups() const;
-  /// Derivatives of the signals of all drives by the parameters.
+  /// Derivatives of the signals of all drives with respect to the parameters.
   [[nodiscard]] SignalSlopes signal_slopes(std::span<const double> x, const std::vector<ParameterGroup>& groups = {}) const;
-  /// The conditions that a method with a gradient follows by itself: those on figures that have one. Counts change by jumps,
-  /// and only affect the cost.
+  /// The conditions that a gradient-based optimizer handles as constraints: those on figures with a gradient. Other conditions,
+  /// on counts, only add to the cost.
   [[nodiscard]] std::vector<Condition> followed_conditions() const;
-  /// Why a cost or a condition has no gradient here, in words; empty if all have.
+  /// The reason why the cost of `aim` or a condition has no gradient, as text; empty if all have gradients.
   [[nodiscard]] std::string gradient_refusal(const Aim& aim) const;
-  /// Throws InvalidInput with the name of the first that a search cannot begin with, and the reason.
+  /// Throws InvalidInput if the search cannot begin with one of `starts`, with its name and the reason.
   void check_starts(const std::vector<StartingWaveforms>& starts) const;
-  /// True if the scene holds no waveform but the plain step.
+  /// True if the waveforms of the scene itself are the plain step.
   [[nodiscard]] bool starts_as_step() const;
-  /// The scene with the limits of searched waveforms in its drivers.
+  /// The scene with `limits` as the limits of its drivers.
   [[nodiscard]] PreparedScene within_limits() const;
 
  private:
-  /// Adds the figures that a run of a search does not measure.
+  /// Adds the figures that the simulation of a candidate does not compute.
   [[nodiscard]] Metrics with_rest_and_drives(Metrics metrics, const std::vector<Signal>& signals) const;
   [[nodiscard]] SearchCosts price_of(const RecordedClosing& closing) const;
   [[nodiscard]] bool keeps_limits(const std::string& drive, const Waveform& waveform, const Signal& commanded) const;
   [[nodiscard]] SearchCosts worst_price(const RecordedClosing& closing) const;
 };
 
-/// Throws InvalidInput if the scene does not ask for the figure of a condition.
+/// Throws InvalidInput if the scene does not request the figure of a condition.
 void require_asked(const Condition& condition, const AskedFigures& asked);
 
-/// Throws InvalidInput for a scene or a family that cannot be searched; Interrupted if `progress` asks to stop.
+/// Prepares a scene for a search in one waveform family. Throws InvalidInput for a scene or a family that cannot be searched;
+/// Interrupted if `progress` asks to stop.
 [[nodiscard]] SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator actuator, const std::string& family,
                                            const Progress& progress, std::vector<Condition> conditions = {},
                                            const OwnWaveforms& own = {});
 
-/// Returns one setting for each of the named families: families_of(). They differ in family and space alone.
+/// Returns one setting for each waveform family in `families`: see families_of(). The settings differ in `family` and `space`
+/// only.
 [[nodiscard]] std::vector<SearchSetting> search_settings(const SceneFile& file, const Aim& target, Actuator actuator,
                                                          const std::string& families, const Progress& progress,
                                                          std::vector<Condition> conditions = {}, const OwnWaveforms& own = {});
-/// The parameters of all families, by drive.name, or by family.drive.name if there are several.
+/// The parameters of all waveform families, named drive.name, or family.drive.name if there are several families.
 [[nodiscard]] FamilyColumns searched_columns(const std::vector<SearchSetting>& settings, const std::string& families);
 
-/// Sum of the violations of the conditions, each at most 10.
+/// Sum of the relative violations of the conditions, each at most 10.
 [[nodiscard]] double broken(const std::vector<Condition>& conditions, const Metrics& metrics);
 
-/// The scene of `prepared` in volts, with other waveforms on some drives.
+/// The scene of `prepared` in volts, with `waveforms` on their drives.
 [[nodiscard]] SceneFile with_waveforms(const PreparedScene& prepared, const DriveWaveforms& waveforms);
-/// True if a scene file can hold them all: none is a user's own.
+/// True if a scene file can describe all waveforms: none comes from the user's code.
 [[nodiscard]] bool can_be_written(const DriveWaveforms& waveforms);
-/// The scene of `prepared` with other waveforms on some drives, ready to run: read_back() of its text, with the parts that no
-/// text can hold added to it.
+/// The scene of `prepared` with `waveforms` on their drives, ready to run: read_back() of its text, with the parts from the
+/// user's code, which no text can describe.
 [[nodiscard]] PreparedScene prepared_with(const PreparedScene& prepared, DriveWaveforms waveforms, const PreparedScene& given);
-/// The scene's text, read back: a user's `simulate best.toml` runs the same. Warnings stay those about the file that the user
-/// wrote.
+/// Reads the scene's text back, so that `simulate best.toml` gives the same numbers. Warnings are those of `given`, the user's
+/// file.
 [[nodiscard]] PreparedScene read_back(const SceneFile& file, const std::string& name, const PreparedScene& given);
 
 }  // namespace softland

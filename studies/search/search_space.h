@@ -1,5 +1,5 @@
-// The variables of a search: the parameters of the waveforms of one or several drives. Their bounds and starting points come
-// from the scene (driver limits, natural frequencies, closing time of the plain step).
+// The variables of a search: the waveform parameters of one or several drives. The bounds and starting points of the variables
+// come from the scene (driver limits, natural frequencies, closing time of the plain step).
 //
 // Times below are in units of T0, the first touch of the plain step, and T1, the period of the first mode.
 //   step      rise_time in [0, 2.5 T0]
@@ -24,9 +24,9 @@
 //   sines     the hold level and N sines of 1 ... N half waves, with amplitudes up to the range of the driver, in a duration in
 //             [0.5, 4] T0; what leaves the limits is made smaller as a whole
 //   quasi-static   one family of all drives, over devices only: see quasi_static.h
-// An electrode on the far side, which brakes, waits before its pulses instead of coasting after them. The hold level is the
-// scene's own and never varied. A slew limit lengthens edges, rise times and fades, lets a sine begin when its base has risen,
-// and caps its amplitude.
+// An electrode on the far side, which brakes, waits before its pulses instead of coasting after them. The hold level is that of
+// the scene and never varied. A slew limit lengthens edges, rise times and fades, delays a sine until its base has risen, and
+// limits its amplitude.
 #pragma once
 
 #include <array>
@@ -45,50 +45,50 @@
 
 namespace softland {
 
-/// Drives that a search shapes, as far as its defaults depend on it.
+/// Drives whose waveforms are searched: the defaults of a search depend on this.
 enum class Shaped { electrode, piezo, several };
-/// Returns `several` for an electrode and a piezo, and for electrodes on the far side whose drivers the scene describes.
+/// Returns `several` for an electrode and a piezo, and if the scene has a driver for an electrode on the far side.
 [[nodiscard]] Shaped shaped_drives(const SceneFile& scene, Actuator actuator);
-/// The families searched if none is named: together they land every switch of results/comparison.md.
+/// The default waveform families: together they close every switch of results/comparison.md without a bounce.
 [[nodiscard]] std::string_view default_families(Shaped drives);
-/// The families that "knots", or "knots+dual-pulse+staircase:5+knots:8", names. Throws InvalidInput if one is empty or named
-/// twice.
+/// Splits a list of waveform families like "knots+dual-pulse+staircase:5+knots:8". Throws InvalidInput if a name is empty or
+/// occurs twice.
 [[nodiscard]] std::vector<std::string> families_of(const std::string& text);
 /// Prefix of a family's parameters: "knots." if there are several families, empty if it is the only one.
 [[nodiscard]] std::string prefix_of(const std::string& families, const std::string& family);
 
 struct SearchedFamily;
-/// Waveforms from outside softland, which a search names by their own names beside the families.
+/// Waveforms from the user's code. A search request lists their names like waveform families.
 using OwnWaveforms = std::vector<std::shared_ptr<const OwnWaveform>>;
-/// "step, pulse, ..., sines:N or quasi-static:N"
+/// The names of all waveform families, for messages: "step, pulse, ..., sines:N or quasi-static:N".
 [[nodiscard]] std::string listed_searched_families();
-/// True for the family that moves all drives at once: "quasi-static", "quasi-static:2".
+/// True for the waveform family that shapes all drives together: "quasi-static", "quasi-static:2".
 [[nodiscard]] bool is_quasi_static(std::string_view family);
 
 /// The waveform parameters of one drive.
 struct DriveSearch {
   std::string drive;
-  const SearchedFamily* family = nullptr;            ///< null: an own waveform
-  std::shared_ptr<const OwnWaveform> own = nullptr;  ///< instead of a family
-  std::size_t count = 0;                             ///< number of levels, knots, pulses or sines, if there is a choice
-  double hold = 0;                                   ///< [V]
-  double before = 0;                                 ///< voltage before t = 0 [V]
-  bool brakes = false;                               ///< an electrode on the far side
-  double first_touch = 0;                            ///< first touch of the plain step [s]
+  const SearchedFamily* family = nullptr;            ///< waveform family; null: `own` is used
+  std::shared_ptr<const OwnWaveform> own = nullptr;  ///< waveform from the user's code, instead of a family
+  std::size_t count = 0;   ///< number of levels, knots, pulses or sines, if the family has such a number
+  double hold = 0;         ///< hold level [V]
+  double before = 0;       ///< voltage before t = 0 [V]
+  bool brakes = false;     ///< true for an electrode on the far side
+  double first_touch = 0;  ///< time of first contact under the plain step [s]
   DriverLimits limits;
   std::vector<Variable> variables;
   std::vector<std::vector<double>> starts;
   [[nodiscard]] Waveform waveform(std::span<const double> x) const;
-  /// The parameters of a waveform of this family that lies within the bounds, to rounding.
+  /// The parameters of `waveform`; none if it is not of this family or is outside the bounds, up to rounding.
   [[nodiscard]] std::optional<std::vector<double>> parameters(const Waveform& waveform) const;
-  /// The parameters of the waveform of this family that differs least from the given one in what drives the beam: the square of
-  /// an electrode's voltage or the piezo's voltage. The difference is the mean square until a little after the last breakpoint.
-  /// A waveform of this family has its own parameters.
+  /// The parameters of this family that approximate `waveform` best: least mean square difference of an electrode's squared
+  /// voltage, or of the piezo's voltage, until a little after the last breakpoint. For a waveform of this family, its own
+  /// parameters.
   [[nodiscard]] std::vector<double> nearest(const Waveform& waveform) const;
-  /// Why a search cannot begin with a waveform, in words: it holds another level, or leaves the driver's limits. Empty if it
-  /// can.
+  /// The reason why a search cannot begin with a waveform, as text: another hold level, or values beyond the driver's limits.
+  /// Empty if it can.
   [[nodiscard]] std::string misfit(const Waveform& waveform) const;
-  /// True if a signal ends on the hold level, to rounding.
+  /// True if a signal ends on the hold level, up to rounding.
   [[nodiscard]] bool holds(const Signal& signal) const;
 
  private:
@@ -97,31 +97,31 @@ struct DriveSearch {
 
 class SearchSpace {
  public:
-  /// `family` names that of all drives ("pulse", "knots:8") or of each ("main=step,pzt=pulse"; pulse for the others).
-  /// `first_touch` is that of the plain step [s]; `family` may name one of `own`. Throws InvalidInput if the scene lacks the
-  /// drive or a piezo limit, or if the family cannot be searched. Throws it for an own waveform that does not end on the hold
-  /// level at its start, and for quasi-static if no drive can carry the switch to its contact.
+  /// `family` is the waveform family of all drives ("pulse", "knots:8") or of each drive ("main=step,pzt=pulse"; pulse for the
+  /// others), and may name one of `own`. `first_touch` is the time of first contact under the plain step [s]. Throws
+  /// InvalidInput if the scene lacks the drive or a piezo limit, if the family cannot be searched, for one of `own` whose
+  /// starting waveform does not end on the hold level, and for quasi-static if no drive can carry the switch to its contact.
   SearchSpace(const PreparedScene& prepared, Actuator actuator, const std::string& family, double first_touch,
               const OwnWaveforms& own = {});
 
   [[nodiscard]] const std::vector<DriveSearch>& drives() const { return drives_; }
-  /// The drive of this name, which must be among them.
+  /// The searched drive of this name, which must exist.
   [[nodiscard]] const DriveSearch& drive(const std::string& name) const;
   [[nodiscard]] std::vector<Variable> variables() const;
   [[nodiscard]] std::vector<std::vector<double>> starts() const;
-  /// Waveforms of the searched drives.
+  /// Waveforms of the searched drives at the point `x`.
   [[nodiscard]] DriveWaveforms waveforms(std::span<const double> x) const;
-  /// The point that gives these waveforms, if it exists: the start for refining an earlier result.
+  /// The point whose waveforms are the given ones, if it exists: the start for refining an earlier result.
   [[nodiscard]] std::optional<std::vector<double>> parameters(const DriveWaveforms& waveforms) const;
-  /// The point whose waveforms differ least from these, which must not be misfits: the start for another family.
+  /// The point whose waveforms differ least from the given ones, for which misfit() must be empty: a start in another family.
   [[nodiscard]] std::vector<double> nearest(const DriveWaveforms& waveforms) const;
-  /// Why a search cannot begin with these waveforms, in words; empty if it can.
+  /// The reason why a search cannot begin with the given waveforms, as text; empty if it can.
   [[nodiscard]] std::string misfit(const DriveWaveforms& waveforms) const;
-  /// The waveforms of the searched drives among these.
+  /// The given waveforms, without those of drives that are not searched.
   [[nodiscard]] DriveWaveforms searched(const DriveWaveforms& waveforms) const;
   /// The quasi-static approach, if it is the searched family; else null.
   [[nodiscard]] const QuasiStatic* quasi_static() const { return joint_ ? &*joint_ : nullptr; }
-  /// The space of the quasi-static approach about the closed form for this time of steady force [s].
+  /// The space of the quasi-static approach, with bounds about its closed form for a steady force from `steady` on [s].
   [[nodiscard]] SearchSpace paced(double steady) const;
 
  private:
@@ -129,7 +129,7 @@ class SearchSpace {
   [[nodiscard]] std::vector<double> nearest_of_all(const DriveWaveforms& given) const;
 
   std::vector<DriveSearch> drives_;
-  std::optional<QuasiStatic> joint_;  // the family that moves all of them
+  std::optional<QuasiStatic> joint_;  // the quasi-static family, which shapes all drives together
 };
 
 }  // namespace softland

@@ -1,5 +1,6 @@
-// Variables, starting points and waveforms of the searched families that are curves, and the parts that trains
-// (searched_trains.h) share with them. Their rows stand in searched_families.cc; search_space.h lists what they vary.
+// Variables, starting points and waveforms of the searched families that are smooth curves, and functions that these families
+// share with pulse trains (searched_trains.h). searched_families.cc has the table of families; search_space.h lists the
+// variables.
 #pragma once
 
 #include <array>
@@ -13,22 +14,23 @@ namespace softland::internal {
 
 using Parameters = std::optional<std::vector<double>>;
 
-/// The voltage within the limits of the drive.
+/// The voltage, clamped to the limits of the drive.
 [[nodiscard]] double inside(const DriveSearch& s, double voltage);
-/// Voltage [V] of the piezo whose static effect on the contact point alone is `lift` away from the contact [m].
+/// Voltage of the piezo that alone moves the contact point statically by `lift` away from the contact [m]; in [V].
 [[nodiscard]] double lifting_voltage(const PreparedScene& p, double lift);
 /// Period of the first mode [s].
 [[nodiscard]] double first_period(const PreparedScene& p);
-/// Full pull and then none, as it lands the switch (swing.h). If the gas film is compressible, the landing is that of the first
-/// mode alone, without damping (bang_bang.h). The other drives stand at their hold levels.
+/// Full pull, then least pull, so that the switch reaches its contact at rest (swing.h). If the gas film is compressible, the
+/// times are those of the first mode alone, without damping (bang_bang.h). The other drives stay at their hold levels.
 struct ThrowAndCoast {
-  double pulling = 0, coasting = 0;           ///< [V]
-  double driven_time = 0, coasting_time = 0;  ///< [s]
+  double pulling = 0, coasting = 0;           ///< voltages of the two parts [V]
+  double driven_time = 0, coasting_time = 0;  ///< durations of the two parts [s]
 };
-/// Durations of the pull after the landing, in first touches of the plain step. Searches begin with them: the modes that still
-/// ring decay meanwhile.
+/// Durations of the pull after first contact in starting points, over the plain step's time of first contact. Modes that still
+/// ring decay during this pull.
 inline constexpr std::array pushes = {0.5, 1.0, 2.0, 3.5};
-/// Nothing if no such landing exists, and for a drive that pulls away from the contact.
+/// Returns the full pull and the coast of a drive; nothing if the switch does not reach its contact in this manner, and for a
+/// drive that pulls away from the contact.
 [[nodiscard]] std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const PreparedScene& p);
 
 void add_s_curve(DriveSearch& s, const PreparedScene& p, double t0);
@@ -47,11 +49,10 @@ void add_sines(DriveSearch& s, const PreparedScene& p, double t0);
 [[nodiscard]] Parameters of_bspline(const DriveSearch& s, const Waveform& waveform);
 [[nodiscard]] Parameters of_sines(const DriveSearch& s, const Waveform& waveform);
 
-/// Adds amplitude, frequency, phase and start of a dither about the hold level, with their bounds. Returns the highest
-/// frequency [rad/s]. Throws InvalidInput if the limits leave it no room.
+/// Adds amplitude, frequency, phase and start of a dither about the hold level, with bounds. Returns the highest frequency
+/// [rad/s]. Throws InvalidInput if the limits of the drive permit no amplitude.
 double add_dither_variables(DriveSearch& s, const PreparedScene& p, double t0);
-/// A dither under a slew limit: the duration of its fades, and its amplitude. Its angle turns by at most `omega` [rad/s], and
-/// it decays in `decay` [s].
+/// A dither that keeps the slew limit: rise time of its base, start and fades [s], and amplitude [V].
 struct SlewedDither {
   double rise_time = 0, start = 0, fade = 0, amplitude = 0;
 };

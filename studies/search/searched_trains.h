@@ -1,8 +1,8 @@
-// The searched families that are one train: pulses of a level and a duration each, between which the switch may coast, by edges
-// of one length, and then the hold level. The restrictions of each family stand in its row of searched_families.cc.
+// The searched waveform families that are one pulse train: pulses of a level and a duration each, with coasting between pulses
+// in some families, then the hold level; all edges have one duration. searched_families.cc has the restrictions of each family.
 //
-// A point is level_1 ... level_N, duration_1 ... duration_N, coast_1 ... and edge. A drive that brakes waits before each of its
-// pulses instead of coasting after them.
+// The parameters of a train are level_1 ... level_N, duration_1 ... duration_N, coast_1 ... and edge. A drive that brakes waits
+// before each of its pulses instead of coasting after them.
 #pragma once
 
 #include <array>
@@ -15,26 +15,27 @@
 
 namespace softland::internal {
 
-/// The restrictions of a family on its train.
+/// The restrictions of a waveform family on its pulse train.
 struct TrainRules {
-  std::size_t pulses = 0;              ///< 0: as many as requested, and none for other families
-  bool coasts = false;                 ///< between two pulses there is no voltage
-  std::array<double, 3> longest = {};  ///< durations, in first touches of the plain step; the last one holds for all later pulses
-  double longest_edge = 0.1;           ///< longest edge, in periods of the first mode
+  std::size_t pulses = 0;  ///< number of pulses; 0: as requested, or not a pulse train
+  bool coasts = false;     ///< true: no voltage between two pulses
+  std::array<double, 3> longest =
+      {};  ///< longest durations of the pulses, over the plain step's time of first contact; the last also for later pulses
+  double longest_edge = 0.1;  ///< longest edge, in periods of the first mode
   std::string_view first_duration = "duration_1_s";
 };
 
-/// A pulse of these levels and then the hold level. The durations are at least those of its edges, which are as long as the
-/// driver asks for.
+/// A waveform with the given levels and durations, then the hold level. The edges are as long as the driver's slew requires,
+/// and no duration is shorter than its edge.
 [[nodiscard]] Waveform pulse_of(const DriveSearch& s, std::span<const double> levels, std::span<const double> durations,
                                 double edge);
 
 void add_pulse(DriveSearch& s, const PreparedScene& p, double t0);
-/// Adds a throw, a coast, and a level that holds fast.
+/// Adds an overshooting initial pulse, a coast, and a level that presses the switch on its contact.
 void add_catch(DriveSearch& s, const PreparedScene& p, double t0);
 void add_staircase(DriveSearch& s, const PreparedScene& p, double t0);
 void add_coast(DriveSearch& s, const PreparedScene& p, double t0);
-/// Adds pulses: the first throws the switch, the second holds it fast on its contact; those after it hold on.
+/// Adds pulses: the first accelerates the switch, the second presses the switch on its contact, as do further ones.
 void add_pulses(DriveSearch& s, const PreparedScene& p, double t0);
 [[nodiscard]] Waveform train_at(const DriveSearch& s, std::span<const double> x);
 [[nodiscard]] Parameters of_train(const DriveSearch& s, const Waveform& waveform);

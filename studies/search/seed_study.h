@@ -1,4 +1,5 @@
-// Searches from several seeds as one study. The result of each search is stored as a row as soon as the search ends.
+// Searches from several seeds as one study. The result of each search becomes a row of a database file as soon as the search
+// ends.
 #pragma once
 
 #include <cstdint>
@@ -22,38 +23,38 @@ struct SearchOfSeed {
   std::string status, termination;
   double cost = Metrics::unset, evaluations = Metrics::unset;
   bool goal_met = false, confirmed = false, better_than_baseline = false;
-  FigureValues figures = {};  ///< figures of the found waveform
+  FigureValues figures = {};  ///< figures of merit of the waveform that was found
 };
 
 class SeedStudy {
  public:
   /// The progress of the study.
   struct State {
-    std::uint64_t done = 0;  ///< number of finished seeds
-    double part = 0;         ///< evaluations so far as a share of all
-    long evaluations = 0;    ///< number of evaluations of this run
+    std::uint64_t done = 0;  ///< number of seeds whose search is finished
+    double part = 0;         ///< evaluations so far, as a share of those of all seeds
+    long evaluations = 0;    ///< number of evaluations in this run of the program
     double best_cost = Metrics::unset, step_cost = Metrics::unset;
   };
-  /// Callbacks. They may be called from any thread, one call at a time; either may be null.
+  /// Callbacks of a study, which may be called from any thread, one call at a time. Either may be null.
   struct Listener {
     std::function<void(const State&)> progress = {};
-    std::function<void(const SceneFile& best)> improvement = {};  ///< receives the best scene of all seeds
+    std::function<void(const SceneFile& best)> improvement = {};  ///< receives the scene with the best waveform of all seeds
   };
 
-  /// `variables` are the searched parameters. Opens the store of the seeds; seeds with a row in it are not searched again.
-  /// Keeps references to search and evaluations. Throws as StudyStore does.
+  /// Opens the database `file`; seeds with a row in this file are not searched again. `variables` are the searched parameters.
+  /// Keeps references to `search` and `evaluations`. Throws what the constructor of StudyStore throws.
   SeedStudy(const StoredSearch& search, EvaluationStore& evaluations, const std::filesystem::path& file,
             std::vector<std::string> variables, const StoredOrigin& origin);
 
   /// Runs the missing searches, several at once if there are enough threads. The result of a search does not depend on the
-  /// number of threads. Ends early if it is asked to stop.
+  /// number of threads. Ends early if the search is interrupted.
   void run(const Listener& listener);
-  /// Closes the store.
+  /// Closes the database file.
   void close() { store_.close(); }
 
   /// Returns the finished searches, in the order of their seeds.
   [[nodiscard]] std::vector<SearchOfSeed> searches() const;
-  /// Returns the scene that the search from this seed found; empty if it found none.
+  /// Returns the text of the scene with the waveform that the search from `seed` found; empty if no waveform was found.
   [[nodiscard]] std::string scene_of(std::uint64_t seed) const;
   [[nodiscard]] std::uint64_t missing() const { return search_.seeds - done_; }
   [[nodiscard]] State state() const;
@@ -70,7 +71,7 @@ class SeedStudy {
   std::vector<std::uint64_t> to_do_;
 
   mutable std::mutex mutex_;  // guards the members below
-  std::vector<long> made_;    // evaluations by seed, for searches that run or ended in this run
+  std::vector<long> made_;    // evaluations by seed, of searches in this run of the program
   std::uint64_t done_ = 0;
   double best_cost_ = Metrics::unset, step_cost_ = Metrics::unset;
 };

@@ -1,15 +1,15 @@
-// A tournament of searches over devices. Its contenders are searched side by side in rounds, on ever more devices and by
-// smaller steps, and the best of each round go on.
+// A tournament of searches over varied devices. In each round searches run in parallel, with more devices and smaller steps
+// than in the round before, and the best contenders go on.
 //
 // A contender is a point of a search space, from which CMA-ES searches in a round (device_chain.h). The contenders begin at the
-// best of many points: those of the family, those nearest to given waveforms, and points of the whole box. What is judged, and
-// which contenders go on, differs between
+// best of many points: the starts of the waveform family, those nearest to given waveforms, and points of the whole search
+// space. Three searches use tournaments, and differ in their contenders and in how these are judged:
 //
 //   race.h             families by two measures, judged by their outcomes on the devices of the next round
 //   robust_optimize.h  points of one family that are far enough from each other, judged by their cost on all devices
 //   paced_search.h     one contender, which goes on as it is
 //
-// Contenders of a round do not depend on each other, so that the result depends on seed and closings alone.
+// Contenders of a round do not depend on each other, so that the result depends on the seed and the number of closings only.
 //
 // Source for the halving: K. Jamieson & A. Talwalkar, "Non-stochastic best arm identification and hyperparameter optimization",
 // AISTATS 2016.
@@ -35,31 +35,31 @@ inline constexpr std::size_t without_bound = std::numeric_limits<std::size_t>::m
 /// A round of a tournament.
 struct Round {
   std::size_t contenders = without_bound;  ///< most contenders
-  std::size_t devices = without_bound;     ///< devices of a search, if there are as many
+  std::size_t devices = without_bound;     ///< devices of a search, or fewer if there are fewer
   double closings = 0;                     ///< closings of each search, or a share of the budget: see Tournament::share
-  double step = 0.1;                       ///< first step of a search, as a part of the box
+  double step = 0.1;                       ///< first step size of a search, as a share of the range of every variable
 };
 
-/// The part of the budget that a contender of a round gets.
+/// The part of the budget for one contender in a round.
 struct RoundShare {
   long closings = 0;
   double seconds = std::numeric_limits<double>::infinity();  ///< time of the round [s]
 };
 
-/// The number of a round, and that of a contender in it.
+/// The number of a round, and the number of a contender in this round.
 struct Turn {
   std::size_t round = 0, number = 0;
 };
 
-/// Rounds of searches that share a budget. A Contender is whatever a search begins with and leaves behind: its point at least.
+/// Rounds of searches that share a budget. A Contender is the state of a search between rounds, at least its point.
 template <class Contender>
 struct Tournament {
   SearchBudget& budget;
   int jobs = 1;
-  /// Divides the budget: the share of each of so many contenders.
+  /// Divides the budget: returns the share of each of `contenders` contenders in a round.
   std::function<RoundShare(const Round&, std::size_t contenders)> share;
-  /// Searches from a contender, within the round's part of the budget. Start and seed of the chain are still to be set. Called
-  /// from several threads.
+  /// Searches from a contender, within `part`, the round's part of the budget. Start and seed of `chain` are not set yet.
+  /// Called from several threads.
   std::function<void(Contender&, Turn turn, const Chain& chain, SearchBudget& part)> search;
   /// Judges the contenders after round `round`, the first of which is 0, and returns those that go on.
   std::function<std::vector<Contender>(std::vector<Contender> contenders, std::size_t round)> select;
@@ -82,21 +82,21 @@ struct Tournament {
   }
 };
 
-/// Points to begin with: those of the family, that of the scene's own waveform, and those nearest to other waveforms, as far as
-/// a search can begin with them.
+/// Points at which a search begins: the starts of its family, the point of the scene's own waveform, and the points nearest to
+/// the waveforms `others`. Waveforms from which the search cannot begin are skipped.
 [[nodiscard]] std::vector<std::vector<double>> starting_points(const SearchSetting& setting,
                                                                const std::vector<DriveWaveforms>& others);
-/// The first points of a Sobol' sequence over the whole box.
+/// The first `count` points of a Sobol' sequence over the whole search space.
 [[nodiscard]] std::vector<std::vector<double>> points_of_box(const std::vector<Variable>& variables, std::uint64_t seed,
                                                              std::uint64_t count);
 
-/// Closings of a search that improves a point.
+/// Numbers of closings of a search that improves a point.
 struct ImprovingClosings {
   long before = 0;    ///< closings for the cost of the point, which the budget does not count
   long searched = 0;  ///< closings of the search
 };
-/// Searches from `x`, which becomes the end of the search if that costs less on its devices. Calls `told` after every
-/// candidate.
+/// Searches from the point `x`, and replaces `x` by the best point of the search if that costs less on the chain's devices.
+/// Calls `told` after every candidate.
 ImprovingClosings improve(std::vector<double>& x, const StagedCost& cost, Chain chain, SearchBudget& budget,
                           const std::function<void()>& told);
 

@@ -1,4 +1,4 @@
-// The first race: within the default limits of a driver, even if the scene gives wider ones.
+// Settings of the first race, which is within the default voltage limits even if the scene gives wider limits.
 #pragma once
 
 #include <string>
@@ -8,8 +8,9 @@
 
 namespace softland {
 
-/// Returns the same searches with searched electrodes within their default limits (default_limit() in config/scene.h). `names`
-/// are those of their families. Empty if no limit is wider, or the hold level itself is beyond it.
+/// Returns the settings with searched electrodes within their default limits (default_limit() in config/scene.h). `names` are
+/// the waveform families of the settings. Empty if no limit of the scene is wider, or if the hold level exceeds the default
+/// limit.
 [[nodiscard]] std::vector<SearchSetting> within_usual_room(const std::vector<SearchSetting>& settings, Actuator actuator,
                                                            const std::vector<std::string>& names);
 

@@ -1,6 +1,6 @@
-// Verifies the candidates of a search by a run over the whole window. A tighter integrator and a richer beam must not undo a
-// landing. A plain step that lands is a candidate, too, so that no winner is harder than it. The best candidate is the one
-// whose worst closing is best, among those that pass all this.
+// Verifies the candidates of a search by simulations over the whole window. The winner must also be bounce-free with a tighter
+// integrator and with more modes. A bounce-free plain step is a candidate, too, so that no winner closes harder than the plain
+// step. Among the candidates that pass, the one whose worst closing is best wins.
 #pragma once
 
 #include <map>
@@ -15,28 +15,28 @@ namespace softland {
 
 /// A waveform that a search found.
 struct FoundWaveform {
-  PreparedScene scene;  ///< scene as its file says
+  PreparedScene scene;  ///< scene with the waveform, as read back from its file
   double cost = 0;
   std::string family;
   std::vector<Variable> variables;           ///< variables of the family
-  std::map<std::string, double> parameters;  ///< parameters by drive.name; empty if the family cannot describe it
+  std::map<std::string, double> parameters;  ///< parameters by drive.name; empty if the family cannot describe the waveform
   bool is_plain_step = false;
 };
 
-/// Verifies candidates, and keeps the best.
+/// Verifies candidates, and stores the best one.
 class Verification {
  public:
-  /// Keeps references to `setting`.
+  /// Keeps references to members of `setting`.
   Verification(const SearchSetting& setting, const OptimizeOptions& options);
 
   void add(FoundWaveform candidate);
-  /// The cost of the best so far, by the worst of beams if it is confirmed; infinite if no candidate was added.
+  /// The cost of the best candidate so far, the worst over numbers of modes if it is confirmed; infinite if there is none.
   [[nodiscard]] double best_cost() const;
-  /// True if the best was confirmed by a tighter integrator and a richer beam.
+  /// True if the best candidate is confirmed with a tighter integrator and with more modes.
   [[nodiscard]] bool confirmed() const { return best_ && best_->confidence == Confidence::confirmed; }
-  /// True if no candidate that costs as much or more can be better.
+  /// True if no candidate whose cost is at least `cost` can be better than the best one.
   [[nodiscard]] bool decided(double cost) const;
-  /// True if the best meets its goal with the modes of the scene, but not with more of them.
+  /// True if the best candidate meets its goal with the modes of the scene, but not with more modes.
   [[nodiscard]] bool belongs_to_modes() const { return best_ && best_->failed == Varied::modes; }
   /// Moves the winner to the result, if there is one.
   void move_to(OptimizeResult& result);
@@ -45,16 +45,16 @@ class Verification {
   // The tests that a candidate has passed.
   enum class Confidence { touches, settles, lands, meets_goal, confirmed };
 
-  // A candidate after its run over the whole window, at the accuracy the scene asks for.
+  // A candidate after its simulation over the whole window, at the scene's accuracy.
   struct Verified {
     FoundWaveform found;
     Closing closing;
-    double cost = 0;    // the search's own cost; by the worst of beams if confirmed
-    double figure = 0;  // the target's own figure; rebounds that are not significant are equal
-    double broken = 0;  // violation of the conditions
-    double excess = 0;  // excess over the plain step, as a share of the step's figures
+    double cost = 0;    // cost of the search; the worst over numbers of modes if confirmed
+    double figure = 0;  // figure of the target; rebounds that are not significant are equal
+    double broken = 0;  // sum of the violations of the conditions
+    double excess = 0;  // relative excess of impact figures over the plain step's
     Confidence confidence = Confidence::touches;
-    std::optional<Varied> failed = {};  // the variation under which the goal is not met
+    std::optional<Varied> failed = {};  // the variation of the model under which the goal is not met
 
     [[nodiscard]] bool better_than(const Verified& other) const;
   };
@@ -64,12 +64,12 @@ class Verification {
   [[nodiscard]] std::optional<Varied> undone_by(const PreparedScene& scene) const;
   [[nodiscard]] std::vector<Condition> known(const Metrics& m) const;
 
-  const SearchSetting worst_;  // prices candidates by the worst of beams
+  const SearchSetting worst_;  // cost of a candidate: the worst over numbers of modes
   const PreparedScene& given_;
   const Metrics& baseline_;
   Aim target_;
   std::vector<Condition> conditions_;
-  bool judges_hardness_;  // false for an own objective, and for conditions that the plain step breaks
+  bool judges_hardness_;  // false for the user's own objective, and if the plain step breaks a condition
   Progress progress_;
   std::optional<Verified> best_;
 };
