@@ -7,8 +7,8 @@
 namespace softland {
 namespace {
 
-/// Computes the time [s] from rest at `rest` to `to`, or back; `fallen(x)` is the energy that has become motion at x. The speed
-/// grows as the root of the distance near rest: the integrand is smooth in u with x = rest + (to - rest) u^2.
+/// Computes the time [s] of the motion between rest at `rest` and the position `to`; `fallen(x)` is the kinetic energy at x.
+/// Near rest the speed grows as the root of the distance, so that the integrand is smooth in u with x = rest + (to - rest) u^2.
 double time_from_rest(const std::function<double(double)>& fallen, double mass, double rest, double to) {
   static const GaussRule rule = gauss_rule(40);
   const double way = to - rest;
@@ -25,7 +25,7 @@ double time_from_rest(const std::function<double(double)>& fallen, double mass, 
 
 std::optional<double> switching_position(const Potential& driven, const Potential& coasting, double from, double contact) {
   const double at_start = driven(from), at_contact = coasting(contact);
-  // Kinetic energy at the contact if the drive ends at x; negative if the switch does not get there.
+  // Kinetic energy at the contact if the driven part ends at x; negative if the switch does not reach the contact.
   const auto left = [&](double x) { return at_start - driven(x) - (at_contact - coasting(x)); };
   if (!(left(from) < 0) || !(left(contact) > 0)) return std::nullopt;
   double low = from, high = contact;
@@ -43,7 +43,7 @@ std::optional<BangBang> bang_bang(const Potential& driven, const Potential& coas
   const BangBang found{.switching_position = *at,
                        .driven_time = time_from_rest([&](double x) { return at_start - driven(x); }, mass, from, *at),
                        .coasting_time = time_from_rest([&](double x) { return at_contact - coasting(x); }, mass, contact, *at)};
-  // The speed is not a number where something holds the switch on its way.
+  // The times are not finite if a potential barrier stops the switch between `from` and `contact`.
   if (!std::isfinite(found.driven_time) || !std::isfinite(found.coasting_time)) return std::nullopt;
   return found;
 }

@@ -12,7 +12,7 @@
 namespace softland {
 namespace {
 
-constexpr int brake_pulses = 2;  // pulses of every drive that brakes
+constexpr int brake_pulses = 2;  // number of pulses of every drive that brakes
 
 }  // namespace
 
@@ -72,7 +72,7 @@ std::vector<std::vector<double>> BrakePulses::starts() const {
   return all;
 }
 
-// The times of `pulse_train` are in periods of the first mode.
+// Returns the point at which `braking` gives the pulse train. The times of `pulse_train` are in periods of the first mode.
 std::vector<double> BrakePulses::start(const Brake& braking, const std::array<double, 6>& pulse_train) const {
   std::vector<double> x;
   for (const Brake& b : brakes_) {

@@ -1,4 +1,5 @@
-// The part of RobustSearch with a per-device calibration: searches for devices whose units are measured, and their verdicts.
+// The part of RobustSearch with a per-device calibration: searches on devices whose pull-in voltage and timing are measured,
+// and the performance of the found waveforms on fresh devices.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,29 +14,29 @@ namespace softland {
 namespace {
 
 constexpr std::uint64_t measured_devices = 128;            // devices of a search with a per-device calibration
-constexpr double coarse_error = 0.01, fine_error = 0.002;  // relative errors of measurements
+constexpr double coarse_error = 0.01, fine_error = 0.002;  // relative measurement errors of Vdp and period
 constexpr double least_times_of_error = 20;
 constexpr std::array errors_of_pull_in{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02};  // relative errors of Vdp
 constexpr double most_rows = 4;                                                   // rows with a per-device calibration
-constexpr std::size_t devices_by_error = 256;                                     // first devices of the verdict
-constexpr double ranked_by_share = 0.25;                                          // bounce-free share from which on it ranks
-constexpr std::uint64_t which_measured = 2;  // seed of the devices: robust_search.cc has others
+constexpr std::size_t devices_by_error = 256;  // number of fresh devices for the results by measurement error
+constexpr double ranked_by_share = 0.25;       // bounce-free share from which on waveforms are ranked by it
+constexpr std::uint64_t which_measured = 2;    // number that makes the random devices differ from those of robust_search.cc
 
 }  // namespace
 
-// Measures ahead what the rows with a per-device calibration need of the devices of the verdict.
+// Computes the measured quantities of the fresh devices, for the rows with a per-device calibration, in advance.
 void RobustSearch::measure_ahead() {
   try {
     meter_.emplace(first().given, MeasuredQuantities{.closing_time = true});
   } catch (const InvalidInput&) {
-    return;  // no electrode pulls in
+    return;  // without a pull-in voltage devices cannot be measured
   }
   (void)calibrated({.pull_in_error = coarse_error});
   if (tells_time()) (void)calibrated({.time_error = usual_time_error});
 }
 
-// True if the closing time resolves the device. A switch that is too quick for the instrument needs a recipe for a more precise
-// Vdp and period.
+// True if the closing time is long enough to distinguish devices despite its measurement error. For a quicker switch, Vdp and
+// period are measured more precisely instead.
 bool RobustSearch::tells_time() const { return meter_->closing_time() > least_times_of_error * usual_time_error; }
 
 CalibratedSearch RobustSearch::in_measured_units(const ChosenFrom& winner, const DriveWaveforms& drawing) {
@@ -65,7 +66,7 @@ CalibratedSearch RobustSearch::in_measured_units(const ChosenFrom& winner, const
   return all;
 }
 
-// Searches for each of these calibrations, side by side. None if a search found nothing.
+// Searches in parallel with each of the calibrations. The result has no waveforms for a calibration whose search found none.
 std::array<RobustSearch::Found, 2> RobustSearch::searched_in(const ChosenFrom& winner, const DriveWaveforms& drawing,
                                                              const std::array<Calibration, 2>& calibrations) {
   const auto family = std::ranges::find(names_, winner.family);
@@ -80,7 +81,7 @@ std::array<RobustSearch::Found, 2> RobustSearch::searched_in(const ChosenFrom& w
             first(), aims_.tail,
             own_devices(first(), known[i], measured_devices, options_.seed, which_measured, options_.jobs, progress_));
         RaceOptions own = race_options();
-        own.memory = nullptr;  // its keys do not distinguish units
+        own.memory = nullptr;  // keys of the memory do not depend on the measured units
         own.progress = [&, i](double part) {
           parts[i] = part;
           progress_.tell("searching for devices that are measured", (parts[0] + parts[1]) / 2);
@@ -101,7 +102,7 @@ std::array<RobustSearch::Found, 2> RobustSearch::searched_in(const ChosenFrom& w
 }
 
 RaceResult RobustSearch::searched_at_pace(const RobustCost& cost, const RaceAims& aims, std::size_t family, RaceOptions options) {
-  constexpr long shorter = 3;  // divisor of the closings of a search in volts
+  constexpr long shorter = 3;  // divisor of the closings of a search without calibration
   RobustAim aim = tail_aim_;
   aim.free = free_;
   for (const Condition& one : aims.tail.conditions) {
@@ -114,7 +115,7 @@ RaceResult RobustSearch::searched_at_pace(const RobustCost& cost, const RaceAims
   return all;
 }
 
-// True if the waveforms are harder than the plain step on the devices of a search with a per-device calibration.
+// True if the impacts under the waveforms are harder than under the plain step, on the devices of a search with calibration.
 bool RobustSearch::is_harder_than_step(const RobustCost& cost, const DriveWaveforms& waveforms) const {
   const std::vector<DeviceOutcome> outcomes = cost.close(first().drives(waveforms), 0, cost.devices(), 1);
   return !hold(at_most_step_, outcomes);
@@ -140,7 +141,8 @@ DevicesRow RobustSearch::row_of(const char* name, const DriveWaveforms& waveform
                                          std::move(outcomes))};
 }
 
-// Computes the results of the best of these waveforms for ever larger errors of Vdp. The waveform in volts needs no Vdp.
+// Computes results for several measurement errors of Vdp, each for the best of `waveforms` and `in_volts`. The waveform in
+// volts does not depend on Vdp.
 std::vector<CalibrationError> RobustSearch::judged_by_error(const std::vector<DriveWaveforms>& waveforms,
                                                             const DriveWaveforms& in_volts) {
   std::vector<CalibrationError> judged;
@@ -171,7 +173,7 @@ RobustCost RobustSearch::verdict_devices(const MeasuredUnits& known) {
   return {first(), aims_.tail, known_as(calibrated(known.calibration()), known, options_.seed)};
 }
 
-// Returns the devices of the verdict, measured once for all calibrations.
+// Returns the fresh devices with their exact measured quantities, which are computed once for all calibrations.
 const CalibratedEnsemble& RobustSearch::calibrated(const Calibration& knowledge) {
   std::optional<CalibratedEnsemble>& all = knowledge.time_error ? calibrated_by_time_ : calibrated_by_pull_in_;
   if (!all)

@@ -20,8 +20,8 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t searched_cycles = 4;  // cycles in the run of a candidate
-constexpr double line_tolerance = 1e-5;     // error of the lines in a scene file, over the peak
+constexpr std::size_t searched_cycles = 4;  // simulated cycles of a candidate
+constexpr double line_tolerance = 1e-5;     // error of the piecewise linear waveforms in a scene file, over the peak voltage
 
 class PairSearch {
  public:
@@ -45,8 +45,9 @@ class PairSearch {
   [[nodiscard]] const BrakePulses& pulses() const { return pulses_; }
   [[nodiscard]] long evaluations() const { return budget_.taken(); }
 
-  /// Returns the pair of a point, in which the parameters of the closing come first. Without those of the opening the drives go
-  /// to 0 V at once. Returns nothing if a drive leaves its limits, or if a waveform does not fit into its part of a cycle.
+  /// Returns the closing and opening waveforms of a point, whose first parameters are those of the closing. Without parameters
+  /// of the opening the drives go to 0 V at once. Returns nothing if a drive leaves its limits, or if a waveform is longer than
+  /// its part of a cycle.
   [[nodiscard]] std::optional<CycleWaveforms> pair(std::span<const double> x) const {
     std::optional<std::vector<Signal>> closing = setting_.allowed_commands(setting_.space.waveforms(x.first(closing_)));
     if (!closing) return std::nullopt;
@@ -59,7 +60,7 @@ class PairSearch {
     return fits ? std::optional(std::move(waveforms)) : std::nullopt;
   }
 
-  /// Returns the cost of the worst of the first `cycles`; infinite if they cannot be simulated.
+  /// Returns the cost of the worst among the first `cycles` cycles; infinite if the simulation fails.
   [[nodiscard]] double cost(const CycleWaveforms& waveforms, std::size_t cycles = searched_cycles) const {
     const Cycles run = CycledSwitch(coarse_, coarse_.model, waveforms).run(times(cycles), false, {.stop = progress_.stop});
     if (run.cycles.size() < cycles) return std::numeric_limits<double>::infinity();
@@ -73,7 +74,7 @@ class PairSearch {
     return worst;
   }
 
-  /// Returns how far the contact point swings from its rest before the second cycle begins, over the contact gap.
+  /// Returns the vibration of the contact point about its open position before the second cycle begins, over the contact gap.
   [[nodiscard]] double unrest(const CycleWaveforms& waveforms) const {
     const Cycles run = CycledSwitch(coarse_, coarse_.model, waveforms).run(times(1), false, {.stop = progress_.stop});
     if (run.cycles.empty()) return std::numeric_limits<double>::infinity();
@@ -89,7 +90,7 @@ class PairSearch {
   }
   [[nodiscard]] double cost_of_cycles(const CycleWaveforms& waveforms) const { return cost(waveforms); }
 
-  /// Improves the parameters from `first` on; those before stay those of `from`.
+  /// Improves the parameters with index `first` and above; the others stay as in `from`.
   [[nodiscard]] OptimizerResult improve(const char* what, Price by, std::size_t first, const std::vector<double>& from,
                                         std::vector<std::vector<double>> starts) {
     const std::vector<Variable> all = variables();
@@ -120,20 +121,20 @@ class PairSearch {
   const SearchSetting& setting_;
   const CycleSearchOptions& options_;
   const Progress& progress_;
-  SearchBudget budget_;  // counts the evaluations of pairs
+  SearchBudget budget_;  // counts the evaluated pairs of waveforms
   PreparedScene coarse_;
   BrakePulses pulses_;
-  std::size_t closing_;  // parameters
+  std::size_t closing_;  // number of parameters of the closing
   CostScale scale_;
 };
 
-// Returns one cycle of these waveforms, as a scene that opens on command.
+// Returns a scene with one cycle of the waveforms, which closes, and opens on command.
 SceneFile scene_of_cycle(const PreparedScene& given, const CycleWaveforms& waveforms, const CycleTimes& times) {
   const std::vector<Signal> signals = cycled(waveforms, times);
   const std::vector<std::string> names = given.drive_names();
   DriveWaveforms tables;
   for (std::size_t k = 0; k < names.size(); ++k) {
-    if (names[k] == dispersion_drive) continue;  // no source drives it
+    if (names[k] == dispersion_drive) continue;  // the dispersion force has no source
     Table table;
     const double tolerance = line_tolerance * std::max(signals[k].peak(), 1e-9);
     for (const auto& [time, voltage] : polyline(signals[k], times.period, tolerance, 0)) {
@@ -148,7 +149,7 @@ SceneFile scene_of_cycle(const PreparedScene& given, const CycleWaveforms& wavef
   return file;
 }
 
-// Reads the pair back from a scene of one cycle, whose text may round it.
+// Reads the closing and opening waveforms back from a scene of one cycle, whose text may have rounded them.
 CycleWaveforms read_again(const SceneFile& file, const PreparedScene& given, const CycleTimes& times) {
   const PreparedScene read = read_back(file, "best.toml", given);
   CycleWaveforms waveforms{.name = "found", .closing = {}, .opening = {}};
@@ -159,7 +160,7 @@ CycleWaveforms read_again(const SceneFile& file, const PreparedScene& given, con
   return waveforms;
 }
 
-// Searches the closing alone.
+// Searches the closing waveform alone, for a switch at rest.
 OptimizeResult closing_alone(const SceneFile& file, const CycleSearchOptions& options, const Progress& progress) {
   OptimizeOptions how = usual_options(file, options.target, options.actuator);
   if (!options.family.empty()) how.family = options.family;
@@ -184,7 +185,7 @@ CycleSearchResult search_cycle(const SceneFile& file, const CycleSearchOptions& 
   require(given.rest().has_value(), "with every drive at 0 V the switch has no stable open state: it cannot be opened");
   PairSearch search(setting, options, progress);
 
-  // Begin with the closing that was found alone, and with those of the family, as far as they fit.
+  // Starts are the closing waveform that was searched alone, and the starts of its family, as far as they fit into a cycle.
   std::vector<std::vector<double>> closings = setting.space.starts();
   if (alone.best_scene) {
     const DriveWaveforms found = setting.space.searched(alone.best_scene->drives.waveforms());
@@ -195,7 +196,7 @@ CycleSearchResult search_cycle(const SceneFile& file, const CycleSearchOptions& 
     return fmt::format("at {} and a duty of {:g} % no waveform of the family \"{}\" fits into its part of a cycle, or no opening",
                        engineering(options.rate, "Hz", 4), 100 * options.duty, alone.family);
   });
-  // Find the best of them in a cycle that begins at rest.
+  // Find the best start in a cycle that begins at rest.
   std::vector<double> best = closings.front();
   double least = std::numeric_limits<double>::infinity();
   for (const std::vector<double>& x : closings) {

@@ -13,7 +13,7 @@ namespace softland {
 namespace {
 
 constexpr std::size_t starts_of_the_second = 8;
-constexpr double separation = 0.05;  // least distance of two such starts in some variable, as a part of its range
+constexpr double separation = 0.05;  // least distance of two starts of the second stage in one variable, as a share of its range
 
 }  // namespace
 
@@ -43,8 +43,8 @@ OptimizerResult GuidedSearch::stage(Problem problem, OptimizerOptions options, b
     {
       const std::scoped_lock lock(mutex_);
       const auto found = known_.find(e.x);
-      own.value =
-          found == known_.end() ? std::numeric_limits<double>::quiet_NaN() : found->second.target;  // the evaluation threw
+      own.value = found == known_.end() ? std::numeric_limits<double>::quiet_NaN()
+                                        : found->second.target;  // the evaluation threw an exception
     }
     on_evaluation_(own);
     log_.emplace(own.index, std::move(own));
@@ -128,7 +128,7 @@ OptimizerResult GuidedSearch::run(Problem problem, OptimizerOptions options, Cos
   OptimizerResult result = stage(problem, first, costs == Costs::both || costs == Costs::guide);
   const bool goes_on = result.termination != Termination::interrupted && result.termination != Termination::failure;
   OptimizerOptions second = options;
-  second.seed = ~options.seed;  // sample other points than the first stage
+  second.seed = ~options.seed;  // second stage: other random points than in the first
   second.goes_on = options.goes_on || costs == Costs::both;
   second.smooth = costs == Costs::both;
   second.max_evaluations -= result.evaluations;

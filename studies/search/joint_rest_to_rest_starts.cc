@@ -12,12 +12,12 @@
 namespace softland {
 namespace {
 
-constexpr std::array shares = {0.15, 0.4, 1.0};  // shares of the ranges of the drives beside the pulling electrode
-constexpr double edge_of_period = 0.005;         // shortest edge of the families, in periods
-constexpr double longest = 3;                    // periods of the first mode
+constexpr std::array shares = {0.15, 0.4, 1.0};  // shares of the voltage ranges, for drives other than the pulling electrode
+constexpr double edge_of_period = 0.005;         // shortest edge of the waveform families, in periods of the first mode
+constexpr double longest = 3;                    // longest swing, in periods of the first mode
 
 struct Levels {
-  double pulling = 0, releasing = 0;  // levels [V]
+  double pulling = 0, releasing = 0;  // voltages of the two parts of a swing [V]
 };
 
 Levels levels_of(const DriveSearch& s, const PreparedScene& given, double share) {

@@ -11,7 +11,7 @@
 namespace softland {
 namespace {
 
-// Sets the limits, and returns true if any differs from those of the drivers.
+// Limits the slew of the searched drives to slow edges, and returns true if a limit changes.
 bool make_gentle(SearchSetting& setting) {
   const double shortest_period = 2 * pi / setting.given.model.basis().angular_frequencies().maxCoeff();
   bool changes = false;

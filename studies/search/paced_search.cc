@@ -11,21 +11,22 @@
 namespace softland {
 namespace {
 
-// Rounds, and their closings of waveforms that last as long as the plain step bounces; steps are parts of the bounds.
+// Rounds of the search. The numbers of closings are for waveforms that last as long as the plain step bounces.
 constexpr std::array pace_rounds{
     Round{.devices = 64, .closings = 10'000, .step = 0.15}, Round{.devices = 128, .closings = 10'000, .step = 0.1},
     Round{.devices = 256, .closings = 10'000, .step = 0.08}, Round{.devices = 256, .closings = 10'000, .step = 0.04}};
 
-constexpr double of_the_time = 0.995;  // share of the time: other devices wait a little longer
+constexpr double of_the_time = 0.995;  // share of the permitted time that is used, since other devices take a little longer
 using Point = std::vector<double>;
-constexpr std::uint64_t first_of_paces = 1'000'000;  // offset of the random numbers: beyond those of the race
+constexpr std::uint64_t first_of_paces = 1'000'000;  // offset of the random streams, beyond those of the race
 
 bool has_pace(const RobustAim& aim) { return aim.free.until > 0 && std::isfinite(aim.free.until); }
 
-// Returns the time that devices may wait at a pace.
+// Returns the time until a steady force that a pace permits [s].
 double allowed(const Pace& pace, const RobustAim& aim) { return of_the_time * pace.of_step * aim.free.until; }
 
-// Returns the duration of the first waveform over the time that devices may wait unpriced: closings take time in proportion.
+// Returns the duration of the first starting waveform over FreeTime::until. The computing time of a closing is proportional to
+// this duration.
 double relative_duration(const SearchSetting& setting, const RobustAim& aim) {
   if (!has_pace(aim)) return 1;
   const DriveWaveforms first = setting.space.waveforms(setting.space.starts().front());

@@ -18,20 +18,22 @@ namespace {
 
 using Point = std::vector<double>;
 
-// Rounds, and their closings for each search of a race of the default length. The last two search the winner again.
+// Rounds of a race, with closings per search at the default length of the race. The last two rounds continue the winner's
+// search.
 constexpr std::array race_rounds{Round{.devices = 32, .closings = 2000, .step = 0.15},
                                  Round{.devices = 64, .closings = 6000, .step = 0.08},
                                  Round{.contenders = 3, .devices = 128, .closings = 10'000, .step = 0.03},
                                  Round{.contenders = 1, .devices = 128, .closings = 8000, .step = 0.03},
                                  Round{.contenders = 1, .devices = 128, .closings = 8000, .step = 0.03}};
 constexpr std::size_t usual_rounds = 3;
-constexpr double enough_land = 0.25, many_land = 0.4;  // bounce-free shares that rank, and go on, by the share
-constexpr double worth_going_on = 0.01;                // least gain in the bounce-free share
+constexpr double enough_land = 0.25,
+                 many_land = 0.4;        // bounce-free shares from which on searches are ranked, or continued, by the share
+constexpr double worth_going_on = 0.01;  // least gain in the bounce-free share for which another round is worthwhile
 constexpr double population_by_share = 2, longer_where_many_land = 1.7;
-constexpr std::size_t first_devices = 16;  // devices for which the starts are tried
+constexpr std::size_t first_devices = 16;  // devices on which starts are tried
 constexpr std::uint64_t box_points = 32;
 
-// Returns the closings of the rounds from `first` on, until before `last`.
+// Returns the closings per race of the rounds `first` to `last` - 1, at the default length.
 double closings_of_rounds(std::size_t first, std::size_t last) {
   double all = 0;
   for (std::size_t k = first; k < last; ++k) all += race_rounds[k].closings;
@@ -44,7 +46,8 @@ class Race {
        const RaceOptions& options)
       : settings_(settings), cost_(cost), aims_(aims), options_(options), budget_(budget, options.closings) {}
 
-  /// Races the searches, or runs a single one through all usual rounds.
+  /// Runs a race between `contenders`, or, if `alone`, a single search through all rounds. `begun` are further starting
+  /// waveforms.
   RaceResult run(std::vector<Contender> contenders, const std::vector<DriveWaveforms>& begun, bool alone) {
     alone_ = alone;
     length_ = static_cast<double>(options_.closings) / static_cast<double>(race_closings);
@@ -71,7 +74,7 @@ class Race {
  private:
   [[nodiscard]] const SearchSetting& setting(const Contender& r) const { return settings_[r.family]; }
   [[nodiscard]] const RobustAim& aim(const Contender& r) const { return r.by_share ? aims_.share : aims_.tail; }
-  // Identifies the devices and the aim in the memory.
+  // Returns the number that identifies the devices and the aim of a search in the memory of evaluations.
   [[nodiscard]] std::uint64_t identity(const Contender& r) const {
     return random_bits(options_.seed, Stream::race, r.by_share ? 1 : 0);
   }
@@ -80,9 +83,9 @@ class Race {
     if (options_.progress) options_.progress(budget_.share_taken());
   }
 
-  // Begins every search at the best of many starts, by its measure.
+  // Sets the starting point of every search to the best of many starts, by the search's measure.
   void begin(std::vector<Contender>& contenders, const std::vector<DriveWaveforms>& begun) {
-    std::map<std::size_t, std::vector<Point>> starts;  // starts of each family
+    std::map<std::size_t, std::vector<Point>> starts;  // starting points of each family
     for (const Contender& r : contenders) {
       if (starts.contains(r.family)) continue;
       std::vector<Point>& own = starts[r.family] = starting_points(setting(r), begun);
@@ -106,7 +109,7 @@ class Race {
     }
   }
 
-  // Returns the outcomes; empty if a driver cannot give the waveform.
+  // Returns the outcomes of the first `devices` devices; empty if the waveform exceeds a driver's limits.
   std::vector<DeviceOutcome> closed(const SearchSetting& own, const Point& x, std::size_t devices, int jobs) {
     const DriveWaveforms searched = own.space.waveforms(x);
     if (!own.is_allowed(searched)) return {};
@@ -145,14 +148,14 @@ class Race {
     return contenders;
   }
 
-  // Plans the closings of longer rounds, and of those that search the winner again.
+  // Sets the budget for longer rounds, and for the rounds that continue the winner's search.
   void plan_longer() {
     const double again = alone_ ? 0 : closings_of_rounds(usual_rounds, race_rounds.size());
     const double left = longer_ / length_ * static_cast<double>(budget_.left()) + longer_ * again;
     budget_.allow(budget_.taken() + std::lround(left));
   }
 
-  // Judges every search on so many devices.
+  // Computes the figures of every search on the first `devices` devices.
   void judge(std::vector<Contender>& contenders, std::size_t devices) {
     run_tasks(
         contenders.size(), options_.jobs,
@@ -167,10 +170,10 @@ class Race {
         budget_.stop());
   }
 
-  // Returns the cost that ranks the searches.
+  // Returns the member by which searches are ranked.
   static double Contender::*rank_by(bool share) { return share ? &Contender::share : &Contender::tail; }
 
-  // Returns the best search of every family, and the best of the others by the other criterion.
+  // Returns the best search of every family, and the best of the remaining searches by the other measure.
   [[nodiscard]] std::vector<Contender> survivors(std::vector<Contender> contenders) const {
     std::ranges::stable_sort(contenders, {}, rank_by(many_));
     std::vector<Contender> kept, others;
@@ -196,10 +199,10 @@ class Race {
   const RobustCost& cost_;
   const RaceAims& aims_;
   const RaceOptions& options_;
-  SearchBudget budget_;             // its closings are those that are planned
-  double length_ = 1, longer_ = 1;  // length over the default one, and where many devices land
-  bool alone_ = false;              // a single search, not a race
-  bool many_ = false;               // many devices land
+  SearchBudget budget_;             // budget of the planned closings
+  double length_ = 1, longer_ = 1;  // length relative to the default; factor on it if many devices are bounce-free
+  bool alone_ = false;              // true: a single search, not a race
+  bool many_ = false;               // true: many devices are bounce-free
   RaceResult result_;
 };
 

@@ -22,7 +22,7 @@ constexpr double most_violation = 10;
 
 double value_of(const DeviceOutcome& outcome, const Condition& condition) { return outcome.of(condition.figure); }
 
-// Candidates are ranked by closings of at best this accuracy; the verdict has that of the scene.
+// Relative accuracy of closings for ranking candidates; results on fresh devices have the accuracy of the scene.
 constexpr double ranking_accuracy = 1e-4;
 
 PreparedScene for_ranking(const PreparedScene& given) {
@@ -169,8 +169,8 @@ std::vector<Signal> RobustCost::signals(const std::vector<Waveform>& waveforms, 
                                : setting_.given.applied(waveforms);
 }
 
-// Finds the gains of the devices. A sampled drive has a breakpoint at each sample: drives that differ by a gain alone are
-// prepared once.
+// Finds the gains of the devices' drives. Drives of devices that differ only by a gain are prepared once, since a sampled
+// waveform has many breakpoints.
 void RobustCost::find_gains() {
   if (std::ranges::none_of(ensemble_.units, [&](const DeviceUnits& units) { return drives_.differ(units); })) return;
   ungained_levels_ = hold_levels(drives_.without_gains(setting_.drives({})));
@@ -184,7 +184,8 @@ void RobustCost::find_gains() {
   }
 }
 
-// Returns how a device is kept closed. All devices count as held if the nominal one is not kept closed.
+// Returns the closed state of device k under the hold levels of `signals`. All devices count as held if the nominal device is
+// not kept closed.
 RobustCost::Kept RobustCost::kept(std::size_t k, const std::vector<Signal>& signals) const {
   const Hold hold = hold_of(*ensemble_.devices[k].model, signals, nominal_closed_);
   return {.is_held = !nominal_closed_ || hold.is_held,
@@ -199,7 +200,7 @@ std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& wavefo
 
 std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& waveforms, std::size_t first, std::size_t last,
                                              double after_contact, int jobs) const {
-  constexpr std::size_t together = 64;  // devices of one task
+  constexpr std::size_t together = 64;  // devices of one parallel task
   std::vector<Signal> nominal = gains_ ? drives_.without_gains(waveforms) : setting_.given.applied(waveforms);
   const bool same_levels = hold_levels(nominal) == (gains_ ? ungained_levels_ : levels_), by_gains = gains_ && same_levels;
   if (gains_ && !by_gains) nominal = setting_.given.applied(waveforms);
@@ -308,7 +309,8 @@ bool RobustCost::is_told(std::span<const DeviceOutcome> outcomes) const {
                             : risk(scores(outcomes), aim_.measure.risk) < (1 - rounding) * worst_score;
 }
 
-// Returns the risk of scores with failing devices: their deviation alone would fall again where most devices fail.
+// Returns the measure of risk of scores with failing devices. Their standard deviation alone would decrease if most devices
+// fail.
 double RobustCost::risk_of(std::span<const DeviceOutcome> outcomes, const std::vector<double>& scores, const Risk& measure) {
   if (measure.kind != RiskKind::mean_sigma || std::ranges::none_of(outcomes, fails)) return risk(scores, measure);
   std::vector<double> others;

@@ -19,16 +19,16 @@ namespace softland {
 namespace {
 
 constexpr int nominal_searches = 2;
-constexpr std::size_t winners_taken = 4;  // winners of each of these searches
+constexpr std::size_t winners_taken = 4;  // best points of each search on the nominal device
 constexpr double nominal_time = 0.05;     // share of a budget of time, for each search on the nominal device
 constexpr std::uint64_t selection_devices = 512;
-constexpr double apart = 0.08;  // least distance of starts, as a part of the box
+constexpr double apart = 0.08;  // least distance of starts, as a share of the variables' ranges
 
-// The effort of finding starts, by the budget.
+// The effort of finding starting points, depending on the budget.
 struct StartRound {
   long nominal_evaluations;  // evaluations of each search on the nominal device
   std::uint64_t box_points;
-  std::size_t contenders;  // starts that are tried on more than the first devices
+  std::size_t contenders;  // starts that are tried on more than the first 8 devices
 };
 StartRound start_round(long budget) {
   return {.nominal_evaluations = std::clamp(budget / 50, 1L, 1000L),
@@ -36,7 +36,7 @@ StartRound start_round(long budget) {
           .contenders = static_cast<std::size_t>(std::clamp(budget / 2000, 1L, 24L))};
 }
 
-// Closings are shares of the budget that is left after the starts.
+// Rounds of the search. Closings are shares of the budget that is left after finding starting points.
 constexpr std::array robust_rounds{Round{.contenders = 6, .devices = 32, .closings = 0.4, .step = 0.15},
                                    Round{.contenders = 2, .closings = 0.35, .step = 0.06},
                                    Round{.contenders = 1, .closings = 0.25, .step = 0.025}};
@@ -57,7 +57,7 @@ double distance(const Point& a, const Point& b, const std::vector<Variable>& var
   return farthest;
 }
 
-// Returns the best that are apart from each other; the distance shrinks until there are enough.
+// Returns the `count` best candidates with a least distance from each other, which is reduced until there are enough.
 std::vector<Candidate> best_apart(std::vector<Candidate> all, std::size_t count, const std::vector<Variable>& variables) {
   std::stable_sort(all.begin(), all.end(), is_better);
   std::vector<Candidate> chosen;
@@ -76,7 +76,7 @@ std::uint64_t fresh_seed(std::uint64_t seed, std::uint64_t which) { return rando
 
 class HalvingSearch {
  public:
-  /// `step_cost` is that of the plain step, for the progress.
+  /// `step_cost` is the cost of the plain step, for progress reports.
   HalvingSearch(const SearchSetting& setting, const RobustCost& cost, const RobustAim& aim, const OptimizeOptions& options,
                 std::function<double()> clock, double step_cost)
       : setting_(setting),
@@ -91,7 +91,7 @@ class HalvingSearch {
                  .clock = std::move(clock)}),
         log_(options, budget_, step_cost, [&setting](const Evaluation& e) { return setting.scene_at(e.x); }) {}
 
-  // Returns the best points of all rounds, the best first; empty if nothing was feasible.
+  // Runs the search. Returns the best points of all rounds, the best first; empty if no point was feasible.
   std::vector<Candidate> run() {
     leaders_ = found_ = first_leaders();
     left_ = static_cast<double>(budget_.left());
@@ -109,7 +109,7 @@ class HalvingSearch {
   }
 
   [[nodiscard]] long closings() const { return budget_.taken(); }
-  /// Number of evaluations on all devices, or on as many of them as it took to give a candidate up.
+  /// Number of candidates whose evaluation on all devices was begun, even if it was given up early.
   [[nodiscard]] long evaluations() const { return static_cast<long>(log_.evaluations().size()); }
   [[nodiscard]] std::vector<Evaluation> improvements() const { return improvements_of(log_.evaluations()); }
   [[nodiscard]] Termination termination() const {
@@ -119,13 +119,13 @@ class HalvingSearch {
   }
 
  private:
-  // Notes a candidate that was tried on all devices, and only tells that another one was tried.
+  // Adds a candidate to the log if it was tried on all devices; otherwise only reports progress.
   void note(bool on_all, long index, const Point& x, double value) {
     if (on_all) return log_.note({.index = index, .value = value, .x = x});
     log_.tell();
   }
 
-  // Finds waveforms that land the nominal device.
+  // Finds waveforms that close the nominal device softly, by searches on this device.
   std::vector<Point> nominal_winners() {
     std::vector<Point> all;
     for (int k = 0; k < nominal_searches && !budget_.over(); ++k) {
@@ -145,7 +145,7 @@ class HalvingSearch {
     return all;
   }
 
-  // Finds starts for the first round: the best of many on ever more devices.
+  // Finds starting points for the first round: the best of many, tried on more and more devices.
   std::vector<Candidate> first_leaders() {
     std::vector<DriveWaveforms> given;
     for (const StartingWaveforms& start : options_.starts) given.push_back(start.waveforms);
@@ -176,7 +176,8 @@ class HalvingSearch {
     return best_apart(std::move(all), robust_rounds[0].contenders, variables_);
   }
 
-  // Gives a round its share of the closings and of the time that is left, and its searches an index each to begin with.
+  // Returns each search's share of the closings and of the remaining time in a round. Also reserves a range of log indices for
+  // each search.
   RoundShare share(const Round& round, std::size_t contenders) {
     const auto count = static_cast<long>(contenders);
     const RoundShare each{.closings = static_cast<long>(round.closings * left_) / count,
@@ -188,7 +189,8 @@ class HalvingSearch {
     return each;
   }
 
-  // Searches from a candidate, which becomes the end of the search: the better of both, where both were tried on all devices.
+  // Searches from a candidate and replaces it by the result of the search; if both were tried on all devices, only by a better
+  // result.
   void search(Candidate& candidate, Turn turn, Chain chain, SearchBudget& part) {
     long index = first_index_ + static_cast<long>(turn.number) * indices_of_search_;
     const bool on_all = chain.devices >= cost_.devices();
@@ -208,7 +210,7 @@ class HalvingSearch {
     note(true, index, candidate.x, candidate.value);
   }
 
-  // Returns the best, from whichever round.
+  // Returns the best candidates of all rounds so far.
   std::vector<Candidate> select(const std::vector<Candidate>& ends, std::size_t round) {
     found_.insert(found_.end(), ends.begin(), ends.end());
     leaders_.insert(leaders_.begin(), ends.begin(), ends.end());
@@ -225,13 +227,13 @@ class HalvingSearch {
   std::vector<Variable> variables_;
   SearchBudget budget_;
   EvaluationLog log_;
-  std::vector<Candidate> leaders_, found_;  // candidates that go on, and all of the rounds
-  double left_ = 0, shares_left_ = 0;       // closings after the starts, and the shares of the rounds to come
-  long next_index_ = 0;                     // least index that no round has
+  std::vector<Candidate> leaders_, found_;  // candidates that go on; results of all rounds
+  double left_ = 0, shares_left_ = 0;       // closings for all rounds; shares of the remaining rounds
+  long next_index_ = 0;                     // least log index that no round uses
   long first_index_ = 0, indices_of_search_ = 0;
 };
 
-// Returns the best of the candidates on devices that none of them was made for.
+// Returns the best candidate on devices that the search has not used.
 Candidate compared(std::vector<Candidate> candidates, const SearchSetting& setting, const RobustCost& others, int jobs) {
   candidates = best_apart(std::move(candidates), robust_rounds[0].contenders + 1, setting.space.variables());
   Candidate winner = candidates.front();
@@ -247,7 +249,7 @@ Candidate compared(std::vector<Candidate> candidates, const SearchSetting& setti
   return winner;
 }
 
-// Judges the winner and the plain step on fresh devices, over the whole window.
+// Simulates fresh devices under the winner and the plain step over the whole window, and adds the results to `result`.
 void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& options, const RobustOptions& robust,
            const Progress& progress) {
   OptimizeResult& out = result.found;
@@ -279,10 +281,10 @@ void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& 
   }
 }
 
-// Scales the budget to closings of these devices, and reports the estimate.
+// Reduces a default budget if the scene's closings are slow, and reports the estimated work.
 void fit_robust_budget(const SearchSetting& setting, OptimizeOptions& options, std::uint64_t verdict) {
   if (!options.counts_work && !options.on_estimate) return;
-  constexpr double rows = 4;  // closings per device of the verdict, over the whole window
+  constexpr double rows = 4;  // work per fresh device over the whole window, in closings of the search
   const ClosingWork one = closing_work(setting);
   const long asked = options.max_evaluations;
   const bool in_lanes = why_not_in_lanes(setting.given.model).empty();
@@ -333,7 +335,7 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& given
   std::vector<std::string> names;
   for (const Variable& v : out.variables) names.push_back(v.name);
   if (options.on_start) options.on_start({.families = {names}});
-  options.memory = given.memory;  // the memory may exist only from now on
+  options.memory = given.memory;  // the caller may create the memory in on_start
   const std::vector<DeviceOutcome> of_step = cost.close(setting.drives({}), 0, cost.devices(), options.jobs);
   robust.aim.conditions = beside_step(std::move(robust.aim.conditions), of_step);
   out.baseline_cost = cost.value(of_step);
@@ -346,7 +348,7 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& given
   out.search.termination = search.termination();
   if (candidates.empty()) return result;
 
-  // A stop from here on leaves the results so far, without the verdict.
+  // An interruption from here on returns the results so far, without results on fresh devices.
   Candidate winner = candidates.front();
   try {
     if (out.search.termination != Termination::interrupted)

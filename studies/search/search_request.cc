@@ -22,7 +22,7 @@
 namespace softland {
 namespace {
 
-// Returns what `parse` gives; adds the field to its messages.
+// Returns the result of `parse`; adds the name of the field to the message of an exception.
 template <class Parse>
 auto read(const std::string& field, const Parse& parse) {
   try {
@@ -50,14 +50,14 @@ std::vector<Condition> conditions_of(const SearchRequest& request, std::span<con
   return all;
 }
 
-// Reads conditions. Those on figures of both are for the nominal design and for the devices.
+// Parses conditions. A condition on a figure of both searches applies to the nominal design and to the devices.
 void read_shared_conditions(const SearchRequest& request, std::vector<Condition>& drawing, std::vector<Condition>& devices) {
   devices = conditions_of(request, device_figures);
   for (const std::string& text : request.constrain) {
     try {
       drawing.push_back(parse_condition(text, conditioned_figures));
     } catch (const InvalidInput&) {
-      continue;  // a figure of devices alone
+      continue;  // a figure of the search over devices only
     }
   }
 }
@@ -106,13 +106,13 @@ OptimizeOptions options_of(const SearchRequest& request, const SceneFile& scene,
   options.counts_work = !request.budget;
   if (request.robust == nominal_alone) options.conditions = conditions_of(request, conditioned_figures);
   if (request.budget) read_budget(*request.budget, options);
-  // Only these methods can begin with half the budget; the plan of a search of one seed holds that number.
+  // Begin with half the budget only for "auto" on the nominal device with one seed, whose plan contains the budget.
   const bool has_one_seed = !request.seeds || *request.seeds == "1";
   options.begins_with_half = request.robust == nominal_alone && request.budget && has_one_seed && request.optimizer == "auto";
   return options;
 }
 
-// Returns the families without the quasi-static approach, which moves devices alone.
+// Returns the waveform families without quasi-static ones, which only a search over devices uses.
 std::string families_of_drawing(const std::string& text, const SceneFile& scene, Actuator actuator) {
   std::string kept;
   for (const std::string& family : families_of(text)) {
@@ -185,7 +185,8 @@ std::uint64_t seed_count(const SearchRequest& request, const OptimizeOptions& op
   return count;
 }
 
-// Varied devices need a slow and free family, or, with a per-device calibration, a quick one that holds fast.
+// Returns the default families. Varied devices need a slow and flexible family, or, with a per-device calibration, a quick
+// family that presses the switch on its contact.
 std::string usual_families(const SearchRequest& request, const SceneFile& scene) {
   if (request.is_by_measure())
     return std::string(request.calibrate.empty() || request.calibrate == "none" ? default_robust_family
@@ -207,7 +208,7 @@ SearchRequest or_else(SearchRequest request, const SearchRequest& other) {
 
 namespace {
 
-// A search over devices shapes every drive that can be shaped.
+// Returns the default actuator: all drives that can be shaped.
 Actuator usual_actuator(const SceneFile& scene) {
   const bool has_piezo = scene.written("piezo") && scene.written("driver.piezo");
   if (!has_piezo) return Actuator::electrostatic;

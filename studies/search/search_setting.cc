@@ -19,18 +19,19 @@
 namespace softland {
 namespace {
 
-constexpr double latest_touch = 2.5;  // multiples of the baseline's first touch
-// Lateness that costs little: an electrode can throw and catch the beam in about the time of the step, a piezo only slows it.
+constexpr double latest_touch = 2.5;  // multiples of the baseline's time of first contact
+// First contact up to these multiples of the baseline's costs little: an electrode can close softly in about the time of the
+// step, a piezo only slows the beam.
 constexpr double driven_touch = 1.5, braked_touch = 2.0;
 constexpr double search_tolerance = 1e-6;  // tolerance of the integrator: costs good to about 1e-4
-constexpr double most_broken = 10;         // largest violation of a condition, as a part of its limit
-// Weight of the touch speed for the worst of beams. A soft touch hardly counts in the cost of bounce, but is the first to
-// differ between modes.
+constexpr double most_broken = 10;         // largest relative violation of a condition
+// Weight of the impact speed in the cost over several numbers of modes. The impact speed hardly counts in the cost of bounce,
+// but is the most sensitive to further modes.
 constexpr double weight_of_speed = 0.04;
-constexpr double hopeless = 0.25;  // cost of bounce, about 1 for the plain step, from which on richer beams are not tried
+constexpr double hopeless = 0.25;  // cost of bounce from which on models with more modes are not simulated; plain step: about 1
 constexpr double golden_ratio = 1.618033988749895;
 
-// Returns the figures of an estimated closing. A plain step may not close with a hold level that still closes with a throw.
+// Returns estimated figures of a plain step that does not close: an overshooting initial pulse may still close the switch.
 Metrics imagined_step(const PreparedScene& given, double period) {
   const double gap = given.scene.device.contact_gap();
   Metrics step;
@@ -41,7 +42,8 @@ Metrics imagined_step(const PreparedScene& given, double period) {
   return step;
 }
 
-// Returns g of a condition that a method follows. Searches end where g is 0, and the condition must be fulfilled there.
+// Returns g of a condition for a constrained optimizer. The margin keeps the condition fulfilled where the search ends, at g =
+// 0.
 double excess(const Condition& one, const Metrics& metrics) {
   constexpr double margin = 1e-6;
   return std::clamp(one.violation(one.figure.value(metrics)) + margin, -most_broken, most_broken);
@@ -105,7 +107,7 @@ PreparedScene prepared_with(const PreparedScene& prepared, DriveWaveforms wavefo
 PreparedScene read_back(const SceneFile& file, const std::string& name, const PreparedScene& given) {
   PreparedScene p = choose(prepare(file.again(name)));
   p.scene.warnings = given.scene.warnings;
-  p.scene.standing = given.scene.standing;  // all hold levels would count in the file in volts
+  p.scene.standing = given.scene.standing;  // in volts the file would have hold levels for all drives
   return p;
 }
 
@@ -145,7 +147,7 @@ bool SearchSetting::keeps_limits(const std::string& drive, const Waveform& wavef
   return violation(commanded, limits_for(waveform, limits.at(drive))).empty();
 }
 
-// A drive that still changes after the score could open the switch again unseen.
+// The simulation lasts beyond the last breakpoint, since a later change of a drive could open the switch again.
 ClosingOptions SearchSetting::run_of(const std::vector<Signal>& signals) const {
   ClosingOptions own = run;
   own.no_end_before = last_breakpoint(signals) + given.model.basis().in_contact_period();
@@ -178,7 +180,7 @@ SearchCosts SearchSetting::worst_price(const RecordedClosing& closing) const {
 }
 
 Metrics SearchSetting::with_rest_and_drives(Metrics metrics, const std::vector<Signal>& signals) const {
-  metrics.hold_force = baseline.metrics.hold_force;  // force of the hold levels, which a search never changes
+  metrics.hold_force = baseline.metrics.hold_force;  // force under the hold levels, which a search never changes
   metrics.capacitance = baseline.metrics.capacitance;
   metrics.resistance = baseline.metrics.resistance;
   set_drive_figures(metrics, given, signals);
@@ -202,8 +204,8 @@ SearchCosts SearchSetting::price_of(const RecordedClosing& closing) const {
   for (const Condition& one : followed_conditions()) costs.apart->excess.push_back(excess(one, figures));
   const double violation = broken(conditions, figures);
   if (!(violation > 0)) return costs;
-  // Penalty: less than the step between a landing and none. For the own cost, more than any landing that fulfils the
-  // conditions.
+  // The penalty is less than the cost difference between closing and not touching. The target's own cost gets 1 more, so that
+  // it exceeds every cost of closings that fulfil the conditions.
   const double penalty = 3 * violation / (1 + violation);
   costs.guide += penalty;
   costs.target += target.has_own_cost() ? 1 + penalty : penalty;
@@ -220,7 +222,7 @@ SearchCosts SearchSetting::cost_at(std::span<const double> x, EvaluationMemory* 
   auto closing = std::make_shared<const RecordedClosing>(*this, given.applied(std::move(*commanded)));
   SearchCosts found = worst_price(*closing);
   if (last != nullptr) *last = {.x = key.x, .closing = std::move(closing)};
-  found.guide += 0.0, found.target += 0.0;  // normalise -0, whose sign a memory need not keep
+  found.guide += 0.0, found.target += 0.0;  // turn -0 into 0, since a memory need not preserve the sign
   if (memory != nullptr) memory->note(key, {.cost = found.target, .guide = found.guide, .lands = found.lands});
   return found;
 }
@@ -258,7 +260,7 @@ SignalSlopes SearchSetting::signal_slopes(std::span<const double> x, const std::
 }
 
 std::vector<ParameterGroup> SearchSetting::parameter_groups() const {
-  std::vector<double> inside;  // a point with no two parameters at the same part of their range
+  std::vector<double> inside;  // a generic point: no two parameters at the same share of their range
   for (const Variable& v : space.variables())
     inside.push_back(std::lerp(v.lower, v.upper, 0.3 + 0.4 * std::fmod(golden_ratio * static_cast<double>(inside.size()), 1.0)));
   return signal_slopes(inside).groups();
@@ -375,7 +377,7 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
   scale.step = step.touched() && step.is_complete() ? step : imagined_step(given, period);
   const Aim aim = step.touched() && step.is_complete() ? target.in_units_of(step) : target;
   const double baseline_cost = cost(aim, step, scale, given.scene.metrics);
-  // A landing so late that the window ends before the switch could bounce would look like a soft one.
+  // Contact must be early enough for a bounce within the window: a later closing would look soft.
   run.no_contact_before =
       std::min(latest_touch * scale.step.initial_contact_time, given.duration - 2 * given.model.basis().in_contact_period());
   require(run.no_contact_before > 0, [&] {
