@@ -24,19 +24,20 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr int first_knots = 48;       // intervals of the controls before they are refined
-constexpr double piece_angle = 0.75;  // phase of the fastest mode in a piece of the mesh
-// Agreement of the optimum with a simulation, relative to the time of the touch, or to the gap if one misses it.
+constexpr int first_knots = 48;       // intervals of the controls before refinement
+constexpr double piece_angle = 0.75;  // phase angle of the fastest mode in one piece of the mesh
+// Permitted difference of optimum and simulation: relative in the time of first contact, or in contact gaps if only one of them
+// touches.
 constexpr double agreement = 1e-4;
-constexpr double longest_swing = 3;       // periods of the first mode
-constexpr double softness = 0.2;          // part of the permitted speed by which a simulation may touch faster
+constexpr double longest_swing = 3;       // in periods of the first mode
+constexpr double softness = 0.2;          // relative excess over the permitted speed that a simulation may have
 constexpr double catch_tolerance = 1e-6;  // tolerance of the integrator for comparing catches
-constexpr int refinements = 3;            // knot refinements: each halves their shortest interval
-constexpr int most_meshes = 3;            // meshes: each is half as wide as the one before
+constexpr int refinements = 3;            // refinements of the knots: each halves the shortest interval
+constexpr int most_meshes = 3;            // meshes of the optimal control problem, each with half the width of its predecessor
 
-// Distances of every mode from its place in the closed equilibrium, in gaps; they shrink step by step.
+// Permitted differences of modal coordinates from the closed equilibrium, in gaps, for successive solutions.
 constexpr std::array rest_distances = {0.1, 0.03, 0.01, 0.003, 0.001, 0.0003};
-constexpr long nearing_iterations = 100;  // Ipopt iterations per distance: about thirty if a way exists
+constexpr long nearing_iterations = 100;  // largest number of Ipopt iterations per distance; about thirty if a solution exists
 
 std::vector<double> uniform_knots(int intervals) {
   std::vector<double> knots;
@@ -44,7 +45,7 @@ std::vector<double> uniform_knots(int intervals) {
   return knots;
 }
 
-// Returns the controls as tables of volts against time, which pull from the touch on.
+// Returns the controls as tables of voltage against time, until first contact.
 DriveWaveforms tables_of(const FirstTouchProblem& flight, const ControlledCourse& course) {
   const double end = course.time * flight.time_unit();
   std::map<std::string, Table> tables;
@@ -60,7 +61,7 @@ DriveWaveforms tables_of(const FirstTouchProblem& flight, const ControlledCourse
   if (flight.ramps()) {
     for (Index k = 0; k < columns; ++k) add(course.knots[static_cast<std::size_t>(k)] * end, at(k));
   } else {
-    // Differences below the solver's own error make one level.
+    // Controls that differ by less than the solver's error are one level.
     constexpr double same = 1e-9;
     Index level = 0;
     add(0, at(0));
@@ -78,9 +79,9 @@ DriveWaveforms tables_of(const FirstTouchProblem& flight, const ControlledCourse
   return waveforms;
 }
 
-// The phase after the touch: full pull from one time to another [s], then the hold levels.
+// The waveform after first contact: full pull from `begin` to `end`, then the hold levels.
 struct Catch {
-  double begin = 0, end = 0;  // times after the touch
+  double begin = 0, end = 0;  // times after first contact [s]
 };
 
 DriveWaveforms with_catch(const FirstTouchProblem& flight, const LeastTime& found, const Catch& pulled,
@@ -103,7 +104,7 @@ DriveWaveforms with_catch(const FirstTouchProblem& flight, const LeastTime& foun
   return caught;
 }
 
-// Returns the drives under searched waveforms. Other drives have the plain step, else the waveform of the scene.
+// Returns the signals of all drives: `searched`, for other drives `plain`, else the waveforms of the scene.
 std::vector<Signal> applied(const PreparedScene& prepared, DriveWaveforms searched, const DriveWaveforms& plain) {
   searched.insert(plain.begin(), plain.end());
   return prepared.applied(prepared.waveforms(searched));
@@ -120,7 +121,7 @@ Arrival arrival(const PreparedScene& prepared, const DriveWaveforms& searched, A
   return {m.initial_contact_time, m.impact_velocity};
 }
 
-// One search for a least time: the problem, its best course so far, and its progress.
+// One search for a least time: the optimal control problem, its best solution so far, and its progress.
 class LeastTimeSearch {
  public:
   LeastTimeSearch(const PreparedScene& prepared, const LeastTimeOptions& options)
@@ -137,8 +138,8 @@ class LeastTimeSearch {
     return from(std::move(*swing), longest_time());
   }
 
-  // Returns waveforms of courses ever nearer to rest, on the first knots and mesh. They hold as the plain ones from the touch
-  // on.
+  // Returns waveforms of solutions that end closer and closer to rest, on the first knots and mesh. After first contact the
+  // drives are as in `plain`.
   std::vector<DriveWaveforms> ways_to_rest(const DriveWaveforms& plain) {
     std::vector<DriveWaveforms> all;
     std::optional<ControlledCourse> swing = first_touch_.swing(longest_time());
@@ -202,12 +203,12 @@ class LeastTimeSearch {
                 .knots = uniform_knots(first_knots),
                 .longest_piece = piece_angle / (fastest * course_.time),
                 .stop = options_.progress.stop};
-    // A beam stays at rest only if the drives end at the levels under which it rests.
+    // A beam stays at rest only if the drives end at the levels of that equilibrium.
     for (Index k = 0; landing && first_touch_.ramps() && k < first_touch_.controls(); ++k)
       problem_.bounds[static_cast<std::size_t>(k)].after = landing->controls[k];
   }
 
-  // Solves from the last course, which a failure leaves as it is.
+  // Solves again from the last solution, which remains if the solver fails.
   Status improve() {
     ControlledCourse course = solve(problem_, course_);
     result_.message = course.message;
@@ -227,7 +228,7 @@ class LeastTimeSearch {
     }
   }
 
-  // Brings the modes to rest little by little: Ipopt finds no way in one go.
+  // Brings the modes to rest in several solutions, since Ipopt fails to do so in one. Calls `nearer` after each.
   Status come_to_rest(const VectorXd& landed, const std::function<void()>& nearer = {}) {
     const Index n = first_touch_.states();
     for (Index r = 0; r < n; ++r) problem_.at_the_end.push_back({.row = VectorXd::Unit(n, r)});
@@ -254,7 +255,7 @@ class LeastTimeSearch {
     return Status::done;
   }
 
-  // Solves on finer meshes, until a simulation of the waveform touches when and as softly as the optimum does.
+  // Solves on finer meshes until time and speed of first contact agree with a simulation of the waveforms.
   LeastTime refine_until_simulated() {
     for (int mesh = 1;; ++mesh) {
       result_.course = course_;
@@ -270,7 +271,7 @@ class LeastTimeSearch {
       const double missed = apart * std::max(touch.velocity, result_.impact_velocity);
       bool near = apart <= agreement * result_.time || missed <= agreement * prepared_.scene.device.contact_gap();
       const bool as_soft = touch.velocity <= result_.impact_velocity + softness * options_.impact_velocity;
-      // A contact point that comes to rest beside its plane may graze it earlier.
+      // In the simulation a contact point that comes to rest near the contact plane may touch earlier.
       near = near || (options_.at_rest && as_soft && touch.time < result_.time);
       if ((near && as_soft) || (near && mesh == most_meshes)) return ended(Status::done, {});
       if (mesh == most_meshes) return ended(Status::numerical_failure, "a simulation of the waveform touches at another time");
@@ -303,7 +304,8 @@ LeastTime least_time(const PreparedScene& prepared, const LeastTimeOptions& opti
 std::vector<DriveWaveforms> rest_to_rest_starts(const PreparedScene& prepared, Actuator actuator, double impact_velocity,
                                                 const Progress& progress) {
   constexpr int most_modes_followed = 4;
-  constexpr std::array ramps = {1.0 / 9, 1.0 / 18};  // periods of the first mode from one end of a range to the other
+  constexpr std::array ramps = {1.0 / 9,
+                                1.0 / 18};  // time from one end of a drive's range to the other, in periods of the first mode
   const double period = 2 * pi / prepared.model.basis().angular_frequencies()[0];
   std::vector<DriveWaveforms> found;
   if (prepared.model.modes() > most_modes_followed) return found;
@@ -322,7 +324,7 @@ std::vector<DriveWaveforms> rest_to_rest_starts(const PreparedScene& prepared, A
       const LeastTimeOptions options{.actuator = actuator, .impact_velocity = impact_velocity, .progress = own};
       std::ranges::move(LeastTimeSearch(smooth, options).ways_to_rest(plain_step(prepared, actuator)), std::back_inserter(found));
     } catch (const InvalidInput&) {
-      return {};  // a scene that first_touch_problem.h does not follow
+      return {};  // a scene that FirstTouchProblem refuses
     }
   }
   return found;
@@ -330,11 +332,11 @@ std::vector<DriveWaveforms> rest_to_rest_starts(const PreparedScene& prepared, A
 
 namespace {
 
-// Delays of the catch after the touch, in times of the touch. A catch without delay presses a beam whose modes are just
-// swinging back from the contact.
+// Delays of the catch after first contact, over the time of first contact. Without delay, the catch would pull while the modes
+// still swing back from the contact.
 constexpr std::array catch_delays = {0.0, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04};
 
-// The phases that can follow the touch of a way to it.
+// The catches that can follow the waveforms `path` until first contact, and their simulated closings.
 class AfterTouch {
  public:
   AfterTouch(const PreparedScene& prepared, const LeastTime& path, Actuator actuator)
@@ -346,10 +348,9 @@ class AfterTouch {
     until_touch_.waveforms = tables_of(first_touch_, path.course);
   }
 
-  // Returns the catch that rebounds least, among those that begin after `delay` and end up to a few times the time of the touch
-  // later.
+  // Returns the catch whose closing rebounds least, among catches that begin after `delay` and last at most `longest`.
   [[nodiscard]] Catch best_catch(double delay, const Progress& progress) const {
-    constexpr double longest = 3, step = 0.1;  // multiples of the time of the touch
+    constexpr double longest = 3, step = 0.1;  // multiples of the time of first contact
     const double period = 2 * pi / prepared_.model.basis().angular_frequencies()[0];
     Catch best;
     double least = std::numeric_limits<double>::infinity();
@@ -386,7 +387,7 @@ class AfterTouch {
   FirstTouchProblem first_touch_;
   DriveWaveforms plain_;
   const LeastTime& path_;
-  LeastTime until_touch_;  // the way, with waveforms that end at the touch
+  LeastTime until_touch_;  // path_ with waveforms that end at first contact
 };
 
 bool goes_before(const LimitLanding& a, const std::optional<LimitLanding>& b) {
@@ -397,7 +398,7 @@ bool goes_before(const LimitLanding& a, const std::optional<LimitLanding>& b) {
                        : own.major_bounce_height < other.major_bounce_height;
 }
 
-// All least times and landings of one limit; each is reported as it begins.
+// All least times and closings of one limit() call; progress is reported as each begins.
 class LimitStudy {
  public:
   LimitStudy(Limit& result, const Progress& progress)
@@ -431,11 +432,11 @@ class LimitStudy {
   }
 
  private:
-  static constexpr std::array quicker = {10.0, 3.0};  // multiples of the permitted speed
+  static constexpr std::array quicker = {10.0, 3.0};  // multiples of the permitted speed, for quicker closings
   static constexpr std::array speeds = {0.3, 1.0, 3.0, 10.0, 30.0, 100.0};
   static constexpr std::array peaks = {0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95};
 
-  // A speed that the user gave holds for the landing too.
+  // Faster first contacts are tried for the closing, unless the user gave a permitted speed.
   [[nodiscard]] bool may_be_quicker() const { return !result_.options.impact_velocity; }
   [[nodiscard]] bool has_peaks() const { return result_.options.curves && result_.options.actuator != Actuator::pzt; }
 
@@ -452,7 +453,7 @@ class LimitStudy {
     return known_.emplace(share, least_time(result_.given, other)).first->second;
   }
 
-  // Lands with the first of several catches whose landing is confirmed.
+  // Simulates closings on `path`, with several catches if `catches`, until one is bounce-free; stores the best in the result.
   void land(const LeastTime& path, bool catches) {
     if (path.status != Status::done) return;
     const AfterTouch after(result_.given, path, result_.options.actuator);
@@ -479,15 +480,15 @@ class LimitStudy {
   const Progress& progress_;
   LeastTimeOptions usual_;
   double parts_, done_ = 0;
-  std::map<double, LeastTime> known_;  // results by the speed over the permitted one
+  std::map<double, LeastTime> known_;  // results by the ratio of their speed to the permitted speed
 };
 
 }  // namespace
 
 namespace {
 
-// Refuses an electrode with a face on either side whose far face is nearer: it pushes the switch off its contact at any
-// voltage.
+// Refuses an electrode with faces on both sides if the far face is nearer: any voltage would pull the switch away from its
+// contact.
 void refuse_what_pulls_away(const PreparedScene& given, Actuator actuator) {
   if (actuator == Actuator::pzt || !has_pulling_electrode(given.scene.device)) return;
   const std::size_t k = searched_drive(given.scene.device);

@@ -29,15 +29,15 @@
 namespace softland {
 namespace {
 
-constexpr double time_share = 0.3;          // weight of the time in periods, beside the vibration in contact gaps
+constexpr double time_share = 0.3;          // weight of the opening time in periods; vibration in contact gaps has weight 1
 constexpr double outside_share = 5;         // extra weight of the vibration beyond the band
-constexpr double stays_closed = 10;         // cost of a switch that stays closed
-constexpr double touched_again = 0.5;       // cost of every touch after the switch has opened
+constexpr double stays_closed = 10;         // cost of a waveform under which the switch stays closed
+constexpr double touched_again = 0.5;       // additional cost of every contact after the switch has opened
 constexpr double opening_tolerance = 1e-5;  // tolerance of the integrator
-constexpr double seen_for = 1;              // periods in which a candidate's vibration is measured, after the drives stand
-constexpr double watched_for = 3;           // the same for a run that verifies the winner, at least
+constexpr double seen_for = 1;              // periods over which a candidate's vibration is measured, after all drives are at 0 V
+constexpr double watched_for = 3;           // periods over which the best waveform's vibration is measured, at least
 
-// Number of time constants for which the source of a drive has stood at its hold level.
+// Time for which sources are at their hold levels before the command to open, in their time constants.
 constexpr double settled_after = 50;
 
 class ReleaseSearch {
@@ -50,18 +50,18 @@ class ReleaseSearch {
         pulses_(given, options.actuator, hold_levels(signals_of(given.waveforms())), "release"),
         plain_(applied(pulses_.plain())) {}
 
-  /// Signals of the plain opening: every drive goes to 0 V at once.
+  /// Signals of the plain opening: every drive goes to 0 V at once, as far as its source can.
   [[nodiscard]] const std::vector<Signal>& plain() const { return plain_; }
   [[nodiscard]] std::vector<Signal> signals(std::span<const double> x) const { return applied(pulses_.commanded(x)); }
 
-  /// Returns the scene with the commanded voltages of all drives, each from its hold level on; with those of the plain opening
-  /// if `x` is empty.
+  /// Returns the scene with the commanded voltages of all drives at the point `x`, from the hold levels on; those of the plain
+  /// opening if `x` is empty.
   [[nodiscard]] SceneFile scene(std::span<const double> x) const {
     const std::vector<Corners> commanded = x.empty() ? pulses_.plain() : pulses_.commanded(x);
     const std::vector<std::string> names = given_.drive_names();
     DriveWaveforms waveforms;
     for (std::size_t k = 0; k < names.size(); ++k) {
-      if (names[k] == dispersion_drive) continue;  // no source drives it
+      if (names[k] == dispersion_drive) continue;  // the dispersion force has no source
       Table table;
       for (const auto& [time, voltage] : commanded[k]) {
         table.time.push_back(time);
@@ -78,7 +78,7 @@ class ReleaseSearch {
     return file;
   }
 
-  /// Simulates an opening of a switch, which may be a richer one of the same scene.
+  /// Simulates an opening of `model`, the switch of the scene or a model of this switch with more modes.
   [[nodiscard]] Opening open(const Switch& model, std::span<const double> closed, std::vector<Signal> signals, double tolerance,
                              double window, const std::atomic<bool>* stop = nullptr) const {
     Opening o{.signals = std::move(signals), .voltages_end = 0, .trajectory = {}, .figures = {}};
@@ -124,7 +124,8 @@ class ReleaseSearch {
     return all;
   }
 
-  // Returns the output of the source of drive k for these commanded points, after it has stood at the first one for long.
+  // Returns the applied voltage of drive k for the commanded voltages `points`, if the source was at the first voltage for
+  // long.
   [[nodiscard]] Signal applied(std::size_t k, Corners points) const {
     const DriverModel& source = given_.drives[k].source;
     const SourceErrors& errors = given_.drives[k].errors;
@@ -149,7 +150,7 @@ bool is_open_with_drives(const OpeningFigures& f, double band) {
   return f.status == Status::done && f.residual_vibration <= band;
 }
 
-// True if `a` is open for good sooner; with equal times, or none, if it leaves less vibration.
+// True if the opening `a` stays open sooner than `b`; with equal times, or none, if `a` leaves less vibration.
 bool better(const OpeningFigures& a, const OpeningFigures& b) {
   if (!std::isfinite(a.release_time)) return false;
   if (!std::isfinite(b.release_time)) return true;
@@ -178,7 +179,7 @@ DeviceOpenings summarised(const std::vector<OpeningFigures>& openings, double ba
           .overshoot = quantile_95(openings, &OpeningFigures::overshoot)};
 }
 
-// Returns the openings on devices; none if no device is held closed.
+// Returns the figures of varied devices; none if no device is closed under its hold levels.
 std::optional<OpeningsOnDevices> on_devices(const ReleaseSearch& search, const OpeningResult& r, const Progress& progress) {
   SceneFile file = r.given.scene.file;
   OpeningsOnDevices found{.spread_assumed = assume_spread(file), .plain = {}, .best = {}};

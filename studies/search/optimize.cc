@@ -24,25 +24,25 @@ namespace softland {
 namespace {
 
 constexpr std::size_t most_candidates = 8;  // most candidates of the search that are verified
-constexpr std::size_t most_sure = 4;        // most further ones, if those failed
-constexpr std::size_t most_of_family = 4;   // candidates of each family, if none was confirmed
-constexpr long fewest_for_landings = 1000;  // evaluations from which on landings at rest are worth their seconds
-constexpr double least_for_landings = 60;   // [s], likewise
-// Ends of the search, of that with gentler edges, and of that by the worst of beams, in parts of a budget in seconds. The rest
-// is for verifying the winner.
+constexpr std::size_t most_sure = 4;        // further candidates of each family that are verified by the target's own cost
+constexpr std::size_t most_of_family = 4;   // candidates of each family that are verified if no candidate was confirmed
+constexpr long fewest_for_landings = 1000;  // budget from which on starts that reach the contact at rest are computed
+constexpr double least_for_landings = 60;   // time budget from which on starts that reach the contact at rest are computed [s]
+// Ends of the search, of the search with slower edges, and of the search with several numbers of modes, as shares of a time
+// budget. The rest is for verifying the winner.
 constexpr double end_of_search = 0.6, end_of_gentle = 0.75, end_of_worst = 0.85;
-constexpr double soft_touch = 0.01;            // touch speed of landings at rest, over that of the plain step
-constexpr double distinct = 1.01;              // least ratio of the costs of two candidates
-constexpr std::size_t families_sifted = 2;     // families that are sifted by the worst of beams
-constexpr long evaluations_of_the_worst = 50;  // divisor of the budget for the search by the worst of beams
-constexpr long shortest_half = 100;            // evaluations of a budget that is not divided any more
-constexpr double opening = 0.6;                // share of the budget that several families divide before the best goes on
+constexpr double soft_touch = 0.01;            // impact speed of starts that reach the contact at rest, over the plain step's
+constexpr double distinct = 1.01;              // least ratio between the costs of two verified candidates
+constexpr std::size_t families_sifted = 2;     // families in which the search with several numbers of modes is run
+constexpr long evaluations_of_the_worst = 50;  // divisor of the budget for the search with several numbers of modes
+constexpr long shortest_half = 100;            // evaluations of a budget that is not divided into halves any more
+constexpr double opening = 0.6;                // share of the budget that all families get equally; the best family gets the rest
 
-// Numbers of candidates that are kept: see RunningSearch::tried.
+// Numbers of candidates in OptimizeResult::tried: see RunningSearch::tried().
 constexpr std::size_t kept_best = 100, kept_of_ladder = 150, kept_of_family = 15;
 
-// Returns the best of a search's improvements first, each distinctly worse than the one before: neighbours would fail for the
-// same reason.
+// Returns improvements of a search, the best first, each distinctly worse than its predecessor: similar candidates would fail
+// for the same reason.
 std::vector<Evaluation> candidates(const std::vector<Evaluation>& improvements) {
   std::vector<Evaluation> chosen;
   for (auto e = improvements.rbegin(); e != improvements.rend() && chosen.size() < most_candidates; ++e) {
@@ -52,10 +52,10 @@ std::vector<Evaluation> candidates(const std::vector<Evaluation>& improvements) 
   return chosen;
 }
 
-// One search: its families, and its reports while it runs.
+// One search: its waveform families, its log and its reports.
 class RunningSearch {
  public:
-  /// The family of each setting is its index. The search takes `seconds` [s] of the budget.
+  /// The index of each setting is the number of its family. The search gets `seconds` [s] of the budget `whole`.
   RunningSearch(const std::vector<SearchSetting>& settings, const OptimizeOptions& options, SearchBudget& whole, double seconds)
       : settings_(settings),
         options_(options),
@@ -71,8 +71,8 @@ class RunningSearch {
     }
   }
 
-  // Refines a landing that the scene holds already, and those that other searches have found. They are the first candidates,
-  // and the search starts there, or at the nearest waveform of its family.
+  // Adds the waveforms of the scene and of other searches as first candidates. The search starts at these waveforms, or at the
+  // nearest waveforms of its families.
   void begin() {
     const SearchSetting& setting = settings_.front();
     if (!setting.starts_as_step())
@@ -96,10 +96,10 @@ class RunningSearch {
     }
   }
 
-  // Adds a start to a search of one family.
+  // Adds the starting point `x` to a search in one family.
   void begin_at_point(const std::vector<double>& x) { families_.front().begin_at_point(x); }
 
-  // Finds landings at rest for a piezo and for several drives, which can bring all modes to rest.
+  // Finds starting waveforms that reach the contact with all modes at rest, for a piezo and for several drives.
   [[nodiscard]] std::vector<DriveWaveforms> rest_to_rest_starts() const {
     const SearchSetting& setting = settings_.front();
     const std::vector<DriveSearch>& shaped = setting.space.drives();
@@ -115,7 +115,7 @@ class RunningSearch {
     return all_;
   }
 
-  // Verifies the given landings and the best candidates of the search.
+  // Verifies the given waveforms and the best candidates of the search.
   void check(Verification& all) const {
     for (const FoundWaveform& given : landings_) all.add(given);
     std::vector<Evaluation> tried;
@@ -127,7 +127,7 @@ class RunningSearch {
       add(e);
       if (all.decided(e.value)) break;
     }
-    // Candidates of other families: neighbours ring the same modes that the scene does not have.
+    // Verify candidates of other families, since those of one family ring the same neglected modes.
     for (std::size_t k = 0; k < families_.size() && families_.size() > 1 && !all.confirmed(); ++k) {
       std::size_t added = 0;
       for (const Evaluation& e : candidates(improvements_of(log_.evaluations(k)))) {
@@ -137,8 +137,8 @@ class RunningSearch {
         ++added;
       }
     }
-    // If the best by the own cost failed the full run, verify others that promise more than what passed, the surest landings
-    // first. The winners of a search for another target are among them.
+    // For a target with its own cost, verify further candidates that cost less than the best verified one, in the order of the
+    // guide cost.
     if (options_.target.has_own_cost()) {
       for (const FamilySearch& family : families_) {
         for (std::size_t k = 0; k < most_sure; ++k) {
@@ -157,7 +157,7 @@ class RunningSearch {
     std::vector<std::vector<double>> points = {};
   };
 
-  // Ranks the candidates of every family by another cost; the family with the best comes first.
+  // Ranks the candidates of every family by the cost of `other`; the family with the best candidate comes first.
   [[nodiscard]] std::vector<Promising> promising(const SearchSetting& other) const {
     std::vector<Promising> all;
     for (std::size_t k = 0; k < families_.size(); ++k) {
@@ -175,7 +175,7 @@ class RunningSearch {
     return all;
   }
 
-  // Returns the best of all candidates that touch, a ladder of costlier ones, and the best of every family.
+  // Returns some of the candidates that touch: the best of all, evenly spaced ones by rank, and the best of every family.
   [[nodiscard]] std::vector<TriedWaveform> tried() const {
     std::vector<Evaluation> all;
     for (std::size_t k = 0; k < families_.size(); ++k) {
@@ -213,7 +213,7 @@ class RunningSearch {
     return options_.begins_with_half && !std::isfinite(budget_.seconds()) && evaluations >= 2 * shortest_half;
   }
 
-  // Divides the budget where that is asked for: the search with half of it runs first. Returns false if the search must end.
+  // Runs the search, with OptimizeOptions::begins_with_half first with half the budget. Returns false if the search must end.
   bool run_halves(long evaluations) {
     if (!is_divided(evaluations)) return run_undivided(evaluations);
     const long half = evaluations / 2;
@@ -228,16 +228,16 @@ class RunningSearch {
     const long before = all_.evaluations;
     if (families_.size() == 1)
       return go_on(0, evaluations, all_seconds, options_.more_evaluations, has_own ? Costs::both : Costs::same, before > 0);
-    // Search for bounce first, as a whole: no winner of that search is then better than one for another target.
+    // Search for bounce first, as a whole search: its winner is then a candidate for the other target.
     const long own = has_own ? evaluations / target_share : 0;
     const double bounce_seconds = all_seconds * (has_own ? 1 - 1.0 / target_share : 1);
     if (!run_families(evaluations - own, bounce_seconds, has_own ? Costs::guide : Costs::same)) return false;
-    // Search by the own cost next, from the best points of every family. The remaining budget counts gradients as well.
+    // Search by the target's own cost next, from the best points of every family. The remaining budget also counts gradients.
     const long rest = evaluations - (all_.evaluations - before);
     return !has_own || rest <= 0 || run_families(rest, budget_.seconds_left(), Costs::target);
   }
 
-  // Computes the own cost with the modes of the scene alone.
+  // Computes the target cost of an evaluation with the scene's number of modes only.
   [[nodiscard]] double own_cost(std::size_t family, const Evaluation& e) const {
     SearchSetting alone = settings_[family];
     alone.richer.clear();
@@ -253,8 +253,9 @@ class RunningSearch {
             .parameters = families_[k].named(e)};
   }
 
-  // Gives each family a share of the budget, and the rest to the best. By the cost of bounce, each begins at what those before
-  // it have found. By the own cost only the best does, as all would end in one valley. Returns false if the search must end.
+  // Runs each family with a share of the budget, and the best family with the rest. By the cost of bounce each family begins at
+  // the results of earlier families. By the target's own cost only the best family does so, since all would end in one minimum.
+  // Returns false if the search must end.
   bool run_families(long all_evaluations, double all_seconds, Costs costs) {
     const SearchBudget all(budget_, all_evaluations, all_seconds);
     const double share = opening / static_cast<double>(families_.size());
@@ -268,7 +269,7 @@ class RunningSearch {
     return go_on(leader(costs), rest, all.seconds_left(), options_.more_evaluations, costs, true);
   }
 
-  // `prepared()` returns the scene under these waveforms.
+  // Adds the given waveforms as a candidate and as a start. `prepared()` returns the scene with these waveforms.
   template <class MakePrepared>
   void refine(const std::vector<Signal>& drives, const DriveWaveforms& waveforms, const MakePrepared& prepared) {
     const double cost = settings_.front().price(drives).target;
@@ -289,7 +290,7 @@ class RunningSearch {
     log_.begin_with(given, can_be_written(waveforms) ? std::optional(landing.scene.scene.file) : std::nullopt);
   }
 
-  // Returns the family of the least cost; of equals the first.
+  // Returns the number of the family with the least cost; the first of equals.
   [[nodiscard]] std::size_t leader(Costs costs) const {
     std::size_t leader = 0;
     double least = std::numeric_limits<double>::infinity();
@@ -306,7 +307,7 @@ class RunningSearch {
     }
   }
 
-  // Runs a family once and adds its result to that of all. Returns false if the search must end.
+  // Runs the search of one family and adds its result to all_. Returns false if the search must end.
   bool go_on(std::size_t family, long evaluations, double time, long more, Costs costs, bool goes_on) {
     if (!(time > 0)) return false;
     const OptimizerResult now =
@@ -327,7 +328,7 @@ class RunningSearch {
     return now.termination != Termination::interrupted && now.termination != Termination::failure;
   }
 
-  // Takes the improvements of all families, in the order in which they ran.
+  // Copies the improvements of all families to all_, in the order of their runs.
   void take_improvements() {
     all_.improvements = improvements_of(log_.evaluations());
     if (all_.improvements.empty()) return;
@@ -347,9 +348,8 @@ class RunningSearch {
   std::uint64_t runs_ = 0;
 };
 
-// Continues a search whose result belongs to the modes of the scene: with gentle edges, then by the worst of beams. A search
-// with gentle edges is only sifted and polished by the latter. These evaluations are not on record: a resumed search makes them
-// again.
+// Continues a search whose winner is bounce-free only with the scene's number of modes: with slower edges, then with the worst
+// cost over several numbers of modes. These evaluations are not in the database file: a continued search makes them again.
 class SearchBeyondModes {
  public:
   SearchBeyondModes(const OptimizeOptions& options, SearchBudget& budget, Verification& verified)
@@ -361,7 +361,7 @@ class SearchBeyondModes {
     own_.on_improvement = {};
   }
 
-  /// Continues a search without gentle edges, which `gentle` has; returns the evaluations.
+  /// Continues a search with the slower edges of `gentle`, then by sift(). Returns the number of evaluations.
   long go_on(const RunningSearch& search, const std::vector<SearchSetting>& settings, const std::vector<SearchSetting>& gentle) {
     if (!verified_.belongs_to_modes()) return 0;
     if (gentle.empty()) return sift(search, settings);
@@ -373,7 +373,8 @@ class SearchBeyondModes {
     return sift(other, gentle);
   }
 
-  /// Continues a search with gentle edges, or whose drivers have no others; returns the evaluations.
+  /// Continues a search with the worst cost over several numbers of modes, in its best families. Returns the number of
+  /// evaluations.
   long sift(const RunningSearch& search, const std::vector<SearchSetting>& settings) {
     if (!verified_.belongs_to_modes() && !verified_.confirmed()) return evaluations_;
     const std::vector<RunningSearch::Promising> all = search.promising(by_the_worst_of_modes(settings.front()));
@@ -382,7 +383,7 @@ class SearchBeyondModes {
       if (!begin("searching on by the worst of more modes", options_.max_evaluations / evaluations_of_the_worst, end_of_worst))
         break;
       std::vector<SearchSetting> worst{by_the_worst_of_modes(settings[k])};
-      worst.front().family = 0;  // index of the only one
+      worst.front().family = 0;  // index of the only family
       own_.family = families_of(options_.family)[k];
       RunningSearch other(worst, own_, budget_, own_.max_seconds);
       for (const std::vector<double>& point : points) other.begin_at_point(point);
@@ -393,7 +394,7 @@ class SearchBeyondModes {
   }
 
  private:
-  // Returns false if no time is left.
+  // Prepares options for a further search. Returns false if no time is left.
   bool begin(std::string what, long evaluations, double end) {
     own_.max_evaluations = std::max(evaluations, 1L);
     own_.max_seconds = budget_.seconds_left(end);
@@ -438,10 +439,10 @@ double OptimizeResult::parameter(std::string_view name) const {
 
 namespace {
 
-// Scales the budget of a search on the nominal device to closings of its scene, and reports the estimate.
+// Reduces a default budget if the scene's closings are slow, and reports the estimated work.
 void fit_nominal_budget(const SearchSetting& setting, OptimizeOptions& options) {
   if (!options.counts_work && !options.on_estimate) return;
-  constexpr double by_evaluation = 1.5;  // closings per evaluation, with gradients and the runs that verify the winner
+  constexpr double by_evaluation = 1.5;  // work per evaluation in closings, with gradients and verification
   const ClosingWork one = closing_work(setting);
   const long asked = options.max_evaluations;
   if (options.counts_work) {
@@ -461,7 +462,7 @@ void fit_nominal_budget(const SearchSetting& setting, OptimizeOptions& options) 
 
 OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& asked) {
   OptimizeOptions options = asked;
-  static_cast<void>(optimizer_description(options.optimizer));  // throws for an unknown name
+  static_cast<void>(optimizer_description(options.optimizer));  // throws InvalidInput for an unknown name
   SearchBudget budget({.seconds = options.max_seconds, .stop = options.stop});
   const std::vector<SearchSetting> settings =
       search_settings(file, options.target, options.actuator, options.family,
@@ -476,7 +477,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& asked) {
   budget.leave_out([&] {
     if (options.on_start) options.on_start(searched_columns(searched, options.family));
   });
-  options.memory = asked.memory;  // the caller's memory may exist only from now on
+  options.memory = asked.memory;  // the caller may create the memory in on_start
   RunningSearch search(searched, options, budget,
                        std::max(budget.seconds_left(may_go_on ? end_of_search : end_of_worst), budget.seconds() / 4));
   search.begin();

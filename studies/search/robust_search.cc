@@ -23,22 +23,23 @@ namespace softland {
 namespace {
 
 constexpr std::uint64_t devices_of_choice = 512, least_of_verdict = 500;
-constexpr std::size_t most_of_race = 3;                       // most candidates that a race places, by either measure
+constexpr std::size_t most_of_race = 3;                       // largest number of candidates from a race, by each measure
 constexpr double most_times = 5, most_times_of_landings = 7;  // multiples of the plain step's 95th percentile closing time
-constexpr double margin = 0.98;                               // share of the step's figures, in the choice
+constexpr double margin = 0.98;                               // permitted share of the plain step's figures, in the choice
 constexpr double more_open = 0.005;                           // permitted excess of the share of open devices
 constexpr std::uint64_t which_searched = 0, which_chosen = 1;
-constexpr double least_of_race = 0.4, end_of_race = 0.75;  // shares of a budget of time
+constexpr double least_of_race = 0.4,
+                 end_of_race = 0.75;  // least and largest share of a time budget for the work before the verdict
 constexpr std::string_view quasi_static_short = "quasi-static:2",
-                           approaches = "+quasi-static+quasi-static:2";  // families searched where there is a stable path
+                           approaches = "+quasi-static+quasi-static:2";  // families searched if the switch can be carried to its
+                                                                         // contact through stable equilibria
 constexpr std::string_view usual_prefix = "usual_limit.";
-constexpr double alike = 1.05;               // multiple of the least cost that the devices of the choice do not tell from it
-constexpr double little_more = 1.25;         // multiple of the least cost up to which a sooner waveform wins without a path
-constexpr std::uint64_t path_devices = 512;  // devices that tell the share with a stable path
-// Paces of the quasi-static approach: the time to a steady contact, in units of that of the plain step. The approach takes half
-// of it, all of it, or twice as much.
+constexpr double alike = 1.05;        // candidates up to this multiple of the least cost count as equal
+constexpr double little_more = 1.25;  // multiple of the least cost up to which a quicker waveform wins, without a stable path
+constexpr std::uint64_t path_devices = 512;  // devices for computing the share with a stable path
+// Paces of the quasi-static approach: time until a steady contact, over that of the plain step. The third pace is 1.
 constexpr double fast = 0.49, slow = 1.96;
-constexpr double usual_closings_at_pace = 30'000;  // closings of a search at one of them: longer waveforms get fewer
+constexpr double usual_closings_at_pace = 30'000;  // closings of a search at one pace; fewer for longer waveforms
 
 bool closes(const DeviceOutcome& o) { return o.closed(); }
 
@@ -48,7 +49,7 @@ bool is_about_time(const Condition& one) {
   return is_upper && one.figure.unit == "s" && one.limit > 0;
 }
 
-// Returns the settings of the families that the scene has room for, and their names joined by +.
+// Returns the settings of the families that can be searched within the scene's limits, and their names joined by +.
 std::pair<std::vector<SearchSetting>, std::string> settings_of_race(const SceneFile& file, const OptimizeOptions& options,
                                                                     const RobustSearchOptions& devices,
                                                                     const Progress& progress) {
@@ -126,7 +127,7 @@ RobustSearch::RobustSearch(const SceneFile& file, const OptimizeOptions& options
   const std::vector<SearchSetting> gentle = with_gentle_edges(settings, options.actuator, families);
   settings_ = begins_gently(gentle, options.starts) ? gentle : std::move(settings);
   names_ = families_of(families);
-  // Raced families come first: the others are searched at paces of their own.
+  // The families of the race come first, then the quasi-static ones, which search_paces() searches.
   while (raced_ < names_.size() && !is_quasi_static(names_[raced_])) ++raced_;
   if (raced_ < names_.size()) approach_ = settings_[raced_].space.quasi_static()->approach();
   if (!devices_.is_of_before) usual_room_ = within_usual_room(raced_settings(), options_.actuator, names_);
@@ -134,9 +135,8 @@ RobustSearch::RobustSearch(const SceneFile& file, const OptimizeOptions& options
   fit_budget();
 }
 
-// Sets the closings of the race and the devices of the verdict. The race gets the usual closings scaled to the work of one, but
-// never too few for a search to be meaningful. The verdict shrinks in proportion, but keeps enough devices for its 95th
-// percentiles.
+// Sets the number of closings of the race and of fresh devices. If closings are slow, the race gets fewer, but enough for a
+// meaningful search. Fresh devices are reduced in proportion, but remain enough for 95th percentiles.
 void RobustSearch::fit_budget() {
   race_length_ = devices_.closings;
   verdict_ = devices_.verdict;
@@ -154,7 +154,7 @@ void RobustSearch::fit_budget() {
 }
 
 SearchEstimate RobustSearch::estimate(SearchEstimate nominal) const {
-  // Rows of the verdict over the whole window count as several closings of a search.
+  // Work per fresh device, in closings of a search.
   constexpr double rows = 20;
   const double one = device_share * (approach_ ? slow_approach : 1) * nominal.closing;
   const double searches = usual_room_.empty() || devices_.are_a_budget ? 1.5 : 2.25;
@@ -169,7 +169,7 @@ FamilyColumns RobustSearch::columns() const {
   std::string families;
   for (const std::string& name : names_) families += (families.empty() ? "" : "+") + name;
   FamilyColumns all = searched_columns(settings_, families);
-  // Append the families within the usual limits after the others.
+  // Append the families within the default voltage limits.
   for (std::size_t k = 0; k < usual_room_.size(); ++k) {
     all.families.push_back(all.families[k]);
     for (std::string& name : all.families.back()) name.insert(0, usual_prefix);
@@ -218,8 +218,8 @@ std::vector<SearchSetting> RobustSearch::raced_settings() const {
   return {settings_.begin(), settings_.begin() + static_cast<std::ptrdiff_t>(raced_)};
 }
 
-// Races within the usual limits first if the scene's are wider. The wider race begins with their winner, which it could miss by
-// itself.
+// Runs a race within the default voltage limits first if the scene's limits are wider. The race within the scene's limits
+// begins with the winner of the first one.
 void RobustSearch::race_all() {
   const std::vector<SearchSetting> raced = raced_settings();
   RaceOptions own = race_options();
@@ -238,7 +238,7 @@ void RobustSearch::race_all() {
 }
 
 std::vector<Pace> RobustSearch::paces_of_search() const {
-  // Each pace uses the shaper that suits it, if both are searched.
+  // A quick pace uses the short input shaper, if both shapers are searched.
   const auto of = [this](double times) {
     constexpr double short_below = 0.75;
     const bool is_short = times < short_below && names_.back() == quasi_static_short;
@@ -285,7 +285,7 @@ void RobustSearch::make_aims(const std::vector<DeviceOutcome>& step, const FreeT
   const double step_time = quantile_95(step, key_of(&Metrics::initial_contact_time));
   const std::span<const Figure> figures = device_figures;
   tail_aim_ = {.measure = parse_robust_measure("cvar:0.9", figures), .conditions = conditions_};
-  // A bound on time in the user's conditions takes the place of the price.
+  // Time costs nothing if a condition of the user bounds a time.
   free_ = free;
   tail_aim_.free = free;
   if (std::ranges::any_of(conditions_, is_about_time)) tail_aim_.free.until = std::numeric_limits<double>::infinity();
@@ -299,16 +299,17 @@ void RobustSearch::make_aims(const std::vector<DeviceOutcome>& step, const FreeT
   aims_.share.conditions.push_back(bound(most_times_of_landings));
 }
 
-// True if a condition of the user bounds the first touch; it takes the place of the usual bound.
+// True if a condition of the user bounds the time of first contact, instead of the default bound.
 bool RobustSearch::says_when_to_close() const {
   return std::ranges::any_of(
       conditions_, [](const Condition& one) { return one.figure.member == Figure::Member(&Metrics::initial_contact_time); });
 }
 
-// Ends the searches early enough within a budget of time that the verdict fits into it. They keep a part of the budget in any
-// case. `closing` is the time that one device takes [s].
+// Limits the time of the searches, so that the verdict fits into the time budget, but not below a share of the budget.
+// `closing` is the computing time per device [s].
 void RobustSearch::reserve_for_verdict(double closing, double reserved) {
-  constexpr double rows = 20;  // work of the verdict in windows of a search: three whole ones, three calibrated rows, the front
+  constexpr double rows =
+      20;  // work per fresh device in closings of a search: three whole windows, three calibrated rows, the Pareto front
   const double verdict = rows * static_cast<double>(verdict_) * closing, all = options_.max_seconds;
   const double end = std::clamp(all - verdict, least_of_race * all, end_of_race * all) - reserved;
   before_verdict_.emplace(budget_, budget_.left(), end - budget_.elapsed());
@@ -344,7 +345,7 @@ ChosenFrom RobustSearch::candidate_of(const Contender& contender) const {
   return c;
 }
 
-// Adds the best of a race by either measure to the pool.
+// Adds the best candidates of a race by each measure to the pool.
 void RobustSearch::take(std::vector<ChosenFrom>& pool, RaceResult& raced, bool is_in_usual_room) const {
   for (const bool by_share : {false, true}) {
     std::ranges::stable_sort(raced.contenders, {}, [&](const Contender& r) { return by_share ? r.share : r.tail; });
@@ -357,7 +358,7 @@ void RobustSearch::take(std::vector<ChosenFrom>& pool, RaceResult& raced, bool i
   }
 }
 
-// Places the winners of the races on the devices of the choice.
+// Judges the best candidates of all races and paces on the devices of the choice.
 void RobustSearch::choose() {
   progress_.tell("choosing on other devices", 0);
   std::vector<ChosenFrom> pool;
@@ -367,7 +368,8 @@ void RobustSearch::choose() {
   for (ChosenFrom& one : pool) place(std::move(one));
 }
 
-// Judges an intermediate candidate on the devices of the choice. Reports it if it leads and is no harder than the plain step.
+// Judges an intermediate candidate on the devices of the choice. Reports the candidate if it is the best so far and keeps the
+// bounds of the choice.
 void RobustSearch::look(const Contender& contender) {
   if (budget_.given_up() || devices_.is_of_before || progress_.stopped()) return;
   std::vector<DeviceOutcome> outcomes = on_others(contender.waveforms);
@@ -418,7 +420,7 @@ std::vector<DeviceOutcome> RobustSearch::on_others(const DriveWaveforms& wavefor
 // Judges a candidate by its outcomes on the devices of the choice.
 RobustSearch::Placed RobustSearch::judged(ChosenFrom one, const std::vector<DeviceOutcome>& outcomes) const {
   RobustAim aim = aims_.tail;
-  if (approach_) aim.conditions = conditions_;  // a slow touch does no harm if it is soft
+  if (approach_) aim.conditions = conditions_;  // no bound on the time of first contact
   one.bounce_free = share_of(outcomes, is_bounce_free);
   one.tail = others_->value(outcomes, aim);
   one.measured = others_->measured(outcomes, aim);
@@ -439,8 +441,8 @@ bool RobustSearch::Placed::is_before(const Placed& other) const {
   return rank < other.rank;
 }
 
-// Moves the soonest candidate to the front among those that cost a little more than the least. Voltages beyond the usual limits
-// find sooner candidates at that cost: none of them goes before the winner within the usual limits if it costs more.
+// Moves the candidate that touches first to the front, among candidates that cost at most little_more times the least. It must
+// not cost more than the candidate that would win within the default voltage limits.
 void RobustSearch::prefer_sooner(std::vector<Placed>& sorted) {
   const auto soonest = [&](double most, bool in_usual_room) {
     double least = std::numeric_limits<double>::infinity();
@@ -463,10 +465,11 @@ void RobustSearch::prefer_sooner(std::vector<Placed>& sorted) {
 std::vector<ChosenFrom> RobustSearch::placed() const {
   std::vector<Placed> sorted = placed_;
   std::ranges::stable_sort(sorted, [](const Placed& a, const Placed& b) { return a.is_before(b); });
-  // Without a stable path the fall from the fold sets the limit, so that waiting longer gains little.
+  // Without a stable path the switch falls from the pull-in point onto its contact, so that slower waveforms are hardly softer.
   if (!approach_ && free_.until > 0 && !sorted.empty() && sorted.front().candidate.is_good_enough && !sorted.front().lands_half)
     prefer_sooner(sorted);
-  // The few devices without a path make costs alike: prefer the candidate with the softest 95th percentile among those.
+  // Costs are similar because of the few devices without a stable path: prefer the lowest 95th percentile of impact speed among
+  // similar costs.
   if (approach_ && !sorted.empty() && sorted.front().candidate.is_good_enough) {
     auto softest = sorted.begin();
     for (auto one = sorted.begin(); one != sorted.end(); ++one) {

@@ -16,22 +16,22 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t scouted_on = 16, ranked_on = 64;  // devices: candidates of the nominal search
-constexpr std::size_t kept_of_scouted = 24;             // candidates, by either measure
-constexpr std::size_t most_of_ranked = 2;               // candidates, by either measure
-constexpr std::size_t most_judged = 3;                  // winners, until one is not worse than the plain step
+constexpr std::size_t scouted_on = 16, ranked_on = 64;  // numbers of devices on which candidates of the nominal search are ranked
+constexpr std::size_t kept_of_scouted = 24;             // best candidates on scouted_on devices, by each measure
+constexpr std::size_t most_of_ranked = 2;               // best candidates on ranked_on devices, by each measure
+constexpr std::size_t most_judged = 3;  // candidates judged on fresh devices, until one is not worse than the plain step
 constexpr std::size_t most_of_front = 6;
-constexpr double end_of_drawing = 0.3;  // share of a budget of time
+constexpr double end_of_drawing = 0.3;  // end of the nominal search, as a share of a time budget
 
 constexpr const char *fast_row = "fast", *soft_row = "soft";
-// Time that devices of a choice may take until a steady contact, over that under the plain step.
+// Largest time until a steady contact of the choices "fast", "default" and "soft", over that of the plain step.
 constexpr double fast_within = 0.5, usual_within = 1, soft_within = 2;
-constexpr double by_chance = 1.02;      // most that devices of another sample wait longer, as a factor
-constexpr double worth_choosing = 0.9;  // a choice below this share of the default's impact velocity or time is another one
+constexpr double by_chance = 1.02;      // factor on these times that allows for other random devices
+constexpr double worth_choosing = 0.9;  // a further choice must be below this share of the default's impact velocity or time
 constexpr double fewer_bounce_free = 0.05;
 constexpr std::size_t drawn_devices = 50, instants_of_course = 240;
-constexpr double units_of_gap = 5000;  // units in the contact gap
-constexpr double after_steady = 1.1;   // multiple of the time until steady contact up to which courses are drawn
+constexpr double units_of_gap = 5000;  // resolution of the stored gaps, in units per contact gap
+constexpr double after_steady = 1.1;   // end of the stored gaps over time, in times until steady contact
 
 DevicesFindings::Row told(const DevicesRow& row) {
   const DriveRobustness& drive = row.judged;
@@ -80,10 +80,10 @@ class RobustSearchStudy {
         choose_of_all();
         judge();
       }
-    } catch (const Interrupted&) {  // the results so far stand
+    } catch (const Interrupted&) {  // return the results so far
     }
     searched_.give_up();
-    if (beside_.valid()) beside_.wait();  // its findings are read from here on
+    if (beside_.valid()) beside_.wait();  // the results of this thread are read from here on
     if (progress_.stopped() && result_->rows.empty()) take_leader();
     result_->interrupted = progress_.stopped();
     if (!result_->rows.empty()) tell_findings();
@@ -92,7 +92,7 @@ class RobustSearchStudy {
 
  private:
   [[nodiscard]] const SearchSetting& first() const { return searched_.first(); }
-  // Tells the progress of the search for the nominal design alone while that runs.
+  // Reports progress, but not while the search on the nominal device runs, which reports its own.
   void tell(std::string_view what, double part) const {
     if (options_.on_preparation && !searches_drawing_) options_.on_preparation(what, part);
   }
@@ -109,14 +109,14 @@ class RobustSearchStudy {
     }
   }
 
-  // Options of the nominal search. It keeps the waveforms that may do better on devices, and names its parameters among those
-  // of all searches.
+  // Options of the search on the nominal device: its candidates are stored for ranking on devices, and on_start gets the
+  // parameters of all searches.
   OptimizeOptions options_of_drawing() {
     OptimizeOptions own = options_;
     own.keep_tried = true;
     if (std::isfinite(own.max_seconds)) own.max_seconds = searched_.budget().seconds_left(end_of_drawing);
     own.max_seconds = std::max(own.max_seconds, 1e-3);
-    own.on_improvement = {};  // best.toml is for devices
+    own.on_improvement = {};  // best.toml is not for the nominal device
     own.on_estimate = [this](const SearchEstimate& of_drawing) {
       if (options_.on_estimate) options_.on_estimate(searched_.estimate(of_drawing));
     };
@@ -124,14 +124,14 @@ class RobustSearchStudy {
       FamilyColumns all = of_drawing;
       std::ranges::copy(searched_.columns().families, std::back_inserter(all.families));
       if (options_.on_start) options_.on_start(all);
-      drawing_options_.memory = options_.memory;  // the memory may exist only from now on
+      drawing_options_.memory = options_.memory;  // the caller may create the memory in on_start
       search_beside(of_drawing.families.size());
     };
     return own;
   }
 
-  // Starts the search over devices first. The search for the nominal design begins when a first waveform was judged on devices,
-  // which leaves a core idle at times.
+  // Starts the search over devices, and returns when it has judged a first waveform; then the search on the nominal device
+  // begins. `before` is the number of families of the latter.
   void search_beside(std::size_t before) {
     const bool is_beside = options_.jobs > 1, is_timed = std::isfinite(options_.max_seconds);
     const double of_drawing = is_timed ? end_of_drawing * options_.max_seconds : 0;
@@ -139,7 +139,7 @@ class RobustSearchStudy {
     const std::future<void> look = looked.get_future();
     beside_ = std::async(is_beside ? std::launch::async : std::launch::deferred,
                          [this, before, reserved = is_beside ? 0 : of_drawing, given = std::move(looked)]() mutable {
-                           std::promise<void> own = std::move(given);  // nobody waits beyond the end of this
+                           std::promise<void> own = std::move(given);  // destroyed when this task ends, which ends the wait below
                            searched_.run(
                                before, [&own] { own.set_value(); }, reserved);
                          });
@@ -153,7 +153,7 @@ class RobustSearchStudy {
     searches_drawing_ = true;
   }
 
-  // Takes what led when the search was stopped before the verdict.
+  // Makes the best candidate so far the winner of a search that was interrupted before the verdict.
   void take_leader() {
     const ChosenFrom* leader = searched_.leader();
     if (leader == nullptr) return;
@@ -182,7 +182,7 @@ class RobustSearchStudy {
     return first().space.searched(result_->drawing.best_scene->drives.waveforms());
   }
 
-  // Ranks what the nominal search has tried on devices.
+  // Returns the waveforms of the search on the nominal device that are best on devices.
   std::vector<ChosenFrom> ranked_again() {
     std::vector<ChosenFrom> all;
     for (TriedWaveform& one : result_->drawing.tried)
@@ -200,7 +200,7 @@ class RobustSearchStudy {
     return all;
   }
 
-  // Returns the best `kept` by either measure.
+  // Returns the best `kept` candidates by each measure.
   std::vector<ChosenFrom> best_on(std::vector<ChosenFrom> all, std::size_t devices, std::size_t kept) {
     struct Ranked {
       double tail, share;
@@ -242,7 +242,7 @@ class RobustSearchStudy {
       if (one.name != default_choice) drives.push_back(named(one.name.c_str(), one.candidate));
     }
     if (undelayed_) drives.push_back(named(undelayed_row, *undelayed_));
-    drives.push_back(of_candidate(0));  // the report is about the last one
+    drives.push_back(of_candidate(0));  // the last drive is the one that reports describe
     result_->verdict = robustness(result_->varied, drives, verdict_options(), progress_);
     result_->interrupted = result_->verdict.interrupted;
     add_row(plain_step_row, plain_step(first().given, options_.actuator));
@@ -273,7 +273,7 @@ class RobustSearchStudy {
     return same_drives(given.commanded(first().drives(a.waveforms)), given.commanded(first().drives(b.waveforms)));
   }
 
-  // Makes the first candidate the default, and adds a sooner and a softer one where they differ from it.
+  // Makes the first candidate the default choice, and adds a quicker and a softer choice if they differ from the default.
   void make_choices() {
     const ChosenFrom& usual = result_->candidates.front();
     const double until = searched_.free().until, tau = usual.waited / until;
@@ -303,8 +303,8 @@ class RobustSearchStudy {
     return {.name = name, .waveforms = searched_.all_drives(one.waveforms), .calibration = searched_.known().calibration()};
   }
 
-  // Returns the scene over a window that holds the whole of every waveform that is judged, and is at least as long as the plain
-  // step bounces.
+  // Returns the scene with a window that contains all waveforms of the choices completely, and the bounces under the plain
+  // step.
   [[nodiscard]] PreparedScene over_whole_window(PreparedScene given) const {
     double last = 0;
     const auto consider = [&](const ChosenFrom& one) {
@@ -322,7 +322,7 @@ class RobustSearchStudy {
     return given;
   }
 
-  // Takes the waveform of a row with less knowledge of the device if it lands better: more knowledge allows it too.
+  // Replaces the waveform of `row` by that of `other`, if `other` needs a less precise calibration and closes better.
   static void inherit(DevicesRow& row, const DevicesRow& other) {
     const auto includes = [](const std::optional<double>& more, const std::optional<double>& less) {
       return !less || (more && *more <= *less);
@@ -375,7 +375,7 @@ class RobustSearchStudy {
   }
   [[nodiscard]] NamedDrive of_candidate(std::size_t n) const { return named(for_the_devices, result_->candidates[n]); }
 
-  // Adds the row of a judged drive, found by its name or by equal signals.
+  // Adds a row with the results of a judged drive, which is found by its name or by equal signals.
   void add_row(const char* name, const DriveWaveforms& waveforms) {
     const std::vector<DriveRobustness>& drives = result_->verdict.drives;
     auto found = std::ranges::find(drives, std::string_view(name), &DriveRobustness::name);
@@ -393,7 +393,7 @@ class RobustSearchStudy {
     return *std::ranges::find(result_->rows, std::string_view(for_the_devices), &DevicesRow::name);
   }
 
-  // Decides the winner: the first candidate that is not worse than the plain step, else the step itself.
+  // Decides the winner on the fresh devices: the first candidate that is not worse than the plain step, else the plain step.
   void decide() {
     const double significant = first().given.scene.metrics.significant_rebound;
     std::vector<DriveRobustness>& drives = result_->verdict.drives;
@@ -432,7 +432,7 @@ class RobustSearchStudy {
       findings().conditions.push_back(fulfilled(row_of_devices().judged.outcomes, condition));
   }
 
-  // Replaces the winner by a sooner choice that is not worse than it, nor than the plain step.
+  // Replaces the winner by a quicker choice, if that is not worse than the winner and than the plain step.
   void prefer_sooner(const DriveRobustness& step) {
     const double significant = first().given.scene.metrics.significant_rebound;
     const auto fast = std::ranges::find(result_->choices, std::string_view(fast_row), &DeviceChoice::name);
@@ -463,7 +463,7 @@ class RobustSearchStudy {
     }
   }
 
-  // Judges the choices on the fresh devices, and leaves out those that a sooner one equals in speed, rebound and force.
+  // Judges the choices on the fresh devices, and removes a choice that a quicker choice equals in speed, rebound and force.
   void decide_choices() {
     std::vector<DeviceChoice> all = std::exchange(result_->choices, {});
     if (result_->best.plain_step_wins) return;
@@ -494,7 +494,7 @@ class RobustSearchStudy {
     result_->choices = std::move(kept);
   }
 
-  // Returns the scene of these waveforms in volts, over the window of the verdict.
+  // Returns the scene with the waveforms in volts, over the window of the verdict.
   [[nodiscard]] SceneFile scene_of(const DriveWaveforms& waveforms) const {
     SceneFile file = with_waveforms(result_->drawing.baseline_scene, waveforms);
     if (result_->varied.duration > first().given.duration)
@@ -502,7 +502,7 @@ class RobustSearchStudy {
     return file;
   }
 
-  // Simulates and confirms the winner on the nominal device.
+  // Makes the waveforms the winner: simulates and confirms the closing of the nominal device.
   void win(const DriveWaveforms& waveforms) {
     OptimizeResult& best = result_->best;
     const OptimizeResult& drawing = result_->drawing;
@@ -520,7 +520,7 @@ class RobustSearchStudy {
     best.baseline_cost = searched_.cost().value(result_->verdict.drives.front().outcomes, searched_.aims().tail);
   }
 
-  // Draws the courses until both drives carry a steady force, if they do.
+  // Computes contact gaps of devices over time, under the plain step and the winner, until the contact force is steady.
   void draw_courses() {
     if (result_->best.plain_step_wins) return;
     const DriveRobustness &step = result_->verdict.drives.front(), &own = row_of_devices().judged;
@@ -541,7 +541,7 @@ class RobustSearchStudy {
     findings().courses = {.end = end, .unit = unit, .step = courses(step), .own = courses(own)};
   }
 
-  // Finds the candidates that no other beats in both time and softness, and judges them on the devices of the verdict.
+  // Finds the Pareto front of the candidates in time and impact speed, and judges its candidates on the fresh devices.
   void front() {
     std::vector<const ChosenFrom*> kept;
     for (const ChosenFrom& one : result_->candidates) {
@@ -564,7 +564,7 @@ class RobustSearchStudy {
     std::ranges::stable_sort(findings().front, {}, &FrontPoint::first_touch);
   }
 
-  // Collects the findings that were not noted on the way.
+  // Adds the findings that were not stored earlier.
   void tell_findings() {
     DevicesFindings& d = findings();
     const std::optional<Closing>& drawn = result_->drawing.best;
@@ -615,15 +615,16 @@ class RobustSearchStudy {
   std::atomic<bool> searches_drawing_ = false;
   RobustSearch searched_;
   OptimizeOptions drawing_options_;
-  std::optional<RobustSearchResult> result_;  // none before the search for the nominal design
-  std::optional<ChosenFrom> undelayed_;       // the best whose electrode steps at t = 0, if others may step later
-  std::future<void> beside_;                  // the last member: what it uses outlives it
+  std::optional<RobustSearchResult> result_;  // none before the search on the nominal device
+  std::optional<ChosenFrom>
+      undelayed_;             // the best candidate whose electrode steps at t = 0, if that of other candidates may step later
+  std::future<void> beside_;  // last member, so that the members used by its thread outlive it
 };
 
 }  // namespace
 
 void share_budget(OptimizeOptions& options, RobustSearchOptions& devices) {
-  constexpr long share_of_drawing = 5;  // divisor
+  constexpr long share_of_drawing = 5;  // divisor of the budget for the search on the nominal device
   const long all = options.max_evaluations;
   options.max_evaluations = std::max(1L, all / share_of_drawing);
   devices.closings = all - options.max_evaluations;

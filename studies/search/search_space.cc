@@ -18,9 +18,10 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double rounding = 1e-9;  // share of the distance of two bounds: a scene file writes rounded numbers
+constexpr double rounding =
+    1e-9;  // tolerance of a bound, as a share of the variable's range, since numbers in a scene file are rounded
 
-/// The families that "pulse" or "main=step,pzt=pulse" names for the drives.
+/// The waveform family of each drive, from a text like "pulse" or "main=step,pzt=pulse".
 class FamilyOfDrives {
  public:
   explicit FamilyOfDrives(const std::string& text) : text_(text) {
@@ -66,8 +67,8 @@ class FamilyOfDrives {
   std::map<std::string, std::string> named_;
 };
 
-// Minimises the squares of `apart` from a start, within the bounds, by steps of Gauss and Newton. They are shortened until they
-// help (Marquardt 1963).
+// Minimises the sum of squares of the residuals `apart`, from the start `x` and within the bounds of the variables, by
+// Gauss-Newton steps with the damping of Marquardt (1963).
 template <class Apart>
 std::vector<double> fitted(std::vector<double> x, const std::vector<Variable>& variables, const Apart& apart) {
   constexpr int most_steps = 40;
@@ -180,9 +181,9 @@ std::optional<std::vector<double>> DriveSearch::parameters(const Waveform& wavef
 
 namespace {
 
-constexpr int instants = 250;  // instants at which waveforms are compared
+constexpr int instants = 250;  // number of instants at which waveforms are compared
 
-// Returns what drives the beam in a signal until `end`: the square of an electrode's voltage, or the piezo's voltage.
+// Returns samples of a signal until `end` [s]: the square of an electrode's voltage with its sign, or the piezo's voltage.
 VectorXd course_of(const DriveSearch& drive, const Signal& signal, double end) {
   VectorXd all(instants);
   for (int i = 0; i < instants; ++i) {
@@ -193,12 +194,12 @@ VectorXd course_of(const DriveSearch& drive, const Signal& signal, double end) {
 }
 
 double end_of_course(const DriveSearch& drive, const Signal& given) {
-  constexpr double beyond = 1.25, least = 2.5;  // multiples of its last breakpoint, and of the first touch
+  constexpr double beyond = 1.25, least = 2.5;  // multiples of the last breakpoint, and of the time of first contact
   return std::max(beyond * given.breakpoints().back(), least * drive.first_touch);
 }
 
-// Returns the point at which `course` differs least from the wanted one. `about_hold` is the sum of squares of the wanted
-// course about its hold level.
+// Returns the point at which the samples `course` differ least from `wanted`. `about_hold` is the mean square of `wanted` about
+// its hold level.
 template <class Course>
 std::vector<double> nearest_point(const std::vector<Variable>& variables, const std::vector<std::vector<double>>& starts,
                                   const Course& course, const VectorXd& wanted, double about_hold) {
@@ -214,7 +215,7 @@ std::vector<double> nearest_point(const std::vector<Variable>& variables, const 
     if (left < fewest) fewest = left, best = std::move(fit);
   };
   for (const std::vector<double>& start : starts) fit_from(start);
-  // Search without slopes for families of steps, whose times have none.
+  // Search without derivatives for families of steps: their samples have no derivatives with respect to times.
   if (fewest > near_enough * about_hold) {
     Problem problem;
     problem.variables = variables;
@@ -254,7 +255,7 @@ std::string DriveSearch::misfit(const Waveform& waveform) const {
 
 namespace {
 
-// Returns the own waveform of this name, or null.
+// Returns the waveform from the user's code with this name, or null.
 std::shared_ptr<const OwnWaveform> own_of(const OwnWaveforms& all, const std::string& name) {
   const auto found = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one != nullptr && one->name() == name; });
   return found == all.end() ? nullptr : *found;
@@ -388,7 +389,7 @@ DriveWaveforms SearchSpace::waveforms(std::span<const double> x) const {
 }
 
 std::optional<std::vector<double>> SearchSpace::parameters(const DriveWaveforms& waveforms) const {
-  if (joint_) return std::nullopt;  // its waveforms are tables
+  if (joint_) return std::nullopt;  // waveforms of the quasi-static family are tables, whose parameters cannot be recovered
   std::vector<double> all;
   for (const DriveSearch& d : drives_) {
     const auto found = waveforms.find(d.drive);
@@ -409,7 +410,7 @@ std::vector<double> SearchSpace::nearest(const DriveWaveforms& waveforms) const 
   return all;
 }
 
-// Every drive is scaled by the largest value of what drives the beam in it.
+// Each drive's samples (course_of()) are scaled by their largest value.
 std::vector<double> SearchSpace::nearest_of_all(const DriveWaveforms& given) const {
   std::vector<double> scales;
   double end = 0, hold = 0;

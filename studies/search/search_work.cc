@@ -11,7 +11,7 @@ namespace {
 
 class NoObserver final : public ClosingObserver {};
 
-// Returns the first waveforms. A waveform of a user's own may throw, which the search itself takes for a bad candidate.
+// Returns the waveforms of the first start. With waveforms from the user's code, which may throw exceptions, returns none.
 DriveWaveforms first_waveforms(const SearchSetting& setting) {
   const bool has_own = std::ranges::any_of(setting.space.drives(), [](const DriveSearch& drive) { return bool(drive.own); });
   return has_own ? DriveWaveforms() : setting.space.waveforms(setting.space.starts().front());
@@ -20,7 +20,8 @@ DriveWaveforms first_waveforms(const SearchSetting& setting) {
 }  // namespace
 
 ClosingWork closing_work(const SearchSetting& setting) {
-  constexpr double points_beside = 8, usual_points = 32;  // cost of a right-hand side besides its points, as a number of points
+  constexpr double points_beside = 8, usual_points = 32;  // work of a right-hand side, in quadrature points: what does not depend
+                                                          // on the points, and the usual number
   const Switch& model = setting.given.model;
   const double points = points_beside + static_cast<double>(model.quadrature().points());
   ClosingWork most;

@@ -28,7 +28,7 @@ void add_step(DriveSearch& s, const PreparedScene&, double t0) {
   s.starts = {{0.5 * t0}};
 }
 
-// Adds a broken line: the voltages at its knots, the time of the whole and the parts of it between them.
+// Adds a piecewise linear waveform: the voltages at its knots, the total time, and the shares of the time between knots.
 void add_knots(DriveSearch& s, const PreparedScene& p, double t0) {
   for (std::size_t k = 0; k < s.count; ++k)
     s.variables.push_back({fmt::format("level_{}_V", k + 1), s.limits.min_voltage, s.limits.max_voltage});
@@ -46,13 +46,14 @@ void add_knots(DriveSearch& s, const PreparedScene& p, double t0) {
   if (s.drive == piezo_drive) {
     const double gap = p.scene.device.contact_gap();
     line([](double) { return 0; }, 1.5, 1);
-    // Pull towards the contact, brake, let go.
+    // The piezo pulls towards the contact, then brakes, then returns to its hold level.
     line([&](double part) { return lifting_voltage(p, (part < 0.5 ? -0.4 : 0.3) * gap); }, 2, 1);
   } else {
-    line([&](double part) { return (0.7 + 0.2 * part) * s.hold; }, 8, 0.2);                  // a slow ramp
-    line([&](double part) { return (0.75 + 0.2 * part) * s.hold; }, 3, 0.2);                 // a quicker one
-    line([&](double part) { return part < 0.55 ? s.hold : 0.5 * s.hold; }, 1.5, 0.1);        // throw and coast
-    line([&](double part) { return part < 0.75 ? 0.3 * s.hold : 0.6 * s.hold; }, 1.8, 0.1);  // leave it to the other drives
+    line([&](double part) { return (0.7 + 0.2 * part) * s.hold; }, 8, 0.2);            // a slow ramp
+    line([&](double part) { return (0.75 + 0.2 * part) * s.hold; }, 3, 0.2);           // a quicker ramp
+    line([&](double part) { return part < 0.55 ? s.hold : 0.5 * s.hold; }, 1.5, 0.1);  // full pull, then coasting
+    line([&](double part) { return part < 0.75 ? 0.3 * s.hold : 0.6 * s.hold; }, 1.8,
+         0.1);  // low voltage, if the other drives close the switch
   }
 }
 
@@ -83,7 +84,8 @@ Waveform harmonic_at(const DriveSearch& s, std::span<const double> x) {
                   .fade = d.fade};
 }
 
-// Straight lines through these voltages, each of a duration that may be 0, as slow as the driver asks for.
+// Returns straight lines through the voltages with the given durations, which may be 0; lines that exceed the driver's slew are
+// longer.
 Waveform broken_line(const DriveSearch& s, std::span<const double> voltages, std::span<const double> durations) {
   Table table{.time = {0}, .voltage = {s.before}};
   for (std::size_t k = 0; k < voltages.size(); ++k) {
@@ -118,7 +120,7 @@ Parameters of_harmonic(const DriveSearch&, const Waveform& waveform) {
                              duration,         dither.fade / duration};
 }
 
-// True for lines that begin with a jump, like all that are searched without a slew limit.
+// True for a table that begins with a jump at t = 0, as searched piecewise linear waveforms without a slew limit do.
 bool begins_with_jump(const DriveSearch& s, const Table& table, std::size_t rows) {
   return table.time.size() == rows && table.time[1] == 0 && table.voltage[0] == s.before;
 }
@@ -164,7 +166,7 @@ constexpr auto families = std::to_array<SearchedFamily>({
     {"sines", FamilyOf<Sines>::name, 4, add_sines, sines_at, of_sines},
 });
 
-constexpr std::size_t fewest = 2, most = 20;  // numbers of levels, knots, pulses or sines
+constexpr std::size_t fewest = 2, most = 20;  // permitted numbers of levels, knots, pulses or sines
 
 }  // namespace
 

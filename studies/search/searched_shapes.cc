@@ -47,10 +47,9 @@ std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const Prepare
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (names[k] == s.drive) driven[k] = found.pulling, coasting[k] = found.coasting;
   }
-  // All modes take part in the swing. The bang-bang landing of the first mode takes its place if the film has states of its
-  // own.
+  // Use the swing of all modes, or the bang-bang landing of the first mode if the gas film is compressible.
   if (p.model.film_states() == 0 && p.rest()) {
-    constexpr double longest = 3;  // periods
+    constexpr double longest = 3;  // periods of the first mode
     const std::optional<Swing> swing = quickest_swing(p.model, driven, coasting, longest * first_period(p), p.values_before());
     if (!swing) return std::nullopt;
     found.driven_time = swing->driven_time;
@@ -79,7 +78,7 @@ void add_s_curve(DriveSearch& s, const PreparedScene& p, double t0) {
 }
 
 Waveform s_curve_at(const DriveSearch& s, std::span<const double> x) {
-  // Half a cosine is pi / 2 times as steep in its middle as a straight edge.
+  // An edge of half a cosine is pi / 2 times as steep in its middle as a straight edge.
   const double rise = std::max(std::abs(x[0] - s.before), std::abs(s.hold - x[0])) * pi / 2 / s.limits.max_slew;
   const double edge = std::max(x[2], rise * (1 + 1e-12));
   return SCurve{.levels = {x[0], s.hold}, .times = {edge + x[1]}, .edge = edge};
@@ -106,9 +105,9 @@ double add_dither_variables(DriveSearch& s, const PreparedScene& p, double t0) {
 
 SlewedDither slewed_dither(const DriveSearch& s, double amplitude, double omega, double decay, double start, double duration,
                            double fade) {
-  // Under a slew limit the sine waits for the base, and fades for as long as its amplitude needs: the slope of the envelope
-  // adds to that of the sine. Half the duration is the longest fade; a sine that is too steep even then is made smaller.
-  const double slew = s.limits.max_slew, rise = longest_rise(s);  // infinite, and 0, without a limit
+  // With a slew limit the sine begins after the base has risen, and its fades are longer, since the slope of the envelope adds
+  // to that of the sine. A fade is at most half the duration; if the sine is still too steep, its amplitude is reduced.
+  const double slew = s.limits.max_slew, rise = longest_rise(s);  // infinite and 0 without a slew limit
   const double turning = omega + 1 / decay;
   const double needed = amplitude * turning < slew ? amplitude / (slew - amplitude * turning) : never;
   const double longer = std::min(std::max(fade * duration, needed), duration / 2);
@@ -197,12 +196,13 @@ void add_bspline(DriveSearch& s, const PreparedScene& p, double t0) {
 }
 
 Waveform bspline_at(const DriveSearch& s, std::span<const double> x) {
-  // The first level comes at once, unless that is too quick for the driver; twice the hold level at the end leaves no corner.
+  // The spline begins at the first level, or with a slew limit at the voltage before. It ends with two hold levels, for a
+  // smooth end.
   BSpline spline{.levels = {}, .duration = x.back()};
   if (std::isfinite(s.limits.max_slew)) spline.levels.push_back(s.before);
   spline.levels.insert(spline.levels.end(), x.begin(), x.end() - 1);
   spline.levels.insert(spline.levels.end(), 2, s.hold);
-  // The slope is a spline too, which stays below the largest of its own levels.
+  // The slope of the spline is a spline as well, whose values are at most its largest level.
   const std::size_t n = spline.levels.size();
   for (std::size_t i = 0; i + 1 < n; ++i) {
     const double part = (bspline_knot(i + 4, n) - bspline_knot(i + 1, n)) / static_cast<double>(n - 3);
@@ -250,7 +250,7 @@ Waveform sines_at(const DriveSearch& s, std::span<const double> x) {
               .amplitudes = {x.begin(), x.end() - 1},
               .start = longest_rise(s),
               .duration = x.back()};
-  // A waveform beyond the limits is made smaller as a whole: a band stays a band.
+  // Beyond the limits all amplitudes are reduced by one factor, so that the spectrum keeps its form.
   Sines alone = sines;
   alone.base = 0;
   const Signal swing = signal(alone);
@@ -260,7 +260,7 @@ Waveform sines_at(const DriveSearch& s, std::span<const double> x) {
   if (up > s.limits.max_voltage - s.hold) share = std::min(share, (s.limits.max_voltage - s.hold) / up);
   if (down > s.hold - s.limits.min_voltage) share = std::min(share, (s.hold - s.limits.min_voltage) / down);
   if (steepest > s.limits.max_slew) share = std::min(share, s.limits.max_slew / steepest);
-  constexpr double precision = 1e-7;  // precision of the extrema, over the sum of all amplitudes
+  constexpr double precision = 1e-7;  // precision of the computed extrema, over the sum of all amplitudes
   if (share < 1) {
     for (double& amplitude : sines.amplitudes) amplitude *= share * (1 - precision);
   }

@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-// Columns between those of the figures and those of the parameters.
+// Columns with the outcome of a search, between the columns of figures and of parameters.
 constexpr std::array<std::pair<const char*, const char*>, 7> verdict_columns{
     {{"goal_met", "Goal met"},
      {"confirmed", "Confirmed"},
@@ -105,7 +105,7 @@ void SeedStudy::run(const Listener& listener) {
   store_.flush();
 }
 
-// Runs one search. An interrupted search adds no row, but its evaluations are kept for the continued study.
+// Runs the search of seed k. An interrupted search adds no row, but its evaluations stay in their file for the continued study.
 void SeedStudy::search(std::uint64_t k, int jobs, const Listener& listener) {
   OptimizeOptions options = search_.options;
   const Progress progress{.stop = search_.options.stop};

@@ -18,7 +18,7 @@ std::vector<double> values_of(std::string_view key, const std::vector<DeviceOutc
   return all;
 }
 
-// True if the quantile of the first is above that of the second; both may be infinite.
+// True if the compared quantile of `own` is above that of `of_step`; both may be infinite.
 bool is_above(const std::vector<double>& own, const std::vector<double>& of_step) {
   return sample_quantile(own, compared_at) > sample_quantile(of_step, compared_at);
 }
@@ -42,7 +42,7 @@ bool is_worse(const std::vector<double>& own, const std::vector<double>& of_step
 std::vector<std::string_view> worse_in(const std::vector<DeviceOutcome>& drive, const std::vector<DeviceOutcome>& step,
                                        double significant, std::uint64_t seed) {
   std::vector<std::string_view> worse;
-  const std::size_t both = std::min(drive.size(), step.size());  // an interrupted verdict has fewer
+  const std::size_t both = std::min(drive.size(), step.size());  // an interrupted simulation has fewer outcomes
   for (const std::string_view key : judged_figures) {
     const double least = key == key_of(&Metrics::major_bounce_height) ? significant : 0;
     std::vector<double> own = values_of(key, drive, least), of_step = values_of(key, step, least);

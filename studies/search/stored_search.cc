@@ -19,9 +19,9 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kind = "search";
-constexpr const char* raced_families_key = "raced_waveform";  // key of the families as they were given
+constexpr const char* raced_families_key = "raced_waveform";  // key of the plan with the waveform families as the user gave them
 
-// Reads the texts of a plan. A plan without the text for devices belongs to the nominal device.
+// Reads the request from a plan. A plan without the member `robust` is of a search on the nominal device.
 SearchRequest request_in(const json& plan) {
   SearchRequest request{.robust = std::string(nominal_alone)};
   const auto take = [&](std::string_view name, auto& word) {
@@ -33,7 +33,7 @@ SearchRequest request_in(const json& plan) {
   return request;
 }
 
-// Returns the scenes with which the search begins, or those of the plan that is continued.
+// Returns the requested starting scenes, or, if none are requested, those of the plan `known` that is continued.
 std::vector<StartingScene> starting_scenes(const AskedSearch& asked, const json& known) {
   std::vector<StartingScene> all;
   for (const StartingScene& one : asked.starts) {
@@ -48,7 +48,7 @@ std::vector<StartingScene> starting_scenes(const AskedSearch& asked, const json&
   return all;
 }
 
-// Returns the scene as given, or that of the plan that is continued, with the assignments added.
+// Returns the requested scene, or that of the plan `known` that is continued, with the requested assignments added.
 json given_scene(const AskedSearch& asked, const json& known) {
   json given;
   if (asked.given) {
@@ -67,7 +67,7 @@ SceneFile scene_of(const json& given) {
   return scene;
 }
 
-// Returns the plan: the texts of the request, with defaults for numbers that were not given.
+// Returns the plan of a search: the texts of the request, with defaults for missing numbers.
 json plan_of(SearchRequest request, const PlannedSearch& search, const std::vector<StartingScene>& starts, const json& given) {
   request.seed = std::to_string(search.options.seed);
   request.seeds = std::to_string(search.seeds);
@@ -90,7 +90,7 @@ json plan_of(SearchRequest request, const PlannedSearch& search, const std::vect
   return plan;
 }
 
-// Returns the first key in which two scenes differ, with both values.
+// Returns the first key in which two scenes differ, with both values, as text.
 std::string scene_difference(const std::string& there, const std::string& asked) {
   const auto keys = [](const std::string& text) { return SceneFile::parse(text, "scene").json().flatten(); };
   const json before = keys(there), now = keys(asked);
@@ -182,7 +182,7 @@ std::string difference(const json& there, const json& asked) {
 json plan_of_seed(const json& plan, std::uint64_t seed) {
   json one = plan;
   one["seed"] = std::to_string(seed);
-  for (const char* key : {"seeds", "given"}) one.erase(key);  // neither changes the result
+  for (const char* key : {"seeds", "given"}) one.erase(key);  // these members do not change the result
   return one;
 }
 

@@ -13,10 +13,10 @@ using Eigen::VectorXd;
 
 struct Flight {
   bool touched = false;
-  std::vector<VectorXd> states;  // states, one per step
+  std::vector<VectorXd> states;  // modal coordinates and rates, after each step
 };
 
-// Simulates a flight from rest under full pull, and from a time on under full release, until the contact point arrives or turns
+// Simulates the motion from rest under full pull, then under full release, until the switch touches or its contact point turns
 // back.
 class PullAndRelease {
  public:
@@ -77,7 +77,7 @@ std::optional<Swing> quickest_swing(const Switch& model, const std::vector<doubl
   require(model.film_states() == 0, "the quickest swing is not known where the gas film is compressible");
   const std::optional<VectorXd> rest = model.open_equilibrium(before);
   require(rest.has_value(), "a switch without an open state has no swing");
-  constexpr double step_angle = 0.05;  // phase of the fastest mode in a step
+  constexpr double step_angle = 0.05;  // phase angle of the fastest mode in one step
   Swing swing{.step = step_angle / model.basis().angular_frequencies().maxCoeff()};
   PullAndRelease drives(model, *rest, pulling, releasing, swing.step, longest);
   const Flight full = drives.fly(longest);
@@ -89,7 +89,7 @@ std::optional<Swing> quickest_swing(const Switch& model, const std::vector<doubl
   }
   swing.states = drives.fly(high).states;
   swing.driven_time = high;
-  // All steps have one length but the one that ends at the release: its share is too small to matter for a starting point.
+  // Only the step that ends at the release is shorter, which is negligible for a starting point.
   swing.releasing_time = std::max(0.0, static_cast<double>(swing.states.size() - 1) * swing.step - high);
   return swing;
 }
