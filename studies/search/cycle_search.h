@@ -27,7 +27,7 @@ struct CycleSearchOptions {
   double duty = 0.5;  ///< share of a cycle before the command to open
   Aim target = Target::bounce;
   Actuator actuator = Actuator::electrostatic;  ///< drives that the closing and the opening waveform may shape
-  std::string family = {};                      ///< waveform families of the closing: families_of(); empty: the default families
+  std::string family = {};                      ///< waveform families of the closing: families_of(); empty: default
   long max_evaluations = 3000;                  ///< a third each for the closing, the opening, and both together
   std::size_t cycles = 10;                      ///< simulated cycles of the best pair of waveforms
   std::uint64_t seed = 1;

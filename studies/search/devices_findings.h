@@ -35,9 +35,9 @@ struct CalibrationError {
   double bounce_free = Metrics::unset, impact_speed = Metrics::unset;  ///< share of the devices; 95th percentile [m/s]
 };
 
-/// A candidate among which the search over devices chooses its winner.
+/// A candidate waveform from which the search over devices chooses its winner.
 struct RaceEntry {
-  std::string measure, waveform;  ///< "cvar:0.9", "knots:6"; measure "drawing" for waveforms of the search on the nominal device
+  std::string measure, waveform;  ///< "cvar:0.9", "knots:6"; measure "drawing": from the search on the nominal device
   long closings = 0;
   double bounce_free = 0, cost = 0;  ///< share of bounce-free devices, and cost, on the devices of the choice
 };
@@ -53,12 +53,12 @@ struct DevicesFindings {
 
   struct Row {
     std::string name;                                                         ///< "plain step", "for the drawing", "Vdp to 1 %"
-    double pull_in_error = Metrics::unset, frequency_error = Metrics::unset;  ///< relative measurement errors; NaN: not measured
+    double pull_in_error = Metrics::unset, frequency_error = Metrics::unset;  ///< relative errors; NaN: not measured
     double piezo_error = Metrics::unset;  ///< relative measurement error of the piezo's effect
     double time_error = Metrics::unset;   ///< measurement error of a closing time [s]
     bool searched_for_it = true;
     double bounce_free = Metrics::unset, open = Metrics::unset, collapsed = Metrics::unset;  ///< shares of the devices
-    /// 50th, 95th and 99th percentiles, by key of device_figures; infinite if more devices do not close.
+    /// 50th, 95th and 99th percentiles, by key of device_figures; infinite if too many devices do not close.
     std::map<std::string, double> at_50, at_95, at_99;
     std::map<std::string, double> yield;  ///< shares of the devices whose rebound is within yield_heights
   };
@@ -94,11 +94,11 @@ struct DevicesFindings {
   std::vector<Row> rows;
   std::vector<Choice> choices;  ///< choices, the quickest to a steady contact first; empty if the plain step wins
   std::optional<StablePath> stable_path;
-  std::optional<bool> goal_met;        ///< true if the 95th percentile of the rebounds of best.toml is not significant
-  double missed_by = Metrics::unset;   ///< excess of the 95th percentile of the rebounds over the goal; 0 if the goal is met [m]
-  double step_delay = Metrics::unset;  ///< delay of the electrode's plain step, if its instant was searched [s]
-  std::optional<Courses> courses;      ///< contact gaps over time; none if the plain step wins
-  std::vector<FrontPoint> front;       ///< candidates, sorted by first touch
+  std::optional<bool> goal_met;                ///< true if the 95th percentile of the rebounds of best.toml is not significant
+  double missed_by = Metrics::unset;           ///< excess of the rebounds' 95th percentile over the goal; 0: goal met [m]
+  double step_delay = Metrics::unset;          ///< delay of the electrode's plain step, if its instant was searched [s]
+  std::optional<Courses> courses;              ///< contact gaps over time; none if the plain step wins
+  std::vector<FrontPoint> front;               ///< performance of candidates, sorted by time of first contact
   std::vector<CalibrationError> by_error;      ///< results by measurement error, the least first; none if Vdp is not measured
   HoldWindows windows;                         ///< ranges of hold voltages
   std::vector<RaceEntry> race;                 ///< candidates for the winner, the best first

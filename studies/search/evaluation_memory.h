@@ -29,8 +29,8 @@ struct EvaluationKey {
 struct EvaluationValues {
   double cost =
       std::numeric_limits<double>::infinity();  ///< cost by the target of the search; infinite if the waveform is infeasible
-  double guide = std::numeric_limits<double>::infinity();  ///< cost that the first stage of a search minimises; see GuidedSearch
-  bool lands = false;                                      ///< true for a closing without a significant rebound
+  double guide = std::numeric_limits<double>::infinity();  ///< cost in the first stage of a search; see GuidedSearch
+  bool lands = false;                                      ///< true if the switch closes without a significant rebound
   long closings = 1;                                       ///< simulated closings of the evaluation
 };
 

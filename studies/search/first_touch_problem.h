@@ -1,4 +1,4 @@
-// A switch on its way to the first touch, as a dimensionless system that is to be steered in the least time.
+// The motion of a switch until its first contact, as a dimensionless control problem of least time.
 //
 //   z_i = q_i s_i / g        u_i = q_i' s_i / (g omega_i)        time in 1 / omega_1
 //
@@ -89,7 +89,7 @@ class FirstTouchProblem final : public ControlledSystem {
   double gap_;
   Eigen::VectorXd omega_, per_q_, per_v_, per_acceleration_, tip_, tip_speed_, start_, pull_, release_;
   std::vector<double> held_;  ///< strengths of all drives; those of the controlled drives are not used
-  std::vector<double> hold_;  ///< values of all drives after the landing
+  std::vector<double> hold_;  ///< values of all drives after first contact
   std::vector<Free> free_;
   std::vector<ControlBound> bounds_;
   bool ramps_ = false;

@@ -13,7 +13,7 @@ namespace softland {
 namespace {
 
 constexpr std::size_t starts_of_the_second = 8;
-constexpr double separation = 0.05;  // least distance of two starts of the second stage in one variable, as a share of its range
+constexpr double separation = 0.05;  // least distance of two starts of the second stage, as a share of a range
 
 }  // namespace
 

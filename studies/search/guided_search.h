@@ -20,7 +20,7 @@ namespace softland {
 struct SearchCosts {
   double guide = std::numeric_limits<double>::infinity();
   double target = std::numeric_limits<double>::infinity();
-  bool lands = false;  ///< true for a closing without a significant rebound
+  bool lands = false;  ///< true if the switch closes without a significant rebound
   /// Values of a search under conditions: costs without the penalty of broken conditions, and each g of Conditions.
   struct Apart {
     double guide, target;

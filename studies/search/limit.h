@@ -1,4 +1,4 @@
-// The limit of all drive waveforms: the least time in which a switch can touch its contact at no more than a given speed,
+// The limit of all drive waveforms: the least time in which a switch can make first contact at no more than a given speed,
 // within the voltages of its drivers. No closing can be quicker than its first contact, so that this time is a lower bound for
 // every waveform family. Robustness and the time after the contact cost further time. The bound holds for the model with its
 // number of modes: a waveform could gain from the further modes of a real beam.
@@ -32,9 +32,9 @@ struct LeastTimeOptions {
   Actuator actuator = Actuator::electrostatic;
   double impact_velocity = 1e-3;                          ///< largest permitted speed of the first contact [m/s]
   bool at_rest = false;                                   ///< true: all modes have to end in the closed equilibrium, at rest
-  double peak = std::numeric_limits<double>::infinity();  ///< largest voltage of the pulling electrode, if below its driver's [V]
+  double peak = std::numeric_limits<double>::infinity();  ///< largest voltage of the pulling electrode [V]
   /// Waveforms of the drives, for example from a search. The optimum is also sought from the motion under these waveforms, if
-  /// it touches.
+  /// these make contact.
   DriveWaveforms start = {};
   Progress progress = {};
 };
@@ -84,7 +84,7 @@ struct LimitLanding {
 
 struct LimitOptions {
   Actuator actuator = Actuator::electrostatic;
-  std::optional<double> impact_velocity = {};  ///< permitted speed of first contact [m/s]; none: a hundredth of the plain step's
+  std::optional<double> impact_velocity = {};  ///< permitted contact speed [m/s]; none: 1 % of the plain step's
   DriveWaveforms start = {};                   ///< see LeastTimeOptions
   std::map<std::string, double> before = {};   ///< voltages of the drives of `start` before t = 0, if not 0 [V]
   bool curves = true;                          ///< true: computes least times over peak voltage and over permitted speed

@@ -34,7 +34,7 @@ constexpr double outside_share = 5;         // extra weight of the vibration bey
 constexpr double stays_closed = 10;         // cost of a waveform under which the switch stays closed
 constexpr double touched_again = 0.5;       // additional cost of every contact after the switch has opened
 constexpr double opening_tolerance = 1e-5;  // tolerance of the integrator
-constexpr double seen_for = 1;              // periods over which a candidate's vibration is measured, after all drives are at 0 V
+constexpr double seen_for = 1;              // periods over which a candidate's vibration is measured, with drives at 0 V
 constexpr double watched_for = 3;           // periods over which the best waveform's vibration is measured, at least
 
 // Time for which sources are at their hold levels before the command to open, in their time constants.

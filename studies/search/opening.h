@@ -29,7 +29,7 @@ namespace softland {
 
 struct OpeningOptions {
   Actuator actuator = Actuator::electrostatic;  ///< drives that may brake
-  double band = 0.05;  ///< distance from the open position, as a share of the contact gap, within which the switch counts as open
+  double band = 0.05;  ///< largest distance from the open position of an open switch, over the contact gap
   long max_evaluations = 3000;
   std::uint64_t seed = 1;
   int jobs = 1;

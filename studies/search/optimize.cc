@@ -36,7 +36,7 @@ constexpr double distinct = 1.01;              // least ratio between the costs 
 constexpr std::size_t families_sifted = 2;     // families in which the search with several numbers of modes is run
 constexpr long evaluations_of_the_worst = 50;  // divisor of the budget for the search with several numbers of modes
 constexpr long shortest_half = 100;            // evaluations of a budget that is not divided into halves any more
-constexpr double opening = 0.6;                // share of the budget that all families get equally; the best family gets the rest
+constexpr double opening = 0.6;                // share of the budget for all families; the best family gets the rest
 
 // Numbers of candidates in OptimizeResult::tried: see RunningSearch::tried().
 constexpr std::size_t kept_best = 100, kept_of_ladder = 150, kept_of_family = 15;

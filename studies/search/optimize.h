@@ -42,7 +42,7 @@ struct SearchEstimate {
   double seconds = 0;      ///< processor time of the whole search [s]
 };
 
-/// Default number of evaluations: that which found bounce-free waveforms from every seed tried, on the shipped scenes and their
+/// Default number of evaluations: as many as found bounce-free waveforms from every seed tried, on the shipped scenes and their
 /// variants. A search of a piezo needs more. A target with a cost of its own gets 1.5 times as many evaluations as `bounce`.
 [[nodiscard]] long default_budget(const Aim& target, Shaped drives);
 

@@ -6,8 +6,8 @@
 //           mode 1 passes an input shaper of N impulses half a period apart, whose weights are binomial.
 //   line    The carrying drive goes on through the voltages at which devices touch, at a constant rate. If N > 2, this ramp
 //           passes the shaper, too.
-//   hold    The holder stays at a low level until the contact is made, and rises to its hold level; then the carrying drive goes
-//           back to its own. Without a holder, the carrying drive goes on to its hold level.
+//   hold    The holder stays at a low level until the contact is made, and rises to its hold level. Then the carrying drive
+//           returns to its own hold level. Without a holder, the carrying drive goes on to its hold level.
 //
 // Ramps are linear in the quantity that drives the beam: the volts of a piezo, the square of an electrode's volts if it
 // carries the switch. With two impulses (ZV) the rise takes 1.5 T, and devices whose frequencies differ by 3.5 % keep 0.7 % of

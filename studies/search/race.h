@@ -52,10 +52,10 @@ struct Contender {
   std::string measure = {};
   std::vector<double> x = {};
   DriveWaveforms waveforms = {};  ///< waveforms of the searched drives [V]
-  long closings = 0;              ///< simulated closings of this search and those before it
+  long closings = 0;              ///< simulated closings of this search in all rounds
   double bounce_free = 0;         ///< share of bounce-free devices in the last round of the search
   double tail = std::numeric_limits<double>::infinity(),
-         share = std::numeric_limits<double>::infinity();  ///< costs in that round
+         share = std::numeric_limits<double>::infinity();  ///< costs in the last round
 };
 
 struct RaceOptions {

@@ -1,8 +1,8 @@
 // The cost of a drive over varied devices: a measure of risk over the costs of their closings, and conditions on their figures.
 //
 //   s_k   cost of the closing of device k, every figure relative to the plain step on the nominal device:
-//           bounce             (largest touch speed + highest rebound) / 2
-//           rebound            highest rebound               impact    largest touch speed
+//           bounce             (largest impact speed + highest rebound) / 2
+//           rebound            highest rebound               impact    largest impact speed
 //           count              rebounds                      settling  permanent contact, over first contact of the step
 //           energy             impact energy                 steady    steady force time, over first contact of the step
 //           own objective      its value

@@ -31,8 +31,7 @@ constexpr std::uint64_t which_searched = 0, which_chosen = 1;
 constexpr double least_of_race = 0.4,
                  end_of_race = 0.75;  // least and largest share of a time budget for the work before the verdict
 constexpr std::string_view quasi_static_short = "quasi-static:2",
-                           approaches = "+quasi-static+quasi-static:2";  // families searched if the switch can be carried to its
-                                                                         // contact through stable equilibria
+                           approaches = "+quasi-static+quasi-static:2";  // families searched with a stable path
 constexpr std::string_view usual_prefix = "usual_limit.";
 constexpr double alike = 1.05;        // candidates up to this multiple of the least cost count as equal
 constexpr double little_more = 1.25;  // multiple of the least cost up to which a quicker waveform wins, without a stable path

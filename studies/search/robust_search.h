@@ -42,7 +42,7 @@ struct RobustSearchOptions {
       false;  ///< searches as earlier versions did: the time of first contact costs, and there is no quasi-static approach
   long closings = race_closings;  ///< total closings of the race
   bool are_a_budget = false;      ///< `closings` is a limit even if many devices close without a bounce
-  bool counts_work = false;       ///< `closings` is of usual computing time; fewer are made if closings are slow (search_work.h)
+  bool counts_work = false;       ///< fewer than `closings` are made if closings are slow (search_work.h)
   /// Called with every new best candidate; from any thread, one call at a time.
   std::function<void(const Leading&)> on_leading = {};
 };
@@ -158,7 +158,7 @@ class RobustSearch {
   [[nodiscard]] std::uint64_t verdict() const { return verdict_; }
 
  private:
-  // Bounds relative to the plain step that a candidate must keep to be chosen.
+  // Upper bounds, relative to the plain step, on the figures of a candidate that may be chosen.
   struct Bounds {
     std::vector<double> figures;  // 95th percentiles of judged_figures under the plain step
     double first_touch, open;     // 95th percentile of first contact [s], and share of open devices, under the plain step
@@ -214,7 +214,7 @@ class RobustSearch {
   bool spread_assumed_ = false;
   std::vector<SearchSetting> settings_;
   std::size_t raced_ = 0;                  // number of settings in the race, which come first in settings_
-  std::vector<SearchSetting> usual_room_;  // settings within the default voltage limits; none if the scene's limits are no wider
+  std::vector<SearchSetting> usual_room_;  // settings within the default voltage limits; none unless the scene's are wider
   std::vector<std::string> names_;         // names of the waveform families
   std::optional<StableApproach> approach_;
   double share_with_path_ = Metrics::unset;

@@ -16,7 +16,7 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t scouted_on = 16, ranked_on = 64;  // numbers of devices on which candidates of the nominal search are ranked
+constexpr std::size_t scouted_on = 16, ranked_on = 64;  // devices for ranking candidates of the nominal search
 constexpr std::size_t kept_of_scouted = 24;             // best candidates on scouted_on devices, by each measure
 constexpr std::size_t most_of_ranked = 2;               // best candidates on ranked_on devices, by each measure
 constexpr std::size_t most_judged = 3;  // candidates judged on fresh devices, until one is not worse than the plain step
@@ -139,7 +139,7 @@ class RobustSearchStudy {
     const std::future<void> look = looked.get_future();
     beside_ = std::async(is_beside ? std::launch::async : std::launch::deferred,
                          [this, before, reserved = is_beside ? 0 : of_drawing, given = std::move(looked)]() mutable {
-                           std::promise<void> own = std::move(given);  // destroyed when this task ends, which ends the wait below
+                           std::promise<void> own = std::move(given);  // its destruction ends the wait below
                            searched_.run(
                                before, [&own] { own.set_value(); }, reserved);
                          });

@@ -3,11 +3,11 @@
 //
 //   1  A race over families and measures (race.h), and a choice among its results on 512 other devices, with the plain
 //      step. The best candidate so far is reported.
-//   2  From the first look at these devices on, the search on the nominal device (optimize.h): it finds the nominal design's
-//      waveform. Neither search needs what the other finds.
-//   3  What the nominal search tried, ranked again on 16 devices, the best of it on 64, and these on the devices of the choice.
+//   2  As soon as a first candidate was judged on the 512 devices, the search on the nominal device (optimize.h) for a
+//      waveform of the nominal design. The two searches are independent.
+//   3  Candidates of the nominal search are ranked on 16 devices, the best of them on 64, and the best of these on the 512.
 //   4  Searches with a per-device calibration: Vdp to 1 %, and the closing time of one slow step to 50 ns. Vdp and period to
-//      0.2 % take the place of the time for switches that are too quick. Such a search is repeated under conditions if its result
+//      0.2 % replace the closing time if the switch is too quick. Such a search is repeated under conditions if its result
 //      is harder than the plain step.
 //   5  Verdict on 2000 fresh devices (500 or more if closings are slow): plain step, nominal design and winner over the whole
 //      window. Rows with a calibration use the window of a search, which moves 95th percentiles by less than 0.4 %.
@@ -69,9 +69,9 @@ struct RobustSearchResult {
   Robustness verdict = {};  ///< plain step, nominal design's waveform and winner on the fresh devices
   std::vector<DevicesRow> rows = {};
   std::optional<SceneFile> calibrated = {};  ///< scene with the waveform for calibrated devices and its [calibration]
-  double pull_in = Metrics::unset;       ///< dynamic pull-in voltage of the nominal device, if there is a calibrated waveform [V]
-  double closing_time = Metrics::unset;  ///< closing time of the nominal device under the measured step [s]
-  DevicesFindings findings = {};         ///< findings for reports; without rows if interrupted before the verdict
+  double pull_in = Metrics::unset;           ///< dynamic pull-in voltage of the nominal device, if devices are calibrated [V]
+  double closing_time = Metrics::unset;      ///< closing time of the nominal device under the measured step [s]
+  DevicesFindings findings = {};             ///< findings for reports; without rows if interrupted before the verdict
   bool interrupted = false;
 
   /// True if 95 % of the devices have no significant rebound under the plain step.

@@ -17,7 +17,7 @@
 
 namespace softland {
 
-/// The size of a budget.
+/// The limits of a budget: evaluations, time and a flag.
 struct BudgetLimits {
   long evaluations = std::numeric_limits<long>::max();       ///< evaluations, or closings of devices
   double seconds = std::numeric_limits<double>::infinity();  ///< time from the construction of the budget on [s]

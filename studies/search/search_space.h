@@ -1,13 +1,13 @@
 // The variables of a search: the waveform parameters of one or several drives. The bounds and starting points of the variables
 // come from the scene (driver limits, natural frequencies, closing time of the plain step).
 //
-// Times below are in units of T0, the first touch of the plain step, and T1, the period of the first mode.
+// Times below are in units of T0, the time of first contact under the plain step, and T1, the period of the first mode.
 //   step      rise_time in [0, 2.5 T0]
 //   pulse     level_1, level_2 within the driver's limits, time_1 and duration_2 (= time_2 - time_1) in [0.05, 1.6] T0, edge in
 //             [0.005, 0.1] T1
 //   harmonic  amplitude within the limits about the hold level, angular_frequency in [0.2 omega_1, upper], phase in [0, 2 pi],
 //             start in [0, T0], duration in [0.1, 2.5] T0, fade in [0, 0.5] of the duration. upper: the second natural frequency
-//             for an electrode, the third for the piezo (dither above them shakes without steering: Bognash 2019)
+//             for an electrode, the third for the piezo (dither above these has no net effect: Bognash 2019)
 //   catch     a pulse of three levels, each with its duration, and an edge; the third one holds the beam fast on its contact,
 //             duration_3 in [0.05, 4] T0
 //   ramp      a jump to level_1, a line to level_2 in duration in [0.5, 10] T0, an edge in [0.005, 0.5] T1

@@ -20,8 +20,7 @@ DriveWaveforms first_waveforms(const SearchSetting& setting) {
 }  // namespace
 
 ClosingWork closing_work(const SearchSetting& setting) {
-  constexpr double points_beside = 8, usual_points = 32;  // work of a right-hand side, in quadrature points: what does not depend
-                                                          // on the points, and the usual number
+  constexpr double points_beside = 8, usual_points = 32;  // work of a right-hand side, in quadrature points
   const Switch& model = setting.given.model;
   const double points = points_beside + static_cast<double>(model.quadrature().points());
   ClosingWork most;

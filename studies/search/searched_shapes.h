@@ -16,7 +16,7 @@ using Parameters = std::optional<std::vector<double>>;
 
 /// The voltage, clamped to the limits of the drive.
 [[nodiscard]] double inside(const DriveSearch& s, double voltage);
-/// Voltage of the piezo that alone moves the contact point statically by `lift` away from the contact [m]; in [V].
+/// Piezo voltage [V] that, without other drives, deflects the contact point statically by `lift` away from the contact [m].
 [[nodiscard]] double lifting_voltage(const PreparedScene& p, double lift);
 /// Period of the first mode [s].
 [[nodiscard]] double first_period(const PreparedScene& p);

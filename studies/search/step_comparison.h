@@ -1,4 +1,4 @@
-// Compares a drive with the plain step on devices.
+// Compares the waveform of a drive with the plain step on varied devices.
 //
 // The compared figures are the largest impact speed, the highest rebound and the peak force. The drive is worse in a figure if
 // the 95th percentile is above that of the step on the same devices, and the 95 % interval of the difference, by a bootstrap

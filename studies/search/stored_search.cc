@@ -19,7 +19,7 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kind = "search";
-constexpr const char* raced_families_key = "raced_waveform";  // key of the plan with the waveform families as the user gave them
+constexpr const char* raced_families_key = "raced_waveform";  // key in a plan: waveform families that the user gave
 
 // Reads the request from a plan. A plan without the member `robust` is of a search on the nominal device.
 SearchRequest request_in(const json& plan) {

@@ -26,7 +26,7 @@ struct StartingScene {
   SceneFile scene;
 };
 
-/// The request of a search. If it continues a search, missing parts are taken from that search.
+/// The request of a search. A request that continues a search gets its missing parts from that search.
 struct AskedSearch {
   SearchRequest request = {};
   std::optional<GivenText> given = {};

@@ -30,7 +30,7 @@ class Verification {
   Verification(const SearchSetting& setting, const OptimizeOptions& options);
 
   void add(FoundWaveform candidate);
-  /// The cost of the best candidate so far, the worst over numbers of modes if it is confirmed; infinite if there is none.
+  /// The cost of the best candidate so far, the worst over numbers of modes if it is confirmed; infinite without candidates.
   [[nodiscard]] double best_cost() const;
   /// True if the best candidate is confirmed with a tighter integrator and with more modes.
   [[nodiscard]] bool confirmed() const { return best_ && best_->confidence == Confidence::confirmed; }
