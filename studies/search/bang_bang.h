@@ -28,13 +28,13 @@ namespace softland {
 /// Potential energy [J] as a function of the position [m].
 using Potential = std::function<double(double)>;
 
-/// Returns x_s [m], or nothing if no solution exists.
+/// Returns the position x_s [m] where the driven part ends, or nothing if no solution exists.
 [[nodiscard]] std::optional<double> switching_position(const Potential& driven, const Potential& coasting, double from,
                                                        double contact);
 
 struct BangBang {
   double switching_position = 0;  ///< position x_s where the driven part ends [m]
-  double driven_time = 0;         ///< time from rest to x_s [s]
+  double driven_time = 0;         ///< time from rest at x_0 to x_s [s]
   double coasting_time = 0;       ///< time from x_s to rest at the contact [s]
 };
 

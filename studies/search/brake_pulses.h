@@ -16,7 +16,7 @@
 
 namespace softland {
 
-/// Corners of a voltage: time since the command to open [s] and voltage [V].
+/// Corners of a piecewise linear voltage: time since the command to open [s] and voltage [V].
 using Corners = std::vector<std::pair<double, double>>;
 
 class BrakePulses {
@@ -37,7 +37,7 @@ class BrakePulses {
   [[nodiscard]] const std::vector<double>& holds() const { return holds_; }
 
  private:
-  // A drive that may brake, and the place of its parameters in a point.
+  // A drive that may brake, and the index of its parameters in a point of the search.
   struct Brake {
     std::size_t drive = 0;
     std::size_t first = 0;  // index of the drive's first parameter: edge, then wait, level, duration of every pulse

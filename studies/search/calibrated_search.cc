@@ -13,7 +13,7 @@
 namespace softland {
 namespace {
 
-constexpr std::uint64_t measured_devices = 128;            // devices of a search with a per-device calibration
+constexpr std::uint64_t measured_devices = 128;            // number of devices in a search with a per-device calibration
 constexpr double coarse_error = 0.01, fine_error = 0.002;  // relative measurement errors of Vdp and period
 constexpr double least_times_of_error = 20;
 constexpr std::array errors_of_pull_in{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02};  // relative errors of Vdp

@@ -29,7 +29,7 @@ class StagedCost {
       : setting_(setting), cost_(cost), aim_(aim), memory_(memory), seed_(seed) {}
 
   struct Tried {
-    double cost = std::numeric_limits<double>::infinity();  ///< infinite if a driver cannot give the waveform
+    double cost = std::numeric_limits<double>::infinity();  ///< infinite if the waveform exceeds a driver's limits
     long closings = 0;
   };
   /// Evaluates the point `x` on the first `most` devices, or on fewer if their cost already exceeds `hopeless`.
@@ -45,7 +45,7 @@ class StagedCost {
   std::uint64_t seed_;
 };
 
-/// Numbers of devices after which a candidate may be given up.
+/// Numbers of simulated devices after which a bad candidate is given up.
 inline constexpr std::array<std::size_t, 2> stages{8, 32};
 
 struct Chain {
@@ -59,7 +59,7 @@ struct Chain {
 };
 struct ChainEnd {
   std::vector<double> x = {};                             ///< the best point; empty if no candidate was feasible
-  double cost = std::numeric_limits<double>::infinity();  ///< cost of the best point
+  double cost = std::numeric_limits<double>::infinity();  ///< cost of the best point; infinite without one
   long closings = 0;
 };
 /// Searches until the chain has used its number of closings or the budget is over. Calls `told` with every candidate, after the

@@ -24,7 +24,7 @@ inline constexpr const char* default_choice = "default";  ///< name of the choic
 /// Performance of a candidate waveform on the fresh devices.
 struct FrontPoint {
   double first_touch = Metrics::unset, impact_speed = Metrics::unset;  ///< 95th percentiles [s], [m/s]
-  double bounce_free = Metrics::unset;                                 ///< share of the devices
+  double bounce_free = Metrics::unset;                                 ///< share of bounce-free devices
   std::string candidate;  ///< waveform family and measure of the search: "bspline:6 by cvar:0.9"
 };
 
@@ -32,7 +32,7 @@ struct FrontPoint {
 /// the best waveform: among those searched with a per-device calibration, and the winner in volts.
 struct CalibrationError {
   double error = 0;  ///< relative standard deviation of the measurement error of Vdp
-  double bounce_free = Metrics::unset, impact_speed = Metrics::unset;  ///< share of the devices; 95th percentile [m/s]
+  double bounce_free = Metrics::unset, impact_speed = Metrics::unset;  ///< share of devices; 95th percentile [m/s]
 };
 
 /// A candidate waveform from which the search over devices chooses its winner.
@@ -42,11 +42,11 @@ struct RaceEntry {
   double bounce_free = 0, cost = 0;  ///< share of bounce-free devices, and cost, on the devices of the choice
 };
 
-/// Figures of the waveforms of a search for devices, on fresh devices.
+/// Results of a search over varied devices: its waveforms on fresh devices, and how they were found.
 struct DevicesFindings {
   /// A rebound height below which a device counts for a yield, and its key in JSON.
   struct YieldHeight {
-    double height;  ///< [m]
+    double height;  ///< rebound height [m]
     const char* key;
   };
   static constexpr std::array yield_heights{YieldHeight{1e-9, "1e-9"}, YieldHeight{1e-8, "1e-8"}, YieldHeight{1e-7, "1e-7"}};
@@ -72,7 +72,7 @@ struct DevicesFindings {
   struct StablePath {
     std::vector<std::string> drives;       ///< names of the drives; the one that carries the switch comes first
     double share = Metrics::unset;         ///< share of the devices with a stable path within the drivers' limits
-    double reaches = Metrics::unset;       ///< voltage at which the nominal design touches [V]
+    double reaches = Metrics::unset;       ///< voltage of the carrying drive at which the nominal design touches [V]
     double limit = Metrics::unset;         ///< limit of the driver's voltage towards the contact [V]
     double touch_places = Metrics::unset;  ///< range in which 90 % of the devices touch: StableApproach::touch_places() [m]
     double rise = Metrics::unset;          ///< least time before the first device touches [s]
@@ -106,7 +106,7 @@ struct DevicesFindings {
   FigureValues drawing;                        ///< figures of merit of the nominal design's waveform on the nominal device
   std::string drawing_status;
   bool drawing_goal_met = false;
-  std::string measured;  ///< name of the row of calibrated.toml; empty if there is no such file
+  std::string measured;  ///< name of the row for calibrated.toml; empty without this file
   std::string next_command;
 
   /// Returns the row of this name, or null.

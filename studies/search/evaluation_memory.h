@@ -20,7 +20,7 @@ namespace softland {
 struct EvaluationKey {
   std::size_t family = 0;     ///< number of the waveform family among those that share the memory
   std::vector<double> x;      ///< searched parameters of the candidate
-  std::uint64_t devices = 0;  ///< number of devices of the spread; 0: the nominal device alone
+  std::uint64_t devices = 0;  ///< number of varied devices; 0: the nominal device alone
   std::uint64_t seed = 0;     ///< seed of the random devices
   /// A candidate whose cost on the first devices exceeds this is not simulated on the rest.
   double hopeless = std::numeric_limits<double>::infinity();
@@ -47,7 +47,7 @@ class EvaluationMemory {
 struct FamilyColumns {
   std::vector<std::vector<std::string>> families;  ///< parameter names of each family
 
-  /// Column names, in the order of the rows.
+  /// Names of the columns, in the order of the values in row().
   [[nodiscard]] std::vector<std::string> names() const;
   /// The row of a point of one family: NaN in the columns of other families. Throws InvalidInput if x is not a point of the
   /// family.

@@ -16,7 +16,7 @@ struct PointFigure {
 
 /// Returns the column of a searched parameter: "main.level_1_V" gives "main.level_1" in V.
 [[nodiscard]] PointFigure parameter_figure(const std::string& name);
-/// Returns the column of a figure of merit, with `before` in front of its quantity and `words` after its name.
+/// Returns the column of a figure of merit, with the prefix `before` for `quantity` and the suffix `words` for `name`.
 [[nodiscard]] PointFigure figure_column(const Figure& figure, const std::string& before = {}, const std::string& words = {});
 
 }  // namespace softland

@@ -41,7 +41,7 @@ class FirstTouchProblem final : public ControlledSystem {
 
   [[nodiscard]] const std::vector<ControlBound>& bounds() const { return bounds_; }
   [[nodiscard]] bool ramps() const { return ramps_; }
-  [[nodiscard]] double time_unit() const { return 1 / omega_[0]; }  ///< [s]
+  [[nodiscard]] double time_unit() const { return 1 / omega_[0]; }  ///< unit of dimensionless time [s]
   /// Row vectors that give position [gap] and velocity [gap per time unit] of the contact point as products with a state.
   [[nodiscard]] const Eigen::VectorXd& tip() const { return tip_; }
   [[nodiscard]] const Eigen::VectorXd& tip_speed() const { return tip_speed_; }

@@ -1,4 +1,4 @@
-// The result of a search of any kind.
+// The result of a search on the nominal device, by one measure over devices, or with a race over devices.
 #pragma once
 
 #include <variant>
@@ -14,8 +14,8 @@ struct FoundSearch {
   [[nodiscard]] const OptimizeResult& best() const;
   [[nodiscard]] OptimizeResult& best();
   [[nodiscard]] bool interrupted() const { return best().search.termination == Termination::interrupted; }
-  /// True if the found waveform is better than the plain step: on the varied devices if they were simulated, else on the
-  /// nominal one.
+  /// True if the found waveform is better than the plain step: on the varied devices if the search has simulated any, else on
+  /// the nominal device.
   [[nodiscard]] bool is_success() const;
 };
 

@@ -28,7 +28,7 @@
 namespace softland {
 
 struct OpeningOptions {
-  Actuator actuator = Actuator::electrostatic;  ///< drives that may brake
+  Actuator actuator = Actuator::electrostatic;  ///< drives whose waveforms may brake the beam
   double band = 0.05;  ///< largest distance from the open position of an open switch, over the contact gap
   long max_evaluations = 3000;
   std::uint64_t seed = 1;
@@ -67,9 +67,9 @@ struct OpeningResult {
   PreparedScene given;
   OpeningOptions options;
   double open_position = 0;   ///< position of the contact point with all drives at 0 V [m]
-  double band = 0;            ///< [m]
+  double band = 0;            ///< band about the open position [m]
   double contact_force = 0;   ///< force that holds the switch closed before t = 0 [N]
-  double window = 0;          ///< [s]
+  double window = 0;          ///< simulated time after the command to open [s]
   std::vector<double> holds;  ///< hold levels of the drives before t = 0 [V]
   Opening plain;
   std::optional<Opening> best;               ///< opening by the best waveform; none if no waveform opens the switch

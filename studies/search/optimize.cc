@@ -23,7 +23,7 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t most_candidates = 8;  // most candidates of the search that are verified
+constexpr std::size_t most_candidates = 8;  // largest number of candidates that are verified
 constexpr std::size_t most_sure = 4;        // further candidates of each family that are verified by the target's own cost
 constexpr std::size_t most_of_family = 4;   // candidates of each family that are verified if no candidate was confirmed
 constexpr long fewest_for_landings = 1000;  // budget from which on starts that reach the contact at rest are computed
@@ -488,7 +488,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& asked) {
   search.check(verified);
   result.families = search.families();
   if (options.keep_tried) result.tried = search.tried();
-  result.family = result.families.front().family;  // name for a result without winner
+  result.family = result.families.front().family;  // family of a result without winner
   result.variables = setting.space.variables();
   SearchBeyondModes beyond(options, budget, verified);
   result.evaluations_of_modes = is_gentle ? beyond.sift(search, gentle) : beyond.go_on(search, settings, gentle);

@@ -1,4 +1,4 @@
-// The search for a drive waveform: scene -> baseline -> search -> verified winner.
+// The search for a drive waveform: from a scene, by way of its baseline and a search, to a verified winner.
 //
 // The best candidate is read back from the text of best.toml and verified by a simulation over the whole window at the scene's
 // accuracy. Simulations with a tighter integrator and with two more modes confirm the result. If a candidate fails one of these
@@ -28,7 +28,7 @@ namespace softland {
 /// Progress of a running search.
 struct OptimizeProgress {
   long evaluations = 0;
-  double best_cost = std::numeric_limits<double>::quiet_NaN();  ///< NaN before a waveform was feasible
+  double best_cost = std::numeric_limits<double>::quiet_NaN();  ///< least cost so far; NaN before a waveform was feasible
   double baseline_cost = std::numeric_limits<double>::quiet_NaN();
   long planned = 0;  ///< evaluations of the whole search, if OptimizeOptions::counts_work; 0: max_evaluations
 };
@@ -36,7 +36,7 @@ struct OptimizeProgress {
 /// The estimated work of a search.
 struct SearchEstimate {
   double closing = 0;      ///< computing time of one closing of the nominal device on this machine [s]
-  long evaluations = 0;    ///< evaluations of the nominal device
+  long evaluations = 0;    ///< evaluations of candidates on the nominal device
   long closings = 0;       ///< closings of varied devices; 0: none
   bool has_fewer = false;  ///< true if the search makes fewer closings, since each is slow
   double seconds = 0;      ///< processor time of the whole search [s]
@@ -59,7 +59,7 @@ struct OptimizeOptions {
   /// waveform.
   OwnWaveforms own_waveforms = {};
   std::string optimizer = "auto";
-  long max_evaluations = 2500;  ///< see default_budget()
+  long max_evaluations = 2500;  ///< budget of evaluations, see default_budget()
   /// Further evaluations from the best points, if max_evaluations found no closing without a significant rebound.
   long more_evaluations = 0;
   /// true: max_evaluations counts closings of usual computing time; fewer are made if closings are slow (search_work.h).
@@ -67,7 +67,7 @@ struct OptimizeOptions {
   /// true: the search first repeats the search with half the budget, to the bit, and goes on from its result, which never gets
   /// worse. Use this to compare budgets; an undivided search finds more. The budget must be in evaluations, not in seconds.
   bool begins_with_half = false;
-  double max_seconds = std::numeric_limits<double>::infinity();  ///< [s]
+  double max_seconds = std::numeric_limits<double>::infinity();  ///< time budget [s]
   std::uint64_t seed = 1;
   int jobs = 1;
   /// Waveforms of the searched drives, for example from other searches. They are candidates, and the search starts at the
@@ -143,7 +143,7 @@ struct OptimizeResult {
   /// True if the winner meets the goal or is better than the plain step.
   [[nodiscard]] bool is_success() const { return best && !best->is_pulled_through && (goal_met || better_than_baseline); }
   std::vector<std::string> broken_conditions = {};  ///< conditions that the winner does not fulfil
-  std::vector<TriedWaveform> tried = {};            ///< see OptimizeOptions::keep_tried
+  std::vector<TriedWaveform> tried = {};            ///< candidates that were tried, see OptimizeOptions::keep_tried
 
   /// The winner's value of the parameter `name`, one of searched_columns(); NaN if the winner's family lacks it, or without a
   /// winner.

@@ -108,7 +108,7 @@ std::vector<std::pair<double, double>> touching_by_level(const PreparedScene& pr
   return all;
 }
 
-constexpr double slow_before = 3.5, fast_before = 1.5, beyond = 2;  // standard deviations of the touching voltage
+constexpr double slow_before = 3.5, fast_before = 1.5, beyond = 2;  // in standard deviations of the touching voltage
 constexpr double least_deviation = 0.005;                           // share of the touching voltage
 constexpr double nearest_points = 1e-6;  // least distance of two corners of a waveform, in periods of mode 1
 constexpr double step_after_line = 1.2,

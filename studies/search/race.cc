@@ -33,7 +33,7 @@ constexpr double population_by_share = 2, longer_where_many_land = 1.7;
 constexpr std::size_t first_devices = 16;  // devices on which starts are tried
 constexpr std::uint64_t box_points = 32;
 
-// Returns the closings per race of the rounds `first` to `last` - 1, at the default length.
+// Returns the closings per search in the rounds `first` to `last` - 1, at the default length.
 double closings_of_rounds(std::size_t first, std::size_t last) {
   double all = 0;
   for (std::size_t k = first; k < last; ++k) all += race_rounds[k].closings;
@@ -126,7 +126,7 @@ class Race {
     r.closings += improve(r.x, staged, chain, part, [this] { tell(); }).searched;
   }
 
-  // Judges the searches after round `k`, and returns those that go on.
+  // Judges the searches after round `k`, and returns the searches of the next round.
   std::vector<Contender> select(std::vector<Contender> contenders, std::size_t k) {
     const double before = contenders.front().bounce_free;
     judge(contenders, race_rounds[std::min(k + 1, race_rounds.size() - 1)].devices);

@@ -39,13 +39,13 @@ inline constexpr double least_length_of_race = 0.25;
 /// Number of devices that a race simulates at most.
 inline constexpr std::uint64_t raced_devices = 256;
 
-/// The two measures of a race.
+/// The two measures of cost in a race.
 struct RaceAims {
   RobustAim tail;   ///< tail of the cost distribution, like cvar:0.9
   RobustAim share;  ///< share of bounce-free devices
 };
 
-/// The result of a search of the race.
+/// A search in a race, and its result so far.
 struct Contender {
   std::size_t family = 0;  ///< index of the waveform family among the settings
   bool by_share = false;   ///< true: searched by RaceAims::share; false: by RaceAims::tail

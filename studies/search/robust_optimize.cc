@@ -20,7 +20,7 @@ namespace {
 
 constexpr int nominal_searches = 2;
 constexpr std::size_t winners_taken = 4;  // best points of each search on the nominal device
-constexpr double nominal_time = 0.05;     // share of a budget of time, for each search on the nominal device
+constexpr double nominal_time = 0.05;     // share of a time budget for each search on the nominal device
 constexpr std::uint64_t selection_devices = 512;
 constexpr double apart = 0.08;  // least distance of starts, as a share of the variables' ranges
 

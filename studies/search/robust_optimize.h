@@ -33,7 +33,7 @@ struct RobustOptions {
   RobustAim aim;
   std::uint64_t samples = 128;                 ///< number of devices on which candidates are tried
   std::uint64_t verdict = 2000;                ///< number of fresh devices that judge the winner
-  std::function<double()> clock = wall_clock;  ///< clock of a budget of time [s]
+  std::function<double()> clock = wall_clock;  ///< clock for a time budget [s]
 };
 
 struct FulfilledCondition {
@@ -68,7 +68,7 @@ struct RobustResult {
 /// The parameters that a search will vary, and the height from which on a rebound is significant.
 struct SearchedParameters {
   FamilyColumns columns;
-  double significant_rebound = 0;  ///< [m]
+  double significant_rebound = 0;  ///< least height of a significant rebound [m]
 };
 /// Returns the parameters of optimize(), or of robust_optimize() if `over_devices`. Throws what these functions would throw
 /// before they begin.

@@ -25,18 +25,19 @@ namespace {
 constexpr std::uint64_t devices_of_choice = 512, least_of_verdict = 500;
 constexpr std::size_t most_of_race = 3;                       // largest number of candidates from a race, by each measure
 constexpr double most_times = 5, most_times_of_landings = 7;  // multiples of the plain step's 95th percentile closing time
-constexpr double margin = 0.98;                               // permitted share of the plain step's figures, in the choice
-constexpr double more_open = 0.005;                           // permitted excess of the share of open devices
+constexpr double margin = 0.98;      // a chosen waveform's figures may be at most this share of the plain step's
+constexpr double more_open = 0.005;  // permitted excess of the share of open devices
 constexpr std::uint64_t which_searched = 0, which_chosen = 1;
 constexpr double least_of_race = 0.4,
-                 end_of_race = 0.75;  // least and largest share of a time budget for the work before the verdict
+                 end_of_race = 0.75;  // bounds on the end of the searches, in shares of a time budget
 constexpr std::string_view quasi_static_short = "quasi-static:2",
                            approaches = "+quasi-static+quasi-static:2";  // families searched with a stable path
 constexpr std::string_view usual_prefix = "usual_limit.";
 constexpr double alike = 1.05;        // candidates up to this multiple of the least cost count as equal
 constexpr double little_more = 1.25;  // multiple of the least cost up to which a quicker waveform wins, without a stable path
 constexpr std::uint64_t path_devices = 512;  // devices for computing the share with a stable path
-// Paces of the quasi-static approach: time until a steady contact, over that of the plain step. The third pace is 1.
+// Paces of the quasi-static approach: time until a steady contact, over that of the plain step. The third pace is the plain
+// step's.
 constexpr double fast = 0.49, slow = 1.96;
 constexpr double usual_closings_at_pace = 30'000;  // closings of a search at one pace; fewer for longer waveforms
 

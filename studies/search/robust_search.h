@@ -128,7 +128,7 @@ class RobustSearch {
   /// The share of varied devices that can be carried to their contact through stable equilibria.
   [[nodiscard]] double share_with_path() const { return share_with_path_; }
 
-  // Results of run().
+  // Results of run(), valid after this call.
   /// The time until contact that costs nothing: that of the race's devices under the plain step.
   [[nodiscard]] const FreeTime& free() const { return free_; }
   /// The cost on the devices of the race.

@@ -19,7 +19,7 @@ namespace softland {
 
 /// The limits of a budget: evaluations, time and a flag.
 struct BudgetLimits {
-  long evaluations = std::numeric_limits<long>::max();       ///< evaluations, or closings of devices
+  long evaluations = std::numeric_limits<long>::max();       ///< largest number of evaluations, or of closings of devices
   double seconds = std::numeric_limits<double>::infinity();  ///< time from the construction of the budget on [s]
   const std::atomic<bool>* stop = nullptr;                   ///< flag from outside (Ctrl-C) that ends the search; may be null
   std::function<double()> clock = wall_clock;                ///< clock that measures the time [s]
@@ -56,7 +56,7 @@ class SearchBudget {
   /// Ends the search with this budget and with its parts; may be called from any thread.
   void give_up() { given_up_ = true; }
   [[nodiscard]] bool given_up() const { return given_up_ || (whole_ != nullptr && whole_->given_up()); }
-  /// True once the flag from outside is set.
+  /// True if the flag from outside (Ctrl-C) is set.
   [[nodiscard]] bool interrupted() const { return stop_ != nullptr && stop_->load(std::memory_order_relaxed); }
   [[nodiscard]] bool out_of_time() const;
   /// True if the search has to end even if evaluations are left.

@@ -8,11 +8,11 @@
 //   harmonic  amplitude within the limits about the hold level, angular_frequency in [0.2 omega_1, upper], phase in [0, 2 pi],
 //             start in [0, T0], duration in [0.1, 2.5] T0, fade in [0, 0.5] of the duration. upper: the second natural frequency
 //             for an electrode, the third for the piezo (dither above these has no net effect: Bognash 2019)
-//   catch     a pulse of three levels, each with its duration, and an edge; the third one holds the beam fast on its contact,
+//   catch     a pulse of three levels, each with its duration, and an edge; the third level presses the beam on its contact,
 //             duration_3 in [0.05, 4] T0
 //   ramp      a jump to level_1, a line to level_2 in duration in [0.5, 10] T0, an edge in [0.005, 0.5] T1
 //   staircase N levels with durations in [0.05, 3] T0 each, edge in [0.005, 1] T1
-//   knots     a broken line: a jump to level_1, straight lines to level_2 ... level_N and the hold level, all in total_time in
+//   knots     polyline: a jump to level_1, straight lines to level_2 ... level_N and the hold level, all in total_time in
 //             [0.5, 10] T0, of which the lines take shares in proportion to part_1 ... part_N in [0.05, 1]
 //   coast     level_1 for duration_1, then no voltage for coast_1, both in [0.05, 1.6] T0, and an edge as of a pulse
 //   pulses    N pulses: level_k for duration_k (the first in [0.05, 1.6] T0, the others in [0.05, 4] T0), between them no voltage
@@ -20,10 +20,10 @@
 //   s-curve   a smooth rise to level_1, dwell_1 in [0.01, 3] T0 there, a smooth rise to the hold level; edge in [0.01, 3] T0
 //   dither    a harmonic that decays: decay_time in [0.05, 5] T0
 //   chirp     a harmonic whose frequency at its end is frequency_ratio in [0.25, 4] times that at its start
-//   bspline   a cubic B-spline drawn by N levels and twice the hold level, with a duration in [0.5, 10] T0
+//   bspline   a cubic B-spline with N levels and two hold levels as control points, with a duration in [0.5, 10] T0
 //   sines     the hold level and N sines of 1 ... N half waves, with amplitudes up to the range of the driver, in a duration in
-//             [0.5, 4] T0; what leaves the limits is made smaller as a whole
-//   quasi-static   one family of all drives, over devices only: see quasi_static.h
+//             [0.5, 4] T0; beyond the driver's limits all amplitudes are reduced by one factor
+//   quasi-static   one family that shapes all drives together, over devices only: see quasi_static.h
 // An electrode on the far side, which brakes, waits before its pulses instead of coasting after them. The hold level is that of
 // the scene and never varied. A slew limit lengthens edges, rise times and fades, delays a sine until its base has risen, and
 // limits its amplitude.
@@ -82,7 +82,7 @@ struct DriveSearch {
   /// The parameters of `waveform`; none if it is not of this family or is outside the bounds, up to rounding.
   [[nodiscard]] std::optional<std::vector<double>> parameters(const Waveform& waveform) const;
   /// The parameters of this family that approximate `waveform` best: least mean square difference of an electrode's squared
-  /// voltage, or of the piezo's voltage, until a little after the last breakpoint. For a waveform of this family, its own
+  /// voltage, or of the piezo's voltage, until a little after the last breakpoint. A waveform of this family has its own
   /// parameters.
   [[nodiscard]] std::vector<double> nearest(const Waveform& waveform) const;
   /// The reason why a search cannot begin with a waveform, as text: another hold level, or values beyond the driver's limits.
@@ -119,7 +119,7 @@ class SearchSpace {
   [[nodiscard]] std::string misfit(const DriveWaveforms& waveforms) const;
   /// The given waveforms, without those of drives that are not searched.
   [[nodiscard]] DriveWaveforms searched(const DriveWaveforms& waveforms) const;
-  /// The quasi-static approach, if it is the searched family; else null.
+  /// The quasi-static approach, if the searched family is quasi-static; otherwise null.
   [[nodiscard]] const QuasiStatic* quasi_static() const { return joint_ ? &*joint_ : nullptr; }
   /// The space of the quasi-static approach, with bounds about its closed form for a steady force from `steady` on [s].
   [[nodiscard]] SearchSpace paced(double steady) const;

@@ -4,8 +4,8 @@
 // the right-hand side of the equations of motion, whose number is the same on every machine and for every number of threads:
 //
 //   w   right-hand sides of a closing of the nominal device, the larger number of those under the plain step and under the first
-//       waveform of the search. One at p quadrature points counts as (8 + p) / 32; that of a compressible gas film counts as many
-//       times more as it has pressures, whose equations are solved beside it
+//       waveform of the search. A right-hand side at p quadrature points counts as (8 + p) / 32; with a compressible gas film,
+//       as many times more as the film has pressures, whose equations are solved as well
 //   N   closings of the default budget, n = N min(1, u / w),  u = usual_work()
 //
 // A closing that cannot be simulated in SIMD lanes, several devices at a time (why_not_in_lanes()), counts usual_lanes times.

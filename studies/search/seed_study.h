@@ -28,7 +28,7 @@ struct SearchOfSeed {
 
 class SeedStudy {
  public:
-  /// The progress of the study.
+  /// The progress of a study of several seeds.
   struct State {
     std::uint64_t done = 0;  ///< number of seeds whose search is finished
     double part = 0;         ///< evaluations so far, as a share of those of all seeds

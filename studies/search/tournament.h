@@ -5,9 +5,9 @@
 // best of many points: the starts of the waveform family, those nearest to given waveforms, and points of the whole search
 // space. Three searches use tournaments, and differ in their contenders and in how these are judged:
 //
-//   race.h             families by two measures, judged by their outcomes on the devices of the next round
-//   robust_optimize.h  points of one family that are far enough from each other, judged by their cost on all devices
-//   paced_search.h     one contender, which goes on as it is
+//   race.h             families by two measures, judged on the devices of the next round
+//   robust_optimize.h  distant points of one family, judged by their cost on all devices
+//   paced_search.h     one contender, which goes on in every round
 //
 // Contenders of a round do not depend on each other, so that the result depends on the seed and the number of closings only.
 //
@@ -34,7 +34,7 @@ inline constexpr std::size_t without_bound = std::numeric_limits<std::size_t>::m
 
 /// A round of a tournament.
 struct Round {
-  std::size_t contenders = without_bound;  ///< most contenders
+  std::size_t contenders = without_bound;  ///< largest number of contenders
   std::size_t devices = without_bound;     ///< devices of a search, or fewer if there are fewer
   double closings = 0;                     ///< closings of each search, or a share of the budget: see Tournament::share
   double step = 0.1;                       ///< first step size of a search, as a share of the range of every variable
@@ -61,7 +61,7 @@ struct Tournament {
   /// Searches from a contender, within `part`, the round's part of the budget. Start and seed of `chain` are not set yet.
   /// Called from several threads.
   std::function<void(Contender&, Turn turn, const Chain& chain, SearchBudget& part)> search;
-  /// Judges the contenders after round `round`, the first of which is 0, and returns those that go on.
+  /// Judges the contenders after round `round`, the first of which is 0, and returns the contenders of the next round.
   std::function<std::vector<Contender>(std::vector<Contender> contenders, std::size_t round)> select;
 
   /// Runs the rounds until the budget is over, no contender goes on, or a contender would get no closings.
@@ -93,7 +93,7 @@ struct Tournament {
 /// Numbers of closings of a search that improves a point.
 struct ImprovingClosings {
   long before = 0;    ///< closings for the cost of the point, which the budget does not count
-  long searched = 0;  ///< closings of the search
+  long searched = 0;  ///< closings of the search itself
 };
 /// Searches from the point `x`, and replaces `x` by the best point of the search if that costs less on the chain's devices.
 /// Calls `told` after every candidate.

@@ -42,7 +42,7 @@ class Verification {
   void move_to(OptimizeResult& result);
 
  private:
-  // The tests that a candidate has passed.
+  // The last test that a candidate has passed; each includes all before it.
   enum class Confidence { touches, settles, lands, meets_goal, confirmed };
 
   // A candidate after its simulation over the whole window, at the scene's accuracy.
