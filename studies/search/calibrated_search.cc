@@ -19,7 +19,7 @@ constexpr double least_times_of_error = 20;
 constexpr std::array errors_of_pull_in{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02};  // relative errors of Vdp
 constexpr double most_rows = 4;                // largest number of rows of results with a per-device calibration
 constexpr std::size_t devices_by_error = 256;  // number of fresh devices for the results by measurement error
-constexpr double ranked_by_share = 0.25;       // bounce-free share from which on waveforms are ranked by it
+constexpr double ranked_by_share = 0.25;       // bounce-free share of the winner from which on searches maximise this share
 constexpr std::uint64_t which_measured = 2;    // number that makes the random devices differ from those of robust_search.cc
 
 }  // namespace

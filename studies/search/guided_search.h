@@ -53,10 +53,10 @@ class GuidedSearch {
       : price_(std::move(price)), on_evaluation_(std::move(on_evaluation)), slopes_(std::move(slopes)) {}
 
   /// Minimises over the variables of `problem` from its starts. The objective of `problem` and the callbacks of `options` are
-  /// not used. Throws as minimize() does. Result, improvements and indices, from `first_index` on, are those of one search by
-  /// the target cost. If both costs are the same and no point closes without a bounce, a second stage of `more` evaluations
-  /// goes on from the best points. A further run begins at these points, and at starts that were not tried; its result is that
-  /// of all runs.
+  /// not used. Throws as minimize() does. Result, improvements and indices are those of one search by the target cost; the
+  /// first index is `first_index`. If both costs are the same and no point closes without a bounce, a second stage of `more`
+  /// evaluations goes on from the best points. A further run begins at these points, and at starts that were not tried; its
+  /// result is that of all runs.
   [[nodiscard]] OptimizerResult run(Problem problem, OptimizerOptions options, Costs costs, long more = 0, long first_index = 0);
   struct Best {
     Evaluation evaluation;  ///< evaluation with the target cost as value

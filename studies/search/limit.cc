@@ -29,7 +29,7 @@ constexpr double piece_angle = 0.75;  // phase angle of the fastest mode in one 
 // Permitted difference of optimum and simulation: relative in the time of first contact, or in contact gaps if only one of them
 // touches.
 constexpr double agreement = 1e-4;
-constexpr double longest_swing = 3;       // in periods of the first mode
+constexpr double longest_swing = 3;       // longest time of a swing, in periods of the first mode
 constexpr double softness = 0.2;          // relative excess over the permitted speed that a simulation may have
 constexpr double catch_tolerance = 1e-6;  // tolerance of the integrator for comparing catches
 constexpr int refinements = 3;            // refinements of the knots: each halves the shortest interval

@@ -162,10 +162,11 @@ inline constexpr double settling_goal = 1.3;
 /// excess is at most a thousandth.
 [[nodiscard]] double hardness_beyond_step(const Metrics& closing, const Metrics& step);
 
-/// True if the closing `best` meets the goal of the target. All targets: the contact settles without a significant rebound.
-/// Settling: it also settles within settling_goal, or before the baseline does, if the baseline does not touch. Other targets
-/// with a cost of their own, and sums of targets: their figure is also better than the baseline's. The figure of a sum is the
-/// weighted mean of the figures relative to the baseline.
+/// True if the closing `best` meets the goal of the target. A user objective from Aim::from_the_start(): the switch touches
+/// with a lower value than the baseline. All other targets: the contact settles without a significant rebound. Settling: it
+/// also settles within settling_goal, or before the baseline does, if the baseline does not touch. Other targets with a cost of
+/// their own, and sums of targets: their figure is also better than the baseline's. The figure of a sum is the weighted mean of
+/// the figures relative to the baseline.
 [[nodiscard]] bool goal_met(const Aim& target, const Metrics& best, const Metrics& baseline);
 
 }  // namespace softland

@@ -116,7 +116,7 @@ constexpr double step_after_line = 1.2,
 constexpr double settle = 0.5;             // rise time of a shaped holder, in periods
 constexpr double least_contact_level = 0.16, most_low = 0.5;    // levels before contact, as shares of the holder's hold level
 constexpr std::array lower_levels{0.03, 0.12};                  // levels of further starts, over the holder's hold level
-constexpr double back = 1, back_of_step = 5.7, back_after = 2;  // periods in which the carrying drive returns, and waits before
+constexpr double back = 1, back_of_step = 5.7, back_after = 2;  // duration of a piezo's return, and the wait before, in periods
 
 }  // namespace
 

@@ -69,7 +69,7 @@ class QuasiStatic {
   void clamp_starts();
   void bound(const std::vector<double>& start, bool is_paced);
   [[nodiscard]] Waveform carrying(Points points) const;
-  /// The voltage at which the nominal design touches while the holder stands at `low` [V].
+  /// The voltage of the carrying drive at which the nominal design touches while the holder is at `low` [V].
   [[nodiscard]] double reaches(double low) const;
   /// The voltage `deviations` standard deviations beyond the touching voltage, as a share of the latter, within the driver's
   /// limit.

@@ -200,7 +200,7 @@ class Race {
   const RaceAims& aims_;
   const RaceOptions& options_;
   SearchBudget budget_;             // budget of the planned closings
-  double length_ = 1, longer_ = 1;  // length relative to the default; factor on it if many devices are bounce-free
+  double length_ = 1, longer_ = 1;  // length relative to the default; the length if many devices are bounce-free
   bool alone_ = false;              // true: a single search, not a race
   bool many_ = false;               // true: many devices are bounce-free
   RaceResult result_;

@@ -68,7 +68,7 @@ struct ChosenFrom {
       parameters;  ///< parameters by drive.name; empty for waveforms of the search on the nominal device
   std::vector<Variable> variables;
   long closings = 0;
-  // Figures on the devices of the choice:
+  // The members below are figures on the devices of the choice.
   double bounce_free = 0, tail = 0;                                    ///< bounce-free share of the devices; tail of the cost
   double measured = 0;                                                 ///< measure of risk alone, without the cost of time
   double first_touch = Metrics::unset, impact_speed = Metrics::unset;  ///< 95th percentiles over the devices [s], [m/s]

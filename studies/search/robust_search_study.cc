@@ -83,7 +83,7 @@ class RobustSearchStudy {
     } catch (const Interrupted&) {  // return the results so far
     }
     searched_.give_up();
-    if (beside_.valid()) beside_.wait();  // the results of this thread are read from here on
+    if (beside_.valid()) beside_.wait();  // the results of the search over devices are read from here on
     if (progress_.stopped() && result_->rows.empty()) take_leader();
     result_->interrupted = progress_.stopped();
     if (!result_->rows.empty()) tell_findings();

@@ -194,7 +194,7 @@ VectorXd course_of(const DriveSearch& drive, const Signal& signal, double end) {
 }
 
 double end_of_course(const DriveSearch& drive, const Signal& given) {
-  constexpr double beyond = 1.25, least = 2.5;  // multiples of the last breakpoint, and of the time of first contact
+  constexpr double beyond = 1.25, least = 2.5;  // end of the comparison: multiples of the last breakpoint, and of first contact
   return std::max(beyond * given.breakpoints().back(), least * drive.first_touch);
 }
 
