@@ -40,7 +40,7 @@ struct BeamSection {
   double end = 0;              ///< [m]
   double rigidity = 0;         ///< EI [N m^2]
   double mass_per_length = 0;  ///< mu [kg/m]
-  /// Relative growth of rigidity and mass from the middle, where they are given, to the end; linear in between.
+  /// Relative change of rigidity and mass from the middle of the stretch, where they are given, to its end; linear between.
   double taper = 0;
   double curvature = 0;  ///< curvature at rest of a beam with sections or layers, positive away from the near electrode [1/m]
   /// Moment per volt of a piezo layer on a beam with sections or layers, in the middle of the stretch [N m / V].
@@ -62,10 +62,10 @@ struct CompositeSection {
 [[nodiscard]] CompositeSection layered_section(const Structure& structure, const Piezo& piezo);
 /// Returns the bending moment of the layer per volt, e31 a (z_c - bp / 2) with e31 = d31 Ep [N m / V]: negative for d31 < 0.
 [[nodiscard]] double piezo_moment_per_volt(const Structure& structure, const Piezo& piezo);
-/// Returns the beam's sections in order.
+/// Returns the beam's sections in order of x.
 [[nodiscard]] std::vector<BeamSection> beam_sections(const Device& device);
 /// Returns the axial stress that residual_stress leaves in the released beam between two clamps [Pa]. A stress along the beam
-/// is kept entirely. The equal biaxial stress sigma of a film leaves sigma (1 - nu), since the sides of the beam are free and
+/// remains entirely. The equal biaxial stress sigma of a film leaves sigma (1 - nu), since the sides of the beam are free and
 /// its length is fixed.
 [[nodiscard]] double axial_stress(const Bridge& bridge);
 /// Returns the compressive stress at which the beam buckles [Pa], with E I of plain_section(): 4 pi^2 E I / (A L^2) between two
@@ -75,7 +75,7 @@ struct CompositeSection {
 /// Returns the reason why the beam cannot rest straight under its axial stress; empty when it can.
 [[nodiscard]] std::string why_buckled(const Structure& structure, const std::optional<Surface>& surface = {});
 
-/// Returns the rule that a beam breaks; empty when it breaks none.
+/// Returns the rule of the beam model that the device violates; empty when it violates none.
 [[nodiscard]] std::string why_no_beam(const Device& device);
 
 struct BeamSupport {
@@ -87,8 +87,8 @@ struct BeamSupport {
 /// Returns the clamps of a beam and the axial force from residual stresses of its bulk and surfaces.
 [[nodiscard]] BeamSupport beam_support(const Structure& structure, const std::optional<Surface>& surface = {});
 
-/// The modes of a beam in units of its length and of the mass and rigidity of its first section. They are the same for every
-/// beam of that shape, whatever its size and material.
+/// The modes of a beam in units of its length and of the mass and rigidity of its first section. Beams of one shape have the
+/// same normalised modes, whatever their size and material.
 class NormalisedModes {
  public:
   /// The properties that the modes depend on.
@@ -103,41 +103,42 @@ class NormalisedModes {
     double axial_force = 0;                        ///< N L^2 / EI
     double near_rotation = Anchor::rigid;          ///< c L / EI
     double near_translation = Anchor::rigid;       ///< k L^3 / EI
-    double far_rotation = 0, far_translation = 0;  ///< used unless far_clamp
-    /// Returns true when a section changes linearly or an end stands on springs.
+    double far_rotation = 0, far_translation = 0;  ///< stiffnesses of the far end in the same units; not used with far_clamp
+    /// Returns true when the rigidity of a section changes linearly or an end stands on springs.
     [[nodiscard]] bool is_general() const;
     [[nodiscard]] bool operator==(const Beam&) const = default;
   };
-  /// Finds the modes. The search starts from the modes of a similar beam `near` with as many sections and modes when this
-  /// quickly leads to the same result, and is a full search otherwise. Both ways give the same modes up to rounding. Throws
-  /// InvalidInput for a compression beyond the buckling load.
+  /// Finds the modes. The search starts from the modes of a similar beam `near` with as many sections and modes if this
+  /// converges quickly, and is a full search otherwise. Both searches give the same modes up to rounding. Throws InvalidInput
+  /// for a compression beyond the buckling load.
   explicit NormalisedModes(Beam beam, const NormalisedModes* near = nullptr);
 
   [[nodiscard]] const Beam& beam() const { return beam_; }
   /// Returns omega^-2 of the modes, in descending order.
   [[nodiscard]] const Eigen::VectorXd& inverse_squares() const { return inverse_squares_; }
-  /// Return all modes at x in [0, 1].
+  /// Return values and slopes of all modes at x in [0, 1].
   [[nodiscard]] Eigen::VectorXd value(double x) const { return (shape(x, 0) * shapes_).transpose(); }
   [[nodiscard]] Eigen::VectorXd slope(double x) const { return (shape(x, 1) * shapes_).transpose(); }
   /// Returns the integrals of the products of the modes' slopes.
   [[nodiscard]] Eigen::MatrixXd slope_products() const;
-  /// Returns omega^-2 of the first mode of the beam that is also held at x. `near` is this number of a similar beam.
+  /// Returns omega^-2 of the first mode of the beam that is also held at x. The search starts from `near`, the result for a
+  /// similar beam.
   [[nodiscard]] double pinned_inverse_square(double x, std::optional<double> near = {}) const;
 
  private:
   // Searches all modes at once by Ritz's method.
   void search();
-  // Iterates Rayleigh quotients that begin with the frequencies of `near`. Returns false when it cannot prove that it found the
-  // first modes.
+  // Iterates Rayleigh quotients that begin with the frequencies of `near`. Returns false when the result is not certain to be
+  // the modes of lowest frequency.
   [[nodiscard]] bool follow(const NormalisedModes& near);
-  // Returns a place where every mode moves.
+  // Returns a place at which no mode has a node.
   [[nodiscard]] double moving_place() const;
-  // Return the values of all functions or of a derivative: at x in units of the length; at xi in [-1, 1] over an element.
+  // Return the values of all shape functions or of a derivative: at x in units of the length; at xi in [-1, 1] over an element.
   [[nodiscard]] Eigen::RowVectorXd shape(double x, int derivative) const;
   [[nodiscard]] Eigen::RowVectorXd shape(const BeamElement& element, double xi, int derivative) const;
-  // Returns combinations of the functions that a general beam permits, orthonormal in its elastic energy.
+  // Returns combinations of the shape functions that the supports of the beam permit, orthonormal in its elastic energy.
   [[nodiscard]] Eigen::MatrixXd permitted_motions(const Eigen::MatrixXd& end, const Eigen::MatrixXd& slopes) const;
-  // Gives the modes the sign of their definition.
+  // Makes the modes positive at a free end; between two clamps, positive near x = 0.
   void orient();
 
   Beam beam_;
@@ -145,18 +146,18 @@ class NormalisedModes {
   Eigen::MatrixXd shapes_;  // functions x modes
   Eigen::VectorXd inverse_squares_;
   double moving_place_ = 1;
-  // Factors of the two rigid motions, after the elements' functions; 0 when x = 0 cannot move in this way.
+  // Scales of the rigid translation and rotation among the shape functions; 0 when the support at x = 0 prevents the motion.
   double shift_ = 0, turn_ = 0;
-  // All motions of a general beam by Ritz's method, with unit elastic energy, and omega^-2 of each.
+  // All motions of a beam on springs or with linear sections by Ritz's method, with unit elastic energy, and omega^-2 of each.
   Eigen::MatrixXd all_motions_;
   Eigen::VectorXd all_inverse_squares_;
 };
 
 class BeamModes {
  public:
-  /// Finds the first `modes` modes. Uses the normalised modes `known` when they are those of this beam, and otherwise starts
-  /// from them. Throws InvalidInput unless sections join and are positive, modes is in [1, 40], and the axial force is above
-  /// the buckling load.
+  /// Finds the first `modes` modes. The normalised modes `known` are used if they belong to this beam; otherwise the search
+  /// starts from them. Throws InvalidInput unless sections join and are positive, modes is in [1, 40], and the axial force is
+  /// above the buckling load.
   BeamModes(const std::vector<BeamSection>& sections, int modes, const BeamSupport& support = {},
             std::shared_ptr<const NormalisedModes> known = {});
 

@@ -1,8 +1,8 @@
 // Local size of a beam of sections and layers (model/structure/beam_parts.h), and the rules for these parts.
 //
 // The lower faces of all sections and layers lie in one plane before release, as on a flat sacrificial layer: gaps count from
-// that plane. A section's width is constant or linear, so that rigidity, mass and moments of a stretch grow with it by the same
-// factor.
+// that plane. A section's width is constant or linear, so that rigidity, mass and moments of a stretch grow in proportion to
+// the width.
 //
 // Square holes of side s in a square pattern of pitch p leave the share 1 - (s/p)^2 of the area; mass and electrode area fall
 // by this factor. The stiffness falls by the ligament efficiency
@@ -39,13 +39,13 @@ struct LocalSection {
 
 /// Returns the share of the area that holes leave.
 [[nodiscard]] double area_left(const Holes& holes);
-/// Returns the share of the stiffness along the beam that holes leave, k above.
+/// Returns the ligament efficiency k, the share of the stiffness along the beam that holes leave.
 [[nodiscard]] double ligament_efficiency(const Holes& holes);
 
 /// Returns the stretches of a structure from end to end: a single one unless it has sections, or is a table of modes with
 /// widths.
 [[nodiscard]] std::vector<LocalSection> local_sections(const Structure& structure);
-/// Returns the stretch at this place; the second one where two stretches meet.
+/// Returns the stretch at this place; where two stretches meet, the one further from the clamp.
 [[nodiscard]] LocalSection section_at(const Structure& structure, double x);
 /// Returns the width across the structure at this place, with its holes [m].
 [[nodiscard]] double width_at(const Structure& structure, double x);

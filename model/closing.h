@@ -56,27 +56,27 @@ struct ClosingOptions {
   double no_end_before = 0;  ///< earliest end of a run after a touch, whatever after_contact is [s]
   double no_contact_before = std::numeric_limits<double>::infinity();  ///< time at which a run without a touch ends [s]
   long max_steps = 2'000'000;  ///< largest number of steps: a run that needs more ends as numerical_failure
-  /// If false, the contact is a force that sets in within a step, as for an integrator without events. Steps continue through
-  /// make and break, whose times are as exact as the interpolant; tolerances are those of contact throughout. Studies measure
-  /// the value of restarting in this way: see why_always_restarted().
+  /// If false, the integrator does not stop at make and break of contact: the contact force sets in within a step, and the
+  /// times of make and break are as exact as the interpolant. The tolerances of contact apply throughout. Studies measure in
+  /// this way what the restarts are worth: see why_always_restarted().
   bool restart_at_contact = true;
-  /// Potential of the closed equilibrium under the hold levels [J]; if given, Trajectory::landing_excess is measured against
-  /// it.
+  /// Potential of the closed equilibrium under the hold levels [J]; if given, Trajectory::landing_excess is computed relative
+  /// to this potential.
   double closed_potential = std::numeric_limits<double>::quiet_NaN();
   /// Contact force that counts as steady [N]; if given, Trajectory::steady_force_time is measured.
   double steady_force = std::numeric_limits<double>::quiet_NaN();
-  /// Modal coordinates [m kg^(1/2)] of a closed equilibrium under the drives' values before t = 0; if given, the run begins
-  /// there, at rest on the contact. The touch that holds then counts as one that began at t = 0 at no speed.
+  /// Modal coordinates [m kg^(1/2)] of a closed equilibrium under the drives' values before t = 0; if given, the run begins in
+  /// this equilibrium. The contact at the start counts as a touch that began at t = 0 with impact velocity 0.
   std::span<const double> begins_closed = {};
   /// Equilibrium at the start when begins_closed is empty: `closed` is the stable closed equilibrium under the drives' values
   /// before t = 0.
   StartState start = StartState::open;
   /// Time at which the drives command a closed switch to open [s]. Figures of the closing, such as
-  /// Trajectory::steady_force_time and the electrical state, describe the time before.
+  /// Trajectory::steady_force_time and the electrical state, describe the motion before opens_at.
   double opens_at = std::numeric_limits<double>::infinity();
   const std::atomic<bool>* stop = nullptr;  ///< set by another thread; ends the run as `interrupted`
-  /// Called after every step with time [s], q and v, after which the states of a compressible film are stored; returns true to
-  /// end the run (status done).
+  /// Called after every step with time [s], modal coordinates q and velocities v; the states of a compressible film follow v in
+  /// memory. The run ends with status done when the function returns true.
   std::function<bool(double, const double*, const double*)> observer = {};
 };
 
@@ -90,7 +90,7 @@ struct ClosingOptions {
 /// why_always_restarted() gives a reason.
 [[nodiscard]] Trajectory simulate_closing(const Switch& model, std::span<const Signal> drives, const ClosingOptions& options);
 
-/// Simulates a closing for an observer, which receives points and touches; in the result they are empty.
+/// Simulates a closing for an observer, which receives motion and touches; the trajectory that is returned has neither.
 [[nodiscard]] Trajectory observe_closing(const Switch& model, std::span<const Signal> drives, const ClosingOptions& options,
                                          ClosingObserver& observer);
 

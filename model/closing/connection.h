@@ -1,11 +1,11 @@
 // The connection that several contacts of a switch make, which an observer receives like a single contact.
 //
 // The connection is closed while all of the contacts that make it are closed, or while any of them is (Device::connection). Its
-// separation is the largest of their separations, or the smallest; its place counts from the plane of the first contact, at the
-// separation of the connection. Between two knots of any contact the contact with the largest (or smallest) separation at both
-// ends decides; where the deciding contact changes there is a knot at which both have the same separation. The force of the
-// connection is the least force of a contact that makes it, or the largest. A touch of the connection has the largest force and
-// impact velocity, and the energies, of the touches of its contacts.
+// separation is the largest of their separations, or the smallest; its position is that of the first contact's plane less this
+// separation. Between two knots of any contact the contact with the largest (or smallest) separation at both ends decides;
+// where the deciding contact changes there is a knot at which both have the same separation. The force of the connection is the
+// least force of a contact that makes it, or the largest. A touch of the connection has the largest force and impact velocity,
+// and the sum of energies, of the touches of its contacts.
 #pragma once
 
 #include <cstddef>
@@ -24,14 +24,14 @@ class ConnectionTouches {
  public:
   /// Adds a touch of a contact that makes the connection.
   void take(const Touch& touch);
-  /// Closes the connection at this time [s], at this speed [m/s]; returns the touch before, if there was one.
+  /// Closes the connection at this time [s], at this speed [m/s]; returns the previous touch of the connection, if any.
   [[nodiscard]] std::optional<Touch> close(double time, double speed);
   /// Opens the connection at this time [s].
   void open(double time) { touch_->end = time; }
-  /// Returns the last touch, after all touches of contacts have been added.
+  /// Returns the last touch of the connection, after all touches of contacts have been added.
   [[nodiscard]] std::optional<Touch> finish();
 
-  /// Return the first touch of any contact that makes the connection [s], and its speed [m/s]; NaN before this touch.
+  /// Return time [s] and speed [m/s] of the first touch of any contact that makes the connection; NaN before this touch.
   [[nodiscard]] double first_touch() const { return first_touch_; }
   [[nodiscard]] double impact_velocity() const { return impact_velocity_; }
 
@@ -41,7 +41,7 @@ class ConnectionTouches {
   double first_touch_ = std::numeric_limits<double>::quiet_NaN(), impact_velocity_ = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The time from which the contact force is steady [s], and the least force after the first touch [N]: as in Trajectory.
+/// The time from which the contact force is steady [s], and the least force after the first touch [N]; see Trajectory.
 struct ForceOutcome {
   double steady_force_time = std::numeric_limits<double>::quiet_NaN();
   double least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
@@ -51,20 +51,19 @@ struct ForceOutcome {
 
 class ConnectionCourse {
  public:
-  /// Keeps references. The observer receives the connection; the observers that observer.contact() returns receive the
-  /// contacts.
+  /// Keeps references. `observer` receives the connection; the observers that observer.contact() returns receive the contacts.
   ConnectionCourse(const Switch& model, ClosingObserver& observer);
   ConnectionCourse(const ConnectionCourse&) = delete;
   ConnectionCourse& operator=(const ConnectionCourse&) = delete;
 
   /// Returns the observer that receives the motion of a contact.
   [[nodiscard]] ClosingObserver& contact(std::size_t c) { return followed_[c]; }
-  /// Passes the motion of the connection on up to the time until which all contacts are known.
+  /// Passes the motion of the connection on, up to the latest time to which the motion of every contact has been received.
   void hand_over();
-  /// Passes the last touch on, after all contacts have passed on theirs.
+  /// Passes the last touch of the connection on, after every contact has passed on its last touch.
   void finish();
 
-  /// Return the first touch of any contact that makes the connection [s], and its speed [m/s]; NaN before this touch.
+  /// Return time [s] and speed [m/s] of the first touch of any contact that makes the connection; NaN before this touch.
   [[nodiscard]] double first_touch() const { return touches_.first_touch(); }
   [[nodiscard]] double impact_velocity() const { return touches_.impact_velocity(); }
 
@@ -91,7 +90,7 @@ class ConnectionCourse {
     bool connects_;
   };
 
-  /// Returns the contact that decides at a time; `present` when several contacts are equally far.
+  /// Returns the contact whose separation is that of the connection at a time; `present` when several separations are equal.
   [[nodiscard]] std::size_t decides(double time, std::size_t present) const;
   void follow_to(double time);
   void tell(double time);
@@ -101,10 +100,10 @@ class ConnectionCourse {
   double plane_;  // rest distance of the first contact to its plane [m]
   std::vector<Followed> followed_;
   std::size_t deciding_ = 0;
-  double here_ = 0;  // [s]
+  double here_ = 0;  // time up to which the connection has been passed on [s]
   ConnectionTouches touches_;
   bool is_closed_ = false;
-  double last_closed_ = 0;  // [s]
+  double last_closed_ = 0;  // last time at which the connection was closed [s]
 };
 
 }  // namespace softland

@@ -29,12 +29,12 @@ struct Edge {
   double level = 0;  ///< [m]
   double side = 0;   ///< 1: the phase lies beyond the level, towards the contact; -1: before it
   Phase next = Phase::flight;
-  std::size_t zone = 0;  ///< zone of the next phase: the number of kinks of the law below its interferences
+  std::size_t zone = 0;  ///< zone of the next phase: the number of the law's kinks at smaller interferences
 };
 
 class ContactPhase {
  public:
-  /// Tracks the phase of one contact of the switch, which is in flight and has never touched.
+  /// Starts in flight. The contact has never touched.
   explicit ContactPhase(const Switch& model, std::size_t contact = 0);
 
   [[nodiscard]] Phase phase() const { return phase_; }
@@ -43,7 +43,7 @@ class ContactPhase {
   /// Returns the state of the contact law that belongs to the phase.
   [[nodiscard]] const ContactState& law() const { return law_; }
   [[nodiscard]] std::span<const Edge> edges() const { return {edges_.data(), edge_count_}; }
-  /// Returns the phase on the other side of the plane of first touch.
+  /// Returns the phase just above the plane of first touch.
   [[nodiscard]] Phase above() const { return reach_ > 0 ? Phase::near : Phase::flight; }
   /// Returns true when the phase ends where the contact point turns back: loading of a law with memory.
   [[nodiscard]] bool ends_at_turn() const { return remembers_ && phase_ == Phase::loading; }
@@ -55,7 +55,7 @@ class ContactPhase {
   [[nodiscard]] double lost(double position) const;
 
   void enter(Phase phase, std::size_t zone = 0);
-  /// Begins at rest on the contact, with the contact point this much beyond the plane [m]. A law with memory has been loaded to
+  /// Begins at rest on the contact, with the contact point at this interference [m]. A law with memory has been loaded up to
   /// this interference.
   void begin_closed(double interference);
   /// Changes from loading to unloading at this interference [m].
@@ -77,7 +77,7 @@ class ContactPhase {
   double healed_ = 0;   // energy lost to dents that have healed [J]
 };
 
-/// The phases of all contacts of a switch, at least one: that of the contact point for a switch without contact.
+/// The phases of all contacts of a switch; for a switch without contact, the phase of its contact point.
 class ContactPhases {
  public:
   explicit ContactPhases(const Switch& model) {

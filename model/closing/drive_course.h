@@ -18,8 +18,8 @@ class DriveCourse {
   [[nodiscard]] std::size_t size() const { return signals_.size(); }
   /// Returns the values of all drives before t = 0.
   [[nodiscard]] std::vector<double> before() const { return values_before(signals_); }
-  /// Returns begin and end of every stretch within [0, duration], in order. A stretch also begins at `also` if this time lies
-  /// within the interval [s].
+  /// Returns begin and end of every stretch between breakpoints within [0, duration], in order. A stretch also begins at the
+  /// time `also` [s] if this time lies within the interval.
   [[nodiscard]] std::vector<double> stretches(double duration, double also = std::numeric_limits<double>::infinity()) const {
     std::vector<double> stops{0, duration};
     if (also > 0 && also < duration) stops.push_back(also);
@@ -33,10 +33,10 @@ class DriveCourse {
     return stops;
   }
 
-  /// Enters the piece of drive k that begins at time t, or is valid after it.
+  /// Selects the piece of drive k that is valid just after time t.
   void enter(std::size_t k, double t) { pieces_[k] = signals_[k].piece_at(t); }
   [[nodiscard]] const SignalPiece& piece(std::size_t k) const { return signals_[k].pieces()[pieces_[k]]; }
-  /// Returns the value of drive k by the formula of its present piece, also beyond its ends.
+  /// Returns the value of drive k by the formula of its present piece, also before and after the piece.
   [[nodiscard]] double value(std::size_t k, double t) const { return piece(k).voltage(t); }
   /// Returns the values of all drives; valid until the next call.
   std::span<const double> values(double t) {
@@ -50,7 +50,7 @@ class DriveCourse {
     }
     return true;
   }
-  /// Returns a step length that resolves every drive after t; infinity when none oscillates [s].
+  /// Returns a step length that resolves the oscillation of every drive after t [s]; infinity when no drive oscillates.
   [[nodiscard]] double resolving_step(double t) const {
     double step = std::numeric_limits<double>::infinity();
     for (const Signal& signal : signals_) step = std::min(step, signal.resolving_step(t));

@@ -26,8 +26,8 @@
 
 namespace softland {
 
-/// A contact in a step: its motion, its place at the start of the step's last piece and at the end, the state of its law, and
-/// whether it is at or below the plane of first touch.
+/// A contact in a step: its motion, its position at the start of the step's last piece and at the end, the state of its contact
+/// law, and whether it is at or below the plane of first touch.
 struct ContactInStep {
   StepMotion& motion;
   const TrajectoryPoint& from;
@@ -41,15 +41,15 @@ class ElectricalRecord {
   /// Keeps references. An observer whose follows_state() is true receives every change of the state.
   ElectricalRecord(const Switch& model, ClosingObserver& observer);
 
-  /// Adds a step between two times [s] in which every contact stays in the state of its law.
+  /// Adds a step between two times [s] in which the state of every contact law stays the same.
   void take(double begin, double end, std::span<const ContactInStep> contacts);
-  /// Adds a time [s] in which the plate rests on its rigid contact, under a force [N] that is a function of the time.
+  /// Adds an interval of time [s] in which the plate rests on its rigid contact, under a force [N] that is a function of time.
   void take_rest(double begin, double end, const std::function<double(double)>& force);
-  /// Ends the closing at this time [s]: no later change of the state affects an outcome.
+  /// Ends the closing at this time [s]: later changes of the electrical state affect no outcome.
   void finish(double time);
 
   [[nodiscard]] const ElectricalOutcome& connection() const { return followed_.front().outcome; }
-  /// One of several contacts, or the only one.
+  /// Returns the outcome of contact c, also when it is the only contact.
   [[nodiscard]] const ElectricalOutcome& contact(std::size_t c) const {
     return followed_[followed_.size() > 1 ? c + 1 : 0].outcome;
   }
@@ -60,7 +60,7 @@ class ElectricalRecord {
     double opened_at = std::numeric_limits<double>::quiet_NaN();  // [s]
     ElectricalOutcome outcome = {};
   };
-  // A contact at one time.
+  // Interference, force and conductance of a contact at one time.
   struct Instant {
     double interference = 0, force = 0;  // [m], [N]
     double conductance = 0;              // [S]
@@ -82,7 +82,7 @@ class ElectricalRecord {
   ClosingObserver& observer_;
   ElectricalClosing closing_;
   std::vector<ContactResistance> resistances_;
-  std::vector<Followed> followed_;  // the connection, then, if there are several, each contact
+  std::vector<Followed> followed_;  // first the connection, then each contact if there are several
   bool is_finished_ = false;
 };
 

@@ -22,26 +22,27 @@ namespace softland {
 
 class EnergyAudit {
  public:
-  /// Keeps references. The switch is at rest at `start`, under its drives' values before t = 0 or on its contact; its
-  /// electrodes are charged there at once.
+  /// Keeps references. At `start` the switch is at rest, open under its drives' values before t = 0 or closed on its contact,
+  /// and the electrodes carry the charge of this state.
   EnergyAudit(const Switch& model, DriveCourse& drives, ContactPhases& phases, ClosingEquations& equations, const Knot& start);
 
-  /// Moves all drives to the pieces that are valid after `here`; a jump charges its electrode at fixed deflection, the limit of
-  /// ever steeper edges.
+  /// Moves all drives to the pieces that are valid after `here`. A jump of voltage charges the electrode at fixed deflection,
+  /// the limit of ever steeper edges.
   void enter_stretch(const Knot& here, bool first);
   /// Adds a step between two knots.
   void step(const Knot& here, const Knot& next, double dissipation_at_end, StepMotion& motion, bool implicit);
-  /// Adds a time in which the drives change while nothing moves.
+  /// Adds an interval in which the plate rests on its contact while the drives change.
   void rest(const Knot& here, double until);
-  /// Adds an impact on a rigid contact that has left the switch in a state of this dissipation [W].
+  /// Adds an impact on a rigid contact: `lost` is the energy lost [J], `dissipation` the dissipated power just after the impact
+  /// [W].
   void impact(double lost, double dissipation);
 
-  /// Computes the residual of the balance at a knot.
+  /// Computes the residual of the energy balance at a knot.
   void settle(const Knot& here);
   [[nodiscard]] const EnergyBalance& balance() const { return balance_; }
-  /// Returns the largest residual at all knots of settle() [J]; NaN once one was NaN.
+  /// Returns the largest residual that settle() has found [J]; NaN if any residual was NaN.
   [[nodiscard]] double error() const { return error_; }
-  /// Returns the energy of the moving switch plus what impacts on a rigid contact have dissipated [J].
+  /// Returns kinetic plus potential energy of the switch, plus the energy that impacts on a rigid contact have dissipated [J].
   [[nodiscard]] double above_rest(const Knot& here);
 
  private:
@@ -63,8 +64,8 @@ class EnergyAudit {
   ClosingEquations& equations_;
   std::size_t modes_;
   double rest_energy_;      // energy stored at the start [J]
-  double source_work_ = 0;  // work of the sources without V Q of the charges that are on the electrodes now [J]
-  double dissipated_ = 0;   // [J]
+  double source_work_ = 0;  // work of the sources without V Q of the charges that are on the electrodes at present [J]
+  double dissipated_ = 0;   // energy dissipated by gas, film, modal damping and contacts [J]
   double dissipation_ = 0;  // dissipation at the last knot [W]
   double impacts_ = 0;      // energy lost in impacts [J]
   bool careful_ = false;    // true when dissipated_ is integrated with more points

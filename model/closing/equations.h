@@ -11,23 +11,23 @@ namespace softland {
 
 class ClosingEquations {
  public:
-  /// Keeps references. If `phase_decides`, the state of a contact law is that of its phase; otherwise it is that of the
-  /// position, whatever the phase.
+  /// Keeps references. If `phase_decides`, the state of a contact law follows from the contact phase; otherwise from the
+  /// position of the contact point alone.
   ClosingEquations(const Switch& model, DriveCourse& drives, ContactPhases& phases, bool phase_decides);
   ClosingEquations(const ClosingEquations&) = delete;
   ClosingEquations& operator=(const ClosingEquations&) = delete;
 
   [[nodiscard]] const OdeSystem& system() const { return system_; }
-  /// Computes the rates of a state except q' at time t, with the contact law in the state of the phase.
+  /// Computes the rates of a state except q' at time t, with every contact law in the state of its contact phase.
   void rates(double t, const double* state, double* result) { rates(t, state, phases_.states(), result); }
   void rates(Knot& knot) { rates(knot.time, knot.state.data(), knot.rates.data()); }
-  /// Returns figures in the field of the last evaluation, whose state must have been this one up to rounding.
+  /// Returns figures of the gap field of the last evaluation; `state` must be that evaluation's state up to rounding.
   [[nodiscard]] FieldFigures field(const double* state);
-  /// Returns the dissipation by gas, film and modal damping in any state [W]; overwrites the field.
+  /// Returns the dissipation by gas, film and modal damping in any state [W]; overwrites the gap field.
   [[nodiscard]] double dissipation(const double* state) {
     return model_.dissipated_power(state, state + modes_, work_, film_of(state));
   }
-  /// Returns the workspace in which electrical and elastic energies of a state are computed, which overwrites the field.
+  /// Returns the workspace in which electrical and elastic energies of a state are computed, which overwrites its gap field.
   [[nodiscard]] Switch::Workspace& workspace() { return work_; }
   [[nodiscard]] long evaluations() const { return evaluations_; }
 

@@ -1,10 +1,10 @@
 // The contact force of a closing after the first touch: the time from which it stays above a threshold, and its least value
 // afterwards.
 //
-// Between knots the force is that of the contact law along the motion of the contact point. It is taken as linear along a pad,
-// and for a plate at rest on a rigid contact. Out of contact it is that of a law that acts beyond the plane, else 0. Extremes
-// are located at knots and where the contact point turns back, which suffices for laws whose force grows with depth. For other
-// laws, which pull or are damped, they are located between these times too.
+// Between knots the force is that of the contact law along the motion of the contact point. Along a pad, and for a plate at
+// rest on a rigid contact, the force is taken as linear in time. Out of contact the force is 0, except for a law that acts
+// beyond the plane. Extremes are located at knots and where the contact point turns back, which suffices for laws whose force
+// grows with depth. For laws that pull or are damped, extremes are located between these times too.
 #pragma once
 
 #include <limits>
@@ -17,12 +17,12 @@ namespace softland {
 
 class ForceRecord {
  public:
-  /// Records one of the contacts. Keeps a reference. `threshold` [N]; NaN for none.
+  /// Records the force of one contact. Keeps a reference. `threshold` [N]; NaN for none.
   ForceRecord(const Switch& model, double threshold, std::size_t contact = 0);
 
   /// Adds a piece of a step after the first touch, under a contact law in this state.
   void take(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to, const ContactState& law);
-  /// Adds a time after the first touch over which the force changes linearly from one value to the other.
+  /// Adds an interval after the first touch over which the force changes linearly from one value to the other.
   void take_line(const TrajectoryPoint& from, const TrajectoryPoint& to);
 
   /// Marks that a maximum of the force has passed: the contact has opened, or an impact on a rigid contact is over.
@@ -36,7 +36,7 @@ class ForceRecord {
  private:
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-  /// Adds a time over which the contact point moves in one direction.
+  /// Adds an interval in which the contact point moves in one direction.
   template <class Force>
   void follow_path(const Force& force, double begin, double from, double end, double to);
   template <class Force>

@@ -9,11 +9,11 @@ namespace softland {
 struct Knot {
   double time = 0;            ///< [s]
   std::vector<double> state;  ///< q, v, then the film if it is compressible
-  std::vector<double> rates;  ///< rates of all states but q: q'', then those of the film
+  std::vector<double> rates;  ///< rates of all states but q: accelerations, then the rates of the film
 };
 
 /// The figures of the gap field at a knot that the closing needs. They are taken from the workspace as soon as the knot is
-/// known, since the next use of the workspace overwrites the field.
+/// computed, since the next use of the workspace overwrites the field.
 struct FieldFigures {
   double smallest_gap = 0;   ///< [m]
   bool at_far_side = false;  ///< see Switch::at_far_side()

@@ -31,14 +31,14 @@ class ClosingObserver {
   virtual void knot(const TrajectoryPoint&) {}
   /// Receives a touch that is over, or, at the end of the run, a touch that has not ended, whose end is NaN.
   virtual void touch(const Touch&) {}
-  /// Returns the observer of knots and touches of one contact of several, while this observer receives those of the connection
-  /// that the contacts make; null for none. It is not called for a switch with one contact.
+  /// Returns the observer that receives knots and touches of one contact of several; null for none. This observer itself
+  /// receives those of the connection that the contacts make. Not called for a switch with one contact.
   [[nodiscard]] virtual ClosingObserver* contact(std::size_t /*number*/) { return nullptr; }
-  /// Returns true when the observer asks when the switch is electrically closed (model/closing/electrical_record.h).
+  /// Returns true when the observer needs to know when the switch is electrically closed (model/closing/electrical_record.h).
   [[nodiscard]] virtual bool follows_state() const { return false; }
-  /// Receives the state, closed or open, that begins at this time [s]: of the connection, or of the contact of this number when
-  /// there are several. Before the first call the state is open. The calls of each are in order of time, and go on after
-  /// ClosingOptions::opens_at.
+  /// Receives a change of the electrical state to closed or open at this time [s]: of the contact of this number, or of the
+  /// connection when none is given. Every state is open before its first call. Calls for one state are in order of time and
+  /// continue after ClosingOptions::opens_at.
   virtual void state(std::optional<std::size_t> /*contact*/, bool /*is_closed*/, double /*time*/) {}
   /// Returns true when the observer needs the motion of all modes. It then receives every step and the events between steps, in
   /// order of time. It receives the state of the first contact only, which does not describe all forces of several contacts.

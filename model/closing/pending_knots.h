@@ -1,4 +1,4 @@
-// The motion of the contact point during a run: knots of the present step wait until no event can change them any more.
+// The motion of one contact point during a run: knots of the present step wait until no event can change them any more.
 #pragma once
 
 #include <algorithm>
@@ -19,11 +19,11 @@ class PendingKnots {
         observer_(observer) {}
 
   void push(const TrajectoryPoint& point) { waiting_.push_back(point); }
-  /// Returns the last of all knots, passed on or waiting.
+  /// Returns the last of all knots, whether it has been passed on or waits.
   [[nodiscard]] const TrajectoryPoint& last() const { return waiting_.empty() ? handed_over_ : waiting_.back(); }
-  /// Returns the last waiting knot, for a correction.
+  /// Returns the last waiting knot, so that the caller can correct this knot.
   [[nodiscard]] TrajectoryPoint& last_waiting() { return waiting_.back(); }
-  /// Removes the waiting knots from time `from` on.
+  /// Removes the waiting knots from the time `from` [s] on.
   void take_back(double from, double step_begin) {
     while (!waiting_.empty() && waiting_.back().time >= from && waiting_.back().time > step_begin) waiting_.pop_back();
   }

@@ -19,22 +19,23 @@ class RestingPlate {
     double lost = 0;    ///< energy lost in the impact [J]
     bool rests = false;
   };
-  /// Handles the arrival of the plate at the plane of first touch: the plate is then on the plane with its rebound velocity, or
-  /// at rest when the rebound would be too low.
+  /// Handles the arrival of the plate at the plane of first touch. Afterwards the plate is on the plane, with its rebound
+  /// velocity, or at rest when the rebound would be too low.
   Impact strike(Knot& here);
 
-  /// Begins a rest from this knot, whose rates are known, to the end of the stretch at most.
+  /// Begins a rest at this knot, whose rates have been computed. The rest lasts at most to the end of the stretch of the
+  /// drives.
   void begin(Knot& here, double stretch_end);
   struct Stay {
-    double until = 0;     ///< [s]
+    double until = 0;     ///< end of this interval of the rest [s]
     bool leaves = false;  ///< true when the drives pull the plate off at that time
   };
-  /// Continues the rest for a while, at most as long as a force presses the plate on the contact.
+  /// Continues the rest by one interval, which ends early when no force presses the plate on the contact any more.
   Stay stay(const Knot& here, double stretch_end);
   /// Returns the force on the contact while the plate rests [N].
   [[nodiscard]] double force() const { return force_ > 0 ? force_ : 0; }
-  /// Returns the force with which the plate would press on the contact at `here` under the drives of time t [N]; negative when
-  /// it would be pulled off.
+  /// Returns the force with which the plate at rest at `here` presses on the contact under the drives of time t [N]; negative
+  /// when the drives pull the plate off.
   [[nodiscard]] double load(const Knot& here, double t);
 
  private:
@@ -42,7 +43,7 @@ class RestingPlate {
   DriveCourse& drives_;
   ClosingEquations& equations_;
   double force_ = 0;  // pressing force at the last knot [N]
-  double look_ = 0;   // longest time between two evaluations [s]
+  double look_ = 0;   // longest time between two evaluations of the drives during the rest [s]
   std::vector<double> rates_;
 };
 

@@ -18,12 +18,12 @@ namespace softland {
 
 class StepMotion {
  public:
-  /// `tolerance` is that of the integrator: the quintic of a piece has an error of the same share of the fastest mode's
-  /// amplitude, at most 1e-5. The place of `contact` is the contact point.
+  /// `tolerance` is that of the integrator. The quintic of a piece has an error of this share of the fastest mode's amplitude,
+  /// and at most 1e-5. The place of `contact` is the contact point.
   StepMotion(const Switch& model, double tolerance, std::size_t contact = 0);
 
   /// Sets the step between two knots; `end` is the contact point at its end. Keeps references to the knots. `accurate_rates` is
-  /// true when accelerations at the knots may be used; those of an implicit method may be its errors times the stiffness.
+  /// true when accelerations at the knots may be used: those of an implicit method may be errors times the stiffness.
   void set(const Knot& begin, const Knot& end_knot, const TrajectoryPoint& end, bool accurate_rates);
 
   [[nodiscard]] bool moves_by_modes() const { return moves_by_modes_; }
@@ -48,7 +48,7 @@ class StepMotion {
   std::size_t modes_, film_;
   double fastest_;             // angular frequency of the last mode [rad/s]
   double knot_phase_;          // largest phase of the fastest mode in a piece
-  std::vector<double> omega_;  // angular frequencies in whole lanes [rad/s]
+  std::vector<double> omega_;  // angular frequencies, padded to whole vector lanes [rad/s]
   ModalMotion motion_;
   bool motion_known_ = false;
   const Knot* begin_ = nullptr;
@@ -59,7 +59,7 @@ class StepMotion {
   std::vector<double> between_;
 };
 
-/// The contact point in a piece of a step.
+/// The contact point in a piece of a step: its motion is a quintic in time.
 class TipMotion : public Quintic {
  public:
   TipMotion(StepMotion& step, const TrajectoryPoint& from, const TrajectoryPoint& to)

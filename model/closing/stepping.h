@@ -27,11 +27,11 @@ namespace softland {
   return !options.begins_closed.empty() || options.start == StartState::closed;
 }
 /// Returns the equilibrium in which a run starts, under the drives' values before t = 0: an open one unless the options request
-/// a closed one. Empty when it does not exist.
+/// a closed one. Returns none when this equilibrium does not exist.
 [[nodiscard]] std::optional<Eigen::VectorXd> start_of(const Switch& model, std::span<const Signal> signals,
                                                       const ClosingOptions& options);
 
-/// One contact of a closing, or the contact point of a switch without one.
+/// The record of one contact of a closing, or of the contact point of a switch without contact.
 struct FollowedContact {
   FollowedContact(const Switch& model, std::size_t contact, ContactPhase& contact_phase, const ClosingOptions& options,
                   ClosingObserver& observer)
@@ -53,7 +53,7 @@ struct FollowedContact {
   TrajectoryPoint end;  ///< contact point at the end of the present step
 };
 
-/// The parts of a closing; they keep references to each other.
+/// The parts of a closing, which keep references to each other.
 struct ClosingParts {
   const Switch& model;
   const ClosingOptions& options;
@@ -103,11 +103,11 @@ struct ClosingParts {
     if (electrical && !closing_is_over) electrical->finish(time);
     closing_is_over = true;
   }
-  /// Records the peaks and the contact force of a piece of a step.
+  /// Records the peaks and the contact force in a piece of a step.
   void record(FollowedContact& contact, const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to);
   /// Returns the place of a contact at a knot.
   [[nodiscard]] TrajectoryPoint point(const FollowedContact& contact, const Knot& knot) const;
-  /// Continues the motion of every contact to a knot.
+  /// Continues the motion of every contact up to a knot.
   void push(const Knot& knot) {
     for (FollowedContact& c : contacts) c.pending_knots.push(point(c, knot));
   }
@@ -116,35 +116,35 @@ struct ClosingParts {
     for (FollowedContact& c : contacts) c.pending_knots.hand_over();
     if (connection) connection->hand_over();
   }
-  /// Returns the begin of the first touch of a contact of the near side [s]; NaN before this touch.
+  /// Returns the time of the first touch of any contact on the near side [s]; NaN before this touch.
   [[nodiscard]] double first_touch() const;
   [[nodiscard]] bool has_touched() const { return !std::isnan(first_touch()); }
 };
 
 class Stepping {
  public:
-  /// Starts at rest, or on the contact. Keeps a reference.
+  /// Starts at rest without contact, or on the contact. Keeps a reference.
   explicit Stepping(ClosingParts& parts);
 
   [[nodiscard]] Knot& here() { return here_; }
   [[nodiscard]] const Work& work() const { return work_; }
-  /// Counts an evaluation of the drives during the rest of a plate as a step.
+  /// Counts an evaluation of the drives, while a plate rests on its contact, as a step.
   void count_step() { ++work_.steps; }
   /// Returns the reason why the last call failed.
   [[nodiscard]] const std::string& message() const { return message_; }
 
-  /// Restarts the integrator from here(), in the present phase. Returns false when this failed.
+  /// Restarts the integrator from here(), in the present contact phase. Returns false when this failed.
   bool restart();
-  /// Checks that the number of steps is within its limit. From time to time it also checks whether the method suits the
-  /// equations, and changes to the other method if not. Returns false when the check failed.
+  /// Checks that the number of steps is within its limit. From time to time the function also checks whether the integration
+  /// method suits the equations, and changes to the other method if not. Returns false when the check failed.
   bool check_work();
 
   struct Step {
     FieldFigures field;  ///< figures at the end of the step
     std::optional<Event> event;
   };
-  /// Integrates from here() to the end of a step, no further than `stop` and the next event that needs a restart. Peaks and
-  /// energies of the step are recorded, its knots wait in the course. Returns none when the step failed.
+  /// Integrates from here() to the end of a step: to `stop` or the next event that needs a restart, at the latest. Peaks and
+  /// energies of the step are recorded, its knots wait in PendingKnots. Returns none when the step failed.
   std::optional<Step> advance(double stop, EnergyAudit& audit);
 
  private:
@@ -170,8 +170,8 @@ class Stepping {
   Knot here_, next_;  // knots of the present step
   Work work_;
   std::unique_ptr<Stepper> stepper_;
-  double last_step_ = 0;  // last step that no stop cut short [s]
-  long next_look_ = 0;    // step number of the next check of the work
+  double last_step_ = 0;  // length of the last step that did not end early at a stop [s]
+  long next_look_ = 0;    // number of the step at which check_work() next checks the method
   int stiff_looks_ = 0;
   std::string message_;
 };

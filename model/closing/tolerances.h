@@ -16,10 +16,10 @@ struct Tolerances {
 
   /// Derives the tolerances from a relative one.
   Tolerances(const Switch& model, double relative) {
-    // The tolerances are the relative tolerance times these lengths. Later touches magnify errors of the flight, so the length
-    // of the flight is shorter than the contact gap. With these two numbers a tolerance of 1e-6 gives first contact time,
+    // The tolerances are the relative tolerance times the two lengths below. Later touches magnify errors of the flight, so the
+    // length of the flight is shorter than the contact gap. With these lengths a tolerance of 1e-6 gives first contact time,
     // impact velocity and highest rebound of the reference closing to four digits. Measured: a tenfold change of the second
-    // number changes the error of the highest rebound by less than a tenth of itself, one of the first number in proportion.
+    // length changes the error of the highest rebound by less than a tenth of itself, one of the first length in proportion.
     constexpr double flight_fraction = 1.0 / 30;   // share of the contact gap
     constexpr double penetrations_in_contact = 1;  // multiple of the static interference that bends the beam by the contact gap
     const double gap = model.contact_gap();

@@ -13,7 +13,7 @@ namespace softland {
 
 class TouchRecord {
  public:
-  /// Keeps references; passes every touch to the observer when it is over.
+  /// Keeps references. Every touch is passed to the observer when the touch is over.
   TouchRecord(const Switch& model, std::size_t contact, const ContactPhase& phase, ClosingObserver& observer);
 
   [[nodiscard]] long count() const { return count_; }
@@ -22,7 +22,7 @@ class TouchRecord {
   /// Returns the present touch, or the last one.
   [[nodiscard]] Touch& last() { return touch_; }
 
-  /// Begins with the switch in contact, at rest.
+  /// Begins with the switch at rest on its contact.
   void begin_closed() { begin(0, 0); }
   /// Adds an event that the contact point has reached, before its next phase begins; returns true when a touch begins.
   bool note(const Event& event, const TrajectoryPoint& at);
@@ -30,9 +30,9 @@ class TouchRecord {
   /// Adds the peaks of a piece of a step; does nothing outside of contact.
   void take(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to);
   /// Adds the peaks of a whole step of a damped contact, whose largest force comes before the deepest point, or of a contact
-  /// along a pad, whose largest force comes before or after it. Does nothing for other contacts.
+  /// along a pad, whose largest force comes before or after the deepest point. Does nothing for other contacts.
   void take(const Knot& begin, const Knot& end, StepMotion& step);
-  /// Passes on the touch that has not ended at the end of the run.
+  /// Passes on the touch that lasts beyond the end of the run.
   void finish();
 
  private:

@@ -12,11 +12,11 @@
 // reach [m]. The plane of first touch, d = 0, is the outermost distance x0 at which p vanishes: above it the law only attracts.
 //
 // The published law has no reach. The straight line that is subtracted makes force and slope end continuously at xr (with the
-// default, 1 um, it is 1.2 % of the attraction at 150 nm). The law is lossless: jumping into contact and off it takes energy
-// through the motion that follows. The force is continuous; its slope jumps at x = dc + ta, its second derivative at dc: the
-// integrator restarts at both, where they lie beyond touch. Validity: x > 0, and the pair of surfaces it was fitted to; the
-// defaults are nickel on a dielectric. Source: the contact model of MEMOSA, Purdue's PRISM centre (public code of its force
-// models); attraction: Hamaker 1937.
+// default, 1 um, the line is 1.2 % of the attraction at 150 nm). The law is lossless: jumping into contact and off it takes
+// energy through the motion that follows. The force is continuous; its slope jumps at x = dc + ta, its second derivative at dc:
+// the integrator restarts at both distances, where they lie beyond touch. Validity: x > 0, and the pair of surfaces to which
+// the law was fitted; the defaults are nickel on a dielectric. Source: the contact model of MEMOSA, Purdue's PRISM centre
+// (public code of its force models); attraction: Hamaker 1937.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +35,7 @@ template <class P>
 class AdhesiveRepulsiveContactOf {
  public:
   AdhesiveRepulsiveContactOf() = default;
-  /// `area` is An [m^2], `touch` x0 [m]. A step of Newton's method improves x0 for other scalars than double, so that it has
+  /// `area` is An [m^2], `touch` is x0 [m]. For scalars other than double a step of Newton's method improves x0, so that x0 has
   /// their derivatives.
   AdhesiveRepulsiveContactOf(const SurfacePressureOf<P>& law, const P& area, const P& touch)
       : law_(law), area_(area), end_(far(DualOf<P>(law.reach, 1))), touch_(touch) {
@@ -63,14 +63,14 @@ class AdhesiveRepulsiveContactOf {
     return select(
         x < onset, [&]() -> S { return p - S(law_.adhesion_pressure / unit) * (S(onset) - x); }, [&] { return p; });
   }
-  /// Returns the force [N] within reach.
+  /// Returns the force on the beam [N]; the surfaces must be within reach.
   template <class S>
   S force(S d) const {
     return S(area_) * pressure(S(touch_) - d);
   }
   [[nodiscard]] double energy(double d) const;
 
-  /// Returns x0 [m].
+  /// Returns x0, the outermost distance at which the pressure vanishes [m].
   [[nodiscard]] const P& touch_distance() const { return touch_; }
   /// Returns how far above the plane of first touch the law acts [m].
   [[nodiscard]] double reach() const { return law_.reach - touch_; }

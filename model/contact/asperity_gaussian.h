@@ -28,12 +28,12 @@
 namespace softland {
 namespace internal {
 
-/// F_1.5 of the Gaussian, with the functions derived from it and its derivative.
+/// The integral F_1.5 of Gaussian heights, with its derivative and functions derived from them.
 class GaussianTail {
  public:
   static const GaussianTail& instance();
 
-  /// Returns F_1.5(h).
+  /// Returns F_1.5(h), the integral of (s - h)^1.5 times the Gaussian density over s > h.
   template <class S>
   S operator()(S h) const {
     return one_by_one(h, [this](const auto& one) { return this->of_one(one); });
@@ -88,7 +88,7 @@ class GaussianTail {
 
 }  // namespace internal
 
-/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
+/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
 template <class P>
 struct GaussianAsperityContactOf {
   P strength = 0;   ///< C [N]
@@ -96,7 +96,7 @@ struct GaussianAsperityContactOf {
 
   static constexpr double first_touch = 4;  ///< h0: distance from the mean of the summits to the plane of first touch, in sigma
 
-  /// Returns F_1.5(h).
+  /// Returns F_1.5(h), the integral of (s - h)^1.5 times the Gaussian density over s > h.
   template <class S>
   static S tail(S h) {
     return internal::GaussianTail::instance()(h);

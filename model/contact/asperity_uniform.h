@@ -17,7 +17,7 @@
 
 namespace softland {
 
-/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
+/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
 template <class P>
 struct UniformAsperityContactOf {
   P strength = 0;  ///< eta An E* sqrt(R) / Hm [N / m^2.5]
@@ -49,7 +49,7 @@ struct UniformAsperityContactOf {
   [[nodiscard]] double interference(double load) const {
     double d = std::pow(load / (strength * 8 / 15), 0.4);
     if (d <= height) return d;
-    // Newton's method for a convex function, from the left: one step overshoots, and the others descend.
+    // Newton's method for a convex function, from the left: the first step overshoots, and later steps descend to the zero.
     for (int i = 0; i < 50; ++i) {
       const Dual at = force(Dual(d, 1));
       const double step = (at.value - load) / at.slope;
@@ -60,7 +60,7 @@ struct UniformAsperityContactOf {
   }
 };
 
-/// Returns the law of these summits, with heights up to `height` [m].
+/// Returns the contact law of these summits, with heights up to `height` [m].
 [[nodiscard]] inline UniformAsperityContact uniform_contact(const Summits& summits, double height, const ContactPad& pad) {
   return {.strength = summits.hertz(pad) / height, .height = height};
 }

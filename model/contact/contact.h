@@ -1,5 +1,5 @@
-// A contact of a device: the parameters of one of its laws, and its pad. A law is a header and a row here; a long force
-// function stands in a header of its own, which contact_law.h includes.
+// A contact of a device: the parameters of one of its laws, and its pad. A new law needs a header and a row here; a long force
+// function has a header of its own, which contact_law.h includes.
 #pragma once
 
 #include <limits>
@@ -23,11 +23,11 @@
 
 namespace softland {
 
-/// The laws, in the order of messages and tables.
+/// The contact laws, in the order in which messages and tables list them.
 using ContactModel = std::variant<LinearSpring, UniformAsperities, GaussianAsperities, AdhesiveAsperities, HystereticSpring,
                                   PlasticAsperities, RigidStop, AdhesiveRepulsiveSurfaces, OwnContact>;
 
-/// The place where the contact acts: at the pad's centre, or at all points of the pad that are beyond the plane.
+/// The place where the contact force acts: at the pad's centre, or at all points of the pad that are beyond the contact plane.
 enum class ContactDistribution { centre, pad };
 inline constexpr auto contact_distributions =
     std::to_array<Named<ContactDistribution>>({{ContactDistribution::centre, "centre"}, {ContactDistribution::pad, "pad"}});
@@ -38,10 +38,10 @@ enum class Connection { all, any };
 inline constexpr auto connections = std::to_array<Named<Connection>>({{Connection::all, "all"}, {Connection::any, "any"}});
 static_assert(is_complete<connections>());
 
-/// The electrical side of a closed contact: see model/contact/resistance.h. The resistance of a contact without resistivity is
-/// not known.
+/// The electrical properties of a closed contact: see model/contact/resistance.h. The resistance of a contact without a given
+/// resistivity is unknown.
 struct Conduction {
-  double resistivity = std::numeric_limits<double>::quiet_NaN();  ///< rho of both metals [Ohm m]
+  double resistivity = std::numeric_limits<double>::quiet_NaN();  ///< resistivity rho of the metals [Ohm m]
   /// H of the softer metal; by default the hardness of the law, if it has one [Pa].
   double hardness = std::numeric_limits<double>::quiet_NaN();
   double film_resistance = 0;  ///< Rf in series with each contact [Ohm]
@@ -59,14 +59,14 @@ struct Contact {
   std::optional<Place> at = {};                                 ///< centre of the pad; none: see Device::contact_position()
   /// Rest distance of the contact to its plane [m]; Device::gap has that of the first contact.
   double gap = std::numeric_limits<double>::quiet_NaN();
-  Side side = Side::near;   ///< far: a back stop
-  bool along_face = false;  ///< true when it acts at all points of a dielectric's face; its law is per area
+  Side side = Side::near;   ///< `far` for a back stop
+  bool along_face = false;  ///< true for a contact at all points of a dielectric's face, whose law is per area
   double count = 1;         ///< number of such contacts side by side across the beam
   bool connects = true;     ///< true when the contact is part of the connection
   Conduction conduction = {};
 };
 
-/// Returns true when the law acts per area of the pad, so that a plate needs a width and a length of the pad.
+/// Returns true when the contact law acts per area of the pad, so that a plate needs a width and a length of the pad.
 [[nodiscard]] inline bool acts_per_area(const ContactModel& model) {
   return std::visit(
       [](const auto& law) {
@@ -74,7 +74,7 @@ struct Contact {
       },
       model);
 }
-/// Returns true when the contact may hold without any voltage.
+/// Returns true when the contact may stay closed without any voltage.
 [[nodiscard]] inline bool may_stick(const ContactModel& model) {
   return std::visit(
       [](const auto& law) {
@@ -83,7 +83,7 @@ struct Contact {
       },
       model);
 }
-/// Returns the reason why the law cannot act along the pad; empty when it can.
+/// Returns the reason why the contact law cannot act along the pad; empty when it can.
 [[nodiscard]] inline std::string_view why_not_along_pad(const ContactModel& model) {
   return std::visit(
       [](const auto& law) -> std::string_view {
@@ -92,8 +92,8 @@ struct Contact {
       },
       model);
 }
-/// Returns the interference up to which the law is physical [m]: all asperities touch, or for Gaussian heights the plane has
-/// come down by four standard deviations. It is infinite for a spring.
+/// Returns the interference up to which the contact law is physical [m]: all asperities touch, or for Gaussian heights the
+/// plane has come down by four standard deviations. For a spring the result is infinite.
 [[nodiscard]] inline double largest_interference(const ContactModel& model) {
   return std::visit(
       [](const auto& law) {

@@ -1,5 +1,5 @@
 // The contact laws of a switch: the force that pushes the contact point away, as a function of the interference d = y(x_c) - dt
-// [m] and, for some, of its rate or its past. Each is a value with its own file; a switch composes one when it is built.
+// [m] and, for some laws, of its rate or its past. Each law is a value type with its own file.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@
 namespace softland {
 
 namespace internal {
-/// Extends a variant by further alternatives, without those that it has already.
+/// Extends a variant by those of the further alternatives that the variant does not have.
 template <class Variant, class... More>
 struct WithKernels;
 template <class... Kernels>
@@ -96,19 +96,19 @@ S force_of(const Law& law, S d, const ContactState& state, Rate&& rate) {
   }
 }
 
-/// Returns the force at rest, on first loading [N].
+/// Returns the contact force at rest, on first loading [N].
 [[nodiscard]] inline double contact_force(const ContactLaw& law, double interference) {
   return std::visit([&](const auto& l) { return l.force(interference); }, law);
 }
-/// Returns the force in a state in which the law acts [N].
+/// Returns the contact force in a state in which the law acts [N].
 [[nodiscard]] inline double contact_force(const ContactLaw& law, double interference, const ContactState& state, double rate) {
   return std::visit([&](const auto& l) { return force_of(l, interference, state, [&] { return rate; }); }, law);
 }
-/// Returns the potential of the static force on first loading [J]; laws without memory store it.
+/// Returns the potential of the static force on first loading [J]; laws without memory store this energy.
 [[nodiscard]] inline double contact_energy(const ContactLaw& law, double interference) {
   return std::visit([&](const auto& l) { return l.energy(interference); }, law);
 }
-/// Returns the energy stored in a state in which the law acts [J].
+/// Returns the energy that the contact stores in a state in which the law acts [J].
 [[nodiscard]] inline double stored_energy(const ContactLaw& law, double interference, const ContactState& state) {
   return std::visit(
       [&](const auto& l) {
@@ -124,7 +124,7 @@ S force_of(const Law& law, S d, const ContactState& state, Rate&& rate) {
 struct Dent {
   double shift = 0;    ///< residual interference [m]
   double lost = 0;     ///< energy lost in making the dent [J]
-  bool heals = false;  ///< true when the dent is forgotten when contact ends
+  bool heals = false;  ///< true when the dent vanishes at the end of the touch
 };
 [[nodiscard]] inline Dent dent(const ContactLaw& law, double deepest) {
   return std::visit(
@@ -140,7 +140,7 @@ struct Dent {
 [[nodiscard]] inline bool has_memory(const ContactLaw& law) {
   return std::visit([](const auto& l) { return HasMemory<std::decay_t<decltype(l)>>; }, law);
 }
-/// Returns the power dissipated by a law that depends on the rate [W]; 0 for other laws.
+/// Returns the power that a law with damping dissipates [W]; 0 for other laws.
 [[nodiscard]] inline double contact_dissipation(const ContactLaw& law, double interference, double rate) {
   return std::visit(
       [&](const auto& l) {
@@ -152,7 +152,7 @@ struct Dent {
       },
       law);
 }
-/// Returns how far above the plane of first touch a law acts [m]; 0 for most laws.
+/// Returns how far above the plane of first touch a contact law acts [m]; 0 for most laws.
 [[nodiscard]] inline double contact_reach(const ContactLaw& law) {
   return std::visit(
       [](const auto& l) {
@@ -161,7 +161,7 @@ struct Dent {
       },
       law);
 }
-/// Returns the interferences beyond touch at which a law is continuous, but not smooth, in order [m]; none for most laws.
+/// Returns the interferences beyond touch at which the force is continuous, but not smooth, in order [m]; none for most laws.
 [[nodiscard]] inline std::vector<double> contact_kinks(const ContactLaw& law) {
   return std::visit(
       [](const auto& l) {

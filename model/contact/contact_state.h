@@ -1,19 +1,19 @@
-// The past of a contact, as its law receives it.
+// The state of a contact that its law receives: whether the contact acts, and for laws with memory its past.
 #pragma once
 
 #include <concepts>
 
 namespace softland {
 
-/// The state of a contact law. Laws without memory need only `active`. `Yes` is bool, or the mask of a lane of numbers.
+/// The state of a contact law. Laws without memory need only `active`. `Yes` is bool, or the mask of a vector of numbers.
 template <class S, class Yes>
 struct ContactStateOf {
   constexpr ContactStateOf() = default;
   constexpr ContactStateOf(std::same_as<Yes> auto acts) : active(acts) {}  // NOLINT: most laws need nothing else
 
   Yes active = Yes(false);
-  Yes unloading = Yes(false);  ///< true on the shifted elastic curve
-  S shift = 0;                 ///< s [m] while unloading
+  Yes unloading = Yes(false);  ///< true on the elastic curve of unloading
+  S shift = 0;                 ///< residual interference s while unloading [m]
 };
 using ContactState = ContactStateOf<double, bool>;
 

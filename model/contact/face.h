@@ -33,20 +33,20 @@
 
 namespace softland {
 
-/// Returns the stiffness per area of the face of a wall [Pa/m]: K [N/m], g [m], A [m^2], H [m].
+/// Returns the stiffness per area of a wall's face [Pa/m] from K [N/m], g [m], A [m^2] and H [m].
 [[nodiscard]] constexpr double wall_stiffness(double stiffness, double gap, double area, double depth) {
   constexpr double voltages = 2, sinks = 1.0 / 50;
   const double eps0_square = 8.0 / 27 * stiffness * gap * gap * gap / area * voltages * voltages;  // eps0 V^2
   return eps0_square / (2 * sinks * depth * depth * depth);
 }
 
-/// Returns the least stiffness per area that holds a beam off a face under a field [Pa/m]: V [V], H + b [m].
+/// Returns the least stiffness per area at which a linear bed keeps a beam off the electrode [Pa/m]; `depth` is H + b [m].
 [[nodiscard]] constexpr double least_face_stiffness(double voltage, double depth) {
   return 27.0 / 8 * vacuum_permittivity * voltage * voltage / (depth * depth * depth);
 }
 
-/// Returns the voltage up to which the face holds parallel plates off whose springs are relaxed where the pressure begins [V].
-/// `pressure` is a law of elastic contact per area, `depth` is H + b [m].
+/// Returns the voltage up to which the face keeps parallel plates apart whose springs are relaxed where the pressure begins
+/// [V]. `pressure` is a law of elastic contact per area, `depth` is H + b [m].
 template <class Law>
 [[nodiscard]] double most_face_voltage(const Law& pressure, double depth) {
   double low = 0, high = depth;  // bounds of the depth at which p (H + b - d)^2 is largest
@@ -92,7 +92,7 @@ struct FacePressure {
   }
 };
 
-/// A force of a field that does not grow below the face, where a wall carries the beam.
+/// A force law of a field that stays constant below the face, where a wall carries the beam.
 template <class Law>
 struct StopsAtFace {
   Law law;

@@ -31,7 +31,7 @@ struct HuntCrossley {
   }
   /// Returns the dissipated power [W].
   [[nodiscard]] double dissipation(double d, double rate) const { return (force(d, rate) - elastic.force(d)) * rate; }
-  /// Returns the force of the static law.
+  /// Returns the force of the law without damping.
   template <class S>
   S force(S d) const {
     return elastic.force(d);
@@ -39,7 +39,7 @@ struct HuntCrossley {
   [[nodiscard]] double energy(double d) const { return elastic.energy(d); }
 };
 
-/// Returns the law with damping, if the damping is not 0.
+/// Returns the contact law with damping; the law itself when the damping is 0.
 template <class Elastic>
 [[nodiscard]] std::variant<Elastic, HuntCrossley<Elastic>> damped(const Elastic& elastic, double damping) {
   if (damping > 0) return HuntCrossley<Elastic>{.elastic = elastic, .damping = damping};

@@ -17,7 +17,7 @@
 
 namespace softland {
 
-/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
+/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
 template <class P>
 struct LinearContactOf {
   P stiffness = 0;  ///< [N/m]
@@ -28,13 +28,13 @@ struct LinearContactOf {
   S force(S d) const {
     return S(stiffness) * d;
   }
-  /// Returns the interference that carries a force [m].
+  /// Returns the interference at which the spring carries a force [m].
   [[nodiscard]] double interference(double force) const { return force / stiffness; }
   [[nodiscard]] double energy(double d) const { return stiffness * d * d / 2; }
 };
 using LinearContact = LinearContactOf<double>;
 
-/// The law in a scene.
+/// The parameters of the law in a scene.
 struct LinearSpring {
   static constexpr std::string_view name = "linear";
   double stiffness = 0;  ///< [N/m]

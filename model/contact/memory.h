@@ -37,8 +37,8 @@ struct ContactWithMemory {
   Loading loading = {};
   Elastic elastic = {};
 
-  static constexpr bool heals = Heals;              ///< true when the dent is forgotten when contact ends
-  static constexpr bool grows_with_depth = !Heals;  ///< true also from touch to touch when a dent stays: it only becomes deeper
+  static constexpr bool heals = Heals;              ///< true when the dent vanishes at the end of the touch
+  static constexpr bool grows_with_depth = !Heals;  ///< the force is largest at the deepest interference of all touches
 
   /// Returns the force of first loading; energy() returns its work.
   template <class S>
@@ -55,7 +55,7 @@ struct ContactWithMemory {
   [[nodiscard]] double stored(double d, const ContactState& state) const {
     return elastic.energy(state.unloading ? d - state.shift : elastic.interference(loading.force(d)));
   }
-  /// Returns the residual interference after the deepest one [m].
+  /// Returns the residual interference after unloading from the deepest interference [m].
   [[nodiscard]] double shift(double deepest) const { return deepest - elastic.interference(loading.force(deepest)); }
   /// Returns the energy lost in loading to the deepest interference [J].
   [[nodiscard]] double lost(double deepest) const {

@@ -13,11 +13,11 @@
 //   device.contacts = {contact};  // for a device
 //   file.add_contact(contact);    // for a scene file without [contact]
 //
-// Rules, which the laws of softland keep as well: force(0, d') = 0. For d > 0 the force is continuous with two continuous
-// derivatives. It is continued smoothly to d < 0, where an integrator evaluates it on its way to the event that ends contact.
-// The law has no memory, and nothing acts before first touch. A law that depends on the rate dissipates energy: (force(d, d') -
-// force(d, 0)) d' >= 0. Several threads call the functions at once, and often: some hundred times in a touch. They must not
-// throw.
+// Rules, which the laws of softland obey as well: force(0, d') = 0. For d > 0 the force is continuous with two continuous
+// derivatives. The force continues smoothly to d < 0, where an integrator evaluates it on its way to the event that ends
+// contact. The law has no memory, and nothing acts before first touch. A law that depends on the rate dissipates energy:
+// (force(d, d') - force(d, 0)) d' >= 0. Several threads call the functions at once, and often: some hundred times in a touch.
+// The functions must not throw an exception.
 //
 // Such a switch is simulated, searched and evaluated under process variation (prepare(), optimize(), robustness()) like any
 // other, one closing at a time instead of several in lanes of vector instructions. Tangents for implicit steps and for statics
@@ -41,11 +41,11 @@ namespace softland {
 class OwnContactLaw {
  public:
   virtual ~OwnContactLaw() = default;
-  /// Returns the name in messages.
+  /// Returns the name of the law in messages.
   [[nodiscard]] virtual std::string_view name() const = 0;
   /// Returns P [N] at an interference [m] and its rate [m/s].
   [[nodiscard]] virtual double force(double interference, double rate) const = 0;
-  /// Returns true when the force depends on the rate. Only then it is evaluated at other rates than 0, and the energy audit
+  /// Returns true when the force depends on the rate. Only such a law is evaluated at rates other than 0, and the energy audit
   /// counts its dissipation.
   [[nodiscard]] virtual bool depends_on_rate() const { return false; }
   /// Returns true when the force is negative somewhere, so that the contact may stay closed without any voltage.
@@ -57,14 +57,14 @@ class OwnContactLaw {
 
 namespace internal {
 
-/// Returns dP/dx of a force over one of its arguments, by differences a millionth of it apart.
+/// Returns the derivative of a force by one of its arguments, a finite difference over a millionth of this argument.
 template <class F>
 [[nodiscard]] double slope_by_differences(F&& force, double at, double least_step) {
   const double step = 1e-6 * std::abs(at) + least_step;
   return (force(at + step) - force(at - step)) / (2 * step);
 }
 
-/// The law as a switch calls it; `S` is double, or a dual number, whose slope is by differences.
+/// The law as a switch calls it; `S` is double, or a dual number, whose slope is then a finite difference.
 template <bool by_rate>
 struct OwnContactForce {
   std::shared_ptr<const OwnContactLaw> own;
@@ -99,7 +99,7 @@ struct OwnContactForce {
 
 }  // namespace internal
 
-/// An own law as the contact of a device.
+/// A user's own law as the law of a device's contact.
 struct OwnContact {
   static constexpr std::string_view name = "own", not_along_pad = "which acts at the centre of the pad";
   static constexpr bool is_of_scenes = false;
@@ -107,7 +107,7 @@ struct OwnContact {
 
   static consteval auto fields() { return std::array<Field<OwnContact>, 0>{}; }
   [[nodiscard]] bool sticks() const { return own->pulls(); }
-  /// Returns the rule that the law breaks; empty when it breaks none.
+  /// Returns the rule that the contact violates; empty when it violates none.
   [[nodiscard]] std::string why_invalid(double) const { return own ? std::string() : "contact: the own law must not be null"; }
   [[nodiscard]] std::variant<internal::OwnContactForce<false>, internal::OwnContactForce<true>> law(const ContactPad&) const {
     if (own->depends_on_rate()) return internal::OwnContactForce<true>{own};

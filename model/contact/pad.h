@@ -12,7 +12,7 @@
 // half-integer powers of the laws become polynomials, exact while the pad is partly in touch. Measured errors, relative to the
 // force: 2e-12 when the whole pad is in touch, 3e-10 for Gaussian summits, 3e-5 where summits are crushed (d > Hm: the law has
 // a corner there). Limits: laws without memory whose force starts from zero; a law with memory would keep a dent at every
-// point. Validity: pad much shorter than the beam. Source: textbook. than the beam. Source: textbook.
+// point. Validity: pad much shorter than the beam. Source: textbook.
 #pragma once
 
 #include <algorithm>
@@ -36,7 +36,7 @@ class PadQuadrature {
   }
 
   /// Calls f(xi, share, interference) for points in the part of the pad that is beyond the plane; the shares add up to the
-  /// length of that part over that of the pad.
+  /// length of this part over the pad's length.
   template <class F>
   void over_contact(double end, double slope, F&& f) const {
     const double inner = end - slope * length_, deep = std::max(end, inner);

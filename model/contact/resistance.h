@@ -16,11 +16,11 @@
 // the law "adhesive" adds 2 pi R W for each summit in touch, so that a contact held by adhesion conducts. A contact without
 // load is open: its conductance is 0.
 //
-// Limits: for l << a Holm's constriction rho / (2a) between two half spaces, for l >> a Sharvin's ballistic one, which n spots
-// of one load share as a single spot. Spots do not interact: they stand further apart than their own size. Heating, softening
-// and tunnelling are neglected. Source: R. Holm, Electric Contacts (1967); B. Nikolic & P. B. Allen, Phys. Rev. B 60 (1999)
-// 3963 (arXiv cond-mat/9811296), after Wexler: G is their approximation of his function, and R1 stays within 11 % of the plain
-// sum of both limits.
+// Limits: for l << a Holm's constriction rho / (2a) between two half spaces; for l >> a Sharvin's ballistic resistance, which
+// plastic spots have whatever their number. Spots do not interact: the distance between them exceeds their size. Heating,
+// softening and tunnelling are neglected. Source: R. Holm, Electric Contacts (1967); B. Nikolic & P. B. Allen, Phys. Rev. B 60
+// (1999) 3963 (arXiv cond-mat/9811296), after Wexler: G is their approximation of his function, and R1 stays within 11 % of the
+// plain sum of both limits.
 #pragma once
 
 #include <cstddef>
@@ -32,14 +32,14 @@ namespace softland {
 
 class ContactResistance {
  public:
-  /// Takes a valid contact of a moving part of this width [m].
+  /// Takes a valid contact; `width` is that of the moving part at the contact [m].
   ContactResistance(const Contact& contact, double width);
 
-  /// Returns true when the contact has a resistivity. Otherwise its resistance is unknown and must not be requested.
+  /// Returns true when the contact has a resistivity. Otherwise conductance and resistance must not be requested.
   [[nodiscard]] bool is_known() const { return is_known_; }
-  /// Returns the conductance [S] at an interference [m] under a contact force [N]; 0 when open.
+  /// Returns the conductance of the contact [S] at an interference [m] under a contact force [N]; 0 when open.
   [[nodiscard]] double conductance(double interference, double force) const;
-  /// Returns the resistance [Ohm]; NaN when open.
+  /// Returns the resistance of the contact [Ohm] at an interference [m] under a contact force [N]; NaN when open.
   [[nodiscard]] double resistance(double interference, double force) const;
 
   /// Returns the resistance of a circular spot of radius a [m], R1 [Ohm]; infinite for a = 0.
@@ -60,9 +60,8 @@ class ContactResistance {
 /// Returns the resistance of one contact of a device, for the width of the moving part at the contact.
 [[nodiscard]] ContactResistance contact_resistance(const Device& device, std::size_t contact);
 
-/// Returns the conductance [S] of the connection that contacts with these conductances make, in the order of the device. The
-/// contacts of the connection are in series when all of them are needed, else side by side. Returns NaN when one of their
-/// conductances is NaN, which means unknown.
+/// Returns the conductance of a connection [S] from the conductances of its contacts, in the order of the device. The contacts
+/// are in series when all of them are needed, else side by side. Returns NaN when a conductance is NaN, which means unknown.
 [[nodiscard]] double connection_conductance(const Device& device, std::span<const double> conductances);
 
 /// Returns 1 / conductance; NaN for 0: an open contact has no resistance [Ohm].

@@ -22,20 +22,21 @@
 
 namespace softland {
 
-/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
+/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
 template <class P>
 struct RigidContactOf {
   P restitution = 0;  ///< e
 
-  static constexpr double rest_height = 1e-6;  ///< h_r over the contact gap
+  static constexpr double rest_height = 1e-6;  ///< height h_r over the contact gap: lower rebounds are not simulated
 
-  /// Returns true when a plate that leaves the stop with `speed` [m/s] against the acceleration [m/s^2] stays there.
+  /// Returns true when a plate would rebound from the stop, at `speed` [m/s] against `acceleration` [m/s^2], less than
+  /// rest_height.
   [[nodiscard]] static bool rests(double speed, double acceleration, double contact_gap) {
     return acceleration > 0 && speed * speed < 2 * acceleration * rest_height * contact_gap;
   }
 
-  /// Returns 0: the stop never yields, so no interference belongs to a force and nothing is stored; closing.cc and pull_in.cc
-  /// hold the plate.
+  /// Returns 0: a rigid stop does not yield, so it has no force as a function of the interference and stores no energy.
+  /// closing.cc and pull_in.cc keep the plate at the stop.
   template <class S>
   S force(S) const {
     return S(0);
@@ -44,7 +45,7 @@ struct RigidContactOf {
 };
 using RigidContact = RigidContactOf<double>;
 
-/// The law in a scene.
+/// The parameters of the law in a scene.
 struct RigidStop {
   static constexpr std::string_view name = "rigid", not_along_pad = "whose impacts have no force";
   double restitution = 0;  ///< e

@@ -1,4 +1,4 @@
-// The summits of a rough surface, a block of the parameters of several contact laws.
+// The summits of a rough surface: parameters that several contact laws share.
 #pragma once
 
 #include <cmath>
@@ -7,7 +7,7 @@
 
 namespace softland {
 
-/// The size of a contact, from which a law takes its number of summits.
+/// The size of a contact pad, from which a law computes its number of summits.
 struct ContactPad {
   double width = 0;   ///< width [m]; times the number of pads side by side
   double length = 0;  ///< lt [m]
@@ -23,15 +23,15 @@ struct Summits {
 
   /// Returns the number of summits under the pad.
   [[nodiscard]] double count(const ContactPad& pad) const { return density * pad.width * pad.length; }
-  /// Returns the force of all summits over d^1.5, by Hertz [N/m^1.5].
+  /// Returns the factor n E* sqrt(R) of Hertz force over d^1.5, for the n summits under the pad [N/m^1.5].
   [[nodiscard]] double hertz(const ContactPad& pad) const { return count(pad) * effective_modulus * std::sqrt(radius); }
 
-  /// Returns gold on gold, for tests.
+  /// Returns the summits of gold on gold, for tests.
   [[nodiscard]] static constexpr Summits example() { return {.radius = 100e-9, .density = 1e11, .effective_modulus = 48e9}; }
 };
 
 // clang-format off
-/// Returns the fields of radius and density of a law's member `summits`.
+/// Returns the scene's fields of radius and density of a law's member `summits`.
 template <class Law>
 [[nodiscard]] consteval auto summit_fields() {
   return std::to_array<Field<Law>>({
@@ -39,14 +39,14 @@ template <class Law>
       {.key = "asperity_density", .unit = "1/m^2", .about = "summits per area", .in = reach<Law, &Law::summits, &Summits::density>, .required = true, .such_as = "1e11 1/m^2"},
   });
 }
-/// Returns the field of the effective modulus, which comes after the heights.
+/// Returns the scene's field of the effective modulus, which follows the fields of the heights.
 template <class Law>
 [[nodiscard]] consteval auto modulus_fields() {
   return std::to_array<Field<Law>>({
       {.key = "effective_modulus", .unit = "Pa", .about = "E* of the pair of surfaces", .in = reach<Law, &Law::summits, &Summits::effective_modulus>, .required = true, .such_as = "48 GPa"},
   });
 }
-/// Returns the field of summit heights that are uniform on [0, Hm].
+/// Returns the scene's field of the greatest height of summits, with heights uniform on [0, Hm].
 template <class Law>
 [[nodiscard]] consteval auto height_fields() {
   return std::to_array<Field<Law>>({

@@ -14,7 +14,7 @@
 
 namespace softland {
 
-/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
+/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
 template <class P>
 struct GallisTorczynskiFilmOf {
   P viscosity = 0;       ///< [Pa s]
@@ -34,7 +34,7 @@ struct GallisTorczynskiFilmOf {
 };
 using GallisTorczynskiFilm = GallisTorczynskiFilmOf<double>;
 
-/// The law in a scene.
+/// The parameters of the law in a scene.
 struct GallisTorczynskiGas {
   static constexpr std::string_view name = "gallis-torczynski";
   static constexpr FilmLimits limits{.most_squeeze = incompressible};

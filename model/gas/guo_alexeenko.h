@@ -18,7 +18,7 @@
 
 namespace softland {
 
-/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
+/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
 template <class P>
 struct GuoAlexeenkoFilmOf {
   P mean_free_path = 0;                                              ///< [m]
@@ -47,7 +47,7 @@ struct GuoAlexeenkoFilmOf {
 };
 using GuoAlexeenkoFilm = GuoAlexeenkoFilmOf<double>;
 
-/// The law in a scene.
+/// The parameters of the law in a scene.
 struct GuoAlexeenkoGas {
   static constexpr std::string_view name = "guo-alexeenko";
   static constexpr FilmLimits limits{.needs_thickness = true};

@@ -14,7 +14,7 @@
 
 namespace softland {
 
-/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
+/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
 template <class P>
 struct LinearDamperOf {
   P damping = 0;  ///< c [N s/m^2]
@@ -28,7 +28,7 @@ struct LinearDamperOf {
 };
 using LinearDamper = LinearDamperOf<double>;
 
-/// The law in a scene, which gives either the damping or the quality factor.
+/// The parameters of the law in a scene, which gives either the damping or the quality factor.
 struct LinearGas {
   static constexpr std::string_view name = "linear";
   double damping = not_given, quality_factor = not_given;

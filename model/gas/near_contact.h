@@ -18,7 +18,7 @@
 
 namespace softland {
 
-/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
+/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
 template <class P>
 struct NearContactFilmOf {
   P viscosity = 0;       ///< [Pa s]
@@ -54,7 +54,7 @@ struct NearContactFilmOf {
 };
 using NearContactFilm = NearContactFilmOf<double>;
 
-/// The law in a scene.
+/// The parameters of the law in a scene.
 struct NearContactGas {
   static constexpr std::string_view name = "near-contact";
   static constexpr FilmLimits limits{.least_knudsen = 1 / NearContactFilm::rarefied, .most_squeeze = incompressible};

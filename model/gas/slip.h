@@ -12,7 +12,7 @@
 
 namespace softland {
 
-/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
+/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
 template <class P>
 struct SlipFilmOf {
   P viscosity = 0;       ///< [Pa s]

@@ -12,7 +12,7 @@
 
 namespace softland {
 
-/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
+/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
 template <class P>
 struct StripSqueezeFilmOf {
   P viscosity = 0;  ///< [Pa s]
@@ -34,7 +34,7 @@ struct StripSqueezeFilmOf {
 };
 using StripSqueezeFilm = StripSqueezeFilmOf<double>;
 
-/// The law in a scene.
+/// The parameters of the law in a scene.
 struct StripGas {
   static constexpr std::string_view name = "strip";
   static constexpr FilmLimits limits{.most_knudsen = 0.1, .most_squeeze = incompressible};

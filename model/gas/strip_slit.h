@@ -17,7 +17,7 @@
 
 namespace softland {
 
-/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
+/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
 template <class P>
 struct StripOverSlitOf {
   P viscosity = 0;    ///< [Pa s]
@@ -37,7 +37,7 @@ struct StripOverSlitOf {
 };
 using StripOverSlit = StripOverSlitOf<double>;
 
-/// The law in a scene.
+/// The parameters of the law in a scene.
 struct StripSlitGas {
   static constexpr std::string_view name = "strip-slit";
   static constexpr FilmLimits limits{.most_knudsen = 0.1, .most_squeeze = incompressible};

@@ -14,7 +14,7 @@
 
 namespace softland {
 
-/// Templated over the scalar of its parameters; the scalar of the state must be one they convert to.
+/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
 template <class P>
 struct VeijolaFilmOf {
   P viscosity = 0;       ///< [Pa s]
@@ -31,7 +31,7 @@ struct VeijolaFilmOf {
 };
 using VeijolaFilm = VeijolaFilmOf<double>;
 
-/// The law in a scene.
+/// The parameters of the law in a scene.
 struct VeijolaGas {
   static constexpr std::string_view name = "veijola";
   static constexpr FilmLimits limits{.most_knudsen = 880, .most_squeeze = incompressible};
