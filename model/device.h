@@ -39,14 +39,15 @@ struct Landing {
   [[nodiscard]] double begin() const { return asperities ? asperities->height : from; }
 };
 
-/// An insulator on an electrode, facing the moving part: the gaps of the scene end at its face, the metal lies deeper.
+/// An insulator on an electrode, facing the moving part. The gaps of the scene end at the insulator's face; the metal lies
+/// deeper.
 struct Dielectric {
   double thickness = 0;     ///< [m]
   double permittivity = 1;  ///< relative
   double roughness = 0;     ///< air gap that remains when its summits touch [m]
   double charge = 0;        ///< charge per area on its face [C/m^2], of either sign
-  /// Landing on the face. A moving part that reaches a face without a landing has failed, unless it is a plate on a contact
-  /// there.
+  /// Landing on the face. A moving part that reaches a face without a landing has failed, unless the moving part is a plate on
+  /// a contact at the face.
   std::optional<Landing> landing = {};
 
   /// Returns the contribution of the dielectric to the gap of the field, t / eps_r + roughness [m].
@@ -120,7 +121,7 @@ struct Surface {
   ResidualLoad cantilever_load = ResidualLoad::none;  ///< effect of tau_0 on a cantilever
 };
 
-/// The rule by which the connection of a switch counts as electrically closed. It has no effect when no number is given.
+/// The rule by which the connection of a switch counts as electrically closed. The rule has no effect when no number is given.
 struct ElectricalClosing {
   double force = std::numeric_limits<double>::quiet_NaN();       ///< the contact force must exceed this [N]; NaN: no bound
   double resistance = std::numeric_limits<double>::quiet_NaN();  ///< the resistance must be below this [Ohm]; NaN: no bound
@@ -130,7 +131,7 @@ struct ElectricalClosing {
   [[nodiscard]] double shortest_opening() const { return after >= 0 ? after : 0; }
 };
 
-/// The circuit that the connection switches: a source and a resistance in series with it.
+/// The circuit that the connection switches: a voltage source and a resistance in series with the connection.
 struct SwitchedLoad {
   double voltage = std::numeric_limits<double>::quiet_NaN();     ///< [V]
   double resistance = std::numeric_limits<double>::quiet_NaN();  ///< [Ohm]
@@ -143,7 +144,7 @@ struct Device {
   Gap gap = {};
   std::vector<Electrode> electrodes = {};
   std::optional<Gas> gas = {};
-  std::vector<Contact> contacts = {};  ///< the first one, on the near side, closes the switch; back stops come after the others
+  std::vector<Contact> contacts = {};  ///< the first one, on the near side, closes the switch; back stops come after all others
   Connection connection = Connection::all;
   ElectricalClosing electrical = {};
   SwitchedLoad load = {};
@@ -152,7 +153,7 @@ struct Device {
   std::optional<Surface> surface = {};
 
   [[nodiscard]] bool has_contact() const { return !contacts.empty(); }
-  /// Returns true when the resistance of the connection is known: every contact of the connection conducts.
+  /// Returns true when the resistance of the connection is known: every contact of the connection has a resistivity.
   [[nodiscard]] bool conducts() const {
     return has_contact() &&
            std::ranges::all_of(contacts, [](const Contact& c) { return !c.connects || c.conduction.is_given(); });
@@ -167,11 +168,10 @@ struct Device {
   /// Returns the distance of a contact at rest to its plane [m]: the gap of the straight shape plus the offset of the rest
   /// shape.
   [[nodiscard]] double contact_gap(std::size_t contact = 0) const;
-  /// Returns the landing on the dielectric of the electrodes, the same for all dielectrics that have one; null without a
+  /// Returns the landing on the dielectric of the electrodes, which all dielectrics with a landing share; null without a
   /// landing.
   [[nodiscard]] const Landing* landing() const;
-  /// Returns the number of the contact that is the face of a dielectric, all along its electrodes; none when no dielectric has
-  /// a landing.
+  /// Returns the number of the contact along the face of the electrodes' dielectric; none when no dielectric has a landing.
   [[nodiscard]] std::optional<std::size_t> face_contact() const;
   [[nodiscard]] bool lands_along_face() const { return face_contact().has_value(); }
   /// Returns true when the moving part closes onto the dielectric of its electrodes, to within a hundredth of the electrode's
@@ -185,7 +185,7 @@ struct Device {
   [[nodiscard]] double dielectric_depth() const;
   /// Returns true when there is a charge on the dielectric of an electrode.
   [[nodiscard]] bool is_charged() const;
-  /// Returns true when the contact acts along its pad, not at one place.
+  /// Returns true when the contact acts along its pad, not at a single point.
   [[nodiscard]] bool touches_along_pad() const {
     return has_contact() && contacts.front().distribution == ContactDistribution::pad;
   }
@@ -198,18 +198,18 @@ struct Device {
   }
 };
 
-/// An electrode that has no room beside the others, and the reason.
+/// An electrode that overlaps other electrodes, and the reason for the conflict.
 struct ElectrodeConflict {
   std::size_t electrode = 0;  ///< number of the electrode
   std::string why;
 };
-/// Returns a conflict of electrodes; none when all electrodes fit. Electrodes on one side of a beam must not overlap, and those
-/// on one side of a plate must not have more area together than the plate: the force would count twice. Edges may touch, within
-/// rounding.
+/// Returns a conflict of electrodes; none when all electrodes fit. Electrodes on one side of a beam must not overlap.
+/// Electrodes on one side of a plate must not have more area together than the plate: the force would count twice. Edges may
+/// touch, within rounding.
 [[nodiscard]] std::optional<ElectrodeConflict> electrode_conflict(const Structure& structure,
                                                                   const std::vector<Electrode>& electrodes);
 
-/// A contact that cannot stand beside the others, and the reason.
+/// A contact that the device cannot have together with its other contacts, and the reason.
 struct ContactConflict {
   std::size_t contact = 0;  ///< number of the contact
   std::string why;
@@ -218,20 +218,20 @@ struct ContactConflict {
 /// side must differ in place or gap, and a rigid contact or one along its pad must be the only one.
 [[nodiscard]] std::optional<ContactConflict> contact_conflict(const Device& device);
 
-/// Returns true when the beam lands on both electrodes in the same way, or on neither.
+/// Returns true when the landings on both electrodes have equal parameters, or neither electrode has a landing.
 [[nodiscard]] bool have_equal_landings(const Electrode& one, const Electrode& other);
 inline constexpr auto unequal_landings = "where a dielectric has a landing, every near electrode has the same one";
 
-/// Name of the contact that is the face of a dielectric, where the device has other contacts beside it.
+/// Name of the contact along the face of a dielectric, for a device that has other contacts.
 inline constexpr std::string_view face_name = "dielectric";
 
-/// Adds the face of the dielectric as a contact to a device whose dielectric has a landing. Its plane and place are where a
-/// beam that bends under its electrodes touches first. When the device has a contact on the near side, the face comes last and
-/// is not part of the connection; otherwise it comes first and makes the connection. A repeated call updates the contact after
-/// a change of the landing. Without a landing nothing changes.
+/// Adds the face of the dielectric as a contact to a device whose dielectric has a landing. The contact's plane and place are
+/// where a beam that bends under its electrodes touches first. When the device has a contact on the near side, the face comes
+/// last and is not part of the connection; otherwise the face comes first and makes the connection. A repeated call updates the
+/// contact after a change of the landing. Without a landing nothing changes.
 void set_face_contact(Device& device);
 
-/// Returns the reason why a device whose contact lies at its electrode cannot land there; empty when it can.
+/// Returns the reason why a device whose contact lies at its electrode cannot land on the electrode; empty when it can.
 [[nodiscard]] std::string why_no_landing(const Device& device);
 
 /// Returns the reason why this contact cannot act along the pad of this structure; empty when it can.

@@ -1,7 +1,7 @@
-// A force law that acts along the beam, behind one virtual call per law and right-hand side. A law is a small value that gives
-// load(gap, velocity) over the scalar type (double for runs, Dual for exact derivatives). A conservative law is scaled by a
-// drive (`driven`: V^2 of an electrode, the factor of a force), or acts by itself; it also gives its potential(gap), whose
-// slope is the load. The other laws dissipate.
+// A force law that acts along the beam, behind one virtual call per law and right-hand side. A law is a small value type with
+// load(gap, velocity), a template over the scalar type (double for runs, Dual for exact derivatives). A conservative law acts
+// by itself or is scaled by a drive (drive_depends): by V^2 of an electrode, or the factor of a force. Such a law also has
+// potential(gap), whose slope is the load. The other laws dissipate.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,8 +16,8 @@
 
 namespace softland {
 
-/// The beam at the quadrature points, and at idle points that fill the last lane (base/lanes.h): local gap h [m] and velocity
-/// towards the electrode [m/s].
+/// The beam at the quadrature points, and at idle points that fill the last vector lane (base/lanes.h): local gap h [m] and
+/// velocity towards the electrode [m/s].
 struct GapField {
   Eigen::ArrayXd gap;
   Eigen::ArrayXd velocity;
@@ -27,13 +27,13 @@ struct GapField {
 class DistributedLaw {
  public:
   virtual ~DistributedLaw() = default;
-  /// Adds load += drive * law [N/m] at the law's points; laws that are not driven ignore `drive`. `load` is as long as the
+  /// Adds load += drive * law [N/m] at the law's points; a law that no drive scales ignores `drive`. `load` is as long as the
   /// field.
   virtual void add_load(const GapField& field, double drive, double* load) const = 0;
   /// Adds derivatives of the load with respect to deflection and velocity at the law's points. Both are as long as the field.
   virtual void add_derivatives(const GapField& field, double drive, double* by_deflection, double* by_velocity) const = 0;
   /// Adds second derivatives of the load at the law's points: by deflection twice, by deflection and velocity, by velocity
-  /// twice. Adds nothing at points below the floor, where the load continues by its tangent.
+  /// twice. Adds nothing at points below the gap floor, where the load continues by its tangent.
   virtual void add_curvatures(const GapField& field, double drive, double* by_deflections, double* by_both,
                               double* by_velocities) const = 0;
   /// Returns the integral of the potential per length over the law's points, at unit drive [J]; 0 for laws that dissipate.
@@ -45,8 +45,8 @@ class DistributedLawOf final : public DistributedLaw {
   static constexpr Eigen::Index lanes = softland::lanes;
 
  public:
-  /// Acts at the points [begin, end). Below `floor` [m] the load is continued by its tangent, the potential by the parabola
-  /// that belongs to it.
+  /// Acts at the points [begin, end). Below the gap `floor` [m] the load is continued by its tangent, the potential by the
+  /// parabola whose slope is this tangent.
   DistributedLawOf(Law law, Eigen::Index begin, Eigen::Index end, double floor)
       : law_(law), begin_(begin), end_(end), floor_(floor), share_(Eigen::ArrayXd::Zero((end + lanes - 1) / lanes * lanes)) {
     share_.segment(begin, end - begin).setOnes();
@@ -58,18 +58,18 @@ class DistributedLawOf final : public DistributedLaw {
     const double factor = Law::drive_depends ? drive : 1;
     const Law law = law_;  // a local copy lets the compiler keep the parameters in registers
     if (field.smallest_gap >= floor_) {
-      // Whole lanes let the compiler use vectors: the points left over at an end would take as long, one by one.
+      // Loop over whole lanes, so that the compiler uses vector instructions; left-over points one by one would take as long.
       const double* share = share_.data();
       for (Eigen::Index p = begin_ / lanes * lanes; p < share_.size(); p += lanes) {
         double sum[lanes];
         for (Eigen::Index k = 0; k < lanes; ++k)
           sum[k] = load[p + k] + factor * share[p + k] * law.load(gap[p + k], velocity[p + k]);
-        for (Eigen::Index k = 0; k < lanes; ++k) load[p + k] = sum[k];  // one by one: a copy of memory would undo the vectors
+        for (Eigen::Index k = 0; k < lanes; ++k) load[p + k] = sum[k];  // a loop, since a copy of memory would undo the vectors
       }
       return;
     }
     for (Eigen::Index p = begin_; p < end_; ++p) {
-      if (!Law::drive_depends && gap[p] >= floor_) {  // few points of a film are below the floor at a time
+      if (!Law::drive_depends && gap[p] >= floor_) {  // at most a few points of a film are below the floor
         load[p] += law.load(gap[p], velocity[p]);
         continue;
       }

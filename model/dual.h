@@ -56,7 +56,7 @@ struct DualOf {
   T value = 0;
   Slope slope = {};
 
-  constexpr DualOf(T v = 0, Slope s = {}) : value(v), slope(s) {}  // NOLINT: formulas mix it with plain numbers
+  constexpr DualOf(T v = 0, Slope s = {}) : value(v), slope(s) {}  // implicit, since formulas mix dual and plain numbers
 
   friend constexpr DualOf operator+(DualOf a, DualOf b) { return {a.value + b.value, a.slope + b.slope}; }
   friend constexpr DualOf operator-(DualOf a, DualOf b) { return {a.value - b.value, a.slope - b.slope}; }

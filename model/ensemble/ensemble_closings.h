@@ -1,15 +1,15 @@
-// Closings of many switches at once, one in each lane of the processor's vector registers: the devices of an ensemble differ in
-// their numbers, hardly in their operations. Every lane has its own parameters, drives, time step and events, and receives the
-// next switch when its closing has ended. The method is that of one closing (integrators/lawson.h, model/closing.h), so the
-// figures agree within the tolerance.
+// Closings of many switches at once, one in each lane of the processor's vector registers: the devices of an ensemble have
+// different parameters and almost the same operations. Every lane has its own parameters, drives, time step and events, and
+// receives the next switch when its closing has ended. The method is that of one closing (integrators/lawson.h,
+// model/closing.h), so the figures agree within the tolerance.
 //
 // All lanes attempt one step in every round: six right-hand sides for as many switches as there are lanes. A lane whose step
 // crosses the contact plane repeats it up to the crossing in the next round. A lane whose drives enter new pieces spends a
 // round on a step of no length, which computes its new accelerations. So no lane waits for another, and no lane depends on the
 // others: results have the same bits whatever the order and the number of lanes.
 //
-// Limits: some laws are not written for lanes (why_not_in_lanes()), energies are not audited, and a lane with a problem gives
-// up. simulate_closing() runs all of these closings, one at a time.
+// Limits: some laws are not written for lanes (why_not_in_lanes()), energies are not audited, and a closing with a numerical
+// problem ends early. simulate_closing() handles all of these closings, one at a time.
 #pragma once
 
 #include <array>
@@ -37,7 +37,7 @@ inline constexpr auto vector_instructions =
     std::to_array<VectorsRow>({{Vectors::none, "none", 1}, {Vectors::avx2, "avx2", 4}, {Vectors::avx512, "avx512", 8}});
 static_assert(is_complete<vector_instructions>());
 
-/// Returns true when this processor and this build have these instructions.
+/// Returns true when this processor and this build of the program have these vector instructions.
 [[nodiscard]] bool has(Vectors vectors);
 /// Returns the widest vectors that this processor has, or the narrower ones that the environment variable SOFTLAND_VECTORS
 /// requests. Throws InvalidInput when its value is not a name of Vectors, or this processor does not have those instructions.
@@ -61,7 +61,7 @@ class LandingObserver {
   LandingObserver& operator=(const LandingObserver&) = default;
 };
 
-/// A closing to be simulated in a lane; limits as in ClosingOptions.
+/// A closing to be simulated in a lane; the limits have the meaning of those in ClosingOptions.
 struct EnsembleClosing {
   const Switch* model = nullptr;
   std::span<const Signal> drives;
@@ -74,25 +74,25 @@ struct EnsembleClosing {
   LandingObserver* observer = nullptr;
 };
 
-/// The result of a closing. A closing that was not simulated to its end has to be run by simulate_closing(); its observer has
-/// then received a part of it.
+/// The result of a closing in a lane. A closing that was not simulated to its end has to be run by simulate_closing(), although
+/// its observer has received the events up to the failure.
 struct EnsembleEnd {
   bool followed = false;
   double time = 0;  ///< [s]
-  /// Figures of the contact force as in Trajectory: [s], [N].
+  /// Figures of the contact force, defined as in Trajectory: [s], [N].
   double steady_force_time = std::numeric_limits<double>::quiet_NaN(),
          least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
   double drive_energy = std::numeric_limits<double>::quiet_NaN();  ///< EnergyBalance::source_work and Trajectory::layer_energy,
                                                                    ///< where it is measured [J]
-  /// Figures of several contacts as in Trajectory: [s], [m/s].
+  /// Figures of a switch with several contacts, defined as in Trajectory: [s], [m/s].
   double first_touch = std::numeric_limits<double>::quiet_NaN(), first_touch_velocity = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Returns the reason why closings of this switch cannot be simulated in lanes; empty when they can.
 [[nodiscard]] std::string why_not_in_lanes(const Switch& model);
 
-/// Simulates all closings, in order; `tolerance` as in ClosingOptions. With Vectors::none no closing is simulated, and neither
-/// is one of a switch whose quadrature points or drives differ from those of the first switch.
+/// Simulates all closings, in order; `tolerance` as in ClosingOptions. With Vectors::none no closing is simulated. A closing is
+/// also left out when its switch differs from the first switch in quadrature points or drives.
 [[nodiscard]] std::vector<EnsembleEnd> close_in_lanes(std::span<const EnsembleClosing> closings, double tolerance,
                                                       Vectors vectors);
 

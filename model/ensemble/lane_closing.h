@@ -12,7 +12,7 @@ namespace softland::simd {
 
 inline constexpr int most_modes = 8, most_points = 48, most_drives = 6, most_segments = most_points;
 inline constexpr int most_contacts = 4;
-inline constexpr int usual_modes = 4;  ///< modes of the laws of UsualLaws
+inline constexpr int usual_modes = 4;  ///< largest number of modes for UsualLaws
 
 enum class LaneFringing { none, linear, meijs_fokkema };
 enum class LaneFilm { none, strip, strip_slit, veijola, gallis_torczynski, near_contact, guo_alexeenko, linear };
@@ -22,7 +22,7 @@ enum class LaneContact { asperity_uniform, linear };
 /// Quadrature points from `begin` up to `end` over the same electrode.
 struct Segment {
   int begin = 0, end = 0;
-  int electrode = -1;  ///< -1 without an electrode
+  int electrode = -1;  ///< number of the electrode; -1 without an electrode
   LaneFringing fringing = LaneFringing::none;
   bool far = false;  ///< true on the far side
   int stretch = 0;   ///< stretch that contains its points; usual laws only
@@ -35,7 +35,7 @@ struct PointStretch {
   [[nodiscard]] bool operator==(const PointStretch&) const = default;
 };
 
-/// The numbers of a contact that the lanes of a run have in common.
+/// The numbers of a contact that all lanes of a run share.
 struct LaneContactKind {
   LaneContact law = LaneContact::asperity_uniform;
   bool damped = false;
@@ -45,7 +45,7 @@ struct LaneContactKind {
   [[nodiscard]] bool operator==(const LaneContactKind&) const = default;
 };
 
-/// The properties that the lanes of a run have in common.
+/// The properties that all lanes of a run share.
 struct LaneLayout {
   bool usual = true;  ///< true for UsualLaws: segments follow one another; else they are pads, which may overlap in points
   int modes = 0, points = 0, segments = 0, electrodes = 0, drives = 0;
@@ -65,17 +65,17 @@ struct LaneLayout {
   [[nodiscard]] bool operator==(const LaneLayout&) const = default;
 };
 
-/// One contact as numbers.
+/// One contact of a switch as plain numbers.
 struct LaneContactNumbers {
   double plane = 0;                 // rest distance of its place to its plane [m]
   double shape[most_modes] = {};    // modes at its place, positive towards its plane [kg^(-1/2)]
   double strength = 0, height = 0;  // parameters of its law; for linear the stiffness [N/m]
   double damping = 0;               // [s/m]
   double unloading_stiffness = 0;   // unloading stiffness of a law with a memory; `strength` is that of loading [N/m]
-  double negligible_depth = 0;      // [m]
+  double negligible_depth = 0;      // depth within which a step ends at the plane accurately enough [m]
 };
 
-/// One switch as numbers. Modes that the switch does not have are 0 at all times.
+/// One switch as plain numbers. Entries of modes that the switch does not have are 0.
 struct LaneSwitch {
   int modes = 0;
   double open = 0, floor = 0;                                            // the largest rest gap and the least gap [m]
@@ -91,14 +91,14 @@ struct LaneSwitch {
   double damping = 0;                                                    // damping of the film `linear` [N s/m^2]
   double electrode_gaps[most_drives] = {}, film_gaps = 0;                // gaps of both sides together, with a far side [m]
   double electrode_floor[most_drives] = {}, film_floor = 0;              // floor of the far gaps [m]
-  double most_gap = 0;                                                   // [m]
+  double most_gap = 0;                                                   // largest gap on the near side, with a far side [m]
   double hamaker_constant = 0, equilibrium_distance = 0, crossover = 0;  // [J], [m], [m]
   double tension = 0;                                                    // tension of mid-plane stretching [N/m]
   double slopes[most_modes][most_modes] = {};                            // matrix of mid-plane stretching [1/(kg m)]
   LaneContactNumbers contact[most_contacts];
 };
 
-/// Receives the events in a lane.
+/// Receives the touches and rebounds of the closing in a lane.
 class LaneObserver {
  public:
   /// Receives a touch of a contact: begin and end [s], impact velocity [m/s], depth [m]; of a damped contact also the largest
@@ -128,14 +128,14 @@ struct LanePiece {
   double tail[most_tails] = {}, decay[most_tails] = {};                         // [V], [1/s]
   double amplitude = 0, amplitude_slope = 0, angular_frequency = 0, phase = 0;  // [V], [V/s], [rad/s], [rad]
   double longest_step = 0;                                                      // longest step that resolves the piece [s]
-  bool joins = false;  // true when the piece continues the last one smoothly: steps may pass its begin
+  bool joins = false;  // true when the piece continues the previous piece smoothly: steps may pass its begin
 };
 
 struct LaneClosing {
   const LaneSwitch* numbers = nullptr;
   double start[most_modes] = {};              // modal coordinates at t = 0
   double final[most_modes] = {};              // modal coordinates at the end
-  double work = 0;                            // work of the drives on the modes, where it is measured [J]
+  double work = 0;                            // work of the drives on the modes, if measures_work [J]
   const LanePiece* pieces[most_drives] = {};  // pieces by drive
   int piece_count[most_drives] = {};
   double gain[most_drives] = {};  // factors of the pieces
@@ -144,14 +144,15 @@ struct LaneClosing {
   LaneObserver* observer = nullptr;
   bool followed = false;
   double end = 0;
-  /// Each contact has its own values, which are NaN when it has not touched, or its force is not steady at the end [s], [m].
+  /// Each contact has its own values, which are NaN when the contact has not touched, or its force is not steady at the end
+  /// [s], [m].
   double steady_from[most_contacts] = {}, least_depth[most_contacts] = {};
 };
 
 using LaneRunner = void (*)(const LaneLayout& layout, LaneClosing* closings, std::size_t count);
 void run_avx2(const LaneLayout& layout, LaneClosing* closings, std::size_t count);
 void run_avx512(const LaneLayout& layout, LaneClosing* closings, std::size_t count);
-/// Returns the function for these vectors; null where this build does not have them.
+/// Returns the function that runs closings with these vector instructions; null when this build does not have them.
 [[nodiscard]] LaneRunner lane_runner(Vectors vectors);
 
 }  // namespace softland::simd

@@ -1,4 +1,4 @@
-// Drives as numbers of pieces, for lanes; a finely sampled and filtered signal is replaced by a smooth one.
+// Drives as pieces for vector lanes; a finely sampled and filtered signal is replaced by a smooth one.
 #pragma once
 
 #include <limits>
@@ -11,19 +11,19 @@
 
 namespace softland::simd {
 
-/// True when a signal consists of straight lines, steady sines, cubic polynomials and a few exponentials.
+/// Returns true when a signal consists of straight lines, steady sines, cubic polynomials and a few exponentials.
 [[nodiscard]] bool goes_in_lanes(const Signal& drive);
 
 /// Returns the pieces of a signal for which goes_in_lanes() is true.
 [[nodiscard]] std::vector<LanePiece> pieces_of(const Signal& drive);
 
-/// Pieces in which a mean over a moving window replaces each run of short pieces. A run consists of the pieces between samples
-/// that a filter with a longer time constant lets through. A switch of lower frequencies cannot follow their ripple, yet each
-/// piece has a breakpoint. The mean keeps the integral of a run, and its pieces join with their slopes, so that steps pass over
-/// them.
+/// Pieces of a drive in which a moving average replaces each run of short pieces. Such a run arises when a filter with a time
+/// constant longer than a sample smooths a sampled signal. A switch of lower frequencies cannot follow the ripple of a run, yet
+/// each piece has a breakpoint. The average keeps the integral of a run, and its pieces join with their slopes, so that steps
+/// pass over them.
 struct SmoothedDrive {
   std::vector<LanePiece> pieces = {};
-  double window = 0;  ///< longest window, the duration of two samples [s]; 0 without such runs
+  double window = 0;  ///< longest window of an average, the duration of two samples [s]; 0 without such runs
 };
 [[nodiscard]] SmoothedDrive smoothed(std::vector<LanePiece> exact);
 

@@ -1,12 +1,12 @@
 // The laws of a closing over lanes, in two variants: forces from coordinates and velocities.
 //
 // UsualLaws: up to four modes, electrodes on the near side that do not overlap, a strip film or none, an undamped contact of
-// asperities. All choices are made at compile time, and each point is visited once, in registers. With room for several
-// stretches they are the laws of a beam of sections with several contacts of any law.
+// asperities. All choices are made at compile time, and each point is visited once, in registers. With a capacity for several
+// stretches UsualLaws cover a beam of sections with several contacts of any law.
 //
 // AnyLaws: more modes, other laws and several contacts, chosen by the layout. The points are visited law by law.
 //
-// Each variant has its own law of a contact.
+// Each of the two variants has its own class for the law of a contact.
 //
 // All code here depends on the type of the lanes: see simd_closings.h.
 #pragma once
@@ -37,7 +37,7 @@ class UsualContact {
  public:
   static constexpr bool has_damping = false, has_memory = false;
 
-  /// Sets the numbers of this contact for lane `l`.
+  /// Sets the numbers of this contact for the switch in lane `l`.
   void take(const LaneContactKind&, const LaneContactNumbers& numbers, std::size_t l) {
     strength_[l] = numbers.strength, height_[l] = numbers.height;
     law_ = {.strength = strength_, .height = height_};
@@ -57,7 +57,7 @@ class UsualContact {
 template <class V>
 class AnyContact {
  public:
-  static constexpr bool has_damping = true, has_memory = true;  // used when its kind has them
+  static constexpr bool has_damping = true, has_memory = true;  // used only for a kind of contact that has them
 
   void take(const LaneContactKind& kind, const LaneContactNumbers& numbers, std::size_t l) {
     kind_ = kind;
@@ -70,8 +70,8 @@ class AnyContact {
     if (kind_.law == LaneContact::linear) return push_of(LinearContactOf<V>{.stiffness = strength_}, depth, rate);
     return push_of(UniformAsperityContactOf<V>{.strength = strength_, .height = height_}, depth, rate);
   }
-  /// Returns the force of a contact with a memory while unloading, at this distance from the position at which the force is 0
-  /// [N].
+  /// Returns the force of a contact with a memory while unloading [N]; `depth` counts from the position at which the force is
+  /// 0.
   V pull_back(V depth) const { return LinearContactOf<V>{.stiffness = unloading_}.force(depth); }
 
  private:
@@ -89,7 +89,7 @@ template <class V, template <class> class FringingOf, bool has_film, int most_st
 class UsualLaws {
   using Force = ElectrostaticForce<FringingOf<V>>;
   using Film = StripSqueezeFilmOf<V>;
-  /// True when the field's law is written in powers of h^(-1/4), which the law of a film can reuse.
+  /// True when the fringing law is written in powers of h^(-1/4), which the law of a film can reuse.
   static constexpr bool has_root = requires(const FringingOf<V>& law, V h) { law.factor_over_square(h); };
 
  public:
@@ -120,7 +120,7 @@ class UsualLaws {
 
   [[nodiscard]] const V& floor() const { return floor_; }
 
-  /// Adds the modal forces of fields and film; sets `least` to the smallest gap.
+  /// Adds the modal forces of electric fields and gas film; sets `least` to the smallest gap.
   [[gnu::always_inline]] void add(const V* __restrict q, const V* __restrict v, const V* volts, V* sum, V& least) {
     V smallest = open_;
     const auto field = [&](int p, V& gap, V& velocity) __attribute__((always_inline)) {
@@ -171,7 +171,7 @@ class UsualLaws {
     least = smallest;
   }
 
-  /// Returns the power of the electrodes on the modes, if it is measured [W].
+  /// Returns the power of the electrodes on the modes [W]; UsualLaws do not measure power.
   [[nodiscard]] V power() const { return 0; }
 
  private:
@@ -263,7 +263,7 @@ class AnyLaws {
       smallest = min(smallest, gap), largest = max(largest, gap);
       gap_[p] = max(gap, floor), velocity_[p] = velocity, load_[p] = 0;
     }
-    least = min(smallest, floor + (most_gap_ - largest));  // the sum is below the floor when the far side is near
+    least = min(smallest, floor + (most_gap_ - largest));  // the sum is below the floor when the beam is near the far side
   }
 
   void check_far_gap(int begin, int end, const V& both, const V& floor) {
@@ -384,7 +384,7 @@ class AnyLaws {
     for (int i = 0; i < n; ++i) sum[i] += part[i];
   }
 
-  // Computes stretching as model/stretching.h does.
+  // Adds the force of mid-plane stretching as model/stretching.h defines this force.
   void stretch(const V* q, V* sum) const {
     V pull[capacity], strain = 0;
     for (int i = 0; i < modes_; ++i) {

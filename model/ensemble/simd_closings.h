@@ -4,11 +4,11 @@
 // code here depends on the type of the lanes or belongs to a class that does, so that each set of vector instructions has its
 // own names.
 //
-// Inlining is forced, or prevented, for a reason: the compiler fuses products and sums depending on their neighbours, and the
-// last bits of a closing must not depend on how many callers a function has.
+// Inlining is forced, or prevented, since the compiler fuses products and sums depending on their neighbours: the last bits of
+// a closing must not depend on how many callers a function has.
 //
-// Width matters: with two registers per lane GCC spills registers and the code is several times slower. A law that is not
-// inlined has the same effect: it keeps the sums over points in memory.
+// Width matters: with two registers per lane GCC spills registers and the code is several times slower. A force law that is not
+// inlined has the same effect, since its sums over points stay in memory.
 #pragma once
 
 #include <cmath>
@@ -24,13 +24,13 @@
 
 namespace softland::simd {
 
-/// The switches have up to `room` contacts. Code for several contacts is left out at compile time when there is one.
+/// Runs closings of switches with up to `room` contacts. At room = 1 the code for several contacts is left out at compile time.
 template <class V, class Laws, int room = 1>
 class SimdClosings {
   using M = typename V::mask_type;
   static constexpr std::size_t width = V::size();
   static constexpr int capacity = Laws::capacity;
-  // Pieces of a step of two radians of the fastest mode: as StepMotion at tolerances from 1e-5 on.
+  // Number of pieces of a step of two radians of the fastest mode: as StepMotion at tolerances from 1e-5 on.
   static constexpr int pieces = 3;
   static constexpr double most_rounds = 100'000;
   static constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -53,7 +53,7 @@ class SimdClosings {
   }
 
  private:
-  // The number of a contact; a constant where there is only one.
+  // The number of a contact; a compile-time constant when a switch has only one contact.
   using Number = std::conditional_t<has_several, int, std::integral_constant<int, 0>>;
 
   // Calls f(c) for every contact.
@@ -66,7 +66,7 @@ class SimdClosings {
     }
   }
 
-  // The state of a contact in its lane.
+  // The state of one contact of the switch in a lane.
   struct Followed {
     bool touched = false, touching = false;
     double begin = 0, left = 0, speed = 0;  // begin and end of the touch [s], impact velocity [m/s]
@@ -75,27 +75,27 @@ class SimdClosings {
     // Phase of a contact with a memory: see model/closing/contact_phase.h.
     bool unloading = false, in_dent = false;
     bool to_turn = false;                   // true while the lane steps to the deepest point of the contact
-    double level = 0;                       // level of another event to which the lane steps [m]
+    double level = 0;                       // level of an event other than the deepest point, to which the lane steps [m]
     double low = 0, high = 0, deepest = 0;  // edges of the phase, and the deepest position of this touch [m]
     double steady = nothing;                // time since which the contact has been at the steady depth [s]
     double least = infinite;                // least depth after the first maximum [m]
   };
-  // The connection that several contacts make.
+  // The state of the connection that several contacts make.
   struct Connected {
     int touching = 0;  // number of touching contacts in the connection
     bool closed = false, was_closed = false;
     double left = 0, highest = 0;  // start [s] and largest separation [m] of the present opening
   };
 
-  // The state of a lane.
+  // The state of the closing in a lane.
   struct Lane {
     LaneClosing* closing = nullptr;  // null while idle
     const LanePiece* drive[most_drives] = {};
     int count[most_drives] = {};    // number of pieces of each drive
     int piece[most_drives] = {};    // index of the present piece
-    bool runs[most_drives] = {};    // true over pieces that join, without a stop
-    bool curves[most_drives] = {};  // true for more than a cubic
-    int corrections = 0;            // corrections of a target on the plane
+    bool runs[most_drives] = {};    // true over pieces that join, which steps may cross
+    bool curves[most_drives] = {};  // true for terms beyond a cubic polynomial, and for pieces that join
+    int corrections = 0;            // number of corrections of a step that should end at an event
     double stop = 0;                // next breakpoint, or the end of the window [s]
     double longest = 0;             // longest step that resolves the drives [s]
     double gain[most_drives] = {};  // factors of the drives
@@ -134,7 +134,7 @@ class SimdClosings {
     }
   }
 
-  // Finds the piece of drive k at this time, near the previous one.
+  // Finds the piece of drive k at time t, near the previous piece.
   static void find_piece(Lane& lane, int k, double t) {
     const LanePiece* const all = lane.drive[k];
     int& at = lane.piece[k];
@@ -146,7 +146,7 @@ class SimdClosings {
     if (piece.tail[1] != 0) sum += piece.tail[1] * std::exp(-piece.decay[1] * elapsed);
     return sum;
   }
-  // Returns the value of drive k at any time within pieces that join.
+  // Returns the value of drive k at a time within pieces that join, where steps may cross the ends of pieces.
   [[nodiscard]] double running(int k, std::size_t l, double t) {
     find_piece(lane_[l], k, t);
     const LanePiece& piece = lane_[l].drive[k][lane_[l].piece[k]];
@@ -189,7 +189,7 @@ class SimdClosings {
     for (int i = 0; i < modes; ++i) a[i] = sum[i];
   }
 
-  // Returns the force of a contact with a memory [N]; `loading` is its force on the loading curve.
+  // Returns the force of a contact with a memory [N]; `loading` is the force on the loading curve at this depth.
   [[nodiscard]] V remembered(Number c, V loading, V depth) const {
     where(unloading_[c], loading) = contact_[c].pull_back(depth - shift_[c]);
     where(in_dent_[c], loading) = V(0);
@@ -348,7 +348,8 @@ class SimdClosings {
   struct Reach {
     V least, most;
   };
-  // Returns bounds of the curve in a piece, from its control points in Bernstein form; `g` is the duration of the piece.
+  // Returns bounds of the contact point's position in a piece, from the quintic's control points in Bernstein form; `g` is the
+  // duration of the piece.
   [[nodiscard]] [[gnu::always_inline]] Reach reach(Number c, int k, V g) const {
     const V b0 = knot_p_[c][k], b5 = knot_p_[c][k + 1], s0 = g * knot_s_[c][k], s1 = g * knot_s_[c][k + 1];
     const V c0 = g * g * knot_c_[c][k], c1 = g * g * knot_c_[c][k + 1];
@@ -368,7 +369,7 @@ class SimdClosings {
     return suspect;
   }
 
-  // The quintic of one lane in one piece, over its share of the piece.
+  // The quintic of one contact in one piece of one lane's step, as a function of the share of the piece.
   struct QuinticPath {
     double c[6];
     [[nodiscard]] double position(double s) const { return c[0] + s * (c[1] + s * (c[2] + s * (c[3] + s * (c[4] + s * c[5])))); }
@@ -411,12 +412,12 @@ class SimdClosings {
              6 * d - 3 * (v0 + v1) - 0.5 * (a0 - a1)}};
   }
 
-  // Returns the share of the step at which a lane leaves its side of the plane; above 1 when it stays.
+  // Returns the share of the step at which a lane's contact point leaves its side of the plane; above 1 when the point stays.
   [[nodiscard]] double crossing(Number c, std::size_t l, double length) const {
     return crossing(c, l, length, lane_[l].contact[c].touching ? 1 : -1, plane_[c][l]);
   }
-  // Returns the share of the step at which a lane leaves the inside of a level, side * (position - level) > 0; above 1 when it
-  // stays.
+  // Returns the share of the step at which a lane's contact point leaves the inside of a level, side * (position - level) > 0;
+  // above 1 when the point stays inside.
   [[nodiscard]] double crossing(Number c, std::size_t l, double length, double side, double level) const {
     bool inside = side * (position_[c][l] - level) > 0;
     for (int k = 0; k < pieces; ++k) {
@@ -440,8 +441,8 @@ class SimdClosings {
     return 2;
   }
 
-  // Returns the share of the step at which a lane leaves its phase of a contact with a memory, and sets the level; above 1 when
-  // it stays in the phase.
+  // Returns the share of the step at which a lane leaves its phase of a contact with a memory, and sets the event's level;
+  // above 1 when the contact stays in the phase.
   [[nodiscard]] double phase_end(Number c, std::size_t l, double length) {
     Followed& one = lane_[l].contact[c];
     const double by_low = one.low > -infinite ? crossing(c, l, length, 1, one.low) : 2;
@@ -484,7 +485,7 @@ class SimdClosings {
     }
   }
 
-  // Returns the depth at which a contact on its loading curve has the force that this contact has at its depth.
+  // Returns the depth on the loading curve at which the force equals the contact's present force at `depth`.
   [[nodiscard]] double depth_of_force([[maybe_unused]] Number c, [[maybe_unused]] std::size_t l, double depth) const {
     if constexpr (Contact::has_memory) {
       const Followed& one = lane_[l].contact[c];
@@ -498,7 +499,7 @@ class SimdClosings {
     return depth;
   }
 
-  // Finds the time at which a lane has last reached the steady depth, in the step that ends here.
+  // Finds the time at which a contact has last reached the steady depth, in the step that ends now.
   [[gnu::noinline]] void rise(Number c, std::size_t l, double length) {
     const double level = steady_[c][l];
     const auto reach = [&](int k, double share) {
@@ -523,8 +524,8 @@ class SimdClosings {
     if (separation > lane.connected.highest) lane.connected.highest = separation;
   }
 
-  // Updates the largest separation in the step of an open connection that any contact closes: that of the contact nearest to
-  // its plane.
+  // Updates the largest separation of an open connection that any contact closes, over the step. The separation of the
+  // connection is that of the contact nearest to its plane.
   void climb(std::size_t l, double length) {
     Lane& lane = lane_[l];
     for (int k = 0; k < pieces; ++k) {
@@ -558,7 +559,7 @@ class SimdClosings {
     return best;
   }
 
-  // Handles a touch, or its end, of a contact of the connection.
+  // Updates the connection when a contact of the connection begins or ends a touch.
   void connect(std::size_t l, bool touches, double speed) {
     Lane& lane = lane_[l];
     Connected& all = lane.connected;
@@ -593,8 +594,8 @@ class SimdClosings {
 
   // --- after a step: its error, the next step length, and events ---
 
-  // Computes binary logarithms and powers to the digits that a step size needs. Loops without branches: the compiler vectorises
-  // them.
+  // Computes binary logarithms and powers to the digits that a step size needs. The loops have no branches, so that the
+  // compiler uses vector instructions.
   [[gnu::always_inline]] void control(V error) {
     double squared[width];
     error.copy_to(squared, std::experimental::element_aligned);
@@ -622,7 +623,7 @@ class SimdClosings {
   [[gnu::always_inline]] void settle(V h, V end, V error) {
     control(error);
     rounds_ += V(1);
-    // Most lanes just continue; the other lanes are handled one by one.
+    // Most lanes take their step and continue; the other lanes are handled one by one.
     const M plain = error <= V(1) && !special_ && !suspect_ && h < limit_ && end < until_ && smallest_ >= laws_.floor() &&
                     rounds_ < V(most_rounds);
     M rises[room];
@@ -703,7 +704,7 @@ class SimdClosings {
         lane_[l].contact[at].hardest = most_push[l];
   }
 
-  // Returns true when a lane accepts its step; otherwise sets its next attempt.
+  // Returns true when a lane accepts its step; otherwise sets the length of its next attempt.
   bool consider(std::size_t l, double h, double error) {
     Lane& lane = lane_[l];
     if (lane.closing == nullptr) return false;
@@ -737,7 +738,7 @@ class SimdClosings {
     return true;
   }
 
-  // Returns the share of the step at the first event, at contact `at`; above 1 without an event.
+  // Returns the share of the step at the first event, and sets the contact of this event; above 1 without an event.
   [[nodiscard]] double event(std::size_t l, double length) {
     if constexpr (!has_several) return event(Number(), l, length);
     double first = infinite;
@@ -752,12 +753,12 @@ class SimdClosings {
     }
     return crossing(c, l, length);
   }
-  // Returns the contact whose event a lane steps to.
+  // Returns the contact at whose event a lane's step should end.
   [[nodiscard]] Number event_contact([[maybe_unused]] std::size_t l) const {
     if constexpr (has_several) return lane_[l].at;
     return Number();
   }
-  // Returns the level of that event [m].
+  // Returns the position of the event at which a lane's step should end [m].
   [[nodiscard]] double event_level(std::size_t l) const {
     const Number c = event_contact(l);
     return remembers(c) ? lane_[l].contact[c].level : plane_[c][l];
@@ -767,8 +768,8 @@ class SimdClosings {
     return remembers(c) && lane_[l].contact[c].to_turn;
   }
 
-  // Returns true when a step that should end on the plane does so. Moves the end of the step onto the plane when it is near,
-  // and corrects the target otherwise.
+  // Returns true when a step that should end at an event does so. Moves the end of the step onto the event's level when the end
+  // is near, and corrects the target of the step otherwise.
   [[gnu::always_inline]] bool arrives(std::size_t l, double h) {
     constexpr double short_of_a_radian = 1e-3;
     constexpr int most_corrections = 8;
@@ -816,7 +817,7 @@ class SimdClosings {
     }
   }
 
-  // Handles a step after which a lane does not just continue.
+  // Handles a step that ends at a breakpoint or event, ends the closing, or leaves the laws' range.
   void go_on(std::size_t l, double h) {
     Lane& lane = lane_[l];
     if (smallest_[l] < laws_.floor()[l]) {
@@ -843,7 +844,7 @@ class SimdClosings {
     }
   }
 
-  // Handles an event, which begins or ends a phase of a touch, or crosses the plane.
+  // Handles an event, at which a phase of a touch begins or ends, or a contact point crosses its plane.
   void on_event(std::size_t l) {
     const Number at = event_contact(l);
     on_event(at, l);
@@ -862,7 +863,7 @@ class SimdClosings {
       if (remembers(c)) enter_phase(c, l, false, false);
     }
   }
-  // Returns true when another contact, whose events the step has not searched for, has left its phase at the same time.
+  // Returns true when contact c, of which the step has not searched the events, has left its phase at the end of the step.
   bool is_beyond(int c, std::size_t l) {
     Followed& one = lane_[l].contact[c];
     const double low = remembers(c) ? one.low : one.touching ? plane_[c][l] : -infinite;
@@ -881,7 +882,7 @@ class SimdClosings {
     if (!one.touching) return false;
     if (one.to_turn) {
       const double speed = speed_[c][l], acceleration = acceleration_[c][l];
-      // Remaining way of the contact point by its velocity.
+      // Minus the distance to the deepest point, from the velocity and the deceleration.
       const double left = acceleration < 0 ? speed * speed / (2 * acceleration) : 0;
       const LaneContactNumbers& numbers = lane_[l].closing->numbers->contact[c];
       const double depth = position_[c][l] - plane_[c][l] - left;
@@ -902,7 +903,7 @@ class SimdClosings {
     return true;
   }
 
-  // Sets the edges of a phase, and the depth at which it carries the steady force.
+  // Sets the edges of a contact's phase, and the depth at which the contact carries the steady force in this phase.
   void enter_phase(Number c, std::size_t l, bool unloading, bool in_dent) {
     Followed& one = lane_[l].contact[c];
     const LaneContactNumbers& numbers = lane_[l].closing->numbers->contact[c];
@@ -984,7 +985,7 @@ class SimdClosings {
     limit_[l] = target - t_[l];
   }
 
-  // Moves the drives to the pieces that are valid from now on.
+  // Moves the drives to the pieces that are valid from the present time on.
   void enter_stretch(std::size_t l) {
     Lane& lane = lane_[l];
     const double t = t_[l];
@@ -1056,7 +1057,7 @@ class SimdClosings {
     return false;
   }
 
-  // Gives a lane the next closing.
+  // Gives a lane the next closing to simulate.
   void fill(std::size_t l) {
     Lane& lane = lane_[l];
     const bool idle = next_ == count_;
@@ -1124,15 +1125,15 @@ class SimdClosings {
   int busy_ = 0;
   Lane lane_[width];
 
-  // The numbers of the switches.
+  // Parameters of the switches in the lanes.
   V omega_[capacity], inverse_[capacity], square_[capacity], piezo_[capacity], friction_[capacity];
   V q_weight_[capacity], v_weight_[capacity], per_unknown_, fastest_, most_turn_;
   V at_contact_[room][capacity], plane_[room], steady_[room];
-  // The state of the drives.
+  // Values and derivatives of the drives in the lanes.
   V begin_[most_drives], value_[most_drives], slope_[most_drives], volts_[most_drives];
   V bend_[most_drives], twist_[most_drives];  // coefficients of s^2 and s^3
-  bool curves_[most_drives] = {};             // true once any lane has had more than straight lines
-  // The state of the motion.
+  bool curves_[most_drives] = {};             // true once a drive in any lane has more than straight lines
+  // Modal coordinates, velocities and accelerations at the start and the end of a step.
   V q_[capacity], v_[capacity], a_[capacity], trial_q_[capacity], trial_v_[capacity], trial_a_[capacity];
   V slope_q_[7][capacity], slope_v_[7][capacity];
   V t_, h_, max_step_, limit_, target_, smallest_;
@@ -1141,16 +1142,16 @@ class SimdClosings {
   M touching_[room]{}, touched_[room]{}, turns_[room]{}, suspect_{false};
   M apart_{false};     // lanes whose connection, which any contact closes, is open
   M starting_{false};  // lanes that spend a round on computing their accelerations
-  M to_event_{false};  // lanes whose target is a crossing of the plane
+  M to_event_{false};  // lanes whose step should end at an event
   M special_{false};   // lanes that are starting, step to an event, or are idle
   // The phases of a contact with a memory.
   M loading_[room]{}, unloading_[room]{}, in_dent_[room]{};
   V low_[room], high_[room], shift_[room];  // edges of the phase, and the depth of the dent [m]
-  V until_;                                 // time that ends a lane's closing with the first step beyond [s]
-  V last_step_;                             // last step that no stop cut short [s]
+  V until_;                                 // a lane's closing ends with the first step beyond this time [s]
+  V last_step_;                             // length of the last step that did not end early at a stop [s]
   V growth_, most_growth_, rounds_;
   V power_, powers_[7], work_{0};  // power of the drives on the modes [W], at the stages of a step [W], and work until now [J]
-  float log_error_[width] = {}, last_error_[width] = {};  // binary logarithms
+  float log_error_[width] = {}, last_error_[width] = {};  // binary logarithms of the error of a step
   double moved_[width] = {};
 };
 
