@@ -19,8 +19,8 @@ namespace softland::statics {
 
 inline constexpr double no_equilibrium = std::numeric_limits<double>::quiet_NaN();
 
-// A static equilibrium with the contact point held at a given deflection. `unknown` is the strength of what holds it: that of
-// the drive (V^2 of an electrode, the factor of the dispersion force), or the reaction of a holder [N].
+// A static equilibrium with the contact point held at a given deflection. `unknown` is the strength of the drive that holds the
+// point (V^2 of an electrode, the factor of the dispersion force), or the reaction of a holder [N].
 struct Held {
   Eigen::VectorXd q;
   double unknown = 0;
@@ -34,17 +34,17 @@ class Statics {
         rest_(Eigen::VectorXd::Zero(model.modes())),
         squares_(model.basis().angular_frequencies().cwiseAbs2()) {}
 
-  // Returns the shape of the beam under a force at the contact point, scaled to the deflection s of this point.
+  // Returns the modal coordinates of the beam under a force at the contact point that deflects this point by s.
   [[nodiscard]] Eigen::VectorXd pushed(double s) const {
     const Eigen::VectorXd shape = model_.basis().contact_shape().cwiseQuotient(squares_);
     return shape * (s / model_.basis().contact_shape().dot(shape));
   }
 
-  // Finds the equilibrium in which `drive` holds the contact point at s against the contact force P(s - dt), with the other
-  // drives at `bias`.
+  // Finds the equilibrium in which `drive` holds the contact point at deflection s against the contact force P(s - dt), with
+  // the other drives at `bias`.
   std::optional<Held> on_branch(std::size_t drive, std::span<const double> bias, double s, Held start) {
-    // The force at unit strength is a difference of two evaluations, near the strength sought, where the other forces do not
-    // dominate it.
+    // The force at unit strength is a difference of two evaluations, at strengths near the result, so that the other forces do
+    // not dominate the difference.
     const double scale = start.unknown > 0 ? start.unknown : 1;
     std::vector<double> some(bias.begin(), bias.end()), none = some;
     some[drive] = model_.value_of_strength(drive, scale);
@@ -65,8 +65,8 @@ class Statics {
                   });
   }
 
-  // Finds the equilibrium in which a holder keeps the contact point at s under constant voltages. `unknown` is the force of the
-  // beam on the holder, beyond what a contact along the pad carries.
+  // Finds the equilibrium in which a holder keeps the contact point at deflection s under constant voltages. `unknown` is the
+  // force of the beam on the holder, without the force that a contact along the pad carries.
   std::optional<Held> pinned(std::span<const double> volts, double s) {
     std::optional<Held> h = Held{.q = pushed(s)};
     std::vector<double> part(volts.begin(), volts.end());
@@ -81,7 +81,7 @@ class Statics {
     return h;
   }
 
-  // Finds the equilibrium with a holder from a state near it.
+  // Finds the equilibrium with a holder by Newton's method from a state near this equilibrium.
   std::optional<Held> pinned(std::span<const double> volts, double s, Held near) {
     return newton(s, std::move(near),
                   [&](const Held& at, Eigen::VectorXd& residual, Eigen::MatrixXd& by_q, Eigen::VectorXd& by_unknown) {
@@ -91,7 +91,7 @@ class Statics {
                   });
   }
 
-  // Finds an equilibrium on the contact from a state near it.
+  // Finds an equilibrium on the contact by Newton's method from a state near this equilibrium.
   std::optional<Eigen::VectorXd> closed(std::span<const double> volts, Eigen::VectorXd near) {
     Eigen::VectorXd force;
     Eigen::MatrixXd by_q;
@@ -112,7 +112,7 @@ class Statics {
  private:
   static constexpr int most_iterations = 60;
 
-  // Computes static modal forces and their derivative, without a contact that acts at the held point.
+  // Computes static modal forces and their derivative, without the force of a contact that acts at the held point.
   void evaluate(const Eigen::VectorXd& q, std::span<const double> volts, Eigen::VectorXd& force, Eigen::MatrixXd& by_q) {
     evaluate(q, volts, model_.has_spread_contact(), force, by_q);
   }
@@ -137,7 +137,7 @@ class Statics {
     Eigen::VectorXd right(n + 1);
     for (int i = 0; i < most_iterations; ++i) {
       equations(h, residual, by_q, by_unknown);
-      // Rows are in units of each mode's own stiffness: unscaled they span ten decades.
+      // Rows are in units of each mode's own stiffness: in common units they span ten decades.
       bordered.topLeftCorner(n, n) = squares_.cwiseInverse().asDiagonal() * by_q;
       bordered.topRightCorner(n, 1) = by_unknown.cwiseQuotient(squares_);
       bordered.bottomLeftCorner(1, n) = shape.transpose() / largest;
@@ -156,8 +156,8 @@ class Statics {
   [[nodiscard]] bool has_converged(const Eigen::VectorXd& step) const {
     return step.cwiseProduct(model_.basis().contact_shape()).cwiseAbs().sum() < 1e-13 * model_.device().gap.electrode;
   }
-  // Returns true when the state evaluated last is above the floor. Below the floor the laws do not hold, and there is no
-  // equilibrium.
+  // Returns true when the beam in the state evaluated last is above the gap floor. Below the floor the force laws do not hold,
+  // and no equilibrium is accepted.
   [[nodiscard]] bool is_above_floor() const { return Switch::smallest_gap(work_) > model_.gap_floor(); }
 
   const Switch& model_;
@@ -165,7 +165,7 @@ class Statics {
   Eigen::VectorXd rest_, squares_;
 };
 
-// Returns the values of the drives at a bias, with `drive` itself at 0.
+// Returns the values of all drives at a bias, with `drive` itself at 0.
 std::vector<double> standing(const Switch& model, std::size_t drive, Bias bias) {
   require(bias.empty() || bias.size() == model.drives(), "a bias needs a value for every drive of the switch");
   std::vector<double> values(bias.begin(), bias.end());
@@ -180,8 +180,8 @@ class EquilibriumBranch {
   EquilibriumBranch(const Switch& model, std::size_t drive, Bias bias)
       : statics_(model), drive_(drive), bias_(standing(model, drive, bias)), goes_in_steps_(model.device().lands_along_face()) {}
 
-  // Returns the strength at deflection s; NaN without an equilibrium. The search starts from the last equilibrium found, so
-  // call this in small steps.
+  // Returns the strength of the drive at deflection s; NaN without an equilibrium. The search starts from the last equilibrium
+  // found, so call this operator in small steps of s.
   double operator()(double s) {
     if (start_.q.size() == 0) start_ = {.q = statics_.pushed(s)};
     if (!reaches(s) && !(goes_in_steps_ && walks(s))) return no_equilibrium;
@@ -200,10 +200,10 @@ class EquilibriumBranch {
   }
 
   // Finds the equilibrium at s in short steps: near the face of a thin dielectric the field grows so fast that Newton's method
-  // needs them.
+  // needs short steps.
   bool walks(double s) {
     constexpr int most_steps = 100;
-    constexpr double shortest = 1e-6;  // share of the way
+    constexpr double shortest = 1e-6;  // share of the distance to s
     const double least = shortest * std::abs(s - here_);
     double step = (s - here_) / 2;
     for (int k = 0; k < most_steps && std::abs(step) > least; ++k) {
@@ -234,8 +234,8 @@ struct Steps {
   double before, last, next;
 };
 
-// Walks from `depth` deeper in growing steps until stop(f at a depth, f one step deeper). The steps are halved where f ends
-// (NaN: the beam would reach the electrode); the walk returns nothing when it reaches this end.
+// Steps from `depth` deeper in growing steps until stop(f at a depth, f one step deeper) is true. The steps are halved where f
+// becomes NaN (the beam would reach the electrode); the function returns nothing when the search ends there.
 template <class F, class Stop>
 std::optional<Steps> walk(F&& f, double depth, double step, Stop&& stop) {
   constexpr double growth = 1.2;
@@ -262,7 +262,7 @@ struct Minimum {
   double depth, value;
 };
 
-// Returns the first local minimum of f over the depth beyond the contact plane, at the plane if f rises from there.
+// Returns the first local minimum of f over the depth beyond the contact plane; the plane itself if f rises from there.
 template <class F>
 std::optional<Minimum> first_minimum(F&& f, double step) {
   const auto around = walk(f, 0, step, [](double value, double here) { return here > value; });
@@ -274,8 +274,8 @@ std::optional<Minimum> first_minimum(F&& f, double step) {
   return value < known ? Minimum{at * step, value} : Minimum{around->last, known};
 }
 
-/// Finds the closed equilibrium by Newton's method from one of slightly different voltages, if this ends on a stable
-/// equilibrium.
+/// Finds the closed equilibrium by Newton's method from the closed equilibrium at slightly different voltages, if the method
+/// ends on a stable equilibrium.
 std::optional<ClosedEquilibrium> closed_by_newton(const Switch& model, std::span<const double> volts,
                                                   const ClosedEquilibrium& near);
 

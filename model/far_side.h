@@ -16,7 +16,7 @@ struct FarSide {
   Law law = {};
   P both_gaps = 0;  ///< H [m]
   P floor = 0;      ///< [m]
-  /// The law's tangent at the floor, for v = 1 m/s.
+  /// Value and slope of the law at the floor, for v = 1 m/s: the tangent that continues the law.
   DualOf<P> at_floor = law.load(DualOf<P>(floor, 1), DualOf<P>(1));
   static constexpr bool drive_depends = Law::drive_depends;
 
@@ -32,7 +32,7 @@ struct FarSide {
         },
         [&]() -> S { return -law.load(far, -velocity); });
   }
-  /// Returns the potential [J/m] per unit of the drive; below the floor the parabola that belongs to the tangent.
+  /// Returns the potential [J/m] per unit of the drive; below the floor it is the parabola whose slope is the tangent.
   [[nodiscard]] double potential(double gap) const requires(Law::drive_depends) {
     const double far = both_gaps - gap, below = far - floor;
     if (below >= 0) return law.potential(far);
@@ -40,7 +40,7 @@ struct FarSide {
   }
 };
 
-/// The faces of one electrode on both sides of the moving part.
+/// The force on one electrode that has faces on both sides of the moving part.
 template <class Law, class P = double>
 struct BothSides {
   Law near = {};

@@ -8,15 +8,15 @@
 // d jumps by (f before - f after) dt/dp. At an impact the velocity's part is reflected too (saltation: Aizerman and Gantmacher
 // 1958, Hiskens and Pai 2000, eq. 26). A contact with memory adds its residual interference to the state.
 //
-// The motion after the last moment that any of the figures depends on is not linearised.
+// The motion after the last time on which any of the figures depends is not linearised.
 //
-// The forward mode carries d along for all parameters at once. The backward (adjoint) mode carries the weights that a figure
-// gives to d from the end to the beginning: its cost hardly depends on the number of parameters. Both apply the exponential to
-// vectors, by its Taylor series, and never form the exponential itself.
+// The forward mode integrates d for all parameters at once. The backward (adjoint) mode integrates the weights that a figure
+// gives to d from the end to the beginning: its cost hardly depends on the number of parameters. Both modes apply the
+// exponential to vectors, by its Taylor series, and never form the exponential itself.
 //
-// A parameter of the device adds F_p (model/switch_slopes.h) to the inputs of the equations. It also adds the derivative of the
-// rest position at the start, and shifts the times of events at fixed q. An edge is crossed at a certain interference, which
-// depends on the shape of the modes at the contact and on the contact gap.
+// A parameter of the device adds F_p (model/switch_slopes.h) to the inputs of the equations. The parameter also adds the
+// derivative of the rest position at the start, and shifts the times of events at fixed q. An edge is crossed at a certain
+// interference, which depends on the shape of the modes at the contact and on the contact gap.
 #pragma once
 
 #include <Eigen/Core>
@@ -33,14 +33,14 @@
 
 namespace softland {
 
-/// The derivative of a figure: weights of d at the end of an arc, before an event there. A figure measured at a time that
-/// depends on the beginning of a piece of a drive also has a rate, its derivative by this time. A figure that depends on the
-/// device at fixed q and v also has its derivatives by each of SwitchSlopes::moving().
+/// The derivative of a figure: weights of d = dy/dp at the end of a step of the recorded motion, before an event at this time.
+/// A figure measured at a time that depends on the beginning of a piece of a drive also has a rate, its derivative by this
+/// time. A figure that depends on the device at fixed q and v also has derivatives by each of SwitchSlopes::moving().
 struct FigureSlope {
   struct Weights {
     std::size_t arc = 0;  ///< index in LinearizedClosing::arcs()
     Eigen::VectorXd by_q, by_v;
-    double by_shift = 0;  ///< weight of the dent of a contact with memory
+    double by_shift = 0;  ///< weight of the residual interference of a contact with memory
   };
   struct Moved {
     std::size_t drive = 0, piece = 0;
@@ -48,32 +48,32 @@ struct FigureSlope {
   };
   std::vector<Weights> weights = {};
   std::vector<Moved> moved = {};
-  Eigen::VectorXd by_device = {};  ///< empty means 0
+  Eigen::VectorXd by_device = {};  ///< derivatives of the figure at fixed q and v; empty means 0
 };
 
 class LinearizedClosing {
  public:
   using Modal = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_modes, 1>;  ///< one number per mode, without an allocation
 
-  /// A step of the recorded motion, or a part of a step before or after the contact point turns back in it.
+  /// A step of the recorded motion; a step in which the contact point turns back is split into two arcs there.
   struct Arc {
     double begin = 0, end = 0;  ///< [s]
-    Modal q, v;                 ///< state at the end of the arc
-    Modal accelerations;        ///< accelerations at the end of the arc
-    bool turns = false;         ///< true when the contact point turns back at the end of the arc
+    Modal q, v;                 ///< modal coordinates and velocities at `end`
+    Modal accelerations;        ///< modal accelerations at `end`
+    bool turns = false;         ///< true when the contact point's velocity changes sign at `end`
     ContactState contact;
     std::size_t step = 0;            ///< step of the recorded motion
-    std::size_t pieces_entered = 0;  ///< see pieces()
+    std::size_t pieces_entered = 0;  ///< index of the pieces on which the drives are: see pieces()
   };
-  /// An event of the recorded motion after this number of arcs.
+  /// An event of the recorded motion, after the first `arcs` arcs.
   struct PhaseEvent {
     std::size_t arcs = 0;
     PhaseChange change;
   };
 
-  /// Linearises a closing that was run with restart_at_contact, under these signals. Keeps references to the objects.
+  /// Linearises a closing that was run with restart_at_contact, under these signals. Keeps references to its arguments.
   /// `refinement` is the least number of parts of a step. `by_device` gives the derivatives of the switch by the parameters, as
-  /// many as those of the signals; null when they do not change the switch.
+  /// many as those of the signals; null when the parameters do not change the switch.
   LinearizedClosing(const Switch& model, std::span<const Signal> signals, const RecordedMotion& tape, int refinement = 1,
                     SwitchSlopes* by_device = nullptr);
 
@@ -81,15 +81,15 @@ class LinearizedClosing {
   [[nodiscard]] static std::string refusal(const Switch& model);
 
   [[nodiscard]] const std::vector<Arc>& arcs() const { return arcs_; }
-  /// Returns the pieces on which the drives are during an arc.
+  /// Returns the number of the piece on which each drive is during a step of the recorded motion.
   [[nodiscard]] const std::vector<std::size_t>& pieces(const Arc& arc) const { return pieces_[arc.pieces_entered]; }
   [[nodiscard]] const std::vector<PhaseEvent>& passages() const { return passages_; }
-  /// Returns null when the parameters do not change the switch.
+  /// Returns the derivatives of the switch by the parameters; null when the parameters do not change the switch.
   [[nodiscard]] const SwitchSlopes* by_device() const { return by_device_; }
 
   /// Returns derivatives of figures, one row each, with respect to the parameters, in adjoint mode.
   [[nodiscard]] Eigen::MatrixXd backward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes);
-  /// Returns the same derivatives in forward mode.
+  /// Returns the derivatives that backward() returns, in forward mode.
   [[nodiscard]] Eigen::MatrixXd forward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes);
 
  private:
@@ -100,22 +100,22 @@ class LinearizedClosing {
     Eigen::MatrixXd by_q, by_v;
     Eigen::MatrixXd inputs;  // inputs: drives, dent of a contact with memory, parameters of the device
   };
-  // A part of an arc, short enough for the series.
+  // A part of a step of the recorded motion, short enough for Magnus' series.
   struct Part {
     double begin = 0, end = 0;  // [s]
     std::size_t arc = 0;
     bool ends_arc = false;
     int terms = 0;  // number of terms in the series of the exponential
   };
-  // Magnus' series of a part and the inputs of drives and dents: pointers into numbers_.
+  // Magnus' series of a part of a step, and the inputs of drives and dents: pointers into numbers_.
   struct Transition {
     const double* magnus;  // rows of whole lanes
     const double* begin;   // inputs at the start of the part, modes x inputs
     const double* middle;  // inputs in the middle of the part
     const double* end;     // inputs at the end of the part
   };
-  // The change at an event of d, with the derivative of the dent's shift as its last row: d becomes matrix * d + by_device +
-  // sum over moved pieces. Without a matrix the first term is d.
+  // The change of d = dy/dp at an event, with the derivative of the dent's shift as the last row: d becomes matrix * d +
+  // by_device + sum over moved pieces. Without a matrix the first term is d.
   struct Jump {
     std::size_t parts = 0;                                              // number of parts before the event
     std::optional<Eigen::MatrixXd> matrix;                              // square, of size 2 modes + 1
@@ -128,7 +128,7 @@ class LinearizedClosing {
   void enter_pieces(double t);
   void add_arcs(std::size_t step);
   void note_passage(const PhaseChange& change);
-  // Computes the derivatives, as far as the figures need them.
+  // Computes the derivatives of the recorded motion, up to the last time on which the figures depend.
   void linearize_for(const std::vector<FigureSlope>& figures);
   void linearize_step();
   void begin_at_rest();
@@ -159,18 +159,18 @@ class LinearizedClosing {
   Index n_, size_;  // number of modes; number of unknowns, 2 modes
   Index stride_;    // size_ rounded up to whole lanes
   SwitchSlopes* by_device_;
-  Index dent_, moving_, inputs_;  // numbers of drives (the index of the dent), of device parameters, and of all inputs
+  Index dent_, moving_, inputs_;  // numbers of drives (the index of the dent), of moving parameters, of inputs
   double fastest_;                // [rad/s]
   Switch::Workspace work_;
   int refinement_;
-  std::vector<std::vector<std::size_t>> pieces_;  // sets of the pieces on which the drives are, in order of time
+  std::vector<std::vector<std::size_t>> pieces_;  // numbers of the present pieces of all drives; a set per breakpoint
   std::vector<Arc> arcs_;
   std::vector<PhaseEvent> passages_;
 
-  std::size_t steps_ = 0;         // number of linearised steps of the tape
-  std::size_t next_arc_ = 0;      // arc that begins after these steps
+  std::size_t steps_ = 0;         // number of linearised steps of the recorded motion
+  std::size_t next_arc_ = 0;      // index of the first arc after the linearised steps
   std::size_t next_passage_ = 0;  // event of the recorded motion that comes next
-  std::size_t on_ = 0;            // index of the current set in pieces_
+  std::size_t on_ = 0;            // index of the current pieces of the drives in pieces_
   std::vector<double> volts_;     // current values of the drives
   std::vector<Part> parts_;
   std::vector<double> numbers_;  // Magnus' series and inputs of the parts

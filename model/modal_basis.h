@@ -17,14 +17,15 @@ struct SampledModes;
 
 class ModalBasis {
  public:
-  /// Factors of the normalised modes.
+  /// Factors from the normalised modes to the modes of the structure.
   struct Scales {
     double length = 0;     ///< [m]
     double shape = 0;      ///< [kg^(-1/2)]
     double frequency = 0;  ///< [rad/s]
   };
   ModalBasis() = default;
-  /// `piezo` is the piezo_shape() of a beam with sections or layers; none for a uniform beam, whose layer has a formula.
+  /// `piezo` is the piezo_shape() of a beam with sections or layers; none for a uniform beam, for which a formula gives the
+  /// shape.
   ModalBasis(Eigen::VectorXd angular_frequencies, const Scales& scales, const SampledModes& sampled, const Device& device,
              const std::optional<Eigen::VectorXd>& piezo = {});
 
@@ -34,9 +35,9 @@ class ModalBasis {
   [[nodiscard]] const Eigen::VectorXd& contact_shape() const { return contact_shape_; }  ///< phi_i(x_c) [kg^(-1/2)]
   /// Returns phi_i at the places of further contacts [kg^(-1/2)].
   [[nodiscard]] const std::vector<Eigen::VectorXd>& further_contact_shapes() const { return further_contact_shapes_; }
-  /// Returns phi_i'(x_c) for a contact that acts along the pad [kg^(-1/2)/m]; 0 for every other contact.
+  /// Returns phi_i'(x_c) for a contact that acts along the pad [kg^(-1/2)/m]; 0 for all other contacts.
   [[nodiscard]] const Eigen::VectorXd& pad_slope() const { return pad_slope_; }
-  /// Returns the force on mode i per volt on the piezo [N kg^(-1/2) / V]; zero without a layer.
+  /// Returns theta, the force on each mode per volt on the piezo [N kg^(-1/2) / V]; zero without a layer.
   [[nodiscard]] const Eigen::VectorXd& piezo_shape() const { return piezo_shape_; }
   [[nodiscard]] double in_contact_period() const { return in_contact_period_; }  ///< 2 pi over the first pinned frequency [s]
 
@@ -44,13 +45,13 @@ class ModalBasis {
   [[nodiscard]] double contact_deflection(const double* q) const {
     return deflection<double>({contact_shape_.data(), static_cast<std::size_t>(modes())}, q);
   }
-  /// Returns y'(x_c) for a contact along the pad; 0 for every other contact.
+  /// Returns y'(x_c), the slope of the pad, for a contact along the pad; 0 for all other contacts.
   [[nodiscard]] double pad_tilt(const double* q) const { return at(q).dot(pad_slope_); }
   /// Returns the static deflection of the contact point per volt on the piezo, without any other force and for small
   /// deflections [m/V]; 0 without a layer. It is positive towards the electrodes.
   [[nodiscard]] double piezo_deflection() const { return contact_shape_.cwiseQuotient(squares_).dot(piezo_shape_); }
-  /// Returns the charge that the deflection puts on the piezo's electrodes, theta q [C]. piezo_layer.h has the layer's own
-  /// capacitance.
+  /// Returns the charge that the deflection of the beam puts on the piezo's electrodes, theta q [C]. This charge is without
+  /// that of the layer's own capacitance (piezo_layer.h).
   [[nodiscard]] double piezo_charge(const double* q) const { return at(q).dot(piezo_shape_); }
   [[nodiscard]] double kinetic_energy(const double* v) const { return at(v).squaredNorm() / 2; }              ///< [J]
   [[nodiscard]] double bending_energy(const double* q) const { return at(q).cwiseAbs2().dot(squares_) / 2; }  ///< [J]
@@ -58,8 +59,8 @@ class ModalBasis {
     return Eigen::Map<const Eigen::VectorXd>(q, modes());
   }
 
-  /// Returns the modal forces of stiffness and modal damping, of a piezo at this voltage, and of a push at the contact point
-  /// [N], on the lane that begins with mode i of the n = modes() modes.
+  /// Returns the modal forces of stiffness, of modal damping, of a piezo at the voltage `piezo` [V], and of the force `push` at
+  /// the contact point [N], on the vector lane that begins with mode i of the n = modes() modes.
   [[gnu::always_inline]] [[nodiscard]] Lane forces(std::size_t i, std::size_t n, const double* q, const double* v, double piezo,
                                                    double push) const {
     return piezo * lane(piezo_lanes_, i) - push * lane(contact_lanes_, i) - lane(stiffness_lanes_, i) * load_lane(q, i, n) -

@@ -9,13 +9,14 @@ namespace softland {
 
 struct ModeShapes {
   Eigen::VectorXd places;  ///< places from the clamped end [m]
-  Eigen::MatrixXd shapes;  ///< phi_i there, one row per place [kg^(-1/2)]
+  Eigen::MatrixXd shapes;  ///< modal deflections phi_i at the places, a row for each place [kg^(-1/2)]
 };
 
 /// Returns the modes at this number of places from end to end for a beam or a structure from a table of modes; for a plate at
-/// the quadrature points of the switch. Throws InvalidInput for fewer than two places.
+/// the quadrature points of the switch. Throws InvalidInput when `places` is below two.
 [[nodiscard]] ModeShapes mode_shapes(const Switch& model, int places);
-/// Returns phi_i of any structure at these places from 0 to its length [m], one row per place [kg^(-1/2)].
+/// Returns the modal deflections phi_i of any structure at these places from 0 to its length [m], a row for each place
+/// [kg^(-1/2)].
 [[nodiscard]] Eigen::MatrixXd mode_shapes_at(const Switch& model, const Eigen::VectorXd& places);
 
 }  // namespace softland

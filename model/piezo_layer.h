@@ -19,11 +19,12 @@
 
 namespace softland {
 
-/// Returns the capacitance [F]; NaN without a layer, or where the scene does not give its relative permittivity.
+/// Returns the capacitance of the piezo layer [F]; NaN without a layer, or when the scene does not give its relative
+/// permittivity.
 [[nodiscard]] double layer_capacitance(const Device& device);
 
-/// Returns the energy that charging the layer takes from the source of the piezo on [0, end] [J]; this source is the last of
-/// the drives (Switch::drives()). The energy is 0 when layer_capacitance() is not known.
+/// Returns the energy that charging the piezo layer takes from its source on [0, end] [J]; this source is the last of the
+/// drives (Switch::drives()). The energy is 0 when layer_capacitance() is NaN.
 [[nodiscard]] double layer_charging_energy(const Device& device, std::span<const Signal> drives, double end);
 
 }  // namespace softland

@@ -33,7 +33,7 @@ struct Span {
   [[nodiscard]] bool operator==(const Span&) const = default;
 };
 
-/// The same interval on a beam of some length [m].
+/// Begin and end of an interval along a beam [m].
 struct Stretch {
   double begin = 0, end = 0;
   [[nodiscard]] bool holds(double x) const { return x >= begin && x < end; }

@@ -31,7 +31,7 @@ class PointQuadrature {
   [[nodiscard]] const Eigen::ArrayXd& rest_gaps() const { return rest_gaps_; }
   /// Returns phi_i(x_p), one row per point, then rows of zero motion that fill the last block [kg^(-1/2)].
   [[nodiscard]] const Eigen::MatrixXd& shapes() const { return shapes_; }
-  [[nodiscard]] const Eigen::MatrixXd& weighted_shapes() const { return weighted_shapes_; }  ///< w_p phi_i(x_p)
+  [[nodiscard]] const Eigen::MatrixXd& weighted_shapes() const { return weighted_shapes_; }  ///< w_p phi_i(x_p), w_p a weight
 
   void set_gap(const double* q, GapField& field) const {
     // noalias() needs no temporary, so there is no allocation in the hot path.
@@ -47,8 +47,8 @@ class PointQuadrature {
     if (left == 2) smallest = add_modes<2>(first, q, v, field);
     if (left == 1) smallest = add_modes<1>(first, q, v, field);
   }
-  /// Returns modal forces of a load on the lane of modes that begins with mode `first`: the sums over points of w_p phi_i(x_p)
-  /// f(x_p).
+  /// Returns the modal forces of a load f along the beam on the vector lane of modes that begins with mode `first`: the sums
+  /// over points of w_p phi_i(x_p) f(x_p).
   [[gnu::always_inline]] [[nodiscard]] Lane projected(const Eigen::ArrayXd& loads, std::size_t first) const {
     const auto points = static_cast<std::size_t>(shapes_.rows());
     const double* shapes = weighted_lanes_.data() + first * points;
@@ -60,15 +60,15 @@ class PointQuadrature {
     }
     return (sum[0] + sum[1]) + (sum[2] + sum[3]);
   }
-  /// Computes derivatives of the modal forces by modal coordinates from those of the load by the local deflection. `load` is
-  /// scratch.
+  /// Computes derivatives of the modal forces by modal coordinates from the derivatives `slopes` of the load by the local
+  /// deflection. `load` is scratch memory.
   void project_slopes(const Eigen::ArrayXd& slopes, Eigen::ArrayXd& load, Eigen::Ref<Eigen::MatrixXd> by) const;
 
   static constexpr Eigen::Index block = lanes;  ///< number of points that are handled at once
   using Block = Lane;
 
  private:
-  /// Adds modes from `first` on to the field; returns the smallest gap so far.
+  /// Adds the contribution of modes from `first` on to gaps and velocities; returns the smallest gap so far.
   template <int Modes>
   [[gnu::always_inline]] double add_modes(Eigen::Index first, const double* q, const double* v, GapField& field) const {
     const Eigen::Index points = shapes_.rows();

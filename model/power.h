@@ -22,11 +22,11 @@ template <class S>
 requires std::same_as<S, double> || LaneOfNumbers<S>
 [[nodiscard, gnu::always_inline]] inline S power(const S& x, double y) {
   constexpr double ln2 = 0.69314718055994530942;
-  // These are the bits of 2^52 + 2^51. Adding this number puts a rounded number, negative or not, into the low bits.
+  // The bits of 2^52 + 2^51. Adding this number to another puts the rounded other number, negative or not, into the low bits.
   static constexpr double shift = 6755399441055744.0;
   constexpr auto one = std::bit_cast<std::int64_t>(1.0), low_root = std::bit_cast<std::int64_t>(0.70710678118654752440);
   const S m = one_by_one(x, [](double number) {
-    // The exponent's place holds e, the rest the excess of m over the root.
+    // The exponent's place of `above` holds e, the rest the excess of m over the root.
     const std::int64_t above = std::bit_cast<std::int64_t>(number) - low_root;
     return std::bit_cast<double>((above & 0xFFFFFFFFFFFFF) + low_root);
   });

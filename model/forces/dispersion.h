@@ -48,7 +48,7 @@ struct SmallerOfBoth {
     }
     return 0;
   }
-  // No force depends on the derivative of the crossover: the force is continuous there.
+  // The crossover needs no derivatives: the force is continuous at the crossover, whose shift changes no force.
   [[nodiscard]] P find_crossover() const {
     if constexpr (requires { van_der_waals.hamaker_constant.value; }) {
       return P(crossover_of(van_der_waals.hamaker_constant.value));

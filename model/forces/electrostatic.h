@@ -17,7 +17,7 @@ struct ElectrostaticForce {
   Law fringing;
   static constexpr bool drive_depends = true;
 
-  /// Returns the load [N / (m V^2)].
+  /// Returns the load per volt squared [N / (m V^2)].
   template <class S>
   [[gnu::always_inline]] S load(S gap, S /*velocity*/) const {
     const S plane = S(0.5 * vacuum_permittivity * fringing.width);
@@ -27,12 +27,12 @@ struct ElectrostaticForce {
       return plane / (gap * gap) * fringing.factor(gap);
     }
   }
-  /// Returns the capacitance [F/m].
+  /// Returns the capacitance per length [F/m].
   template <class S>
   [[nodiscard]] S capacitance(S gap) const {
     return S(vacuum_permittivity) * fringing.capacitance_over_eps0(gap);
   }
-  /// Returns the potential [J / (m V^2)] at constant voltage.
+  /// Returns the potential at constant voltage, per length and per volt squared [J / (m V^2)].
   [[nodiscard]] double potential(double gap) const { return -capacitance(gap) / 2; }
 };
 

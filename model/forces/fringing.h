@@ -12,7 +12,7 @@
 //                   thesis uses it, 2 to 11 % too much force). c is then the integral of the force, not Bao's capacitance.
 // Singular at h = 0: the switch ends a run before any gap gets there. For linear and bao-2001 the constant in c is a convention;
 // it shifts a charge, never a force.
-// A new law is a struct, an alternative of FringingLaw, an enumerator and a row of fringing_laws.
+// To add a law, write a struct and add an alternative of FringingLaw, an enumerator and a row of fringing_laws.
 #pragma once
 
 #include <array>
@@ -121,7 +121,7 @@ using FringingLaw = std::variant<NoFringing, Bao2001Fringing, MeijsFokkemaFringi
 
 enum class Fringing { none, bao_2001, meijs_fokkema, linear };
 
-/// A law of the fringing field: its name in a scene, the sizes that it needs from a plate, and its maker.
+/// A law of the fringing field: its name in a scene, the sizes of a plate that the law needs, and the function that makes it.
 struct FringingRow {
   Fringing value;
   std::string_view name;

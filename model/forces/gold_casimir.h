@@ -25,7 +25,7 @@
 
 namespace softland {
 
-/// eta as cubics between knots, with the energy at every knot.
+/// The reduction factor eta as cubics between knots, with the energy at every knot.
 class GoldFactor {
  public:
   static constexpr std::size_t knots = 41;
@@ -35,10 +35,10 @@ class GoldFactor {
     double energy = 0;                  ///< energy at begin [J/m^2]
   };
 
-  /// Returns the table, computed at first use.
+  /// Returns the table of eta, computed at first use.
   [[nodiscard]] static const GoldFactor& table();
 
-  /// Returns the piece of a gap: the last piece that begins at or below the gap; the first piece below the table.
+  /// Returns the piece of the table for a gap: the last piece that begins at or below the gap; the first piece below the table.
   template <class S>
   [[nodiscard]] const Piece& piece(const S& h) const {
     std::size_t low = 0, high = pieces_.size();
@@ -51,7 +51,7 @@ class GoldFactor {
   [[nodiscard]] double first() const { return pieces_.front().begin; }
   [[nodiscard]] double last() const { return pieces_.back().begin; }
 
-  std::array<double, 2> near = {}, far = {};  ///< coefficients n and f of the formulas outside the table
+  std::array<double, 2> near = {}, far = {};  ///< coefficients n and f of eta outside the table
 
  private:
   GoldFactor();

@@ -17,7 +17,7 @@ struct FilmState {
   double mean_free_path = not_given;  ///< lambda [m]
 };
 
-/// The input of a law.
+/// The numbers from which a gas law is made.
 struct Film {
   double width, thickness;  ///< size of the moving part [m]
   double viscosity;         ///< viscosity of the gas, reduced by the flow through the open ends of a film [Pa s]
@@ -37,7 +37,7 @@ struct FilmLimits {
 };
 
 // clang-format off
-/// Returns the fields of a law's member `film`.
+/// Returns the scene's fields of the state of the gas, the member `film` of a law.
 template <class Law>
 [[nodiscard]] consteval auto film_fields() {
   return std::to_array<Field<Law>>({
@@ -47,12 +47,12 @@ template <class Law>
       {.key = "mean_free_path", .unit = "m", .about = "absent: from viscosity, pressure and temperature", .in = reach<Law, &Law::film, &FilmState::mean_free_path>, .range = {.least = 0, .most = 1e9, .least_open = true}, .such_as = "65 nm"},
   });
 }
-/// Returns the field of one film whose ends let gas out.
+/// Returns the scene's field of the length of a single film with open ends.
 template <class Law>
 [[nodiscard]] consteval auto end_fields() {
   return std::to_array<Field<Law>>({{.key = "film_length", .unit = "m", .about = "of one film whose ends are open; absent: much longer than wide", .in = reach<Law, &Law::film_length>, .such_as = "100 um"}});
 }
-/// Returns the field of a second film.
+/// Returns the scene's field of the rest thickness of a second film, on the far side.
 template <class Law>
 [[nodiscard]] consteval auto far_fields() {
   return std::to_array<Field<Law>>({{.key = "far_gap", .unit = "m", .about = "rest thickness of a second film on the far side; absent: none", .in = reach<Law, &Law::far_gap>}});

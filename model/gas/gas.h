@@ -1,4 +1,4 @@
-// The gas of a device: the parameters of one of its laws. A new law is a header and a line here.
+// The gas of a device: the parameters of one of its laws. A new law needs a header and a row here.
 #pragma once
 
 #include <variant>
@@ -17,7 +17,7 @@ namespace softland {
 using Gas = std::variant<StripGas, StripSlitGas, VeijolaGas, GallisTorczynskiGas, NearContactGas, GuoAlexeenkoGas, ReynoldsGas,
                          LinearGas>;
 
-/// Returns the state of the gas; null for a law that does not need it.
+/// Returns the state of the gas that a law contains; null for a law without such a state.
 [[nodiscard]] inline const FilmState* film_of(const Gas& gas) {
   return std::visit(
       [](const auto& law) -> const FilmState* {
@@ -35,7 +35,8 @@ using Gas = std::variant<StripGas, StripSlitGas, VeijolaGas, GallisTorczynskiGas
       },
       gas);
 }
-/// Returns the length of one film whose ends are open [m]; NaN where it is much longer than wide.
+/// Returns the length of a single film with open ends [m]; NaN when the scene gives no length, for a film much longer than
+/// wide.
 [[nodiscard]] inline double film_length(const Gas& gas) {
   return std::visit(
       [](const auto& law) {

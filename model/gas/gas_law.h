@@ -33,21 +33,21 @@ struct GasLaw : internal::LawsOf<Gas>::Type {
 /// rectangle (Griffin, Richardson & Yamanami, J. Basic Eng. 88 (1966) 451; the series is that of torsion of a rectangular bar).
 [[nodiscard]] double end_flow(double ratio);
 
-/// Returns the law for a structure of constant width and thickness, or for this width and thickness [m]. For a compressible
-/// film it returns the incompressible limit.
+/// Returns the gas law for a structure of constant width and thickness, or for this width and thickness [m]. For a compressible
+/// film the result is the incompressible limit.
 [[nodiscard]] GasLaw gas_law(const Gas& gas, const Structure& structure, double unit_quality);
 [[nodiscard]] GasLaw gas_law(const Gas& gas, double width, double thickness, double unit_quality);
 
-/// Returns c in f = -c v [N s/m^2] at this gap [m].
+/// Returns the damping per length c at this gap [N s/m^2]; the force per length is -c v.
 [[nodiscard]] inline double damping_per_length(const GasLaw& law, double gap) {
   return std::visit([&](const auto& l) { return -l.load(gap, 1.0); }, law);
 }
 
-/// Returns 12 mu a^2 rate / (p h^2), with the rate [1/s] at which the gap h [m] changes.
+/// Returns the squeeze number 12 mu a^2 rate / (p h^2) for the relative rate [1/s] at which the gap h [m] changes.
 [[nodiscard]] double squeeze_number(const FilmState& gas, double width, double gap, double rate);
 
-/// Returns the squeeze number at the contact point, with the rate |v| / h; 0 when the device's law has no limit for this
-/// number.
+/// Returns the squeeze number at the contact point, with the relative rate |v| / h of the gap; 0 when the device's gas law has
+/// no limit for squeeze numbers.
 [[nodiscard]] double squeeze_number(const Device& device, double rest_gap, const TrajectoryPoint& point);
 
 /// Returns one line per limit of the gas law that a closing exceeded, with law, limit and value. Knudsen numbers are taken

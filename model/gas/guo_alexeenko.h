@@ -36,7 +36,7 @@ struct GuoAlexeenkoFilmOf {
   }
 
  private:
-  /// Calls the library for double, so that results agree to the last bit.
+  /// Calls the library's pow for doubles, so that their results stay the same to the last bit.
   static P raised(const P& x, double exponent) {
     if constexpr (std::same_as<P, double>) {
       return std::pow(x, exponent);

@@ -58,19 +58,19 @@ class ReynoldsStationOf {
     for (int i = 0; i < nodes; ++i) load_by_film_[static_cast<std::size_t>(i)] = -ambient_ * half_width_ * P(nodes_.weights[i]);
   }
 
-  /// Adds load += f [N/m].
+  /// Adds the load f of the film: load += f [N/m].
   template <class S>
   void add_load(const S* film, S& load) const {
     for (std::size_t i = 0; i < nodes; ++i) load = load + S(load_by_film_[i]) * film[i];
   }
-  /// Computes dP/dt [1/s].
+  /// Computes the rates dP/dt of the film's relative pressures P [1/s].
   template <class S>
   void rates(const S& gap, const S& velocity, const S* film, S* result) const {
     const S squeezing = velocity / gap, mixing = diffusion(gap);
     flow(film, result);
     for (int i = 0; i < nodes; ++i) result[i] = (S(1) + film[i]) * squeezing + mixing * result[i];
   }
-  /// Computes the flow into every node for a unit diffusion: the exchange times (P + P^2/2).
+  /// Computes the flow into every node for a unit diffusion coefficient: the matrix `exchange` times (P + P^2/2).
   template <class S>
   void flow(const S* film, S* result) const {
     std::array<S, nodes> half_squares;
@@ -83,7 +83,7 @@ class ReynoldsStationOf {
       result[i] = sum;
     }
   }
-  /// Returns pa (h^2 + 6 lambda h)/(12 mu (a/2)^2) [1/s].
+  /// Returns the diffusion rate of the pressure across the half width, pa (h^2 + 6 lambda h)/(12 mu (a/2)^2) [1/s].
   template <class S>
   [[nodiscard]] S diffusion(const S& gap) const {
     return S(diffusion_) * gap * (gap + S(slip_));
@@ -93,7 +93,7 @@ class ReynoldsStationOf {
   [[nodiscard]] const P& half_width() const { return half_width_; }
   /// Returns the weights of the nodes, over both halves, in units of a/2.
   [[nodiscard]] const Eigen::Matrix<double, nodes, 1>& weights() const { return nodes_.weights; }
-  /// Returns df/dP [N/m].
+  /// Returns the derivatives of the load f by the relative pressures P at the nodes [N/m].
   [[nodiscard]] const std::array<P, nodes>& load_by_film() const { return load_by_film_; }
 
  private:
@@ -110,25 +110,26 @@ class ReynoldsFilm {
   /// `stations` is the number of points of the beam, in order; gaps below `floor` [m] count as `floor`.
   ReynoldsFilm(const FilmState& gas, double width, Eigen::Index stations, double floor);
 
-  /// Returns the number of extra unknowns: P at the nodes of the first station, of the second, ...
+  /// Returns the number of pressure states: P at the nodes of the first station, of the second, ...
   [[nodiscard]] std::size_t states() const { return static_cast<std::size_t>(stations_) * nodes; }
-  /// Adds load += f [N/m] at the stations.
+  /// Adds the load of the film at the stations: load += f [N/m].
   void add_load(const double* film, double* load) const;
-  /// Computes dP/dt [1/s].
+  /// Computes the rates dP/dt of all relative pressures P [1/s].
   void rates(const GapField& field, const double* film, double* result) const;
-  /// The derivatives of the rates of one station by gap [1/(m s)], by velocity [1/m] and by its P [1/s], row per rate.
+  /// The derivatives of the rates dP/dt of one station by gap [1/(m s)], by velocity [1/m] and by its P [1/s], a row for each
+  /// rate.
   struct Derivatives {
     Eigen::Matrix<double, nodes, 1> by_gap, by_velocity;
     Eigen::Matrix<double, nodes, nodes> by_film;
   };
   [[nodiscard]] Derivatives derivatives(double gap, double velocity, const double* film) const;
-  /// Returns df/dP [N/m], the same at every station.
+  /// Returns the derivatives of the load f by the relative pressures P [N/m], the same at every station.
   [[nodiscard]] Eigen::Matrix<double, nodes, 1> load_by_film() const {
     return Eigen::Map<const Eigen::Matrix<double, nodes, 1>>(station_.load_by_film().data());
   }
-  /// Returns the integral of U over stations with these weights [J].
+  /// Returns the integral of the free energy U over stations with these weights [J].
   [[nodiscard]] double energy(const GapField& field, const Eigen::ArrayXd& weights, const double* film) const;
-  /// Returns the integral of D [W].
+  /// Returns the integral of the dissipation D over stations with these weights [W].
   [[nodiscard]] double dissipated_power(const GapField& field, const Eigen::ArrayXd& weights, const double* film) const;
   /// Returns the ambient pressure [Pa].
   [[nodiscard]] double ambient() const { return station_.ambient(); }

@@ -28,7 +28,7 @@ struct SlipFilmOf {
 };
 using SlipFilm = SlipFilmOf<double>;
 
-/// The compressible film in a scene. The law above is its limit: see reynolds_film.h.
+/// The parameters of the compressible film in a scene. The slip film of this file is its limit: see reynolds_film.h.
 struct ReynoldsGas {
   static constexpr std::string_view name = "reynolds";
   static constexpr FilmLimits limits{.most_knudsen = 0.1, .most_squeeze = 1000};

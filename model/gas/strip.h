@@ -25,7 +25,7 @@ struct StripSqueezeFilmOf {
   S load(S gap, S velocity) const {
     return S(-mu_a3) * velocity / (gap * gap * gap);
   }
-  /// Returns the load [N/m] from h^(-1/4) [m^(-1/4)].
+  /// Returns the load [N/m] from `root` = h^(-1/4) [m^(-1/4)].
   template <class S>
   [[gnu::always_inline]] S load_by_root(S root, S velocity) const {
     const S square = root * root, inverse = square * square;
