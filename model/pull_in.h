@@ -37,15 +37,15 @@ struct StaticPullIn {
   StaticKind kind = StaticKind::fold;  ///< fold of the branch, or contact when the contact plane comes before the fold
 };
 
-/// Constant values of the other drives: one value per drive, as in Switch::drives(); the value of the drive in question is
+/// Constant values of the other drives: one value per drive, as in Switch::drives(); the value of the drive under study is
 /// ignored. If empty, all other drives are at 0.
 using Bias = std::span<const double>;
 
 /// Finds the fold of the static branch of `drive`, or the voltage at which the contact point reaches the contact plane if that
-/// comes first. The branch of an electrode begins at the switch's rest under the bias, without a field of its own. The status
-/// is collapsed_at_rest when no such rest exists or none at 0 V, and no_contact for an electrode on the far side. The branch of
-/// the dispersion force begins at factor 0, so that a negative result shows by how much the nominal force is too strong. Throws
-/// InvalidInput when the bias has another number of drives.
+/// comes first. The branch of an electrode begins at the switch's rest under the bias, with this electrode at V0. The status is
+/// collapsed_at_rest when this rest, or the rest with this electrode at 0 V, does not exist, and no_contact for an electrode on
+/// the far side. The branch of the dispersion force begins at factor 0, so that a negative result shows by how much the nominal
+/// force is too strong. Throws InvalidInput when the bias has another number of drives.
 [[nodiscard]] StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias = {});
 
 /// An equilibrium, stable or not, in which a drive holds the contact point.
@@ -54,8 +54,8 @@ struct HeldEquilibrium {
   double voltage = std::numeric_limits<double>::quiet_NaN();  ///< voltage of the drive [V]
 };
 /// Returns the equilibrium whose contact point has this deflection [m], on the branch of static_pull_in() and
-/// release_voltage(). Returns none when the branch could not be computed so far, or the drive would have to push. Throws as
-/// static_pull_in() does.
+/// release_voltage(). Returns none when the branch could not be computed up to this deflection, or the drive would have to
+/// push. Throws as static_pull_in() does.
 [[nodiscard]] std::optional<HeldEquilibrium> held_by_drive(const Switch& model, std::size_t drive, double deflection,
                                                            Bias bias = {});
 
@@ -72,7 +72,8 @@ struct StablePath {
     return (deflections[last] - deflections[last - 1]) / (values[last] - values[last - 1]);
   }
 };
-/// Returns the path; none when it does not exist or could not be computed. Throws as static_pull_in() does.
+/// Returns the stable path of a drive; none when the path does not exist or could not be computed. Throws as static_pull_in()
+/// does.
 [[nodiscard]] std::optional<StablePath> stable_path(const Switch& model, std::size_t drive, Bias bias = {});
 
 /// The least voltage of the closed branch, and the deflection of the contact point there.
@@ -99,11 +100,11 @@ struct ClosedEquilibrium {
   [[nodiscard]] std::span<const double> coordinates() const { return {q.data(), static_cast<std::size_t>(q.size())}; }
 };
 /// Returns the closed equilibrium under constant voltages nearest to the contact plane, if one exists with a contact force
-/// above zero. It exists with one electrode at V and all other drives at 0 V from the release voltage up to the voltage at
-/// which the beam collapses onto the electrode.
+/// above zero. With one electrode at V and all other drives at 0 V the equilibrium exists from the release voltage up to the
+/// voltage at which the beam collapses onto the electrode.
 [[nodiscard]] std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::span<const double> volts);
 /// Returns closed_equilibrium(), found by Newton's method from the closed equilibrium of a slightly different switch and
-/// voltages, if this ends on a stable equilibrium. This takes a hundredth of the work.
+/// voltages, if the method ends on a stable equilibrium. This takes a hundredth of the work of a full search.
 [[nodiscard]] std::optional<ClosedEquilibrium> closed_equilibrium_near(const Switch& model, std::span<const double> volts,
                                                                        const ClosedEquilibrium& near);
 
@@ -111,27 +112,27 @@ struct ClosedEquilibrium {
 /// leaves the equilibrium by a motion that the first mode does not have.
 [[nodiscard]] bool judges_stability(const Switch& model);
 
-/// Returns true when the closed equilibrium exists and is stable, as far as the modes of the switch can show.
+/// Returns true when the closed equilibrium exists and is stable, as far as the modes of the switch show this.
 [[nodiscard]] bool keeps_closed(const Switch& model, const std::optional<ClosedEquilibrium>& closed);
 
 /// Returns the voltage of `drive`, above V0, from which the closed switch collapses onto the electrode [V], with the other
 /// drives at `volts`: above this voltage the closed equilibrium is unstable or does not exist. The search begins at the value
 /// of `drive` in `volts`, or at the release voltage if that is larger, and covers a tenth to ten times this value, counted from
-/// V0. The result is NaN if the voltage is not in this range. The relative precision is `precision`.
+/// V0. The result is NaN if the collapse is not in this range. The relative precision is `precision`.
 [[nodiscard]] double pull_through_voltage(const Switch& model, std::size_t drive, std::span<const double> volts,
                                           double precision = 1e-6);
 
 /// Returns pull_through_voltage(), found by Newton's method upwards from the value of `drive` in `volts`. The search begins at
-/// a closed equilibrium of a slightly different switch and voltages, which takes a fifth of the work.
+/// a closed equilibrium of a slightly different switch and voltages, which takes a fifth of the work of a full search.
 [[nodiscard]] double pull_through_voltage_near(const Switch& model, std::size_t drive, std::span<const double> volts,
                                                const ClosedEquilibrium& near, double precision = 1e-6);
 
-/// Return, for a switch at rest in `q` without contact, the modal forces [N kg^(-1/2)], and the smallest eigenvalue of their
-/// tangent [rad^2/s^2].
+/// Return the modal forces [N kg^(-1/2)] on a switch at rest in `q` without contact, and the smallest eigenvalue of minus their
+/// derivative by q [rad^2/s^2].
 [[nodiscard]] Eigen::VectorXd static_force(const Switch& model, const Eigen::VectorXd& q, std::span<const double> volts);
 [[nodiscard]] double open_tangent_eigenvalue(const Switch& model, const Eigen::VectorXd& q, std::span<const double> volts);
 
-/// Default relative width of the bracket of a dynamic pull-in voltage; its upper end is returned.
+/// Default relative width of the bracket of a dynamic pull-in voltage; the result is the bracket's upper end.
 inline constexpr double dynamic_pull_in_precision = 1e-7;
 
 /// Dynamic pull-in voltage Vdp [V]: the smallest constant step from rest under the bias whose contact point reaches the contact
@@ -146,9 +147,8 @@ struct DynamicPullIn {
                                             Bias bias = {}, const Progress& progress = {}, double tolerance = 1e-8,
                                             double precision = dynamic_pull_in_precision);
 
-/// Returns true when a constant step of `drive` to `value` from rest under the bias reaches the contact plane. One such trial
-/// decides whether `value` is at least the dynamic pull-in voltage. Returns true when the bias leaves no open state. Throws as
-/// static_pull_in() does.
+/// Returns true when a constant step of `drive` to `value` from rest under the bias reaches the contact plane: `value` is then
+/// at least the dynamic pull-in voltage. Returns true when the bias leaves no open state. Throws as static_pull_in() does.
 [[nodiscard]] bool step_closes(const Switch& model, std::size_t drive, double value, Bias bias = {},
                                const Progress& progress = {}, double tolerance = 1e-8);
 

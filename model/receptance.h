@@ -19,12 +19,12 @@
 
 namespace softland {
 
-/// Functions of an element: curvatures up to degree 7, so deflections up to degree 9.
+/// Shape functions of a beam element: curvatures up to degree 7, so deflections up to degree 9.
 inline constexpr int element_functions = 8;
 using ElementRow = Eigen::Matrix<double, 1, element_functions>;
 
-/// Returns the functions of one element, which are 0 left of it, at xi in [-1, 1]: first (derivative 1) or second (0) integrals
-/// of P_m from -1. For m >= 2 both vanish at the right end.
+/// Returns the shape functions of one element, which are 0 left of the element, at xi in [-1, 1]: first (derivative 1) or
+/// second (0) integrals of the Legendre polynomials P_m from -1. For m >= 2 both integrals vanish at the right end.
 [[nodiscard]] ElementRow element_integrals(double xi, int derivative);
 
 struct BeamElement {
@@ -35,8 +35,8 @@ struct BeamElement {
   [[nodiscard]] double half() const { return (end - begin) / 2; }
 };
 
-/// Returns integrals over the beam of the products of slopes of motions. A motion is a column of factors of the functions;
-/// `first_slopes` are the slopes of the motions at x = 0, or 0 if absent.
+/// Returns integrals over the beam of the products of slopes of motions. A motion is a column of factors of the shape
+/// functions; `first_slopes` are the slopes of the motions at x = 0, or 0 if absent.
 [[nodiscard]] Eigen::MatrixXd slope_products(const std::vector<BeamElement>& elements, const Eigen::MatrixXd& motions,
                                              const std::optional<Eigen::RowVectorXd>& first_slopes = {});
 
@@ -47,30 +47,30 @@ class Receptance {
   Receptance(const std::vector<BeamElement>& elements, double axial_force, bool far_clamp);
 
   struct Answer {
-    Lane deflection;   ///< a
-    Lane inertia;      ///< its derivative by lambda, the integral of mu y^2
-    Lane below;        ///< number of natural frequencies below
-    Lane least_pivot;  ///< smallest pivot except the last, which vanishes at a pole: a small one magnifies the rounding
+    Lane deflection;   ///< receptance a
+    Lane inertia;      ///< derivative of a by lambda, the integral of mu y^2
+    Lane below;        ///< number of natural frequencies below the square root of lambda
+    Lane least_pivot;  ///< smallest pivot except the last, which vanishes at a pole: small pivots magnify rounding
   };
-  /// Returns the receptance at x in (0, 1].
+  /// Returns the receptance of the beam at the place x in (0, 1].
   [[nodiscard]] Answer at(const Lane& lambda, double x);
-  /// Returns the motion of the last result in a lane: factors of the functions, which are orthonormal in the bending energy.
+  /// Returns the motion of the last result in a lane: factors of the shape functions, which are orthonormal in bending energy.
   [[nodiscard]] Eigen::VectorXd motion(Eigen::Index lane) const;
 
  private:
   static constexpr int size = 2 + element_functions;  // deflection and rotation at an element's left end, then its functions
-  static constexpr int kept = 4;                      // number of these motions that move the right end
-  // A kind of equal elements with their quadratic form, a lower triangle. The part below the kept rows is eliminated.
+  static constexpr int kept = 4;                      // number of these motions that move the element's right end
+  // Elements with equal size and section share their quadratic form, a lower triangle. Its rows beyond `kept` are eliminated.
   struct ElementKind {
     double half = 0, rigidity = 0, mass = 0;
-    double reach = 0;  // deflection of a function of unit energy, over that of the universal function
+    double reach = 0;  // deflection of a function of unit energy, over that of the dimensionless function
     Lane form[size][size];
     Lane inverse[size];          // inverse pivots
     Lane negative, least_pivot;  // number of negative pivots, smallest pivot
 
     [[nodiscard]] bool holds(const BeamElement& e) const;
   };
-  // The kept rows of an element with all elements beyond it, and its load.
+  // The first `kept` rows of the quadratic form and load of an element together with all elements beyond it.
   struct Stage {
     std::size_t kind = 0;
     Lane form[kept][kept];
@@ -92,7 +92,7 @@ class Receptance {
   std::vector<double> nodes_;  // ends of the elements
   std::size_t loaded_ = 0;     // index of the element at x
   double probe_[size] = {};    // deflections at x of the motions of this element
-  Lane load_[size];            // the load, eliminated like the quadratic form
+  Lane load_[size];            // load of a unit force at x, eliminated like the quadratic form
 };
 
 }  // namespace softland

@@ -8,19 +8,19 @@
 
 namespace softland {
 
-/// Records the motion, and passes all calls on to another observer.
+/// Records the motion of a closing, and passes all calls on to another observer.
 class RecordedMotion final : public ClosingObserver {
  public:
   struct Arc {
     double begin = 0, end = 0;  ///< [s]
     ContactState contact;
   };
-  /// All modes at one time: pointers into the record.
+  /// All modes at one time: pointers into the recorded numbers.
   struct Motion {
     double time = 0;  ///< [s]
     const double *q, *v, *accelerations;
   };
-  /// An event before the arc of this number.
+  /// An event before the arc with the number `arc`.
   struct PhaseEvent {
     std::size_t arc = 0;
     double time = 0;  ///< [s]
@@ -28,7 +28,7 @@ class RecordedMotion final : public ClosingObserver {
   };
 
   RecordedMotion() = default;
-  /// Keeps a reference to the other observer.
+  /// Keeps a reference to the observer to which all calls are passed on.
   explicit RecordedMotion(ClosingObserver& next) : next_(&next) {}
 
   void knot(const TrajectoryPoint& point) override {

@@ -7,9 +7,9 @@
 //
 // The pull-in voltage is the largest of the open branch, or that at the contact plane; the release voltage is the least of the
 // closed branch. V as a function of the interference has no slope at such an extremum, and at the plane the interference is 0.
-// In each case V_p at a constant interference is the derivative of the voltage (envelope theorem). F_p and a figure's own
-// dependence come from two switches with a smaller and a larger parameter (SwitchSlopes). A slope is NaN where no such
-// equilibrium exists. There is one number for each of SwitchSlopes::moving().
+// In each case V_p at a constant interference is the derivative of the voltage (envelope theorem). F_p and the explicit
+// dependence of a figure come from two switches with a smaller and a larger parameter (SwitchSlopes). A slope is NaN where the
+// equilibrium does not exist. The functions return one slope for each of SwitchSlopes::moving().
 #pragma once
 
 #include <cstddef>
@@ -29,8 +29,8 @@ namespace softland {
                                                  const ReleasePoint& release, Bias bias = {});
 
 /// Returns the angular frequency of a mode, counted from 0, of small undamped vibrations about the open switch at rest under
-/// these values of all drives; NaN when the switch does not rest open [rad/s]. If all values are 0 it is the frequency of the
-/// undeflected switch, Switch::angular_frequencies().
+/// these values of all drives [rad/s]; NaN when the switch does not rest open. If all values are 0 the result is the frequency
+/// of the undeflected switch, Switch::angular_frequencies().
 [[nodiscard]] double resonance(const Switch& model, std::size_t mode, std::span<const double> values);
 /// Returns the slopes of resonance() [rad/s per unit of the parameter].
 [[nodiscard]] std::vector<double> resonance_slopes(const Switch& model, SwitchSlopes& by, std::size_t mode,

@@ -8,10 +8,10 @@ namespace softland {
 enum class Status {
   not_run,
   done,
-  open,                      ///< the switch stays open, as its drives command
+  open,                      ///< an intended opening: the drives command the switch to stay open
   no_contact,                ///< the contact point never reached the contact gap in the window
-  not_settled,               ///< a rebound had not ended, or contact had only just begun, at the end of the window
-  collapsed_at_rest,         ///< no stable static equilibrium to start from
+  not_settled,               ///< at the end of the window a rebound had not ended, or contact had only just begun
+  collapsed_at_rest,         ///< no stable static equilibrium exists from which a run can start
   collapsed_onto_electrode,  ///< the beam reached the metal of an electrode, or a wall on its far side
   numerical_failure,
   interrupted,

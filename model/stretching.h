@@ -25,13 +25,13 @@ struct MidPlaneStretchingOf {
   std::vector<P> slopes = {};  ///< G [1/(kg m)], column by column
   P stiffness = P(0);          ///< EA/(2 L) [N/m]
 
-  /// Adds result += Q.
+  /// Adds the modal forces Q of stretching to `result`.
   template <class S>
   void add_force(const S* q, S* result) const {
     const S strain = strain_of(q);
     for (std::size_t i = 0; i < modes; ++i) result[i] = result[i] - S(stiffness) * strain * pull(i, q);
   }
-  /// Adds by_q += dQ/dq.
+  /// Adds the derivative dQ/dq of the modal forces to `by_q`.
   void add_derivative(const double* q, Eigen::Ref<Eigen::MatrixXd> by_q) const requires std::same_as<P, double> {
     const auto n = static_cast<Eigen::Index>(modes);
     const Eigen::Map<const Eigen::MatrixXd> g(slopes.data(), n, n);
@@ -39,7 +39,7 @@ struct MidPlaneStretchingOf {
     const Eigen::VectorXd pulls = g * at;
     by_q -= stiffness * (at.dot(pulls) * g + 2 * pulls * pulls.transpose());
   }
-  /// Adds by_q_q += second derivatives of the sum of multiplier_i Q_i.
+  /// Adds the second derivatives of the sum of multiplier_i Q_i to `by_q_q`.
   void add_curvature(const double* q, const double* multipliers,
                      Eigen::Ref<Eigen::MatrixXd> by_q_q) const requires std::same_as<P, double> {
     const auto n = static_cast<Eigen::Index>(modes);
@@ -56,7 +56,7 @@ struct MidPlaneStretchingOf {
  private:
   using Coordinates = Eigen::Map<const Eigen::VectorXd>;
 
-  // Returns (G q)_i; for plain numbers several elements at once.
+  // Returns (G q)_i; for doubles the compiler handles several elements at once.
   template <class S>
   [[nodiscard]] S pull(std::size_t i, const S* q) const {
     const P* column = slopes.data() + i * modes;
@@ -69,7 +69,7 @@ struct MidPlaneStretchingOf {
       return sum;
     }
   }
-  // Returns q'G q.
+  // Returns q'G q, the integral of the squared slope y'^2.
   template <class S>
   [[nodiscard]] S strain_of(const S* q) const {
     S sum = S(0);

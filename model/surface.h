@@ -28,7 +28,7 @@
 
 namespace softland {
 
-/// Returns the contribution of the faces to the bending rigidity [N m^2].
+/// Returns the contribution of the surface skins to the bending rigidity [N m^2].
 [[nodiscard]] inline double surface_rigidity(const Surface& surface, const Structure& s) {
   const double flanks = surface.faces == SurfaceFaces::all ? s.thickness / 3 : 0;
   return surface.elastic_modulus * s.thickness * s.thickness / 2 * (s.width + flanks);

@@ -46,13 +46,13 @@ class ReynoldsFilm;   // model/gas/reynolds_film.h
 struct SwitchOptions {
   double points_per_length = 24;  ///< quadrature points over a beam's length
   int points_per_panel = 3;       ///< least number of points of a panel; a study of accuracy increases both numbers
-  /// Number of modes of a beam, instead of that of its structure: at most most_static_modes, and above most_modes for statics
-  /// only.
+  /// Number of modes of a beam, instead of that of its structure: at most most_static_modes. A number above most_modes is for
+  /// statics only.
   std::optional<int> modes = {};
 };
 
-/// The states of all contacts of a switch: one state for each; or a state for the first contact, and then each other contact is
-/// on first loading wherever it is within its reach.
+/// The states of all contacts of a switch: either one state for each contact, or a state for the first contact alone. Each
+/// other contact is then on first loading wherever it is within its reach.
 struct ContactStates {
   ContactStates(const ContactState& first_one) : first(first_one) {}  // NOLINT: most switches have one contact
   ContactStates(std::same_as<bool> auto acts) : first(acts) {}        // NOLINT: most laws need nothing else
@@ -66,8 +66,9 @@ enum class DriveKind { electrode, dispersion, piezo };
 
 class Switch {
  public:
-  /// Throws InvalidInput for a device that validate() refuses. Reuses normalised modes and quadrature of the switch `like` when
-  /// they are the same, and otherwise starts from its modes: the result is the same up to rounding, and faster to build.
+  /// Throws InvalidInput for a device that validate() refuses. The constructor reuses normalised modes and quadrature of the
+  /// switch `like` when they are the same, and otherwise starts from the modes of `like`: the result is the same up to
+  /// rounding, and faster to build.
   explicit Switch(const Device& device, const SwitchOptions& options = {}, const Switch* like = nullptr);
 
   [[nodiscard]] const Device& device() const { return device_; }
@@ -108,24 +109,24 @@ class Switch {
   /// Returns how far above the plane of first touch the contact acts [m]; 0 for most laws, and without contact.
   [[nodiscard]] double contact_reach(std::size_t c = 0) const;
   /// Returns true when the contact acts along the pad or the face of a dielectric. Such a contact is active at all times, and
-  /// acts at all points beyond the plane.
+  /// acts at all points beyond the contact plane.
   [[nodiscard]] bool has_spread_contact(std::size_t c = 0) const { return c == face_at_ || (c == 0 && pad_ != nullptr); }
-  /// Returns the state of a contact before its first touch: it acts only within its reach.
+  /// Returns the state of a contact before its first touch: the contact acts only within its reach.
   [[nodiscard]] ContactState untouched(const double* q) const {
     const double reach = contact_reach();
     return has_spread_contact() || (reach > 0 && contact_deflection(q) > contact_gap_ - reach);
   }
-  /// Returns null unless the contact is rigid.
+  /// Returns the law of a rigid contact; null when the contact is not rigid.
   [[nodiscard]] const RigidContact* rigid_contact() const;
-  /// Returns null without gas.
+  /// Returns the gas law; null without gas.
   [[nodiscard]] const GasLaw* gas() const { return gas_.get(); }
   [[nodiscard]] const std::optional<MidPlaneStretching>& stretching() const { return stretching_; }
   /// Returns the rest distance of the contact point to the contact plane [m].
   [[nodiscard]] double contact_gap(std::size_t c = 0) const { return c == 0 ? contact_gap_ : further_[c - 1].gap; }
   /// Returns the gap below which every law is continued by its tangent and a run counts as having touched the electrode [m]: a
-  /// hundredth of d0. The gap is negative, below the face, for a switch that lands on a dielectric: half of the dielectric's
-  /// contribution to the gap of the field, or d0 for a wall, which no beam passes. The laws of a film are continued from a
-  /// hundredth of d0 in any case.
+  /// hundredth of d0. For a switch that lands on a dielectric the gap is negative, below the face: minus half of the
+  /// dielectric's contribution to the gap of the field, or minus d0 for a wall, which no beam passes. The laws of a film are
+  /// continued from a hundredth of d0 in any case.
   [[nodiscard]] double gap_floor() const {
     if (const Landing* landing = device_.landing(); landing != nullptr && landing->is_wall()) return -device_.gap.electrode;
     return device_.lands_on_dielectric() ? -device_.dielectric_depth() / 2 : device_.gap.electrode / 100;
@@ -155,16 +156,16 @@ class Switch {
   /// Computes the rates of a state (q, v, film) except q': accelerations, then the rates of the film.
   void rates(const double* state, std::span<const double> volts, const ContactStates& contacts, Workspace& work,
              double* result) const;
-  /// Computes modal forces of the drives at unit strength (for the piezo: per volt) in the field last computed with `work`,
-  /// whose load they overwrite: modes x drives.
+  /// Computes modal forces of the drives at unit strength (of the piezo: per volt) in the field that was last computed with
+  /// `work`, whose load this function overwrites: modes x drives.
   void drive_forces(Workspace& work, Eigen::Ref<Eigen::MatrixXd> by_strength) const;
   /// Computes the derivatives of the accelerations with respect to q and v: modes x modes each.
   void jacobian(const double* q, const double* v, std::span<const double> volts, const ContactStates& contacts, Workspace& work,
                 Eigen::Ref<Eigen::MatrixXd> by_q, Eigen::Ref<Eigen::MatrixXd> by_v) const;
-  /// Adds the film's part to the derivatives of (v, rates) by the state (q, v, film) whose field `work` holds.
+  /// Adds the part of a compressible film to the derivatives of (v, rates) by the state (q, v, film), whose field is in `work`.
   void add_film_derivatives(const double* state, const Workspace& work, Eigen::Ref<Eigen::MatrixXd> derivatives) const;
 
-  /// The motion before the first touch, in which no contact and no compressible film acts. Its accelerations are linear in the
+  /// The motion before the first touch, in which no contact and no compressible film acts. The accelerations are linear in the
   /// strengths of the drives (strength() of an electrode, the factor of the dispersion force, V of the piezo).
   struct FreeMotion {
     Eigen::VectorXd accelerations;  ///< [m kg^(1/2) / s^2]
@@ -179,7 +180,7 @@ class Switch {
   [[nodiscard]] Eigen::MatrixXd free_motion_curvature(const double* q, const double* v, std::span<const double> strengths,
                                                       const double* multipliers, Workspace& work) const;
 
-  /// Returns y(x_c) [m] from q, or its velocity from v. It is positive towards the plane of this contact.
+  /// Returns y(x_c) [m] from q, or the velocity of y from v, positive towards the plane of contact c.
   [[nodiscard]] double contact_deflection(const double* q, std::size_t c = 0) const {
     return c == 0 ? basis_.contact_deflection(q) : basis_.at(q).dot(further_[c - 1].shape);
   }
@@ -189,7 +190,7 @@ class Switch {
   }
   /// Returns the smallest local gap in the last field computed with `work` [m].
   [[nodiscard]] static double smallest_gap(const Workspace& work) { return work.field.smallest_gap; }
-  /// Returns true when the beam is within a hundredth of the rest gap of an electrode or a film's wall on its far side, in the
+  /// Returns true when the beam is within a hundredth of the rest gap of an electrode or a film's wall on the far side, in the
   /// field last computed with `work`.
   [[nodiscard]] bool at_far_side(const Workspace& work) const {
     return std::isfinite(most_gap_) && work.field.gap.head(quadrature_.points()).maxCoeff() > most_gap_;
@@ -201,12 +202,12 @@ class Switch {
   /// Returns the equilibrium under these values of all drives, reached from the straight beam as the values grow from 0; a run
   /// starts from it.
   [[nodiscard]] std::optional<Eigen::VectorXd> open_equilibrium(std::span<const double> values) const;
-  /// Returns the charge on drive k per its own volt (capacitance) [F]; 0 unless it is an electrode.
+  /// Returns the capacitance of drive k, its charge per volt of its own [F]; 0 unless the drive is an electrode.
   [[nodiscard]] double capacitance(std::size_t drive, const double* q, Workspace& work) const;
   /// Returns the potential of a drive's law at unit strength [J]; 0 for the piezo.
   [[nodiscard]] double law_potential(std::size_t drive, const double* q, Workspace& work) const;
-  /// Returns minus the derivative of potential() with respect to the drive's value: the charge of an electrode less that at V0,
-  /// or of the piezo [C]; minus the dispersion law's potential [J].
+  /// Returns minus the derivative of potential() with respect to the drive's value: for an electrode the charge less that at
+  /// V0, for the piezo its charge [C]; for the dispersion force minus the potential of its law [J].
   [[nodiscard]] double charge(std::size_t drive, double value, const double* q, Workspace& work) const;
   [[nodiscard]] double elastic_energy(const double* q) const;  ///< energy of the beam, without piezo coupling and contact [J]
   /// Returns true when the motion always loses energy: by gas, modal damping, or a contact law that depends on the rate.
@@ -214,14 +215,14 @@ class Switch {
     return !passive_laws_.empty() || film_ || device_.structure.damping_ratio > 0 || has_damped_contact();
   }
   [[nodiscard]] bool has_damped_contact() const;
-  /// Returns the power dissipated by gas and modal damping [W]; without `film` a compressible film is at rest.
+  /// Returns the power dissipated by gas and modal damping [W]; without `film` a compressible film is taken as at rest.
   [[nodiscard]] double dissipated_power(const double* q, const double* v, Workspace& work, const double* film = nullptr) const;
   /// Returns the dissipated power in the field last computed with `work`, whose velocities are `v` [W].
   [[nodiscard]] double dissipated_power(const double* v, Workspace& work, const double* film = nullptr) const;
-  /// Returns the energy stored in the film in a state (q, v, film) [J]; 0 without a compressible film.
+  /// Returns the energy stored in a compressible film in a state (q, v, film) [J]; 0 without such a film.
   [[nodiscard]] double film_energy(const double* state, Workspace& work) const;
-  /// Return the force of a contact on the beam [N], its stored energy [J] and its dissipated power [W], in a state in which it
-  /// is active.
+  /// Return the force of a contact on the beam [N], its stored energy [J] and its dissipated power [W], in a state in which the
+  /// contact is active.
   [[nodiscard]] double contact_push(const double* q, const double* v, const ContactState& contact, std::size_t c = 0) const;
   [[nodiscard]] double contact_stored(const double* q, const ContactState& contact, std::size_t c = 0) const;
   [[nodiscard]] double contact_dissipation(const double* q, const double* v, std::size_t c = 0) const;
@@ -233,13 +234,13 @@ class Switch {
                                  Workspace& work) const;
 
  private:
-  /// Computes basis and quadrature from the modes of the structure, a beam or a plate.
+  /// Computes basis and quadrature from the modes of the structure.
   template <class Modes>
   void set_modes(const Modes& structure, double points_per_length, int fewest_points, const Switch* like);
-  /// Calls f(xi, share, interference) for every point at which an active contact acts, xi from x_c towards the clamp [m].
+  /// Calls f(xi, share, interference) for every point at which the first contact acts, with xi from x_c towards the clamp [m].
   template <class F>
   void for_contact_points(const double* q, F&& f) const;
-  /// Returns the velocity of the pad towards the plane at xi [m/s].
+  /// Returns the velocity of the first contact's pad towards the plane at xi [m/s].
   [[nodiscard]] double contact_rate(const double* v, double xi) const;
   /// A contact after the first one.
   struct FurtherContact {
@@ -247,7 +248,7 @@ class Switch {
     Eigen::VectorXd shape;  // mode shapes at the contact, positive towards its plane [kg^(-1/2)]
     double gap = 0;         // [m]
   };
-  /// Calls f(contact, state, interference) for every further contact that is active.
+  /// Calls f(contact, state, interference) for every contact after the first one that is active.
   template <class F>
   void for_further_contacts(const double* q, const ContactStates& contacts, F&& f) const;
   [[nodiscard]] bool face_acts(const ContactStates& contacts) const {
@@ -258,13 +259,13 @@ class Switch {
   [[nodiscard]] double penetration_under(double force) const;
   /// Returns the pressure of the faces of the electrodes' dielectrics, which is the law of the contact along the face.
   [[nodiscard]] std::shared_ptr<const DistributedLaw> face_pressure() const;
-  /// Returns the field of a state at rest.
+  /// Returns the gap field of a state at rest.
   [[nodiscard]] GapField still_field(const double* q) const;
   void set_free_field(const double* q, const double* v, Workspace& work) const;
-  /// Returns the values that produce a share of the forces of these values: of the strength of an electrode or the dispersion
-  /// force, or of V of the piezo.
+  /// Returns the values of the drives that produce a share of the forces of `values`: this share of the strength of an
+  /// electrode or the dispersion force, or of V of the piezo.
   [[nodiscard]] std::vector<double> share_of(double share, std::span<const double> values) const;
-  /// Finds the equilibrium from the straight beam, in increments of the load if necessary.
+  /// Finds the open equilibrium from the straight beam, in increments of the load if necessary.
   [[nodiscard]] std::optional<Eigen::VectorXd> loaded_equilibrium(std::span<const double> values) const;
   [[nodiscard]] std::optional<Eigen::VectorXd> equilibrium_from(Eigen::VectorXd q, std::span<const double> values) const;
 
@@ -274,19 +275,19 @@ class Switch {
   PointQuadrature quadrature_;
   std::size_t electrodes_ = 0;
   std::vector<double> neutral_voltages_;                             // V0 of each electrode [V]
-  std::vector<std::shared_ptr<const DistributedLaw>> driven_laws_;   // one per electrode, then the dispersion force
-  std::vector<std::shared_ptr<const DistributedLaw>> passive_laws_;  // laws that dissipate
+  std::vector<std::shared_ptr<const DistributedLaw>> driven_laws_;   // one force law per electrode, then that of dispersion
+  std::vector<std::shared_ptr<const DistributedLaw>> passive_laws_;  // force laws that dissipate: gas films, dampers
   std::shared_ptr<const ContactLaw> contact_;
   std::vector<FurtherContact> further_;
-  std::shared_ptr<const PadQuadrature> pad_;  // set for a contact along the pad
+  std::shared_ptr<const PadQuadrature> pad_;  // quadrature over the pad; null unless the contact acts along its pad
   // Pressure of a contact along the face of a dielectric; null without such a contact.
   std::shared_ptr<const DistributedLaw> face_;
-  std::size_t face_at_ = std::numeric_limits<std::size_t>::max();  // number of the contact along the face
+  std::size_t face_at_ = std::numeric_limits<std::size_t>::max();  // number of the contact along the face of a dielectric
   std::shared_ptr<const GasLaw> gas_;
   std::shared_ptr<const ReynoldsFilm> film_;
   std::optional<MidPlaneStretching> stretching_;
   std::optional<Eigen::VectorXd> rest_;
-  // Largest gap to the near electrode, for a switch with a far side [m].
+  // Largest gap to the near electrode, for a switch with an electrode or film on the far side [m].
   double most_gap_ = std::numeric_limits<double>::infinity();
   double contact_gap_ = 0;  // [m]
   double penetration_scale_ = 0;

@@ -34,12 +34,13 @@ class SwitchSlopes {
     double distance = 0;         ///< difference of the parameter, from below to above [its SI unit]
     bool acts_in_flight = true;  ///< true when accelerations depend on the parameter while no contact acts
   };
-  /// `neighbours` are the two switches for each parameter; none when the switch does not depend on it. Keeps a reference to
-  /// `model`. Throws InvalidInput when a neighbour has another number of modes or drives, or a contact of another kind.
+  /// `neighbours` are the two switches for each parameter; none for a parameter on which the switch does not depend. Keeps a
+  /// reference to `model`. Throws InvalidInput when a neighbour has another number of modes or drives, or another kind of
+  /// contact.
   SwitchSlopes(const Switch& model, std::vector<std::optional<Neighbours>> neighbours);
 
   [[nodiscard]] std::size_t parameters() const { return parameters_; }
-  /// Returns the parameters that the switch depends on. The functions below take a number j in this list.
+  /// Returns the parameters on which the switch depends. The functions below take the index j in this list.
   [[nodiscard]] const std::vector<std::size_t>& moving() const { return moving_; }
 
   /// Returns the slope of the interference of the contact point, y(x_c) - dt, at fixed q [m per unit].
@@ -49,14 +50,14 @@ class SwitchSlopes {
   /// Returns the slope of the interference of an edge of the contact's phases [m per unit]: 0 for the plane and for edges of a
   /// dent, at which no force sets in, else that of the law's reach or kink.
   [[nodiscard]] double edge(std::size_t j, double interference) const;
-  /// Returns the slope of a function of the contact law.
+  /// Returns the slope of a function f(law) of the contact law by parameter j.
   template <class F>
   [[nodiscard]] double of_contact(std::size_t j, F&& f) const {
     const Neighbours& n = neighbours_[j];
     return (f(n.above.contact()) - f(n.below.contact())) / n.distance;
   }
-  /// Returns the slope of a figure of the whole switch, f(switch, step); `step` is the difference of that switch's parameter
-  /// from the parameter of `model`.
+  /// Returns the slope of a figure of the whole switch, f(switch, step), by parameter j; `step` is the parameter of the switch
+  /// that f receives less the parameter of `model`.
   template <class F>
   [[nodiscard]] auto of_switch(std::size_t j, F&& f) const {
     const Neighbours& n = neighbours_[j];

@@ -20,7 +20,7 @@
 namespace softland {
 
 /// Returns by how much Euler-Bernoulli's frequencies are too high, relative to Timoshenko's, mode by mode: 0.05 is 5 %. A
-/// missing Poisson's ratio counts as 0.3. The result is empty unless the beam is uniform, between clamps and free ends.
+/// missing Poisson's ratio counts as 0.3. The result is empty unless the beam is uniform and its ends are clamped or free.
 [[nodiscard]] std::vector<double> frequency_excess(const Structure& structure);
 
 /// Returns one sentence with the excess of every mode; empty when none reaches 2 %.

@@ -10,9 +10,9 @@
 
 namespace softland {
 
-/// One knot. Between knots position is the quintic Hermite interpolant of (position, velocity, acceleration), so knots must not
-/// straddle a kink: every make and break of contact and every waveform breakpoint is a knot. Two knots of equal time are a jump
-/// of velocity or acceleration.
+/// One knot. Between knots the position is the quintic Hermite interpolant of (position, velocity, acceleration), so knots must
+/// not straddle a kink: every make and break of contact and every waveform breakpoint is a knot. Two knots of equal time are a
+/// jump of velocity or acceleration.
 struct TrajectoryPoint {
   double time = 0;           ///< [s]
   double position = 0;       ///< position of the contact point, from rest towards the contact [m]
@@ -33,7 +33,7 @@ struct Touch {
 };
 
 struct Work {
-  Integrator integrator = Integrator::automatic;  ///< integrator at the end of the run
+  Integrator integrator = Integrator::automatic;  ///< integrator in use at the end of the run
   long steps = 0;
   long rhs_evaluations = 0;
   double wall = 0;  ///< [s]
@@ -55,7 +55,7 @@ struct ElectricalOutcome {
   int openings = 0;  ///< number of openings after first_closed that count
 };
 
-/// One contact of several, at the end of a run.
+/// The outcome of one contact of several, at the end of a run.
 struct ContactOutcome {
   std::string name;
   std::vector<TrajectoryPoint> points;  ///< motion of the place of the contact
@@ -69,7 +69,7 @@ struct ContactOutcome {
   ElectricalOutcome electrical = {};
 };
 
-/// The result of a run. For a switch with several contacts the members are those of the connection that they make
+/// The result of a run. For a switch with several contacts the members describe the connection that the contacts make
 /// (model/closing/connection.h).
 struct Trajectory {
   Status status = Status::not_run;
@@ -77,45 +77,45 @@ struct Trajectory {
   /// True when the run began in contact (ClosingOptions::start, begins_closed), so that the drives did not cause the first
   /// touch.
   bool began_closed = false;
-  /// Position of the contact point in the equilibrium of the other StartState, when the requested equilibrium does not exist
-  /// [m].
+  /// Position of the contact point in an equilibrium of the StartState that was not requested, when the requested equilibrium
+  /// does not exist [m].
   double other_start = std::numeric_limits<double>::quiet_NaN();
   bool ends_at_touch = false;  ///< true when the run ended at its first touch because the switch has no contact law
-  double contact_gap = 0;      ///< dt: the first-touch plane [m]
+  double contact_gap = 0;      ///< dt, the distance from rest to the plane of first touch [m]
   std::vector<TrajectoryPoint> points;
   std::vector<Touch> touches;
-  /// 2 pi over the first frequency of the beam pinned at x_c [s].
+  /// Period of the lowest mode of the beam held at deflection 0 at x_c [s].
   double in_contact_period = std::numeric_limits<double>::quiet_NaN();
   /// Force of the closed equilibrium under the hold levels, if computed [N].
   double hold_force = std::numeric_limits<double>::quiet_NaN();
   /// Resistance of the connection when the switch rests closed under the hold levels [Ohm]; NaN when the switch rests open, or
-  /// the resistance is not known.
+  /// a contact of the connection has no given resistivity.
   double hold_resistance = std::numeric_limits<double>::quiet_NaN();
   /// Capacitance between the beam and the electrode that closes the switch, at rest under the hold levels [F]: in the closed
   /// equilibrium, or in the open one after a run without a touch.
   double hold_capacitance = std::numeric_limits<double>::quiet_NaN();
-  bool is_held = true;  ///< false when the switch is known to have no stable closed equilibrium under the hold levels
+  bool is_held = true;  ///< false when a search has found no stable closed equilibrium under the hold levels
   double collapse_time = std::numeric_limits<double>::quiet_NaN();  ///< time at which the beam reached the electrode [s]
   /// Smallest gap of the run from beam to electrode, at any place [m].
   double smallest_gap = std::numeric_limits<double>::quiet_NaN();
-  /// Energy above that of the closed equilibrium once the switch has touched and the drives are at their hold levels [J]. It
-  /// must be dissipated, by bouncing or otherwise, before the switch rests. It includes the energy that impacts on a rigid
+  /// Energy above that of the closed equilibrium once the switch has touched and the drives are at their hold levels [J].
+  /// Bouncing or damping must dissipate this energy before the switch rests. The energy includes what impacts on a rigid
   /// contact have dissipated until then.
   double landing_excess = std::numeric_limits<double>::quiet_NaN();
   double deepest_penetration = 0;  ///< [m]
   /// Time from which to the end of the run the contact force is not below ClosingOptions::steady_force [s]. NaN when the force
-  /// is below it at the end, without a touch, and when no steady force was given.
+  /// is below steady_force at the end, without a touch, and when no steady force was given.
   double steady_force_time = std::numeric_limits<double>::quiet_NaN();
-  /// Least contact force from its first maximum after the first touch to the end of the run; the force at the end when it only
-  /// rises [N]. NaN without a touch.
+  /// Least contact force from its first maximum after the first touch to the end of the run; the force at the end when the
+  /// force only rises [N]. NaN without a touch.
   double least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
-  /// Outcome of each of several contacts; empty for a single one.
+  /// Outcomes of all contacts of a switch with several contacts; empty for a single contact.
   std::vector<ContactOutcome> contacts;
-  /// First touch of any of several contacts that makes the connection [s], and the speed of this touch [m/s]. NaN for a single
-  /// contact, and without a touch.
+  /// Time of the first touch of any of several contacts that makes the connection [s], and the speed of this touch [m/s]. NaN
+  /// for a single contact, and without a touch.
   double first_touch = std::numeric_limits<double>::quiet_NaN();
   double first_touch_velocity = std::numeric_limits<double>::quiet_NaN();
-  /// Electrical outcome, if Device::electrical asks for it.
+  /// Times of electrical closing, if Device::electrical gives a bound.
   ElectricalOutcome electrical = {};
   EnergyBalance energy;     ///< balance at the end of the run
   double layer_energy = 0;  ///< layer_charging_energy() of the piezo, which is not part of the energy balance [J]

@@ -14,7 +14,7 @@
 
 namespace softland {
 
-/// The numbers of both kinds of beams besides length, width and thickness.
+/// The numbers of beams of both kinds, besides length, width and thickness.
 struct Beam {
   double youngs_modulus = 0;  ///< E [Pa], used as given unless plate_strain
   double density = 0;         ///< rho [kg/m^3]
@@ -22,8 +22,8 @@ struct Beam {
   double poissons_ratio = not_given;
   std::vector<SectionPart> sections = {};  ///< sections from x = 0 on; empty for a uniform beam
   std::vector<LayerPart> layers = {};      ///< layers on its faces
-  std::optional<Anchor> anchor = {};       ///< anchor at x = 0; a clamp when absent
-  std::optional<Anchor> far_anchor = {};   ///< anchor at the far end; that of the kind when absent
+  std::optional<Anchor> anchor = {};       ///< anchor at x = 0; a rigid clamp when absent
+  std::optional<Anchor> far_anchor = {};   ///< anchor at the far end; a free end or a clamp, by kind, when absent
   std::optional<RestShape> rest_shape = {};
 
   /// Returns true when the beam has sections or layers.
@@ -94,7 +94,7 @@ struct Cantilever : Beam {
     return stress_gradient < 0 ? rest_offset(device, device.structure.length) : 0;
   }
 
-  /// Returns true when no stress curls the beam.
+  /// Returns true when no residual stress curls the beam.
   [[nodiscard]] bool is_straight() const {
     return stress_gradient == 0 &&
            std::none_of(layers.begin(), layers.end(), [](const LayerPart& layer) { return layer.stress != 0; });
@@ -132,7 +132,7 @@ struct Bridge : Beam {
   [[nodiscard]] static S example() {
     return {.length = 400e-6, .width = 20e-6, .thickness = 2e-6, .kind = Bridge{{.youngs_modulus = 78e9, .density = 19300}, 2e6}};
   }
-  /// Returns none when bending does not stretch the beam.
+  /// Returns the stiffness of mid-plane stretching; none when bending does not stretch the beam.
   template <class Modes, class S>
   [[nodiscard]] auto stretching(const Modes& modes, const S& structure) const {
     return stretches && structure.has_far_clamp() ? std::optional(stretching_of(modes, structure)) : std::nullopt;

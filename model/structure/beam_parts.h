@@ -19,7 +19,7 @@ struct Holes {
   [[nodiscard]] bool exist() const { return size > 0; }
 };
 
-/// One stretch of a beam. A number that is not given is that of the structure.
+/// One section of a beam. A number that is not given is that of the structure.
 struct SectionPart {
   double length = 0;                  ///< length along the beam [m]
   double width = not_given;           ///< width at its start [m]
@@ -30,7 +30,8 @@ struct SectionPart {
   Holes holes = {};
 };
 
-/// A layer on one face of the beam, as wide as the beam. When several layers cover a place of a face, later ones lie outside.
+/// A layer on one face of the beam, as wide as the beam. When several layers cover the same place of a face, later layers lie
+/// outside.
 struct LayerPart {
   Side face = Side::far;              ///< near or far
   Place begin, end;                   ///< interval along the beam
@@ -41,7 +42,7 @@ struct LayerPart {
   double poissons_ratio = not_given;  ///< needed with plate_strain
 };
 
-/// The rest shape of a released beam as a table: straight lines between heights at places along it.
+/// The rest shape of a released beam as a table: straight lines between heights at places along the beam.
 struct RestShape {
   std::vector<Place> positions;  ///< positions, rising from 0 to the far end
   std::vector<double> heights;   ///< heights over the straight shape, away from the near electrode, one per position [m]
@@ -54,7 +55,7 @@ struct RestShape {
   [[nodiscard]] double lowest(double length) const;
 };
 
-/// Stiffnesses of an end in the direction of motion; infinite where it is rigid.
+/// Stiffnesses of the support at an end of a beam; infinite in a direction in which the end is rigid.
 struct Anchor {
   static constexpr double rigid = std::numeric_limits<double>::infinity();
   double rotation = rigid;     ///< moment per rotation [N m/rad]

@@ -9,12 +9,12 @@
 //     angular_frequencies() [rad/s]; length() [m]; scale(), the shapes over the normalised ones [kg^(-1/2)];
 //     normalised(), which points to an object with value(x), slope(x) and pinned_inverse_square(x, near), x over the length;
 //     frequency_scale() [rad/s]: held at x, the structure has the frequency frequency_scale() / sqrt(pinned_inverse_square(x))
-//   `known` are the normalised modes of a similar beam, or null: a beam starts from them.
+// `known` are the normalised modes of a similar beam, or null: the search for a beam's modes starts from them.
 //
 // It may also have
 //
-// - `std::string why_invalid(device) const`, the rule that it breaks, with the quantity; empty if none
-// - `int most_modes() const`, if it has fewer than Structure::most_modes
+// - `std::string why_invalid(device) const`, the rule that the structure violates, with the quantity; empty if none
+// - `int most_modes() const`, if the structure has fewer modes than Structure::most_modes
 // - `double rest_offset(device, x) const`, its distance at rest from the straight shape at x, away from the near electrode [m]
 //   and with it `double lowest_rest_offset(device) const`, the least of these
 // - `auto stretching(modes, structure) const`, an optional stiffness of stretching
@@ -23,7 +23,7 @@
 // - `static constexpr std::string_view whose` and `length_is` for messages: "on a plate", its length in words with {} for it
 //
 // Functions that take a device are templates of its type, since a device contains structures; so they call beam_modes() of
-// model/beam.h without including it, and a class that holds BeamModes is a template, too. `Structure`
+// model/beam.h without including this header, and a class that holds BeamModes is a template, too. `Structure`
 // (model/structure/structure.h) calls the functions of the kind that it holds. A kind that derives from Beam also has the
 // warning of slenderness, results that depend on the number of modes, and up to 40 modes at rest; one that derives from
 // Cantilever has the curl.
@@ -39,10 +39,10 @@ namespace softland {
 /// The usual process variation of a key of [structure], for scenes that give none.
 struct UsualSpread {
   std::string_view key, cov;
-  bool has_default = false;  ///< true when the key also varies if a scene does not write it
+  bool has_default = false;  ///< true when the key also varies if a scene does not write the key
 };
 
-/// Returns the kind that a structure holds as the `Part` that it is, or derives from.
+/// Returns the kind of a structure, which must be of type `Part` or derive from this type.
 template <class Part, class S>
 [[nodiscard]] constexpr auto& part_of(S& structure) {
   return *structure.template find<Part>();

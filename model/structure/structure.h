@@ -1,5 +1,5 @@
-// The moving part: one of the kinds of structures, with their common properties. A new kind needs its header
-// (model/structure/kind.h describes it) and a row here.
+// The moving part: one of the kinds of structures, with their common properties. A new kind needs its own header
+// (model/structure/kind.h describes the header) and a row here.
 #pragma once
 
 #include <concepts>
@@ -18,14 +18,14 @@
 
 namespace softland {
 
-/// The most modes of a beam that stands still: see SwitchOptions::modes.
+/// The largest number of modes of a beam at rest: see SwitchOptions::modes.
 inline constexpr int most_static_modes = 40;
 
-/// The kinds, in the order of messages and tables.
+/// The kinds of structures, in the order in which messages and tables list them.
 using StructureKind = std::variant<Cantilever, Bridge, Plate, ModalStructure>;
 
 struct Structure {
-  /// The most modes of a beam that moves.
+  /// The largest number of modes of a beam that moves.
   static constexpr int most_modes = 20;
 
   double length = 0;             ///< L [m]; area over width for a plate; length of the table for a table of modes
@@ -35,7 +35,7 @@ struct Structure {
   double damping_ratio = 0;      ///< zeta of every mode
   StructureKind kind = Cantilever{};
 
-  /// Returns the kind that the structure holds if it is, or derives from, a `Part`; else null.
+  /// Returns the kind that the structure holds if its type is `Part`, or derives from `Part`; null otherwise.
   template <class Part>
   [[nodiscard]] constexpr Part* find() {
     return std::visit(
@@ -49,23 +49,23 @@ struct Structure {
   [[nodiscard]] constexpr const Part* find() const {
     return const_cast<Structure*>(this)->find<Part>();
   }
-  /// Returns the field of the damping ratio, which every kind has.
+  /// Returns the scene's field of the damping ratio, which every kind of structure has.
   [[nodiscard]] static consteval Field<Structure> damping();
 
   /// Returns true when the structure moves as a rigid body: it has one mode, and all places along it are equal.
   [[nodiscard]] bool is_rigid() const;
   /// Returns true when the far end is held, by a clamp or by a compliant anchor.
   [[nodiscard]] bool has_far_clamp() const;
-  /// Return how the ends are held: by a beam's anchors, else as the kind says.
+  /// Return how the ends are held: as a beam's anchors say, otherwise as the kind of structure says.
   [[nodiscard]] Anchor near_hold() const;
   [[nodiscard]] Anchor far_hold() const;
   /// Returns true when the size changes along the structure: a beam with sections or layers, or a table of modes with widths.
   [[nodiscard]] bool is_built() const;
-  /// Return the reason why the structure cannot have a piezo layer, or skins; empty when it can.
+  /// Return the reason why the structure cannot have a piezo layer, or surface skins; empty when it can.
   [[nodiscard]] std::string_view why_no_layer() const;
   [[nodiscard]] std::string_view why_no_skins() const;
-  /// Returns the end of the message that a scene must give a number of this kind: "on a plate". Empty when a scene always gives
-  /// all numbers.
+  /// Returns the words, such as "on a plate", that end the message about a number that a scene must give for this kind. Empty
+  /// when a scene always gives all numbers.
   [[nodiscard]] std::string_view whose() const;
 };
 
@@ -80,10 +80,10 @@ consteval Field<Structure> Structure::damping() {
           .beyond = "for more give [gas] model = \"linear\" and quality_factor = 1 / (2 damping_ratio)"};
 }
 
-/// The fields of a kind, computed at compile time.
+/// The scene's fields of a kind of structure, computed at compile time.
 template <class Kind>
 inline constexpr auto structure_fields = Kind::template fields<Structure>();
-/// Returns the fields of the kind that the structure holds.
+/// Returns the scene's fields of the kind that the structure holds.
 [[nodiscard]] inline std::span<const Field<Structure>> fields_in_force(const Structure& s) {
   return std::visit([]<class Kind>(const Kind&) -> std::span<const Field<Structure>> { return structure_fields<Kind>; }, s.kind);
 }

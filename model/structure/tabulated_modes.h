@@ -27,7 +27,7 @@
 
 namespace softland {
 
-/// The content of a file: the same for all devices of a scene.
+/// The content of a file with a table of modes: the same for all devices of a scene.
 class ModalTable {
  public:
   /// Takes at least three `positions` [m] that rise from 0, `frequencies` [Hz] that rise, and for each frequency a shape
@@ -49,12 +49,12 @@ class ModalTable {
   [[nodiscard]] double slope(int mode, double x) const { return splines_[static_cast<std::size_t>(mode)].slope(x); }
   [[nodiscard]] const std::vector<double>& rest_offsets() const { return rest_offsets_; }  ///< [m]
   [[nodiscard]] const std::vector<double>& widths() const { return widths_; }              ///< [m]
-  /// Returns the distance of the face at rest from its place at the clamp, away from the near electrode [m]: linear between
-  /// positions.
+  /// Returns the distance of the face at rest from its height at the clamp, away from the near electrode [m]: linear between
+  /// the positions of the table.
   [[nodiscard]] double rest_offset(double x) const;
   /// Returns the smallest rest offset [m].
   [[nodiscard]] double lowest_rest_offset() const;
-  /// Returns true when the last place does not move in any mode, so that the far end is held as well.
+  /// Returns true when the last place of the table does not move in any mode, so that the far end is held as well.
   [[nodiscard]] bool is_held_at_both_ends() const;
   [[nodiscard]] bool has_far_clamp() const { return far_end_ == SplineEnd::clamped; }
   /// Returns the integrals of phi_i' phi_j' of the first modes, column by column [1/(kg m)].
@@ -74,7 +74,7 @@ class ModalTable {
 
 class TabulatedModes {
  public:
-  /// The first modes of a table, x in units of its length.
+  /// The first modes of a table, as functions of x in units of the table's length.
   struct Shapes {
     std::shared_ptr<const ModalTable> table;
     int modes = 0;
@@ -83,8 +83,8 @@ class TabulatedModes {
     [[nodiscard]] Eigen::VectorXd slope(double x) const;
     /// Returns omega_1^2 over the square of the first angular frequency of the structure that is also held at x, from all modes
     /// of the table: the root of sum phi_i(x)^2 / (omega_i^2 - omega^2) between the first two frequencies. Returns 1 for a
-    /// single mode: the structure cannot move then, and the frequency of the free structure is used, as a rebound takes no
-    /// longer than its period.
+    /// single mode: held at x, the structure cannot move. The frequency of the free structure is used then, as a rebound takes
+    /// no longer than its period.
     [[nodiscard]] double pinned_inverse_square(double x, std::optional<double> near = {}) const;
     [[nodiscard]] bool operator==(const Shapes& other) const {
       return modes == other.modes && (table == other.table || (table && other.table && *table == *other.table));
@@ -116,9 +116,9 @@ struct ModalStructure {
 
   std::shared_ptr<const ModalTable> table = {};
   double frequency_factor = 1;         ///< factor of all natural frequencies, over those of the table
-  double axial_stiffness = not_given;  ///< force per elongation between its clamps, E A / L of an even beam [N/m]
+  double axial_stiffness = not_given;  ///< force per elongation between the clamps, E A / L of an even beam [N/m]
 
-  /// config/modal_table.h has the keys for the file of the table, and for reading it.
+  /// The scene's keys besides those of the table's file, which config/modal_table.h has.
   template <class S>
   static consteval auto fields() {
     constexpr std::string_view follows_no_size = "the modes of a file do not follow it; vary structure.frequency_factor";
@@ -141,7 +141,7 @@ struct ModalStructure {
             .modes = 2,
             .kind = ModalStructure{.table = example_table()}};
   }
-  /// Returns two modes of a beam as heavy as a gold cantilever.
+  /// Returns a table with two modes of a beam that is as heavy as a gold cantilever.
   [[nodiscard]] static std::shared_ptr<const ModalTable> example_table();
 
   template <class Device, class Known>
@@ -160,7 +160,7 @@ struct ModalStructure {
   [[nodiscard]] double lowest_rest_offset(const Device&) const {
     return table->lowest_rest_offset();
   }
-  /// Returns none when the scene gives no axial stiffness.
+  /// Returns the stiffness of mid-plane stretching; none when the scene gives no axial stiffness.
   template <class S>
   [[nodiscard]] std::optional<MidPlaneStretching> stretching(const TabulatedModes& modes, const S&) const {
     if (std::isnan(axial_stiffness)) return std::nullopt;
