@@ -23,10 +23,10 @@ namespace softland {
 namespace {
 
 constexpr int functions = element_functions;
-constexpr int shortest_count = 6;     // elements over the length, at least
+constexpr int shortest_count = 6;     // least number of elements over the length of a beam
 constexpr double least_pivot = 2e-3;  // smallest pivot of the elimination, whose inverse magnifies rounding errors
 
-// Returns combinations of the functions that the support permits, orthonormal in the elastic energy.
+// Returns combinations of the shape functions that the supports permit, orthonormal in the elastic energy of the beam.
 Eigen::MatrixXd permitted(const NormalisedModes::Beam& beam, const Eigen::MatrixXd& end, const Eigen::MatrixXd& slopes) {
   Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(slopes.rows(), slopes.rows());
   if (beam.far_clamp) basis = orthogonal_complement(end);
@@ -69,10 +69,11 @@ double carried_over(double square, const NormalisedModes::Beam& from, const Norm
   return square;
 }
 
-// Newton's method for four poles at once, with the motions there; none when it does not converge, or rounding may be large.
+// Finds four poles at once by Newton's method, with the motions there; none without convergence, or where rounding may be
+// large.
 std::optional<Receptance::Answer> nearest_poles(Receptance& receptance, double place, const Lane& rounding, Lane& squares) {
   constexpr int most_steps = 10;
-  constexpr double least_motion = 1e-3;  // share of the place, in a normalised mode
+  constexpr double least_motion = 1e-3;  // least motion of the place in a normalised mode, whose mean square over the beam is 1
   for (int i = 0; i < most_steps; ++i) {
     const Receptance::Answer at = receptance.at(squares, place);
     const Lane step = at.deflection / at.inertia;
@@ -85,9 +86,9 @@ std::optional<Receptance::Answer> nearest_poles(Receptance& receptance, double p
   return {};
 }
 
-// Finds 1 / omega^2 of the first mode of a general beam that is also held at a place. `deflections` are the deflections of all
-// its motions of unit elastic energy at this place. The receptance, the sum of r^2 / (1 - lambda / lambda_i), grows from the
-// first frequency to the second.
+// Finds 1 / omega^2 of the first mode of a beam on springs or with linear sections that is also held at a place. `deflections`
+// are the deflections r of all motions of unit elastic energy at this place. The receptance, the sum of r^2 / (1 - lambda /
+// lambda_i), grows from the first frequency to the second.
 double general_pinned_inverse_square(const Eigen::RowVectorXd& deflections, const Eigen::VectorXd& inverse_squares) {
   constexpr int bits = 60;
   const Eigen::Index last = inverse_squares.size() - 1;
@@ -115,7 +116,7 @@ double stretch_per_force(const Structure& s) {
 }
 
 // Returns the axial force that a stress, equal everywhere before release, leaves in a beam between its anchors [N]: the
-// sections pull at each other until the force is the same in all of them.
+// sections stretch each other until the force is the same in all of them.
 double axial_force(const Structure& s, double stress) {
   double shrinks = 0;  // shortening of the beam without its anchors [m]
   for (const LocalSection& local : local_sections(s)) shrinks += stress / local.youngs_modulus * (local.end - local.begin);
@@ -123,7 +124,7 @@ double axial_force(const Structure& s, double stress) {
 }
 
 // Returns the stretches of a beam of sections and layers, between the edges of all parts, under a stress that grows by
-// `gradient` [Pa/m] over the thickness of the beam itself. A piezo layer lies outside of all layers.
+// `gradient` [Pa/m] over the thickness of the beam without its layers. A piezo layer lies outside of all other layers.
 std::vector<BeamSection> built_sections(const Device& device, double gradient) {
   const Structure& s = device.structure;
   const Beam& beam = part_of<Beam>(s);
@@ -132,7 +133,7 @@ std::vector<BeamSection> built_sections(const Device& device, double gradient) {
                piezo_end = device.piezo ? std::min(device.piezo->end.on(s.length), s.length) : 0;
   if (device.piezo) edges.insert(edges.end(), {piezo_begin, piezo_end});
   std::ranges::sort(edges);
-  // Two values of one place that differ by rounding are one edge.
+  // Two edges that differ by rounding are the same edge.
   const auto same = [&](double a, double b) { return b - a < 1e-9 * s.length; };
   edges.erase(std::unique(edges.begin(), edges.end(), same), edges.end());
   edges.back() = s.length;
@@ -154,7 +155,7 @@ std::vector<BeamSection> built_sections(const Device& device, double gradient) {
                     .stress = layer.stress});
     }
     const bool has_piezo = device.piezo && middle > piezo_begin && middle < piezo_end;
-    double piezo_middle = 0;  // height of the middle of the layer above the near face
+    double piezo_middle = 0;  // height of the middle of the piezo layer above the near face
     if (has_piezo) {
       for (const Lamina& l : stack) piezo_middle += l.thickness;
       piezo_middle += device.piezo->thickness / 2;
@@ -179,8 +180,8 @@ std::vector<BeamSection> built_sections(const Device& device, double gradient) {
   return sections;
 }
 
-// Returns true when both beams have the same modes. The modes of a general beam come from a full search, so its numbers may
-// differ by rounding, as the ratios of its sections do when all of them become thicker by one factor.
+// Returns true when both beams have the same modes. The modes of a beam on springs or with linear sections come from a full
+// search, so two such beams may differ by rounding, as when all sections become thicker by one factor.
 bool is_known(const NormalisedModes::Beam& beam, const NormalisedModes::Beam& known) {
   if (beam == known) return true;
   if (!beam.is_general() || !known.is_general() || beam.modes != known.modes || beam.far_clamp != known.far_clamp ||
@@ -303,16 +304,16 @@ NormalisedModes::NormalisedModes(Beam beam, const NormalisedModes* near) : beam_
   // A strong tension bends the beam only close to its clamps, over lengths of L / sqrt(N L^2 / EI).
   const double layers = std::sqrt(std::max(0.0, beam_.axial_force)) / 5;
   const int count = std::max({shortest_count, beam_.modes, static_cast<int>(std::min(layers, 40.0))});
-  // Smallest fourth power of a wave number, over the square of the frequency.
+  // Smallest mass over rigidity of a section; the fourth power of a section's wave number is proportional to this ratio.
   double lowest = std::numeric_limits<double>::infinity();
   for (const Beam::Section& s : beam_.sections) lowest = std::min(lowest, s.mass / s.rigidity);
   for (const Beam::Section& s : beam_.sections) {
-    // Waves are shorter where the beam is thin; below half their length, elements are shorter too.
+    // Waves are shorter where the beam is thin; elements are shorter there when the wave length is below half of the largest.
     double shorter = std::max(1.0, std::sqrt(std::sqrt(s.mass / s.rigidity / lowest)) / 2);
     if (s.taper != 0) shorter *= 1.5;  // a curvature over a linear rigidity is not a polynomial
     const int parts = std::max(1, static_cast<int>(std::ceil((s.end - s.begin) * shorter * count - 1e-9)));
     for (int k = 0; k < parts; ++k) {
-      const double larger = 1 + s.taper * ((2 * k + 1.0) / parts - 1);  // ratio to the middle of the section
+      const double larger = 1 + s.taper * ((2 * k + 1.0) / parts - 1);  // rigidity over that in the middle of the section
       elements_.push_back({.begin = s.begin + (s.end - s.begin) * k / parts,
                            .end = k + 1 == parts ? s.end : s.begin + (s.end - s.begin) * (k + 1) / parts,
                            .rigidity = s.rigidity * larger,
@@ -349,7 +350,7 @@ void NormalisedModes::search() {
   const Eigen::MatrixXd basis = is_general ? permitted_motions(end, slopes) : permitted(beam_, end, slopes);
   if (is_general || beam_.far_clamp || beam_.axial_force != 0) mass = basis.transpose() * mass * basis;
 
-  // Solve M x = x / omega^2: the low modes, which matter, have the largest and so the most accurate eigenvalues.
+  // Solve M x = x / omega^2: the low modes, which are needed, have the largest and so the most accurate eigenvalues.
   const SymmetricEigen modes = symmetric_eigen(mass);
   inverse_squares_.resize(beam_.modes);
   shapes_.resize(total, beam_.modes);
@@ -373,8 +374,8 @@ bool NormalisedModes::Beam::is_general() const {
          std::any_of(sections.begin(), sections.end(), [](const Section& s) { return s.taper != 0; });
 }
 
-// A stiff spring must not cost digits: the motions of its end are kept apart from those that leave the end at rest, beginning
-// with the stiffer spring.
+// A stiff spring at the far end must not cost digits: motions that deflect the spring are separated from those that leave the
+// end at rest, beginning with the stiffer spring.
 Eigen::MatrixXd NormalisedModes::permitted_motions(const Eigen::MatrixXd& end, const Eigen::MatrixXd& slopes) const {
   const Eigen::Index total = slopes.rows();
   Eigen::MatrixXd energy = beam_.axial_force * slopes;
@@ -392,7 +393,7 @@ Eigen::MatrixXd NormalisedModes::permitted_motions(const Eigen::MatrixXd& end, c
 
   const double translation = beam_.far_clamp ? Anchor::rigid : beam_.far_translation,
                rotation = beam_.far_clamp ? Anchor::rigid : beam_.far_rotation;
-  std::vector<std::pair<double, Eigen::Index>> springs;  // springs, each with the column of `end` that it acts on
+  std::vector<std::pair<double, Eigen::Index>> springs;  // springs at the far end, with their columns of `end`
   std::vector<Eigen::Index> held;
   for (const auto& [stiffness, column] : {std::pair{translation, 0}, std::pair{rotation, 1}}) {
     if (std::isinf(stiffness)) held.push_back(column);
@@ -402,7 +403,7 @@ Eigen::MatrixXd NormalisedModes::permitted_motions(const Eigen::MatrixXd& end, c
   Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(total, total);
   if (!held.empty()) basis = orthogonal_complement(end(Eigen::all, held));
   const auto count = static_cast<Eigen::Index>(springs.size());
-  // The columns of `along` are orthonormal motions; those of `by_spring` are the deflections of each spring in them.
+  // The columns of `along` are orthonormal motions; those of `by_spring` are the deflections of each spring in these motions.
   Eigen::MatrixXd along(basis.cols(), count), by_spring = Eigen::MatrixXd::Zero(count, count);
   for (Eigen::Index k = 0; k < count; ++k) {
     Eigen::VectorXd left = basis.transpose() * end.col(springs[static_cast<std::size_t>(k)].second);
@@ -438,7 +439,7 @@ Eigen::MatrixXd NormalisedModes::slope_products() const {
 
 bool NormalisedModes::follow(const NormalisedModes& near) {
   const int modes = beam_.modes;
-  constexpr double least_end = 0.05;  // share of the length: a far clamp that holds a shorter element costs digits
+  constexpr double least_end = 0.05;  // share of the length: a clamp at the far end of a shorter element costs digits
   if (beam_.is_general() || near.beam_.is_general() || near.beam_.modes != modes || near.beam_.far_clamp != beam_.far_clamp ||
       near.beam_.sections.size() != beam_.sections.size() || (beam_.far_clamp && 2 * elements_.back().half() < least_end)) {
     return false;
@@ -462,7 +463,8 @@ bool NormalisedModes::follow(const NormalisedModes& near) {
   }
   orient();
 
-  // The modes found are the first ones if they differ, no mode is below the first of them, and no other one is below the last.
+  // The modes found are the lowest ones if they differ, no mode is below the first of them, and no other mode is below the
+  // last.
   constexpr double apart = 1e-7, margin = 1e-8;
   for (int i = 1; i < modes; ++i) {
     if (!(inverse_squares_[i] * (1 + apart) < inverse_squares_[i - 1])) return false;
@@ -505,7 +507,7 @@ Eigen::RowVectorXd NormalisedModes::shape(const BeamElement& element, double xi,
     const double half = other.half();
     const bool inside = other.begin == element.begin;
     ElementRow local = (inside ? element_integrals(xi, derivative) : ends[derivative]) * (derivative == 0 ? half * half : half);
-    // The beam continues straight beyond the other element.
+    // Beyond the right end of its element a shape function continues straight.
     if (!inside && derivative == 0) local += (x - other.end) * half * ends[1];
     row.segment<functions>(functions * static_cast<Eigen::Index>(e)) = local.array() * (orders / (half * other.rigidity)).sqrt();
   }
@@ -520,9 +522,9 @@ Eigen::RowVectorXd NormalisedModes::shape(double x, int derivative) const {
   return shape(*element, 2 * (x - element->begin) / (element->end - element->begin) - 1, derivative);
 }
 
-// The receptance a grows from minus infinity at the first frequency to infinity at the second. It has no zero between them
-// where the second mode does not move at x; the second frequency is then the answer. Newton's method solves (lambda_2 - lambda)
-// a, which is nearly linear.
+// The receptance a grows from minus infinity at the first frequency to infinity at the second. When the second mode does not
+// move at x, a has no zero between the frequencies; the second frequency is then the result. Newton's method solves (lambda_2 -
+// lambda) a = 0, whose left side is nearly linear.
 double NormalisedModes::pinned_inverse_square(double x, std::optional<double> near) const {
   constexpr double rounding = 1e-12, last_step = 1e-8;  // the Newton step after last_step is rounding
   constexpr int most_steps = 100;

@@ -13,7 +13,7 @@ using namespace statics;
 
 namespace {
 
-// Returns the stiffness of the static forces by the modes: symmetric up to rounding, since contact and fields have potentials.
+// Returns the stiffness of the static forces: a symmetric matrix up to rounding, since contact and fields have potentials.
 Eigen::MatrixXd stiffness_at(const Switch& model, const Eigen::VectorXd& q, std::span<const double> volts,
                              const ContactState& contact) {
   const Eigen::Index n = model.modes();
@@ -66,8 +66,8 @@ ClosedEquilibrium closed_at(const Switch& model, const Eigen::VectorXd& q, doubl
           .smallest_eigenvalue = smallest_closed_eigenvalue(model, q, volts)};
 }
 
-// Returns the depths between which f first rises to zero from below. Just before a beam collapses onto the electrode f does so
-// between two steps, and falls again.
+// Returns depths, one step apart, between which f first rises to zero from below. Just before a beam collapses onto the
+// electrode f may rise to zero and fall again within one step.
 template <class F>
 std::optional<Steps> first_enough(F&& f, double depth, double step) {
   auto turn = walk(f, depth, step, [](double value, double here) { return here >= 0 || here < value; });
@@ -83,13 +83,13 @@ double static_push(const Switch& model, const Eigen::VectorXd& q) {
   return model.contact_push(q.data(), still.data(), true);
 }
 
-// Finds how a beam rests on the face of a dielectric: on its first spot, or with most of its length. Newton's method descends
-// the potential from `q`, downhill along every eigenvector. A step shortens no gap of the field by more than a share, so that
-// it does not jump over the maximum of the potential before a soft face.
+// Finds how a beam rests on the face of a dielectric: on the spot of first touch, or with most of its length. Newton's method
+// descends the potential from `q`, downhill along every eigenvector. A step shortens no gap of the field by more than a given
+// share, so that the search does not jump over the maximum of the potential before a soft face.
 std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<const double> volts, Eigen::VectorXd q) {
   constexpr int most_steps = 1000;
   constexpr double longest = 0.05, shortest = 1e-9;           // steps, in shares of the gaps of the field
-  constexpr double least_gap = 0.25;                          // share of the depth of the dielectric
+  constexpr double least_gap = 0.25;                          // least gap for this share, over the dielectric's depth
   constexpr double rounding = 1e-12;                          // share of the bending energy
   constexpr double least_stiffness = 1e-9, at_saddle = 1e-2;  // shares of the stiffness of a mode, and of the longest step
   Statics statics(model);
@@ -135,7 +135,7 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
     radius = std::min(2 * radius, longest);
   }
   if (!contact_at(q).active) return std::nullopt;
-  // Newton's method may oscillate about a point of the quadrature at which the edge of the touching part lies.
+  // Newton's method may oscillate when the edge of the part in touch lies at a quadrature point.
   if (const auto found = statics.closed(volts, q)) q = *found;
   const double push = static_push(model, q);
   if (!(push > 0)) return std::nullopt;
@@ -143,8 +143,8 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
   return found.smallest_eigenvalue > 0 ? std::optional(found) : std::nullopt;
 }
 
-// The search begins where a force holds the beam at the plane of its first contact. It begins on the face when another contact
-// closes the switch and the beam moves from the face to that contact.
+// The search begins where a force holds the beam at the plane of the first contact. A second search begins on the face when the
+// first contact is another one than the face: the beam may move from the face to this contact.
 std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<const double> volts) {
   const Eigen::VectorXd squares = model.basis().angular_frequencies().cwiseAbs2();
   const auto held_at = [&](std::size_t c) {
@@ -168,14 +168,14 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::sp
     if (!held || !(held->unknown > 0)) return std::nullopt;
     return closed_at(model, held->q, held->unknown, volts);
   }
-  // Returns the force of the contact at a depth, less the force with which the beam presses on it.
+  // Returns the force of the contact at a depth, less the force with which the beam presses on the contact.
   const auto excess = [&](double depth) {
     const auto held = statics.pinned(volts, plane + depth);
     if (!held) return no_equilibrium;
     return (model.has_spread_contact() ? 0 : contact_force(model.contact(), depth)) - held->unknown;
   };
-  // The beam must overcome the contact force where the beam presses hardest; the equilibrium lies deeper, where both are equal
-  // again.
+  // The beam must exceed the contact force where the difference of both forces is least; the equilibrium lies deeper, where
+  // both forces are equal again.
   const auto hardest = first_minimum(excess, step);
   if (!hardest || !(hardest->value < 0)) return std::nullopt;
   const std::optional<Steps> over = first_enough(excess, hardest->depth, step);

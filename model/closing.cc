@@ -17,7 +17,8 @@
 namespace softland {
 namespace {
 
-// Shares of the energy that bends the beam by the contact gap: see closing.h.
+// Residuals of the energy audit for a warning and for a failure, as shares of the energy that bends the beam by the contact
+// gap.
 constexpr double worth_warning = 0.01, not_credible = 0.2;
 
 class ClosingRun {
@@ -172,8 +173,8 @@ class ClosingRun {
     check_interval(field);
   }
 
-  // Returns true when the point of least gap is over the electrode: a beam that lands on a dielectric's face may swing lower
-  // beside it.
+  // Returns true when the gap is below its floor over an electrode: a beam that lands on a dielectric's face may swing lower
+  // beside the electrode.
   [[nodiscard]] bool is_over_electrode() {
     const Device& device = model_.device();
     if (!device.lands_along_face() || device.structure.is_rigid()) return true;
@@ -190,7 +191,7 @@ class ClosingRun {
     return false;
   }
 
-  // Checks a step; `field` are the figures at its end.
+  // Ends the run when its state at the end of a step requires this; `field` are the figures of the gap field there.
   void check_interval(const FieldFigures& field) {
     if (ended_) return;
     if (field.smallest_gap < model_.gap_floor() && is_over_electrode()) {

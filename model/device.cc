@@ -31,11 +31,11 @@ void span(double begin, double end, double length, const std::string& name) {
   });
 }
 
-/// Checks the numbers of `owner`, a part of the device; numbers that a scene may leave out may be as in `unset`.
+/// Checks the numbers of `owner`, a part of the device; optional numbers may have the values that they have in `unset`.
 template <class Owner>
 void check_fields(const std::string& part, Owner owner, Owner unset, std::span<const Field<Owner>> fields) {
   for (const Field<Owner>& field : fields) {
-    // Skip a scene's bound that may be exceeded, and numbers that a separate rule checks.
+    // Skip numbers without a range, numbers with a range of the scene alone, and numbers that a separate rule checks.
     if (field.in == nullptr || !field.beyond.empty() || field.range == Range{}) continue;
     const double value = field.in(owner), missing = field.in(unset);
     const bool may_miss = !field.required || !field.instead_of.empty() || !field.unless.empty();
@@ -148,7 +148,7 @@ void check_gap_and_electrodes(const Device& d) {
   }
 }
 
-/// Checks that a structure with a rest shape touches neither an electrode nor its contact at rest.
+/// Checks that a structure with a given rest shape touches neither an electrode nor its contact at rest.
 void check_rest_shape(const Device& d) {
   const double lowest = std::visit(
       [&](const auto& kind) {
@@ -216,7 +216,7 @@ void check_contact(const Device& d, std::size_t i) {
   require(!rigid || !d.gas || !is_compressible(*d.gas), [&] {
     return path + ".model = rigid: not with gas.model = reynolds, whose film still flows under a plate that rests";
   });
-  // A pad is not needed when only its area would matter.
+  // A contact needs no pad when neither the place nor the area of a pad has an effect.
   const bool no_pad = c.along_face || (s.is_rigid() && !acts_per_area(c.model) && c.pad_length == 0);
   require(no_pad || (c.pad_length > 0 && c.pad_length < s.length), [&] {
     return fmt::format("{}.pad_length = {}: must be positive and below structure.length = {}", path,
@@ -308,8 +308,8 @@ const Landing* Device::landing() const {
 
 namespace {
 
-// Returns the place at which a beam that bends under the pads of its faces first touches them. This is the free end, or the
-// middle between two clamps, or the edge of the pad that is nearest to it.
+// Returns the place at which a beam that bends over its electrodes first touches the faces of their dielectrics. This is the
+// free end, or the middle between two clamps, if a pad lies there, and otherwise the edge of the nearest pad.
 Place first_touch_on(const Device& d) {
   const double length = d.structure.length, aim = d.structure.has_far_clamp() ? length / 2 : length;
   Place nearest;
@@ -344,7 +344,7 @@ void set_face_contact(Device& d) {
   if (landing == nullptr) return;
   const double plane = d.gap.electrode - landing->begin();
   const auto set = [&](Contact& face) {
-    // The stiffness of a wall is a property of the switch, which derives it from its modes.
+    // The stiffness of a wall is computed from the modes of the switch; the device has a placeholder.
     face.model = LinearSpring{.stiffness = landing->is_wall() ? 1 : landing->stiffness};
     if (landing->asperities) face.model = *landing->asperities, face.pad_length = length_of_faces(d);
     if (!d.structure.is_rigid()) face.at = first_touch_on(d);
@@ -426,7 +426,7 @@ std::optional<ElectrodeConflict> electrode_conflict(const Structure& s, const st
     }
     const bool plate = s.is_rigid();
     if (!plate) std::ranges::stable_sort(here, {}, [](const Pad& pad) { return pad.at.begin; });
-    double taken = 0;  // occupied length: up to this place on a beam, in total on a plate
+    double taken = 0;  // length that pads occupy: up to this place on a beam, in total on a plate
     for (std::size_t i = 0; i < here.size(); ++i) {
       const Stretch& pad = here[i].at;
       if (i > 0 && (plate ? taken + pad.end - pad.begin > s.length + rounding : pad.begin < taken - rounding)) {

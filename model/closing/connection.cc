@@ -27,7 +27,7 @@ void ConnectionCourse::Followed::touch(const Touch& touch) {
   if (connects_) connection_.touches_.take(touch);
 }
 
-// Returns a given knot as it is. Between knots the position is that of the quintic, and the force is linear.
+// Between two knots the position is that of the quintic, and the force is linear in time.
 TrajectoryPoint ConnectionCourse::Followed::at(double time) const {
   const TrajectoryPoint* from = &*last;
   for (const TrajectoryPoint& to : fresh) {
@@ -60,7 +60,7 @@ std::size_t ConnectionCourse::decides(double time, std::size_t present) const {
 void ConnectionCourse::hand_over() {
   const Followed& any = followed_[deciding_];
   if (any.fresh.empty()) return;
-  // Handle a jump of all contacts, or the start of the run.
+  // Handle a jump that all contacts have at this time, or the start of the run.
   while (!any.fresh.empty() && (!any.last || any.fresh.front().time == any.last->time)) {
     for (Followed& c : followed_) {
       if (!c.connects()) continue;
@@ -99,7 +99,7 @@ void ConnectionCourse::follow_to(double time) {
 }
 
 void ConnectionCourse::tell(double time) {
-  constexpr double on_the_plane = 1e-12;  // relative to the gap
+  constexpr double on_the_plane = 1e-12;  // relative to the contact gap
   const Followed& decisive = followed_[deciding_];
   TrajectoryPoint point = decisive.at(time);
   const double separation = decisive.gap() - point.position;

@@ -28,7 +28,7 @@ void ContactPhase::turn(double deepest) {
 }
 
 void ContactPhase::begin_closed(double interference) {
-  // The law is loaded a little deeper than the contact rests, so that the rest does not load it further.
+  // Load the law a little deeper than the contact rests, so that rounding errors at rest do not load the law further.
   constexpr double rounding = 1e-9;  // relative
   if (model_.rigid_contact() != nullptr) return enter(Phase::rest);
   if (!(interference > 0)) return enter(interference > -reach_ ? above() : Phase::flight);

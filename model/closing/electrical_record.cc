@@ -49,7 +49,7 @@ ElectricalRecord::Instant ElectricalRecord::connected(std::span<const Instant> c
   return all;
 }
 
-// Positive while the connection is closed; the size has no meaning.
+// Returns a number that is positive while the connection is electrically closed; only its sign matters.
 double ElectricalRecord::margin(const Instant& now) const {
   double least = std::numeric_limits<double>::infinity();
   if (closing_.force >= 0) least = now.force - closing_.force;
@@ -100,10 +100,10 @@ void ElectricalRecord::take_rest(double begin, double end, const std::function<d
   follow(followed_.front(), at, begin, end);
 }
 
-// An extremum lies in between when the margin goes towards 0 from both ends.
+// The margin has an extremum within the step when its magnitude falls from both ends inwards.
 template <class Margin>
 void ElectricalRecord::follow(Followed& followed, const Margin& at, double begin, double end) const {
-  // Rounding hides a force that grows with a high power of the distance at smaller distances.
+  // Closer to the ends rounding would hide the change of a force that grows with a high power of the distance.
   constexpr double beside = 1e-3;  // share of the time
   constexpr int bits = 30;
   const double from = at(begin), to = at(end);
@@ -122,7 +122,7 @@ void ElectricalRecord::follow(Followed& followed, const Margin& at, double begin
   follow_path(followed, at, begin, from, end, to);
 }
 
-// Records an interval in which the margin changes sign once at most.
+// Records an interval in which the margin, positive while closed, changes sign at most once.
 template <class Margin>
 void ElectricalRecord::follow_path(Followed& followed, const Margin& at, double begin, double from, double end, double to) const {
   set(followed, from > 0, begin);

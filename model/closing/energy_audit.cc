@@ -37,7 +37,7 @@ void EnergyAudit::enter_stretch(const Knot& here, bool first) {
     if (before == after) continue;
     const double potential = model_.law_potential(k, here.state.data(), equations_.workspace());
     if (holds_charge(k)) {
-      source_work_ -= (after * after - before * before) * potential;  // C V dV, whatever charge lies on a dielectric
+      source_work_ -= (after * after - before * before) * potential;  // C V dV, whatever the charge on a dielectric
     } else {
       source_work_ += (model_.strength(k, after) - model_.strength(k, before)) * potential;
     }
@@ -90,8 +90,8 @@ void EnergyAudit::step(const Knot& here, const Knot& next, double dissipation_at
   }
 }
 
-// Returns the mean power over a step at whose end it is `at_end`. The phases of the modes may advance by two radians in a step,
-// and those of the power by four. A compressible film has no motion that is exact for the modes.
+// Returns the mean power over a step, at the end of which the power is `at_end`. Within a step the phases of the modes may
+// advance by two radians, and those of the power by four. With a compressible film no motion is exact for the modes.
 double EnergyAudit::mean_dissipation(double at_end, StepMotion& motion, bool implicit) {
   const auto power = [&](const std::vector<double>& state) {
     return equations_.dissipation(state.data()) + contact_dissipation(state.data());
@@ -123,7 +123,7 @@ double EnergyAudit::above_rest(const Knot& here) {
          impacts_ + model_.film_energy(q, equations_.workspace());
 }
 
-// The stored energy is the potential plus V Q for each charge that a source holds at its voltage.
+// The stored energy is the potential plus V Q for each charge that a source keeps at its voltage.
 void EnergyAudit::settle(const Knot& here) {
   const double* q = here.state.data();
   const std::span<const double> values = drives_.values(here.time);
@@ -140,7 +140,7 @@ void EnergyAudit::settle(const Knot& here) {
   }
   balance_.stored += stored_in_contacts(q);
   balance_.dissipated += lost_in_contacts(q);
-  if (!(std::abs(balance_.residual()) <= error_)) error_ = std::abs(balance_.residual());  // keeps NaN
+  if (!(std::abs(balance_.residual()) <= error_)) error_ = std::abs(balance_.residual());  // also when the residual is NaN
   careful_ = careful_ || error_ > worth_care * model_.bending_energy();
 }
 

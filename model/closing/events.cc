@@ -4,7 +4,7 @@ namespace softland {
 namespace {
 
 // Returns the time in [from, to] at which the contact point first crosses an edge outwards. The motion is monotone between its
-// turning points, so that two of these never enclose more than one crossing.
+// turning points, so that at most one crossing lies between two turning points.
 std::optional<double> crossing(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to, const Edge& edge) {
   const double side = edge.side;
   const Quintic::Bounds reached = tip.bounds();
@@ -16,7 +16,8 @@ std::optional<double> crossing(const TipMotion& tip, const TrajectoryPoint& from
     return at < 0;
   };
   const auto found = [&](double outside) {
-    // Just after an event the motion starts on the edge. When it is not inside the phase anywhere, the phase ends at once.
+    // Just after an event the motion starts on the edge. When the motion is not inside the phase anywhere, the phase ends at
+    // once.
     return depth(inside) > 0 ? bracketed_zero(depth, inside, outside) : inside;
   };
   for (const double turn : tip.turns()) {
@@ -39,7 +40,7 @@ std::optional<Event> first_event(const TipMotion& tip, const TrajectoryPoint& fr
     const double time = from.velocity > 0 ? tip.turn() : from.time;
     if (!(first && first->time < time)) first = Event{.time = time, .edge = std::nullopt};
   }
-  // Nothing has moved yet at time 0.
+  // An event at time 0 does not count: nothing has moved yet.
   return first && first->time > 0 ? first : std::nullopt;
 }
 

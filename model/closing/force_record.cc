@@ -26,7 +26,7 @@ bool rises_with_depth(const Switch& model, std::size_t contact) {
 ForceRecord::ForceRecord(const Switch& model, double threshold, std::size_t contact)
     : model_(model), contact_(contact), threshold_(threshold), rises_with_depth_(rises_with_depth(model, contact)) {}
 
-// An extremum of the force lies in between when the force rises from both ends, or falls from both.
+// The force has an extremum within the interval when it rises from both ends inwards, or falls from both ends.
 template <class Force>
 void ForceRecord::follow_path(const Force& force, double begin, double from, double end, double to) {
   constexpr double beside = 1e-6;  // share of the time
@@ -43,7 +43,7 @@ void ForceRecord::follow_path(const Force& force, double begin, double from, dou
   follow(force, turn, there, end, to);
 }
 
-// Adds a time over which the force only rises or only falls.
+// Adds an interval in which the force only rises or only falls.
 template <class Force>
 void ForceRecord::follow(const Force& force, double begin, double from, double end, double to) {
   has_fallen_ = has_fallen_ || (has_risen_ && to < from);

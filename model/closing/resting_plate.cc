@@ -18,7 +18,7 @@ double RestingPlate::load(const Knot& here, double t) {
   return rates_[0] / model_.basis().contact_shape()[0];
 }
 
-// A plate has one mode.
+// A plate has one mode only, so one coordinate and one velocity.
 RestingPlate::Impact RestingPlate::strike(Knot& here) {
   const RigidContact& contact = *model_.rigid_contact();
   const double shape = model_.basis().contact_shape()[0], plane = model_.contact_gap();
@@ -34,7 +34,7 @@ RestingPlate::Impact RestingPlate::strike(Knot& here) {
 }
 
 void RestingPlate::begin(Knot& here, double stretch_end) {
-  constexpr double looks = 32;  // evaluations of the drives in a stretch without oscillations
+  constexpr double looks = 32;  // number of evaluations of the drives in a stretch without oscillations
   force_ = here.rates[0] / model_.basis().contact_shape()[0];
   here.rates[0] = 0;
   look_ = std::min((stretch_end - here.time) / looks, drives_.resolving_step(here.time));

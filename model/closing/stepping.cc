@@ -14,19 +14,19 @@ namespace softland {
 namespace {
 
 // An explicit method is replaced by an implicit one when stability limits its steps in many checks in a row. A thick film in a
-// gap that is nearly closed limits every step. Other closings have a dozen of such steps in a row at the most. A damped contact
-// that rattles may have ninety in a row, so that some such runs change without need.
-constexpr double held_back = 2;  // Stepper::stiffness()
+// gap that is nearly closed limits every step. In other closings stability limits at most a dozen checks in a row. A damped
+// contact that rattles may reach ninety, so that some such runs change the method without need.
+constexpr double held_back = 2;  // Stepper::stiffness() above which stability limits a step
 constexpr long steps_to_look = 100;
 // The conditions under which an implicit method takes over.
 struct TakeOver {
-  int looks = 50;  // number of such checks in a row after which the implicit method takes over
+  int looks = 50;  // number of checks in a row, with steps limited by stability, after which the implicit method takes over
   // Share of the tolerance: an explicit method with a hundred times the steps had errors far below its tolerance.
   double tolerance = 0.01;
 };
 
-// A film that is squeezed out along the face of a dielectric stays as stiff as it has become. The kinks of the face, at one
-// point after the other, and not the tolerance, then limit the steps.
+// A film that is squeezed out along the face of a dielectric remains stiff. The kinks of the face at one point after the other,
+// and not the tolerance, then limit the steps.
 TakeOver take_over(const Device& device) {
   return device.lands_along_face() && device.gas ? TakeOver{.looks = 2, .tolerance = 1} : TakeOver{};
 }
@@ -100,7 +100,8 @@ bool Stepping::fail(const std::string& why) {
   return false;
 }
 
-// A law that acts beyond the plane changes over lengths like those of the penetration.
+// In the reach of a law that acts beyond the plane the tolerances are those of contact, since this law changes over such
+// lengths.
 const std::vector<double>& Stepping::tolerances() const {
   const bool touching = !parts_.options.restart_at_contact || std::ranges::any_of(parts_.contacts, [](const FollowedContact& c) {
     return c.phase.in_contact() || c.phase.phase() == Phase::near;
@@ -151,7 +152,7 @@ std::optional<Stepping::Step> Stepping::advance(double stop, EnergyAudit& audit)
   if (step.event) {
     if (!step_again(*step.event)) return std::nullopt;
     consider_step();
-    // The event may lie before knots that were added on the way to it.
+    // The event may lie before knots of this step that have been added already.
     for (FollowedContact& c : parts_.contacts) c.pending_knots.take_back(next_.time, here_.time);
   }
   step.field = parts_.equations.field(next_.state.data());
@@ -171,7 +172,7 @@ void Stepping::take_state() {
   std::copy_n(stepper_->rates(), next_.rates.size(), next_.rates.begin());
 }
 
-// Makes next_ the end of the step from here_.
+// Takes next_ as the end of the step from here_ for all contacts.
 void Stepping::consider_step() {
   for (FollowedContact& c : parts_.contacts) {
     c.end = parts_.point(c, next_);
@@ -179,7 +180,7 @@ void Stepping::consider_step() {
   }
 }
 
-// Records peaks and energies over the step from here_ to next_; `field` are the figures of the field at next_.
+// Records peaks and energies over the step from here_ to next_; `field` are the figures of the gap field at next_.
 void Stepping::account(const FieldFigures& field, EnergyAudit& audit) {
   if (here_.time == next_.time) return;
   for (FollowedContact& c : parts_.contacts) {
@@ -196,8 +197,8 @@ void Stepping::account(const FieldFigures& field, EnergyAudit& audit) {
   audit.step(here_, next_, field.dissipation, parts_.first().motion, implicit());
 }
 
-// Returns the knot after k pieces of the step. The force along a pad depends on more than the contact point; it is taken as
-// linear.
+// Returns the knot after k pieces of the step. The force along a pad depends on more than the contact point; this force is
+// taken as linear in time.
 TrajectoryPoint Stepping::knot(FollowedContact& contact, int k) {
   StepMotion& motion = contact.motion;
   if (k == motion.pieces()) return contact.end;
@@ -227,7 +228,7 @@ bool Stepping::follow(std::optional<Event>& event) {
   return std::ranges::all_of(parts_.contacts, [&](FollowedContact& c) { return follow(c, until, event); });
 }
 
-// Returns the time of the first event of several contacts; the record of each contact ends there.
+// Returns the time of the first event of any of several contacts; the record of every contact ends at this time.
 double Stepping::first_event_time() {
   double first = next_.time;
   for (FollowedContact& c : parts_.contacts) {
@@ -244,7 +245,7 @@ double Stepping::first_event_time() {
   return first;
 }
 
-// Moves one contact: adds knots where the interpolant needs them, up to its first event, or to that of another contact.
+// Follows one contact through the step: adds knots where the interpolant needs them, up to the first event of any contact.
 bool Stepping::follow(FollowedContact& contact, double until, std::optional<Event>& event) {
   StepMotion& motion = contact.motion;
   for (int k = 1; k <= motion.pieces(); ++k) {
@@ -254,7 +255,7 @@ bool Stepping::follow(FollowedContact& contact, double until, std::optional<Even
     if (found && found->time <= until) {
       if (parts_.options.restart_at_contact || !parts_.model.has_contact()) {
         found->contact = contact.number;
-        if (!event) event = found;  // of two events at the same time the other one comes next
+        if (!event) event = found;  // of two events at the same time the second one is handled in the next step
         return true;
       }
       if (!go_through(contact, *found, tip)) return false;
@@ -269,7 +270,7 @@ bool Stepping::follow(FollowedContact& contact, double until, std::optional<Even
   return true;
 }
 
-// Passes an event at which the integrator is not restarted. Returns false after too many.
+// Handles an event at which the integrator is not restarted. Returns false after too many touches.
 bool Stepping::go_through(FollowedContact& contact, const Event& event, const TipMotion& tip) {
   const TrajectoryPoint from = contact.pending_knots.last();
   TrajectoryPoint at{.time = event.time,
@@ -281,7 +282,7 @@ bool Stepping::go_through(FollowedContact& contact, const Event& event, const Ti
   contact.pending_knots.push(at);
   contact.touches.note(event, at);
   contact.phase.enter(event.edge->next, event.edge->zone);
-  contact.end = parts_.point(contact, next_);  // end of the step in the new phase
+  contact.end = parts_.point(contact, next_);  // end of the step, with the contact force of the new phase
   return contact.touches.count() <= parts_.options.max_steps ||
          fail(fmt::format("more than {} steps needed", parts_.options.max_steps));
 }
@@ -317,11 +318,11 @@ bool Stepping::step_again(const Event& event) {
     time -= off / model.contact_deflection(next_.state.data() + n_, event.contact);
   }
   if (!(time > here_.time)) next_ = here_;
-  parts_.equations.rates(next_);  // computes the field of next_ again
+  parts_.equations.rates(next_);  // computes the gap field at next_ again
   return true;
 }
 
-// Moves next_ onto an edge that is less than a thousandth of a radian away.
+// Moves next_ onto an edge that the fastest mode reaches within a thousandth of a radian. Returns false for a larger distance.
 bool Stepping::meet(const Event& event) {
   constexpr double short_of_a_radian = 1e-3;
   const double* v = next_.state.data() + n_;
@@ -329,7 +330,7 @@ bool Stepping::meet(const Event& event) {
   double later = (event.edge->level - model.contact_deflection(next_.state.data(), event.contact)) /
                  model.contact_deflection(v, event.contact);
   if (!(std::abs(later) * fastest_ < short_of_a_radian)) return false;
-  later = std::max(later, here_.time - next_.time);  // a step that began beyond the edge, by rounding, ends where it began
+  later = std::max(later, here_.time - next_.time);  // a step that began beyond the edge by rounding keeps its start
   for (std::size_t i = 0; i < n_; ++i) next_.state[i] += later * (v[i] + later / 2 * next_.rates[i]);
   for (std::size_t i = n_; i < next_.state.size(); ++i) next_.state[i] += later * next_.rates[i - n_];
   next_.time += later;

@@ -31,7 +31,7 @@ std::vector<double> AdhesiveRepulsiveContact::kinks() const {
 template <>
 double AdhesiveRepulsiveContact::energy(double d) const {
   const double x = touch_ - d, r = law_.reach, s = law_.smoothing_distance;
-  // The antiderivative of 1 / (x^3 + s^3).
+  // Returns the antiderivative of 1 / (x^3 + s^3).
   const auto attraction = [s](double at) {
     const double u = at / s;
     return (std::log((u + 1) / std::sqrt(u * u - u + 1)) + std::sqrt(3) * std::atan((2 * u - 1) / std::sqrt(3))) / (3 * s * s);

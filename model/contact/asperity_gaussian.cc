@@ -13,7 +13,7 @@ GaussianTail::GaussianTail() {
   constexpr double order = 1.5, start = 14;
   constexpr std::size_t terms = 24;
   std::array<double, terms> c{};
-  // Computes the Taylor series about h of the solution with value c[0] and slope c[1] there.
+  // Computes the Taylor series of the solution about h, which has the value c[0] and the slope c[1] there.
   const auto expand = [&](double h) {
     for (std::size_t k = 0; k + 2 < terms; ++k) {
       const auto j = static_cast<double>(k);
@@ -21,7 +21,7 @@ GaussianTail::GaussianTail() {
     }
   };
   c[0] = 1;
-  c[1] = -(start + (order + 1) / start);  // leading order; its error decays
+  c[1] = -(start + (order + 1) / start);  // asymptotic slope for large h; its error decays downwards
   constexpr auto above = static_cast<std::size_t>((start - last) / spacing);
   for (std::size_t i = nodes + above; i-- > 0;) {
     expand(first + spacing * static_cast<double>(i));

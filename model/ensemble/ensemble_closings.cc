@@ -68,10 +68,10 @@ std::optional<simd::LaneDispersion> lane_dispersion(const std::optional<Dispersi
   return force->model == DispersionModel::casimir ? simd::LaneDispersion::casimir : simd::LaneDispersion::smaller;
 }
 
-/// A contact law in lanes: the elastic one, and its damping [s/m].
+/// A contact law for lanes: its elastic law, damping [s/m] and unloading stiffness.
 struct ElasticContact {
   simd::LaneContact law = simd::LaneContact::linear;
-  double strength = 0, height = 0;  // stiffness in case of linear [N/m]
+  double strength = 0, height = 0;  // the strength of law `linear` is its stiffness [N/m]
   double damping = 0;
   double unloading = 0;  // unloading stiffness of a contact with a memory [N/m]; 0 without memory
 };
@@ -90,29 +90,29 @@ std::optional<ElasticContact> lane_contact(const ContactLaw& law) {
   return std::nullopt;
 }
 
-/// Returns true when there is a contact and lanes support the laws of all contacts.
+/// Returns true when the switch has contacts and lanes support the laws of all of them.
 bool knows_contacts(const Switch& model) {
   for (std::size_t c = 0; c < model.contacts(); ++c)
     if (model.has_spread_contact(c) || !lane_contact(model.contact(c))) return false;
   return model.has_contact();
 }
 
-/// Returns true when the laws are those of simd::UsualLaws.
+/// Returns true when the laws of the switch are those of simd::UsualLaws.
 bool is_usual(const Switch& model) {
   const Device& device = model.device();
   const std::vector<Electrode>& all = device.electrodes;
   const auto alike = [&](const Electrode& e) { return e.side == Side::near && e.fringing == all.front().fringing; };
-  const bool is_plate = device.structure.is_rigid();  // a plate's electrodes lie over the same points
+  const bool is_plate = device.structure.is_rigid();  // electrodes of a plate share quadrature points
   const bool film = !device.gas || (std::holds_alternative<StripGas>(*device.gas) && std::isnan(far_gap(*device.gas)));
   const bool usual_field = model.modes() <= simd::usual_modes && !device.dispersion && !model.stretching() && film &&
                            std::ranges::all_of(all, alike) && !(is_plate && all.size() > 1) &&
                            !electrode_conflict(device.structure, all);
-  // Several contacts are usual if their laws are.
+  // UsualLaws have several contacts only in one combination of field and film.
   if (model.contacts() > 1) return usual_field && device.gas && !all.empty() && all.front().fringing == Fringing::meijs_fokkema;
   return usual_field && !device.structure.is_built() && std::holds_alternative<UniformAsperityContact>(model.contact());
 }
 
-/// Returns the pads, each with its electrode.
+/// Returns the pads of all electrodes, each with the number of its electrode.
 std::vector<std::pair<Stretch, int>> pads_of(const Device& device) {
   std::vector<std::pair<Stretch, int>> pads;
   for (const Electrode& e : device.electrodes) {
@@ -121,7 +121,7 @@ std::vector<std::pair<Stretch, int>> pads_of(const Device& device) {
   return pads;
 }
 
-/// Returns segments of points that end with each electrode or stretch, with the electrode over which they lie.
+/// Returns segments of quadrature points, each within one stretch and over one electrode, or over none.
 std::vector<Segment> segments_between(const Switch& model, const LaneLayout& layout) {
   const std::vector<std::pair<Stretch, int>> pads = pads_of(model.device());
   const auto over = [&](double x) {
@@ -140,7 +140,7 @@ std::vector<Segment> segments_between(const Switch& model, const LaneLayout& lay
   return segments;
 }
 
-/// Returns a segment for the faces of every pad that has points.
+/// Returns the segments of every pad with quadrature points: one for each side of the moving part with a face.
 std::vector<Segment> faces_of(const Switch& model) {
   const Eigen::ArrayXd& x = model.quadrature().positions();
   const auto first_at = [&](double place) { return to_int(std::lower_bound(x.begin(), x.end(), place) - x.begin()); };
@@ -216,14 +216,14 @@ LaneLayout layout_of(const Switch& model, bool measures_work) {
   return layout;
 }
 
-// Returns the interference at which the contact stores this small energy, far below the height of its asperities [m].
+// Returns the interference at which the contact stores this energy, which is small against that of all asperities in touch [m].
 double depth_of_energy(const ElasticContact& contact, double energy) {
   if (contact.law == simd::LaneContact::linear) return std::sqrt(2 * energy / contact.strength);
   const UniformAsperityContact law{.strength = contact.strength, .height = contact.height};
   return law.height * std::pow(energy / law.energy(law.height), 2.0 / 7);
 }
 
-/// Sets the numbers of the far side.
+/// Sets the gaps and gap floors of electrodes and film on the far side.
 void set_far_side(LaneSwitch& s, const Device& device) {
   s.most_gap = std::numeric_limits<double>::infinity();
   const auto set = [&](double gap, double& both, double& floor) {
@@ -277,7 +277,7 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
   const std::vector<LaneStretch> stretches = stretches_of(model);
   for (std::size_t k = 0; k < stretches.size(); ++k) {
     s.width[k] = stretches[k].width, s.thickness[k] = stretches[k].thickness;
-    // A film with open ends loses more gas where it is wide.
+    // More gas leaves a film through its open ends where the film is wide.
     if (!device.structure.is_built() || !device.gas) continue;
     std::visit(
         [&](const auto& film) {
@@ -305,7 +305,7 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
   return s;
 }
 
-/// Returns the depth at which a contact carries the steady force, without its damping [m].
+/// Returns the depth at which a contact carries the steady force, without its damping force [m].
 double steady_depth(const EnsembleClosing& closing, std::size_t c) {
   if (!(closing.steady_force > 0)) return std::numeric_limits<double>::infinity();
   const ElasticContact contact = *lane_contact(closing.model->contact(c));
@@ -313,8 +313,8 @@ double steady_depth(const EnsembleClosing& closing, std::size_t c) {
   return UniformAsperityContact{.strength = contact.strength, .height = contact.height}.interference(closing.steady_force);
 }
 
-/// Passes on the events of a lane, with force and energy of the contact's law; for several contacts it passes on the touches of
-/// their connection.
+/// Passes the touches in a lane on to an observer, with force and energy of the contact law; for several contacts these are the
+/// touches of their connection.
 class ContactAdapter final : public simd::LaneObserver {
  public:
   explicit ContactAdapter(const EnsembleClosing& closing) : model_(closing.model), observer_(closing.observer) {}
@@ -337,7 +337,7 @@ class ContactAdapter final : public simd::LaneObserver {
   void opens(double time) override { touches_.open(time); }
   void rebound(double begin, double end, double height) override { observer_->rebound(begin, end, height); }
 
-  /// Returns the result of a closing in a lane.
+  /// Returns the result of a closing whose lane has ended.
   [[nodiscard]] EnsembleEnd end(const LaneClosing& lane) {
     tell(touches_.finish());
     std::array<ForceOutcome, simd::most_contacts> forces;
@@ -364,14 +364,14 @@ class ContactAdapter final : public simd::LaneObserver {
   ConnectionTouches touches_;
 };
 
-/// Returns true when a switch of several contacts rests on one of these contacts at the start of a run.
+/// Returns true when a switch of several contacts rests on any contact after the first at the start of a run.
 bool rests_on_contact(const Switch& model, const Eigen::VectorXd& rest) {
   for (std::size_t c = 1; c < model.contacts(); ++c)
     if (model.contact_deflection(rest.data(), c) > model.contact_gap(c)) return true;
   return false;
 }
 
-/// Returns true when the factor of a dispersion force changes in the run, whose work is not that of a charge.
+/// Returns true when the factor of the dispersion force changes in the run, whose work is not that of a charge.
 bool drives_dispersion(const EnsembleClosing& c) {
   for (std::size_t k = 0; k < c.drives.size(); ++k) {
     if (c.model->drive_kind(k) == DriveKind::dispersion && !c.drives[k].is_zero()) return true;
@@ -379,7 +379,7 @@ bool drives_dispersion(const EnsembleClosing& c) {
   return false;
 }
 
-/// Returns the energy in the fields of the electrodes [J].
+/// Returns the energy stored in the fields of the electrodes [J].
 double field_energy(const Switch& model, std::span<const double> volts, const double* q) {
   Switch::Workspace work = model.workspace();
   double energy = 0;
@@ -387,8 +387,8 @@ double field_energy(const Switch& model, std::span<const double> volts, const do
   return energy;
 }
 
-/// Returns the work V dQ of the drives: the energy gained by the field and the work on the modes. The charge of a piezo depends
-/// on the modes alone.
+/// Returns the work V dQ of the drives [J]: the energy that the fields gain, the work on the modes, and the charging of a piezo
+/// layer. The charge that a piezo's motion moves depends on the modes alone.
 double drive_energy(const EnsembleClosing& c, const LaneClosing& lane) {
   std::vector<double> at_end;
   for (std::size_t k = 0; k < c.drives.size(); ++k) at_end.push_back(lane.gain[k] * c.drives[k].voltage(lane.end));
@@ -432,7 +432,7 @@ std::string why_not_in_lanes(const Switch& model) {
   if (!lane_dispersion(device.dispersion)) return "a dispersion force between gold";
   if (!knows_contacts(model)) return "a contact other than linear, hysteretic or asperity-uniform at the contact point";
   if (model.contacts() > simd::most_contacts) return fmt::format("more than {} contacts", simd::most_contacts);
-  // The times of electrical closing are located on the motion of a single closing.
+  // Only simulate_closing() determines the times at which the connection is electrically closed.
   if (device.electrical.is_asked()) return "a key that says when the connection is electrically closed";
   if (!lane_film(device.gas))
     return model.film_states() > 0 ? "a compressible gas film" : fmt::format("the gas film {}", name_of(*device.gas));
@@ -450,8 +450,8 @@ std::vector<EnsembleEnd> close_in_lanes(std::span<const EnsembleClosing> closing
 
   simd::LaneDrives drives;
   std::optional<LaneLayout> layout;
-  std::vector<std::size_t> places;     // indices of the switches that run
-  std::vector<Eigen::VectorXd> rests;  // equilibria from which they start
+  std::vector<std::size_t> places;     // indices of the closings that run in lanes
+  std::vector<Eigen::VectorXd> rests;  // equilibria from which these closings start
   for (std::size_t i = 0; i < closings.size(); ++i) {
     if (!why_not_in_lanes(*closings[i].model).empty() || !drives.go_in_lanes(closings[i].drives)) continue;
     const std::optional<Eigen::VectorXd> rest = closings[i].model->open_equilibrium(values_before(closings[i].drives));
