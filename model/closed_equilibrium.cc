@@ -89,7 +89,7 @@ double static_push(const Switch& model, const Eigen::VectorXd& q) {
 std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<const double> volts, Eigen::VectorXd q) {
   constexpr int most_steps = 1000;
   constexpr double longest = 0.05, shortest = 1e-9;           // steps, in shares of the gaps of the field
-  constexpr double least_gap = 0.25;                          // least gap for this share, over the dielectric's depth
+  constexpr double least_gap = 0.25;                          // least gap of the field, over the dielectric's depth
   constexpr double rounding = 1e-12;                          // share of the bending energy
   constexpr double least_stiffness = 1e-9, at_saddle = 1e-2;  // shares of the stiffness of a mode, and of the longest step
   Statics statics(model);
@@ -174,8 +174,8 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::sp
     if (!held) return no_equilibrium;
     return (model.has_spread_contact() ? 0 : contact_force(model.contact(), depth)) - held->unknown;
   };
-  // The beam must exceed the contact force where the difference of both forces is least; the equilibrium lies deeper, where
-  // both forces are equal again.
+  // At the depth where this excess is least the beam must press harder than the contact pushes; the equilibrium lies deeper,
+  // where both forces are equal.
   const auto hardest = first_minimum(excess, step);
   if (!hardest || !(hardest->value < 0)) return std::nullopt;
   const std::optional<Steps> over = first_enough(excess, hardest->depth, step);

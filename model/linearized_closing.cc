@@ -19,14 +19,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double longest_angle = 2.5;  // largest norm of A times the length of an arc
+constexpr double longest_angle = 2.5;  // largest norm of A times the duration of a part of a step
 constexpr int most_parts = 4096;       // largest number of parts of a step
-constexpr int parts_at_edge = 6;       // parts of a step that begins or ends where a contact does
+constexpr int parts_at_edge = 6;       // parts of a step that begins or ends where a contact begins or ends
 constexpr Index lane_size = lanes;
 constexpr Index most_unknowns = 2 * most_modes;  // largest number of unknowns, in whole lanes
 
-// Returns the number of terms after which the exponential of a matrix of this norm is accurate to rounding, and at least as
-// many terms as the parabola of an input needs.
+// Returns the number of terms after which the Taylor series of the exponential of a matrix with this norm is accurate to
+// rounding. It is at least the number of terms that inputs quadratic in time need.
 int terms_of_exponential(double norm) {
   constexpr int fewest = 3;
   constexpr double rounding = 1e-13;
@@ -52,8 +52,8 @@ double column_norm(const double* x, Index size, Index stride) {
   return largest.maxCoeff();
 }
 
-// Adds value += gain for very many small gains: the part that rounding cuts off is kept for the next gain (Kahan 1965). The sum
-// is value - left.
+// Adds value += gain for very many small gains: `left` stores the part that rounding cuts off for the next gain (Kahan 1965).
+// The sum is value - left.
 template <class Value, class Left, class Gain>
 void add_compensated(Value&& value, Left&& left, const Gain& gain) {
   for (Index i = 0; i < gain.rows(); ++i) {
@@ -65,7 +65,7 @@ void add_compensated(Value&& value, Left&& left, const Gain& gain) {
   }
 }
 
-// Computes row w times exp(x), and w phi_j(x) = sum over k of w x^k / (k + j)!, j = 1, 2, 3.
+// Computes row w times (exp(x) - 1), and w phi_j(x) = sum over k of w x^k / (k + j)!, j = 1, 2, 3.
 struct RowSeries {
   using Row = Eigen::Array<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, most_unknowns>;
   Row gain, phi1, phi2, phi3;
@@ -123,8 +123,8 @@ struct ColumnSeries {
   }
 };
 
-// Returns the shares of a step at which its parts end. A contact's stiffness sets in, and ends, like the root of the time from
-// the edge.
+// Returns the shares of a step at which its parts end. A contact's stiffness grows, and falls, like the root of the time from
+// the edge of the contact phase.
 std::vector<double> shares_of_parts(int parts, bool after_edge, bool before_edge) {
   std::vector<double> ends;
   for (int k = 1; k <= parts; ++k) {
@@ -135,7 +135,7 @@ std::vector<double> shares_of_parts(int parts, bool after_edge, bool before_edge
   return ends;
 }
 
-// Interpolates a step, whose ends are known, at a time within it.
+// Interpolates modal coordinates, velocities and accelerations at a time within a step from those at its ends.
 template <class Modal>
 void move_to(double t, const RecordedMotion::Motion& from, const RecordedMotion::Motion& to, Modal& q, Modal& v,
              Modal& accelerations) {
@@ -198,7 +198,7 @@ void LinearizedClosing::note_passage(const PhaseChange& change) {
   if (!arcs_.empty() && change.kind == PhaseChange::Kind::turn) arcs_.back().turns = true;
 }
 
-// Adds one set of pieces for each drive that enters another piece.
+// Adds one set of numbers of pieces for each drive that enters its next piece at time t.
 void LinearizedClosing::enter_pieces(double t) {
   for (std::size_t k = 0; k < signals_.size(); ++k) {
     const std::vector<SignalPiece>& all = signals_[k].pieces();
@@ -265,7 +265,7 @@ void LinearizedClosing::linearize_step() {
   add_parts(step, contact.active && after_edge, contact.active && before_edge);
 }
 
-// The rest position at the start moves so that the forces on it stay 0.
+// The rest position at the start depends on the parameters such that the static forces remain 0.
 void LinearizedClosing::begin_at_rest() {
   rest_ = MatrixXd::Zero(size_, moving_);
   const std::vector<double> before = values_before(signals_);
@@ -284,7 +284,7 @@ void LinearizedClosing::begin_at_rest() {
   }
 }
 
-// Computes the present values of the drives.
+// Computes the values of the drives at time t.
 void LinearizedClosing::set_volts(double t) {
   for (std::size_t k = 0; k < volts_.size(); ++k) volts_[k] = signals_[k].pieces()[pieces_[on_][k]].voltage(t);
 }
@@ -351,7 +351,7 @@ LinearizedClosing::Transition LinearizedClosing::transition(std::size_t part) co
   return {.magnus = here, .begin = here + magnus, .middle = here + magnus + each, .end = here + magnus + 2 * each};
 }
 
-// Returns times at which sufficiently short parts of a step end.
+// Returns the times at which the parts of a step end; every part is short enough for Magnus' series.
 std::vector<double> LinearizedClosing::ends_of_parts(double t0, double t1, bool after_edge, bool before_edge) const {
   const double h = t1 - t0;
   const double norm =
@@ -393,7 +393,7 @@ void LinearizedClosing::add_parts(std::size_t step, bool after_edge, bool before
   }
 }
 
-// Adds the jump of f at a time that the waveform decides, at which drives enter other pieces.
+// Adds the jump of d = dy/dp at a breakpoint of the drives, at which f changes.
 void LinearizedClosing::jump_at_pieces(const RecordedMotion::Motion& here, const ContactState& contact, std::size_t entered) {
   if (on_ == entered) return;
   Jump jump{.parts = parts_.size(), .matrix = {}, .moved = {}};
@@ -418,7 +418,7 @@ void LinearizedClosing::jump_at(const RecordedMotion::PhaseEvent& passage, const
   jumps_.back().parts = parts_.size();
 }
 
-// Returns the jump of a plate that has come to rest and stays on the contact plane.
+// Returns the jump of d = dy/dp when a plate comes to rest and stays on the contact plane.
 LinearizedClosing::Jump LinearizedClosing::at_rest(const Arc& before) const {
   Jump jump{.matrix = MatrixXd::Zero(size_ + 1, size_ + 1), .moved = {}, .by_device = MatrixXd::Zero(size_ + 1, moving_)};
   for (Index j = 0; j < moving_; ++j) {
@@ -428,7 +428,7 @@ LinearizedClosing::Jump LinearizedClosing::at_rest(const Arc& before) const {
   return jump;
 }
 
-// Returns the jump of a contact with memory that unloads from here on and keeps the dent of its deepest interference.
+// Returns the jump of d = dy/dp when a contact with memory begins to unload: the dent depends on the deepest interference.
 LinearizedClosing::Jump LinearizedClosing::turned(const Arc& before) const {
   Jump jump{.matrix = MatrixXd::Identity(size_ + 1, size_ + 1), .moved = {}, .by_device = MatrixXd::Zero(size_ + 1, moving_)};
   const double deepest = model_.contact_deflection(before.q.data()) - model_.contact_gap(), step = 1e-5 * deepest;
@@ -444,7 +444,7 @@ LinearizedClosing::Jump LinearizedClosing::turned(const Arc& before) const {
   return jump;
 }
 
-// Returns the jump at an edge of the contact's phases, or at an impact.
+// Returns the jump of d = dy/dp at an edge of the contact's phases, or at an impact.
 LinearizedClosing::Jump LinearizedClosing::crossed(const RecordedMotion::PhaseEvent& passage, const Arc& before) {
   const PhaseChange& change = passage.change;
   Jump jump{.matrix = MatrixXd::Identity(size_ + 1, size_ + 1), .moved = {}, .by_device = MatrixXd::Zero(size_ + 1, moving_)};
@@ -486,7 +486,7 @@ VectorXd LinearizedClosing::scaled(const FigureSlope::Weights& weights) const {
   return all;
 }
 
-// Adds the part of figures that are measured at the beginnings of pieces, or depend on the device at fixed q and v.
+// Adds the derivatives of figures by the begin of pieces of the drives, and by the device at fixed q and v.
 void LinearizedClosing::add_moved(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes, MatrixXd& gradient) const {
   for (std::size_t f = 0; f < figures.size(); ++f) {
     for (const FigureSlope::Moved& m : figures[f].moved) {
@@ -497,7 +497,7 @@ void LinearizedClosing::add_moved(const std::vector<FigureSlope>& figures, const
   }
 }
 
-// Calls add(input, parameter, its derivatives at begin, middle and end of a part).
+// Calls add(input, parameter, a, b, c), with the input's derivatives by the parameter at begin, middle and end of a part.
 template <class Add>
 void LinearizedClosing::for_inputs(const Part& part, const SignalSlopes& slopes, Add&& add) const {
   const std::vector<std::size_t>& on = pieces(arcs_[part.arc]);
@@ -510,7 +510,7 @@ void LinearizedClosing::for_inputs(const Part& part, const SignalSlopes& slopes,
   for (Index j = 0; j < moving_; ++j) add(dent_ + 1 + j, column(j), 1.0, 1.0, 1.0);
 }
 
-// An input on a part is the parabola through its values at the nodes.
+// Over a part an input is the parabola through its values at begin, middle and end.
 MatrixXd LinearizedClosing::backward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes) {
   linearize_for(figures);
   const auto count = static_cast<Index>(figures.size());

@@ -32,7 +32,8 @@ class StepTrial {
         work_(model.workspace()) {}
 
   [[nodiscard]] bool has_rest() const { return rest_.has_value(); }
-  // Returns true when a step reaches the contact plane. Calls tell(part) from time to time with the elapsed share of the time.
+  // Returns true when a step to `value` reaches the contact plane. Calls tell(share) from time to time with the elapsed share
+  // of the simulated time.
   template <class Tell>
   bool reaches(double value, const std::atomic<bool>* stop, Tell&& tell) {
     std::vector<double> all = bias_;
@@ -63,10 +64,9 @@ class StepTrial {
     double deflection, potential;
   };
 
-  // Friction only takes energy. So a run that has not crossed the pass between rest and contact plane, and whose energy falls
-  // below that of the pass, never reaches the plane. The pass is the unstable equilibrium, or the state held at the plane if
-  // that comes first. No shape with the contact point on the pass has less energy, so the deflection of the pass separates the
-  // two sides.
+  // Damping only reduces the energy. The pass is the unstable equilibrium between rest and contact plane, or the state held at
+  // the plane if the plane comes first. No shape whose contact point has the pass's deflection has less energy. So a run that
+  // has not crossed this deflection, and whose energy falls below that of the pass, never reaches the plane.
   Pass pass(double value, std::span<const double> all) {
     const double plane = model_.contact_gap(), strength = model_.strength(drive_, value);
     if (static_.kind == StaticKind::fold && branch_(plane) < strength) {
@@ -99,7 +99,8 @@ std::string_view to_string(StaticKind kind) { return kind == StaticKind::fold ? 
 
 StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias) {
   if (!pulls_in(model.device(), drive)) return {.status = Status::no_contact};
-  // The branch of an electrode begins at the switch's rest without its field, the branch of the dispersion force at factor 0.
+  // The branch of an electrode begins at the switch's rest without the electrode's field, that of the dispersion force at
+  // factor 0.
   std::vector<double> at_begin = standing(model, drive, bias);
   if (model.neutral_voltage(drive) != 0 && !model.open_equilibrium(at_begin)) return {.status = Status::collapsed_at_rest};
   at_begin[drive] = model.value_of_strength(drive, 0);
@@ -133,7 +134,7 @@ StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias) {
 
 namespace {
 
-// Computes the branch from the straight beam up to the contact plane, in small steps.
+// Computes the branch of equilibria from the straight beam up to the contact plane, in small steps of the deflection.
 void follow_to_plane(EquilibriumBranch& branch, double plane) {
   for (int k = 1; k < branch_steps; ++k) branch(plane * k / branch_steps);
 }
@@ -166,7 +167,7 @@ ReleasePoint release_point(const Switch& model, std::size_t drive, Bias bias) {
   follow_to_plane(branch, plane);
   if (model.rigid_contact() != nullptr) return released(branch(plane), plane);
   if (model.contact_reach() > 0) {
-    // Adhesion at larger depth may make a lower minimum than the first.
+    // Adhesion at larger depth may cause a second minimum that is lower than the first.
     constexpr int looks = 256;
     const double step = largest_interference(model.device().contacts.front().model) / looks;
     double best = branch(plane), at = 0;
@@ -180,7 +181,7 @@ ReleasePoint release_point(const Switch& model, std::size_t drive, Bias bias) {
         boost::math::tools::brent_find_minima([&](double x) { return branch(plane + x * step); }, low, at / step + 1, 30);
     return value < best ? released(value, plane + depth * step) : released(best, plane + at);
   }
-  // The contact is soft at first touch, so the branch may continue to fall beyond the plane before contact turns it up.
+  // The contact is soft at first touch, so the strength may still fall beyond the plane before the contact force makes it rise.
   const auto lowest = first_minimum([&](double depth) { return branch(plane + depth); }, model.penetration_scale() / 16);
   return lowest ? released(lowest->value, plane + lowest->depth) : ReleasePoint{};
 }
@@ -195,13 +196,13 @@ std::optional<StablePath> stable_path(const Switch& model, std::size_t drive, Bi
   EquilibriumBranch branch(model, drive, bias);
   const double begin = model.contact_deflection(rest->data()), end = model.contact_gap();
   StablePath path{.deflections = {begin}, .values = {0.0}};
-  double direction = 0;  // direction in which the value moves
+  double direction = 0;  // value at the first step: all values must change in its direction
   for (int k = 1; k <= steps; ++k) {
     const double s = begin + (end - begin) * k / steps, strength = branch(s);
     if (!std::isfinite(strength) || (model.drive_kind(drive) == DriveKind::electrode && !(strength > 0))) return std::nullopt;
     const double value = model.value_of_strength(drive, strength);
     if (k == 1) direction = value;
-    if (!((value - path.values.back()) * direction > 0)) return std::nullopt;  // a fold
+    if (!((value - path.values.back()) * direction > 0)) return std::nullopt;  // the branch has a fold
     values[drive] = value;
     if (!(open_tangent_eigenvalue(model, branch.q(), values) > 0)) return std::nullopt;
     path.deflections.push_back(s);
@@ -219,7 +220,7 @@ bool step_closes(const Switch& model, std::size_t drive, double value, Bias bias
 
 namespace {
 
-// Returns true when damping at rest prevents oscillation of the first mode.
+// Returns true when damping prevents oscillation of the first mode about the open rest position.
 bool is_overdamped(const Switch& model) {
   if (!model.rest()) return false;
   const Eigen::Index n = model.modes();
@@ -238,11 +239,11 @@ DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const Stat
   if (static_result.status != Status::done) return {.status = static_result.status};
   StepTrial steps(model, drive, static_result, bias, tolerance);
   if (!steps.has_rest()) return {.status = Status::collapsed_at_rest};
-  const double halvings = 1 + std::log2(0.5 / precision);  // trials: the first, and those that halve the bracket
+  const double halvings = 1 + std::log2(0.5 / precision);  // trials: the first one, and those that halve the bracket
   double trials = halvings, done = 0, shown = 0;
   const auto reaches = [&](double value) {
     return steps.reaches(value, progress.stop, [&](double part) {
-      // A bracket that has to be extended downwards takes more trials than expected.
+      // A bracket that has to be extended downwards needs more trials than expected.
       shown = std::max(shown, std::min(1.0, (done + part) / trials));
       progress.tell("dynamic pull-in voltage", shown);
     });
@@ -250,7 +251,8 @@ DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const Stat
 
   double low = 0.5 * static_result.voltage, high = static_result.voltage;
   if (is_overdamped(model)) {
-    // If no step overshoots because of damping, one trial shows that the static voltage is the smallest.
+    // If damping prevents every overshoot, one trial shows that the static pull-in voltage is the smallest that closes the
+    // switch.
     trials = 1;
     if (!reaches(high * (1 - precision))) low = high;
     trials = 1 + halvings;

@@ -13,11 +13,11 @@ using namespace statics;
 
 namespace {
 
-// Step and range of the search for pull_through_voltage(). These functions search for the acting voltage, V - V0 for an
-// electrode whose dielectric is charged.
+// Step and range of the search for pull_through_voltage(), as factors. The functions of this file search for the acting
+// voltage, V - V0 for an electrode whose dielectric is charged.
 constexpr double pull_through_factor = 1.05, pull_through_range = 10;
 
-// Searches for closed equilibria up or down from `start`, whatever exists at other voltages.
+// Searches for closed equilibria upwards or downwards from `start`; each voltage is examined without regard to others.
 double pull_through_by_walk(const Switch& model, std::size_t drive, std::vector<double> levels, double start, double precision) {
   const auto holds = [&](double v) {
     levels[drive] = model.neutral_voltage(drive) + v;
@@ -45,8 +45,8 @@ double pull_through_by_walk(const Switch& model, std::size_t drive, std::vector<
 }
 
 // Returns the end of a window of voltages with closed equilibria that begins at the release voltage and is narrower than one
-// step of the walk above. The steps of the search double from a hundred-thousandth on. Returns NaN when no equilibrium exists
-// so near the release voltage.
+// step of pull_through_by_walk(). The steps double, from 1e-5 of the release voltage on. Returns NaN when no closed equilibrium
+// is found so near the release voltage.
 double pull_through_of_narrow_window(const Switch& model, std::size_t drive, std::vector<double> levels, double release,
                                      double precision) {
   constexpr double first_step = 1e-5;
@@ -73,7 +73,7 @@ double pull_through_of_narrow_window(const Switch& model, std::size_t drive, std
   return high;
 }
 
-// Searches upwards by Newton's method from a closed equilibrium near that at `start`; returns none where it does not converge.
+// Searches upwards by Newton's method from `near`, an equilibrium near that at `start`; returns none without convergence.
 std::optional<double> pull_through_from(const Switch& model, std::size_t drive, std::vector<double> levels, double start,
                                         const ClosedEquilibrium& near, double precision) {
   std::optional<ClosedEquilibrium> last = near;
@@ -95,7 +95,7 @@ std::optional<double> pull_through_from(const Switch& model, std::size_t drive, 
     const double middle = low + (high - low) / 2;
     (follows(middle) ? low : high) = middle;
   }
-  // Newton's method may have failed although an equilibrium exists.
+  // Newton's method may have failed although a closed equilibrium exists.
   levels[drive] = model.neutral_voltage(drive) + high;
   return keeps_closed(model, closed_equilibrium(model, levels)) ? std::nullopt : std::optional(high);
 }
@@ -122,7 +122,7 @@ double acting_pull_through(const Switch& model, std::size_t drive, std::span<con
   return pull_through_of_narrow_window(model, drive, std::move(levels), release, precision);
 }
 
-// Returns true for a landing on a wall, below whose face the beam does not move.
+// Returns true when the beam lands on a wall of this drive's electrode: the beam then does not move below the face.
 bool lands_on_wall(const Switch& model, std::size_t drive) {
   const Device& device = model.device();
   if (drive >= device.electrodes.size() || !device.electrodes[drive].dielectric || device.face_contact() != 0) return false;

@@ -11,8 +11,8 @@
 namespace softland {
 namespace {
 
-// Integrals over [-1, 1] of products of an element's motions, and of their slopes. The motions are one, 1 + xi, and the
-// functions, which are sqrt(m + 1/2) times the integrals of P_m.
+// Integrals over [-1, 1] of products of an element's motions, and of their slopes. The motions are 1, 1 + xi, and the shape
+// functions sqrt(m + 1/2) times the integrals of P_m.
 struct ElementProducts {
   static constexpr int size = 2 + element_functions;
   using Row = Eigen::Matrix<double, 1, size>;
@@ -41,10 +41,10 @@ struct ElementProducts {
   }
 };
 
-// Functions that leave the right end at rest are even or odd. The integral of the product of an even and an odd one is 0.
+// Shape functions with the right end at rest are even or odd. The integral of an even times an odd function is 0.
 constexpr bool act_on_each_other(int i, int j) { return i < 4 || j < 4 || (i - j) % 2 == 0; }
 
-// Motions of the right end: 1, 2 and the factors of the first two functions in its deflection, and in half its rotation.
+// Values at the right end: 1, 2 and the factors of the first two shape functions in its deflection, and in half its rotation.
 const double first_at_end = std::sqrt(2.0), second_at_end = -std::sqrt(2.0 / 3), first_turn = std::sqrt(2.0);
 
 }  // namespace
@@ -154,7 +154,7 @@ void Receptance::load(double x) {
   }
 }
 
-// Adds the effects of the stiffness [deflection, both, slope] and the forces at the right end on the motions of an element.
+// Adds the stiffness [deflection, both, slope] and the force of the beam beyond the right end to an element's motions.
 void Receptance::add_beyond(Stage& stage, const ElementKind& kind, const Lane* stiffness, const Lane* force) const {
   const double deflection[kept] = {1, 2, kind.reach * first_at_end, kind.reach * second_at_end};
   const double slope[kept] = {0, 1 / kind.half, kind.reach * first_turn / kind.half, 0};
@@ -166,8 +166,8 @@ void Receptance::add_beyond(Stage& stage, const ElementKind& kind, const Lane* s
   }
 }
 
-// Fixes the right end: its motion then depends on the left end, as the first two functions are linear in deflection and
-// rotation.
+// Holds the right end at rest: the factors of the first two shape functions then follow from the motion of the left end, since
+// these functions alone move the right end.
 void Receptance::fix_end(Stage& stage, const ElementKind& kind) const {
   const double first = -1 / (kind.reach * first_turn), second = -1 / (kind.reach * second_at_end);
   auto& f = stage.form;
@@ -196,7 +196,7 @@ void Receptance::sweep_to_clamp(Answer& answer) {
       fix_end(stage, kind);
     } else {
       add_beyond(stage, kind, stiffness, force);
-      // Eliminate both functions at once: one of them alone may have a zero pivot although no pole is near.
+      // Eliminate two shape functions at once: one of them alone may have a zero pivot although no pole is near.
       auto& f = stage.form;
       const Lane determinant = f[2][2] * f[3][3] - f[3][2].square(), over = determinant.inverse();
       stage.inverse[0] = f[3][3] * over;

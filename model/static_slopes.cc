@@ -15,9 +15,9 @@ using Eigen::VectorXd;
 
 constexpr double no_slope = std::numeric_limits<double>::quiet_NaN();
 
-// Static accelerations near an equilibrium; each row is in units of its mode's own stiffness.
+// Derivatives of static accelerations at an equilibrium.
 struct Tangent {
-  MatrixXd by_q, by_strength;  // unscaled; by_strength: drives at unit strength
+  MatrixXd by_q, by_strength;  // [rad^2/s^2]; by_strength: forces of the drives at unit strength
   VectorXd scale;              // 1 / omega^2
 
   Tangent(const Switch& model, const VectorXd& q, std::span<const double> volts, const ContactState& contact)
@@ -34,7 +34,7 @@ struct Tangent {
     model.drive_forces(work, by_strength);
   }
 
-  // Returns the x with F_q x = right.
+  // Returns the solution x of F_q x = right, with each row in units of its mode's own stiffness.
   [[nodiscard]] VectorXd solved(const VectorXd& right) const {
     return solve_linear(scale.asDiagonal() * by_q, scale.cwiseProduct(right));
   }
@@ -48,7 +48,7 @@ VectorXd change_of_accelerations(SwitchSlopes& by, std::size_t j, const VectorXd
   return change;
 }
 
-// Returns the slopes of the voltage at which a drive holds this equilibrium at a constant interference.
+// Returns the slopes of the voltage at which a drive holds the contact point at a given deflection, at a constant interference.
 std::vector<double> held_slopes(const Switch& model, SwitchSlopes& by, std::size_t drive, double deflection, Bias bias) {
   std::vector<double> slopes(by.moving().size(), no_slope);
   const std::optional<HeldEquilibrium> held = held_by_drive(model, drive, deflection, bias);
@@ -77,7 +77,7 @@ std::vector<double> held_slopes(const Switch& model, SwitchSlopes& by, std::size
   return slopes;
 }
 
-// The open switch at rest.
+// The open equilibrium of a switch.
 struct Rest {
   VectorXd q;
   ContactState contact;
@@ -101,12 +101,12 @@ MatrixXd symmetric_tangent(const Switch& model, const VectorXd& q, std::span<con
   return -(by_q + by_q.transpose()) / 2;
 }
 
-// Returns true when all drives are at 0 and no charge on a dielectric pulls.
+// Returns true when no drive acts: all values are 0 and no dielectric is charged.
 bool are_zero(const Switch& model, std::span<const double> values) {
   return !model.device().is_charged() && std::all_of(values.begin(), values.end(), [](double v) { return v == 0; });
 }
 
-// Returns the derivative of an equilibrium by the voltage of a drive.
+// Returns the derivative of the equilibrium's modal coordinates by the voltage of a drive.
 VectorXd motion_by_voltage(const Switch& model, const Tangent& tangent, std::size_t drive, double value) {
   const double by_value = model.strength_slope(drive, value);
   const VectorXd force = model.drive_kind(drive) == DriveKind::piezo
@@ -115,7 +115,7 @@ VectorXd motion_by_voltage(const Switch& model, const Tangent& tangent, std::siz
   return -tangent.solved(by_value * force);
 }
 
-// Returns a step along a direction of q that is small but far above rounding.
+// Returns a step along a direction of q that is small against the contact gap but far above rounding.
 double small_step(const Switch& model, const VectorXd& direction) {
   constexpr double share = 1e-5;  // share of the gap
   const double moved = std::abs(model.contact_deflection(direction.data()));
@@ -202,7 +202,7 @@ std::vector<double> open_capacitance_slopes(const Switch& model, SwitchSlopes& b
   const std::optional<Rest> rest = rest_under(model, values);
   if (!rest) return slopes;
   const Tangent tangent(model, rest->q, values, rest->contact);
-  // The force of an electrode is its strength times that at unit strength, and minus the gradient of -C (V - V0)^2 / 2.
+  // The force of an electrode is its strength times by_strength, and minus the gradient of -C (V - V0)^2 / 2: dC/dq follows.
   const VectorXd by_q = 2 * tangent.by_strength.col(static_cast<Eigen::Index>(drive));
   for (std::size_t j = 0; j < slopes.size(); ++j) {
     const VectorXd motion = -tangent.solved(change_of_accelerations(by, j, rest->q, values, rest->contact, tangent.by_q));

@@ -42,8 +42,8 @@ std::shared_ptr<const DistributedLaw> erased(Law law, PointRange range, double f
   return std::make_shared<const DistributedLawOf<Law>>(law, range.begin, range.end, floor);
 }
 
-// Points of a range under a structure of one width and thickness, and with one pattern of holes: the width without the holes,
-// and the full width.
+// Points of a range under a structure of one width and thickness, and with one pattern of holes. `width` is without the holes,
+// `full_width` includes them.
 struct EvenRange {
   PointRange points;
   double width, thickness;
@@ -51,8 +51,8 @@ struct EvenRange {
   double full_width = width;
 };
 
-// Returns ranges of points between two places, each under one size of the structure. A uniform structure has one range; when
-// the width changes along the structure each point is a range by itself.
+// Returns ranges of points between two places, each with constant sizes of the structure. A uniform structure has one range;
+// when the width changes along the structure each point is a range of its own.
 std::vector<EvenRange> even_ranges(const Structure& s, const Eigen::ArrayXd& positions, double begin, double end) {
   if (!s.is_built()) return {{points_in(positions, begin, end), s.width, s.thickness}};
   std::vector<EvenRange> ranges;
@@ -70,7 +70,7 @@ std::vector<EvenRange> even_ranges(const Structure& s, const Eigen::ArrayXd& pos
   return ranges;
 }
 
-// Calls visit(range) for the points over each face on which the beam may land.
+// Calls visit(range) for the points over each electrode on whose dielectric the beam may land.
 template <class Visit>
 void for_faces(const Device& device, const Eigen::ArrayXd& positions, Visit&& visit) {
   for (const Electrode& e : device.electrodes) {
@@ -84,17 +84,17 @@ std::shared_ptr<const DistributedLaw> one_law(std::vector<std::shared_ptr<const 
   return pads.size() == 1 ? pads.front() : std::make_shared<const LawOnPads>(std::move(pads));
 }
 
-// Returns the number of points over a beam's length that resolve the field at its first touch of a face; 0 when the beam cannot
-// land on a face. The beam bends over the face like (g / 2) (1 - cos(2 pi x / L)), so that the gap H of the field has doubled
-// at a distance of L sqrt(H / g) / pi: six points lie in this distance, which is our choice. Half as many give an error of the
-// release voltage of 7e-4, measured on one bridge.
+// Returns the number of points over a beam's length that resolve the field when the beam first touches a face; 0 when the beam
+// cannot land on a face. The beam bends over the face like (g / 2) (1 - cos(2 pi x / L)), so that the gap H of the field has
+// doubled at a distance of L sqrt(H / g) / pi: six points lie in this distance, which is our choice. Half as many points give
+// an error of the release voltage of 7e-4, measured on one bridge.
 double points_to_land(const Device& device) {
   if (!device.lands_along_face()) return 0;
   constexpr double points = 6;
   return points * pi * std::sqrt(device.gap.electrode / (device.dielectric_depth() + device.landing()->begin()));
 }
 
-// Calls `make` with the force law of an electrode.
+// Calls `make` with the force law of an electrode that has this fringing field.
 template <class Make>
 std::shared_ptr<const DistributedLaw> electrostatic(Fringing fringing, const EvenRange& range, Make&& make) {
   return std::visit([&](const auto& law) { return make(ElectrostaticForce<std::decay_t<decltype(law)>>{law}); },
@@ -166,7 +166,7 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
       s.kind);
   const Eigen::Index n = quadrature_.points();
 
-  // Makes a law on the far side, whose rest gap is `gap`.
+  // Makes the force law of a face on the far side, whose rest gap is `gap`.
   const auto on_far_side = [&](const auto& law, double gap) {
     const double both_gaps = device_.gap.electrode + gap, floor = gap / 100;
     most_gap_ = std::min(most_gap_, both_gaps - floor);
@@ -211,7 +211,7 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
     const LocalSection contact = section_at(s, device_.contact_position());
     const double width = contact.width_at(device_.contact_position());
     gas_ = std::make_shared<const GasLaw>(gas_law(*device_.gas, width, contact.thickness, unit_quality));
-    // Calls `make` with the law of the film over one range.
+    // Calls `make` with the law of the gas film over one range of points.
     const auto film_on = [&](const EvenRange& even, auto&& make) {
       const GasLaw law = gas_law(*device_.gas, even.full_width, even.thickness, unit_quality);
       const auto* const strip = even.holes.exist() ? std::get_if<StripSqueezeFilm>(&law) : nullptr;
@@ -290,8 +290,8 @@ GapField Switch::still_field(const double* q) const {
   return field;
 }
 
-// Returns the interference that carries a force, by bisection, since forces grow with the interference. A pad is tilted as by
-// this force at the contact point.
+// Returns the interference at which the contact carries a force, by bisection, since forces grow with the interference. The
+// tilt of a pad is that under the same force at the contact point.
 double Switch::penetration_under(double force) const {
   const double plane = contact_gap_;
   const Eigen::VectorXd pushed = basis_.contact_shape().cwiseQuotient(basis_.squares()), still = Eigen::VectorXd::Zero(modes());
@@ -320,8 +320,8 @@ std::optional<Eigen::VectorXd> Switch::open_equilibrium(std::span<const double> 
   return loaded_equilibrium(values);
 }
 
-// Finds the equilibrium at once if possible, and otherwise in increments of the load. A stretching beam is far stiffer when
-// bent than Newton's method expects from the straight beam.
+// Finds the equilibrium in one Newton iteration if possible, and otherwise in increments of the load: a beam that stretches is
+// far stiffer when bent than Newton's method predicts from the straight beam.
 std::optional<Eigen::VectorXd> Switch::loaded_equilibrium(std::span<const double> values) const {
   Eigen::VectorXd q = Eigen::VectorXd::Zero(modes());
   if (std::optional<Eigen::VectorXd> found = equilibrium_from(q, values)) return found;
@@ -339,8 +339,8 @@ std::optional<Eigen::VectorXd> Switch::loaded_equilibrium(std::span<const double
   return step > shortest ? std::optional(q) : std::nullopt;
 }
 
-// Uses Newton's method. The load grows ever faster as the gap closes, so the iterates stay on the stable near side of the
-// equilibrium. If one of them is not stable, no stable equilibrium exists.
+// Finds the equilibrium by Newton's method from q. The load grows ever faster as the gap closes, so the iterates stay on the
+// stable side, before the equilibrium. If the tangent at an iterate is not stable, no stable equilibrium exists.
 std::optional<Eigen::VectorXd> Switch::equilibrium_from(Eigen::VectorXd q, std::span<const double> values) const {
   constexpr int most_iterations = 200;  // near the fold an iteration halves the distance at best
   constexpr double rounding = 1e-14;    // share of the gap
@@ -352,7 +352,7 @@ std::optional<Eigen::VectorXd> Switch::equilibrium_from(Eigen::VectorXd q, std::
     accelerations(q.data(), zero.data(), values, false, work, force.data());
     jacobian(q.data(), zero.data(), values, false, work, by_q, by_v);
     if (!(smallest_gap(work) > gap_floor())) return std::nullopt;
-    // The equations are in units of each mode's own stiffness.
+    // Each equation is in units of its mode's own stiffness.
     const std::optional<Eigen::VectorXd> moved =
         solve_definite(-(basis_.angular_frequencies().cwiseInverse().asDiagonal() * by_q *
                          basis_.angular_frequencies().cwiseInverse().asDiagonal()),
@@ -395,7 +395,7 @@ void Switch::accelerations(const double* q, const double* v, std::span<const dou
   }
   const double piezo = device_.piezo ? volts.back() : 0;
   for (std::size_t i = 0; i < n; i += lanes) {
-    // Terms that need the load come last, so that the others do not wait for it.
+    // Add the terms that need the load last, so that the other terms do not wait for the load.
     const Lane own = basis_.forces(i, n, q, v, piezo, push);
     store_lane(own + quadrature_.projected(work.load, i), result, i, n);
   }

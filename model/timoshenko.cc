@@ -15,10 +15,10 @@ namespace {
 
 constexpr double shear_coefficient = 5.0 / 6;  // kappa of a rectangle
 constexpr double usual_poissons_ratio = 0.3;
-constexpr double most_slender = 1000;  // beyond this ratio rounding errors show; the excess grows with (thickness / length)^2
+constexpr double most_slender = 1000;  // largest length / thickness: rounding shows beyond; the excess falls with the square
 
-// Returns Euler-Bernoulli's wave number beta of a mode, counted from 1: cos(beta) cosh(beta) = 1 between two clamps, -1 with a
-// free end.
+// Returns Euler-Bernoulli's wave number beta of a mode, counted from 1: the root of cos(beta) cosh(beta) = 1 between two
+// clamps, -1 with a free end.
 double wave_number(int mode, bool both_clamped) {
   const double sign = both_clamped ? -1 : 1;
   double beta = (mode + (both_clamped ? 0.5 : -0.5)) * pi;
@@ -29,7 +29,7 @@ double wave_number(int mode, bool both_clamped) {
   return beta;
 }
 
-// Values and derivatives on [0, 1] of Legendre polynomials times a factor that vanishes at the clamps, one column each.
+// Values and derivatives on [0, 1] of Legendre polynomials times a factor that vanishes at the clamps, a column for each.
 struct Basis {
   Eigen::MatrixXd values, slopes;
 };
@@ -40,7 +40,7 @@ Basis basis(const std::vector<double>& points, int functions, bool both_clamped)
   for (Eigen::Index p = 0; p < rows; ++p) {
     const double z = points[static_cast<std::size_t>(p)], x = (1 + z) / 2;  // z in [-1, 1]
     const double held = both_clamped ? x * (1 - x) : x, held_slope = both_clamped ? 1 - 2 * x : 1;
-    double last = 0, now = 1, last_slope = 0, slope = 0;  // derivatives of P_k by z
+    double last = 0, now = 1, last_slope = 0, slope = 0;  // P_k at z, and its derivatives by z
     for (int k = 0; k < functions; ++k) {
       b.values(p, k) = held * now;
       b.slopes(p, k) = held_slope * now + held * 2 * slope;

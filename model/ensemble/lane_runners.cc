@@ -1,4 +1,4 @@
-// The vector instructions of this build: a file of its own, so that another choice compiles nothing else again.
+// The choice of vector instructions in this build; in a file of its own, so that another choice recompiles only this file.
 #include "model/ensemble/ensemble_closings.h"
 #include "model/ensemble/lane_closing.h"
 

@@ -1,4 +1,4 @@
-// Compiled for processors with AVX-512 alone: see ensemble_closings.cc.
+// Code compiled only for processors with AVX-512: see ensemble_closings.cc.
 #include "model/ensemble/simd_closings.h"
 
 namespace softland::simd {

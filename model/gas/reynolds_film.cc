@@ -20,8 +20,8 @@ double legendre(double x) {
   return last;
 }
 
-// Returns the Gauss-Lobatto points on [-1, 1] in rising order: the ends and the zeros of P'_degree, eigenvalues of a Jacobi
-// matrix.
+// Returns the Gauss-Lobatto points on [-1, 1] in rising order: both ends, and the zeros of P'_degree, which are the eigenvalues
+// of a Jacobi matrix.
 Eigen::VectorXd lobatto_points() {
   constexpr int inner = degree - 1;
   Eigen::VectorXd off(inner - 1);
@@ -31,7 +31,7 @@ Eigen::VectorXd lobatto_points() {
   return points;
 }
 
-// Returns the free energy of an isothermal gas at p = pa (1 + P), over pa.
+// Returns the free energy per volume, over pa, of an isothermal gas at the pressure pa (1 + p).
 double free_energy(double p) { return (1 + p) * std::log1p(p) - p; }
 
 }  // namespace

@@ -15,7 +15,7 @@
 namespace softland {
 namespace {
 
-// Throws InvalidInput about a table unless the rule holds.
+// Throws InvalidInput with a rule about tables of modes unless the rule holds.
 void require_table(bool holds, const char* rule) {
   require(holds, [&] { return fmt::format("modes of a table: {}", rule); });
 }
@@ -140,7 +140,7 @@ std::shared_ptr<const ModalTable> ModalStructure::example_table() {
   static const auto table = [] {
     constexpr int places = 40;
     constexpr double length = 250e-6, mass = 19300 * 20e-6 * 2e-6 * length;
-    constexpr std::array roots{1.87510406871, 4.69409113297}, frequencies{10394.0, 65139.0};  // for a free end
+    constexpr std::array roots{1.87510406871, 4.69409113297}, frequencies{10394.0, 65139.0};  // roots for a free end
     std::vector<double> x;
     std::vector<std::vector<double>> shapes(roots.size());
     for (int i = 0; i <= places; ++i) {
