@@ -49,7 +49,7 @@ enum class StartState { open, closed };
 [[nodiscard]] Integrator automatic_integrator(const Switch& model);
 
 struct ClosingOptions {
-  double duration = 0;      ///< window [s]
+  double duration = 0;      ///< length of the simulated time window [s]
   double tolerance = 1e-6;  ///< relative tolerance of the integrator
   Integrator integrator = Integrator::automatic;
   double after_contact = std::numeric_limits<double>::infinity();  ///< time from the first touch to the end of the run [s]
@@ -57,8 +57,8 @@ struct ClosingOptions {
   double no_contact_before = std::numeric_limits<double>::infinity();  ///< time at which a run without a touch ends [s]
   long max_steps = 2'000'000;  ///< largest number of steps: a run that needs more ends as numerical_failure
   /// If false, the integrator does not stop at make and break of contact: the contact force sets in within a step, and the
-  /// times of make and break are as exact as the interpolant. The tolerances of contact apply throughout. Studies measure in
-  /// this way what the restarts are worth: see why_always_restarted().
+  /// times of make and break are as exact as the interpolant. The tolerances of contact apply throughout. Studies set false to
+  /// measure the effect of restarts: see why_always_restarted().
   bool restart_at_contact = true;
   /// Potential of the closed equilibrium under the hold levels [J]; if given, Trajectory::landing_excess is computed relative
   /// to this potential.
@@ -85,7 +85,7 @@ struct ClosingOptions {
 
 /// Simulates a closing. Numerical trouble is never an exception: see Trajectory::status, which is collapsed_at_rest when the
 /// equilibrium that `start` requires does not exist. Throws InvalidInput unless there is one signal per drive of the switch,
-/// duration and tolerance are positive and tolerance <= 0.1. Also throws it when begins_closed has a wrong number of
+/// duration and tolerance are positive and tolerance <= 0.1. Throws InvalidInput also when begins_closed has a wrong number of
 /// coordinates, when a run should begin closed and the switch has no contact, and when restart_at_contact is false although
 /// why_always_restarted() gives a reason.
 [[nodiscard]] Trajectory simulate_closing(const Switch& model, std::span<const Signal> drives, const ClosingOptions& options);

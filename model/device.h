@@ -35,7 +35,7 @@ struct Landing {
   std::optional<UniformAsperities> asperities = {};  ///< asperities on the face, without damping
 
   [[nodiscard]] bool is_wall() const { return std::isnan(stiffness) && !asperities; }
-  /// Returns the height above the face at which the pressure begins [m]; for asperities that of the highest one.
+  /// Returns the height above the face at which the pressure begins [m]; for asperities the height of the highest asperity.
   [[nodiscard]] double begin() const { return asperities ? asperities->height : from; }
 };
 
@@ -43,7 +43,7 @@ struct Landing {
 /// deeper.
 struct Dielectric {
   double thickness = 0;     ///< [m]
-  double permittivity = 1;  ///< relative
+  double permittivity = 1;  ///< relative permittivity
   double roughness = 0;     ///< air gap that remains when its summits touch [m]
   double charge = 0;        ///< charge per area on its face [C/m^2], of either sign
   /// Landing on the face. A moving part that reaches a face without a landing has failed, unless the moving part is a plate on
@@ -61,10 +61,10 @@ struct Electrode {
   std::string name = {};
   Place begin;  ///< only the length of the interval matters on a plate: the electrode's area over the plate's width
   Place end;
-  std::vector<Span> further = {};  ///< further pads
+  std::vector<Span> further = {};  ///< pads besides the first one
   Fringing fringing = Fringing::meijs_fokkema;
   Side side = Side::near;
-  double gap = 0;                             ///< rest distance of the face on the far side, for the sides far and both [m]
+  double gap = 0;                             ///< rest distance of the face on the far side, for Side::far and Side::both [m]
   std::optional<Dielectric> dielectric = {};  ///< dielectric, on the near side only
 
   /// Returns all pads on a beam of this length [m].
@@ -98,8 +98,8 @@ static_assert(is_complete<conductors>());
 /// Casimir and van der Waals forces between beam and electrode plane, over the whole length.
 struct Dispersion {
   DispersionModel model = DispersionModel::automatic;
-  Conductor conductor = Conductor::ideal;  ///< conductor of the Casimir law; used by casimir and automatic
-  double hamaker_constant = 0;             ///< A_h [J]; used by van_der_waals and automatic
+  Conductor conductor = Conductor::ideal;  ///< conductor of the Casimir law; used by models casimir, automatic
+  double hamaker_constant = 0;             ///< A_h [J]; used by models van_der_waals, automatic
   double equilibrium_distance = 0;         ///< h0 [m], at which attraction and repulsion balance; 0: no repulsion
 };
 
@@ -113,7 +113,7 @@ inline constexpr auto residual_loads =
     std::to_array<Named<ResidualLoad>>({{ResidualLoad::none, "none"}, {ResidualLoad::compression, "compression"}});
 static_assert(is_complete<residual_loads>());
 
-/// Skins of a thin beam: see model/surface.h.
+/// Elastic skins at the surfaces of a thin beam: see model/surface.h.
 struct Surface {
   double elastic_modulus = 0;  ///< E_s [N/m], of either sign
   double residual_stress = 0;  ///< tau_0 [N/m], positive where the surface pulls
@@ -177,8 +177,8 @@ struct Device {
   /// Returns true when the moving part closes onto the dielectric of its electrodes, to within a hundredth of the electrode's
   /// gap.
   [[nodiscard]] bool lands_on_dielectric() const { return lands_along_face() || gap.contact > 0.99 * gap.electrode; }
-  /// Returns the local gap between a closed switch and the face of its electrode, for the laws of films [m]. It is at least a
-  /// hundredth of the rest gap, below which these laws are continued.
+  /// Returns the local gap between a closed switch and the face of its electrode, for the laws of films [m]. The gap is at
+  /// least a hundredth of the rest gap, below which the film laws are continued.
   [[nodiscard]] double closed_gap() const { return std::max(gap.electrode - gap.contact, gap.electrode / 100); }
   /// Returns the least contribution of the near electrodes' dielectrics to the gap of their fields [m]; 0 when an electrode has
   /// no dielectric.
@@ -215,7 +215,7 @@ struct ContactConflict {
   std::string why;
 };
 /// Returns a conflict of contacts; none when all contacts fit. The first contact must be on the near side, two contacts on one
-/// side must differ in place or gap, and a rigid contact or one along its pad must be the only one.
+/// side must differ in place or gap, and a rigid contact or a contact along its pad must be the only contact.
 [[nodiscard]] std::optional<ContactConflict> contact_conflict(const Device& device);
 
 /// Returns true when the landings on both electrodes have equal parameters, or neither electrode has a landing.

@@ -30,7 +30,8 @@ class DistributedLaw {
   /// Adds load += drive * law [N/m] at the law's points; a law that no drive scales ignores `drive`. `load` is as long as the
   /// field.
   virtual void add_load(const GapField& field, double drive, double* load) const = 0;
-  /// Adds derivatives of the load with respect to deflection and velocity at the law's points. Both are as long as the field.
+  /// Adds derivatives of the load with respect to deflection and velocity at the law's points. The arrays are as long as the
+  /// field.
   virtual void add_derivatives(const GapField& field, double drive, double* by_deflection, double* by_velocity) const = 0;
   /// Adds second derivatives of the load at the law's points: by deflection twice, by deflection and velocity, by velocity
   /// twice. Adds nothing at points below the gap floor, where the load continues by its tangent.
@@ -164,7 +165,7 @@ class DistributedLawOf final : public DistributedLaw {
   Law law_;
   Eigen::Index begin_, end_;
   double floor_;
-  Eigen::ArrayXd share_;  // 1 at the law's points, 0 at those that fill its lanes
+  Eigen::ArrayXd share_;  // 1 at the law's points, 0 at points that only fill vector lanes
 };
 
 /// One law on several stretches of the beam.

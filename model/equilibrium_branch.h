@@ -174,7 +174,7 @@ std::vector<double> standing(const Switch& model, std::size_t drive, Bias bias) 
   return values;
 }
 
-// The static branch of one drive as a function of the contact point's deflection.
+// The strength of one drive on its branch of static equilibria, as a function of the contact point's deflection.
 class EquilibriumBranch {
  public:
   EquilibriumBranch(const Switch& model, std::size_t drive, Bias bias)
@@ -229,7 +229,7 @@ class EquilibriumBranch {
 
 inline constexpr int branch_steps = 64;
 
-// Three depths beyond the contact plane, one step apart [m]; at the start of a walk `before` and `last` are the same.
+// Three depths beyond the contact plane, one step apart [m]; at the start of walk() `before` and `last` are the same.
 struct Steps {
   double before, last, next;
 };

@@ -14,8 +14,8 @@ namespace softland {
 template <class Law, class P = double>
 struct FarSide {
   Law law = {};
-  P both_gaps = 0;  ///< H [m]
-  P floor = 0;      ///< [m]
+  P both_gaps = 0;  ///< sum H of both rest gaps [m]
+  P floor = 0;      ///< far gap below which the law is continued by its tangent [m]
   /// Value and slope of the law at the floor, for v = 1 m/s: the tangent that continues the law.
   DualOf<P> at_floor = law.load(DualOf<P>(floor, 1), DualOf<P>(1));
   static constexpr bool drive_depends = Law::drive_depends;

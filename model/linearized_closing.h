@@ -169,7 +169,7 @@ class LinearizedClosing {
 
   std::size_t steps_ = 0;         // number of linearised steps of the recorded motion
   std::size_t next_arc_ = 0;      // index of the first arc after the linearised steps
-  std::size_t next_passage_ = 0;  // event of the recorded motion that comes next
+  std::size_t next_passage_ = 0;  // index of the next event of the recorded motion
   std::size_t on_ = 0;            // index of the current pieces of the drives in pieces_
   std::vector<double> volts_;     // current values of the drives
   std::vector<Part> parts_;

@@ -39,7 +39,7 @@ class ModalBasis {
   [[nodiscard]] const Eigen::VectorXd& pad_slope() const { return pad_slope_; }
   /// Returns theta, the force on each mode per volt on the piezo [N kg^(-1/2) / V]; zero without a layer.
   [[nodiscard]] const Eigen::VectorXd& piezo_shape() const { return piezo_shape_; }
-  [[nodiscard]] double in_contact_period() const { return in_contact_period_; }  ///< 2 pi over the first pinned frequency [s]
+  [[nodiscard]] double in_contact_period() const { return in_contact_period_; }  ///< first period with the contact held [s]
 
   /// Returns y(x_c) [m] from coordinates, or the velocity of the contact point [m/s] from velocities.
   [[nodiscard]] double contact_deflection(const double* q) const {
@@ -48,7 +48,7 @@ class ModalBasis {
   /// Returns y'(x_c), the slope of the pad, for a contact along the pad; 0 for all other contacts.
   [[nodiscard]] double pad_tilt(const double* q) const { return at(q).dot(pad_slope_); }
   /// Returns the static deflection of the contact point per volt on the piezo, without any other force and for small
-  /// deflections [m/V]; 0 without a layer. It is positive towards the electrodes.
+  /// deflections [m/V]; 0 without a layer. The deflection is positive towards the electrodes.
   [[nodiscard]] double piezo_deflection() const { return contact_shape_.cwiseQuotient(squares_).dot(piezo_shape_); }
   /// Returns the charge that the deflection of the beam puts on the piezo's electrodes, theta q [C]. This charge is without
   /// that of the layer's own capacitance (piezo_layer.h).

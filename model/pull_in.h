@@ -82,10 +82,10 @@ struct ReleasePoint {
   double deflection = std::numeric_limits<double>::quiet_NaN();  ///< [m]
 };
 [[nodiscard]] ReleasePoint release_point(const Switch& model, std::size_t drive, Bias bias = {});
-/// Returns the release voltage [V]: the smallest voltage above V0 with a closed equilibrium. It is 0 when the dispersion force,
-/// or the bias, keeps the switch closed by itself, and negative when a charge on the dielectric keeps it closed at 0 V. It is
-/// NaN without a contact law, when the contact is too soft to keep the beam off the electrode at any voltage, and when the
-/// branch could not be computed. Throws as static_pull_in() does.
+/// Returns the release voltage [V]: the smallest voltage above V0 with a closed equilibrium. The voltage is 0 when the
+/// dispersion force, or the bias, keeps the switch closed by itself, and negative when a charge on the dielectric keeps the
+/// switch closed at 0 V. The voltage is NaN without a contact law, when the contact is too soft to keep the beam off the
+/// electrode at any voltage, and when the branch could not be computed. Throws as static_pull_in() does.
 [[nodiscard]] double release_voltage(const Switch& model, std::size_t drive, Bias bias = {});
 
 /// An equilibrium of the beam on the contact.
@@ -94,13 +94,13 @@ struct ClosedEquilibrium {
   double contact_force = 0;  ///< [N]
   double potential = 0;      ///< Switch::potential of the equilibrium [J]
   /// Smallest eigenvalue of the tangent stiffness of the static forces, over all motions that the contact allows [rad^2/s^2];
-  /// infinite when it allows none. The equilibrium is unstable when the eigenvalue is not positive.
+  /// infinite when the contact allows no motion. The equilibrium is unstable when the eigenvalue is not positive.
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   /// Returns the coordinates for ClosingOptions::begins_closed; valid during the lifetime of this object.
   [[nodiscard]] std::span<const double> coordinates() const { return {q.data(), static_cast<std::size_t>(q.size())}; }
 };
 /// Returns the closed equilibrium under constant voltages nearest to the contact plane, if one exists with a contact force
-/// above zero. With one electrode at V and all other drives at 0 V the equilibrium exists from the release voltage up to the
+/// above zero. The equilibrium with one electrode at V and all other drives at 0 V exists from the release voltage up to the
 /// voltage at which the beam collapses onto the electrode.
 [[nodiscard]] std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::span<const double> volts);
 /// Returns closed_equilibrium(), found by Newton's method from the closed equilibrium of a slightly different switch and
@@ -136,9 +136,9 @@ struct ClosedEquilibrium {
 inline constexpr double dynamic_pull_in_precision = 1e-7;
 
 /// Dynamic pull-in voltage Vdp [V]: the smallest constant step from rest under the bias whose contact point reaches the contact
-/// plane within 100 periods of the first mode, whether or not it stays, to `precision`. Vdp is at most the static pull-in
-/// voltage, at which the switch closes whatever its damping. Vdp is NaN with a status when static pull-in under the same bias
-/// fails, or `progress` asks to stop. Throws as static_pull_in() does.
+/// plane within 100 periods of the first mode, whether or not the switch stays closed, to `precision`. Vdp is at most the
+/// static pull-in voltage, at which the switch closes whatever its damping. Vdp is NaN with a status when static pull-in under
+/// the same bias fails, or `progress` asks to stop. Throws as static_pull_in() does.
 struct DynamicPullIn {
   Status status = Status::not_run;
   double voltage = std::numeric_limits<double>::quiet_NaN();  ///< [V]; for the dispersion force its factor minus 1

@@ -91,7 +91,7 @@ class Receptance {
   std::vector<Stage> stages_;
   std::vector<double> nodes_;  // ends of the elements
   std::size_t loaded_ = 0;     // index of the element at x
-  double probe_[size] = {};    // deflections at x of the motions of this element
+  double probe_[size] = {};    // deflections at x of the motions of the element at x
   Lane load_[size];            // load of a unit force at x, eliminated like the quadratic form
 };
 

@@ -12,7 +12,7 @@ enum class Status {
   no_contact,                ///< the contact point never reached the contact gap in the window
   not_settled,               ///< at the end of the window a rebound had not ended, or contact had only just begun
   collapsed_at_rest,         ///< no stable static equilibrium exists from which a run can start
-  collapsed_onto_electrode,  ///< the beam reached the metal of an electrode, or a wall on its far side
+  collapsed_onto_electrode,  ///< the beam reached the metal of an electrode, or a wall on the far side
   numerical_failure,
   interrupted,
 };

@@ -18,7 +18,7 @@
 
 namespace softland {
 
-/// Templated over the scalar P of its parameters; the scalar S of the state can be made of P.
+/// `P` is the scalar type of the parameters; the scalar type S of the state must be constructible from P.
 template <class P>
 struct MidPlaneStretchingOf {
   std::size_t modes = 0;

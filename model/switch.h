@@ -124,7 +124,7 @@ class Switch {
   /// Returns the rest distance of the contact point to the contact plane [m].
   [[nodiscard]] double contact_gap(std::size_t c = 0) const { return c == 0 ? contact_gap_ : further_[c - 1].gap; }
   /// Returns the gap below which every law is continued by its tangent and a run counts as having touched the electrode [m]: a
-  /// hundredth of d0. For a switch that lands on a dielectric the gap is negative, below the face: minus half of the
+  /// hundredth of d0. The gap is negative, below the face, for a switch that lands on a dielectric: minus half of the
   /// dielectric's contribution to the gap of the field, or minus d0 for a wall, which no beam passes. The laws of a film are
   /// continued from a hundredth of d0 in any case.
   [[nodiscard]] double gap_floor() const {

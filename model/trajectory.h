@@ -28,7 +28,7 @@ struct Touch {
   double impact_velocity = 0;  ///< velocity at begin [m/s]
   double peak_force = 0;       ///< [N]; NaN for a rigid contact, which has an impulse instead
   double peak_energy = 0;      ///< largest energy stored in the contact law; for a rigid contact the kinetic energy [J]
-  /// Largest pressure of the highest summit over the hardness (model/contact/summit_pressure.h); NaN when it is not known.
+  /// Largest pressure of the highest summit over the hardness (model/contact/summit_pressure.h); NaN unless both are known.
   double pressure = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -36,7 +36,7 @@ struct Work {
   Integrator integrator = Integrator::automatic;  ///< integrator in use at the end of the run
   long steps = 0;
   long rhs_evaluations = 0;
-  double wall = 0;  ///< [s]
+  double wall = 0;  ///< wall-clock time of the run [s]
 };
 
 /// Energy balance of a run up to some time: work of the sources = change of stored energy + dissipated energy.
@@ -50,9 +50,9 @@ struct EnergyBalance {
 /// The times at which a connection was electrically closed in a run: see model/closing/electrical_record.h.
 struct ElectricalOutcome {
   double first_closed = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN when the connection never closes
-  /// Time from which the connection stays closed [s]; NaN when it is open at the end.
+  /// Time from which the connection stays closed [s]; NaN when the connection is open at the end.
   double closed_from = std::numeric_limits<double>::quiet_NaN();
-  int openings = 0;  ///< number of openings after first_closed that count
+  int openings = 0;  ///< number of openings after first_closed longer than ElectricalClosing::after
 };
 
 /// The outcome of one contact of several, at the end of a run.
@@ -69,8 +69,8 @@ struct ContactOutcome {
   ElectricalOutcome electrical = {};
 };
 
-/// The result of a run. For a switch with several contacts the members describe the connection that the contacts make
-/// (model/closing/connection.h).
+/// The result of a run. The members describe the connection that the contacts make (model/closing/connection.h) when a switch
+/// has several contacts.
 struct Trajectory {
   Status status = Status::not_run;
   std::string message;  ///< reason, unless the status is done
@@ -92,7 +92,7 @@ struct Trajectory {
   /// a contact of the connection has no given resistivity.
   double hold_resistance = std::numeric_limits<double>::quiet_NaN();
   /// Capacitance between the beam and the electrode that closes the switch, at rest under the hold levels [F]: in the closed
-  /// equilibrium, or in the open one after a run without a touch.
+  /// equilibrium, or in the open equilibrium after a run without a touch.
   double hold_capacitance = std::numeric_limits<double>::quiet_NaN();
   bool is_held = true;  ///< false when a search has found no stable closed equilibrium under the hold levels
   double collapse_time = std::numeric_limits<double>::quiet_NaN();  ///< time at which the beam reached the electrode [s]

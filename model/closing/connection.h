@@ -86,7 +86,7 @@ class ConnectionCourse {
    private:
     ConnectionCourse& connection_;
     ClosingObserver* own_;
-    double gap_;  // [m]
+    double gap_;  // rest distance of the contact to its plane [m]
     bool connects_;
   };
 

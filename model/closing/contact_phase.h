@@ -27,7 +27,7 @@ enum class Phase { flight, near, loading, unloading, dent, rest };
 /// An end of a phase: side * (position - level) is positive inside the phase.
 struct Edge {
   double level = 0;  ///< [m]
-  double side = 0;   ///< 1: the phase lies beyond the level, towards the contact; -1: before it
+  double side = 0;   ///< 1: the phase lies beyond the level, towards the contact; -1: before the level
   Phase next = Phase::flight;
   std::size_t zone = 0;  ///< zone of the next phase: the number of the law's kinks at smaller interferences
 };

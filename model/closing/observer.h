@@ -40,8 +40,9 @@ class ClosingObserver {
   /// connection when none is given. Every state is open before its first call. Calls for one state are in order of time and
   /// continue after ClosingOptions::opens_at.
   virtual void state(std::optional<std::size_t> /*contact*/, bool /*is_closed*/, double /*time*/) {}
-  /// Returns true when the observer needs the motion of all modes. It then receives every step and the events between steps, in
-  /// order of time. It receives the state of the first contact only, which does not describe all forces of several contacts.
+  /// Returns true when the observer needs the motion of all modes. The observer then receives every step and the events between
+  /// steps, in order of time. The state in a step is that of the first contact only, which does not describe all forces of
+  /// several contacts.
   [[nodiscard]] virtual bool follows_motion() const { return false; }
   /// Receives a step under a contact law in this state.
   virtual void step(const Knot& /*begin*/, const Knot& /*end*/, const ContactState& /*contact*/) {}

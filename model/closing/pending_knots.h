@@ -35,7 +35,7 @@ class PendingKnots {
     if (!waiting_.empty()) handed_over_ = waiting_.back();
     waiting_.clear();
   }
-  /// Returns the largest squeeze number of the gas film at the contact point so far; 0 when the gas law has no limit for it.
+  /// Returns the largest squeeze number of the gas film at the contact point so far; 0 when the gas law sets no limit.
   [[nodiscard]] double largest_squeeze() const { return largest_squeeze_; }
 
  private:

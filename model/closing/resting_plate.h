@@ -28,7 +28,7 @@ class RestingPlate {
   void begin(Knot& here, double stretch_end);
   struct Stay {
     double until = 0;     ///< end of this interval of the rest [s]
-    bool leaves = false;  ///< true when the drives pull the plate off at that time
+    bool leaves = false;  ///< true when the drives pull the plate off at `until`
   };
   /// Continues the rest by one interval, which ends early when no force presses the plate on the contact any more.
   Stay stay(const Knot& here, double stretch_end);

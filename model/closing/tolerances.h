@@ -14,7 +14,7 @@ namespace softland {
 struct Tolerances {
   std::vector<double> in_flight, touching;  ///< tolerances of q, v, film
 
-  /// Derives the tolerances from a relative one.
+  /// Derives the absolute tolerances from a relative tolerance.
   Tolerances(const Switch& model, double relative) {
     // The tolerances are the relative tolerance times the two lengths below. Later touches magnify errors of the flight, so the
     // length of the flight is shorter than the contact gap. With these lengths a tolerance of 1e-6 gives first contact time,

@@ -25,7 +25,7 @@ namespace softland {
 template <class P>
 struct AdhesiveAsperityContactOf {
   UniformAsperityContactOf<P> repulsion = {};
-  P attraction = 0;  ///< 2 pi R W eta An / Hm [N/m]
+  P attraction = 0;  ///< adhesion over interference, 2 pi R W eta An / Hm [N/m]
 
   template <class S>
   S force(S d) const {

@@ -15,7 +15,7 @@ struct AdhesiveAsperities {
   static constexpr std::string_view name = "adhesive";
   static constexpr bool per_area = true, sticks = true;
   Summits summits = {};
-  double height = 0;           ///< Hm [m]
+  double height = 0;           ///< greatest height Hm of the summits [m]
   double adhesion_energy = 0;  ///< work of adhesion W [J/m^2]
 
   static consteval auto fields() {

@@ -35,7 +35,7 @@ template <class P>
 class AdhesiveRepulsiveContactOf {
  public:
   AdhesiveRepulsiveContactOf() = default;
-  /// `area` is An [m^2], `touch` is x0 [m]. For scalars other than double a step of Newton's method improves x0, so that x0 has
+  /// `area` is An [m^2], `touch` is x0 [m]. A step of Newton's method improves x0 for scalars other than double, so that x0 has
   /// their derivatives.
   AdhesiveRepulsiveContactOf(const SurfacePressureOf<P>& law, const P& area, const P& touch)
       : law_(law), area_(area), end_(far(DualOf<P>(law.reach, 1))), touch_(touch) {
@@ -92,8 +92,8 @@ class AdhesiveRepulsiveContactOf {
 
   SurfacePressureOf<P> law_ = {};
   P area_ = 0;
-  DualOf<P> end_ = P(0);  // far() at the reach [Pa], [Pa/m]
-  P touch_ = 0;           // [m]
+  DualOf<P> end_ = P(0);  // l at the reach xr, with its slope [Pa], [Pa/m]
+  P touch_ = 0;           // x0 [m]
 };
 using AdhesiveRepulsiveContact = AdhesiveRepulsiveContactOf<double>;
 

@@ -91,8 +91,8 @@ class GaussianTail {
 /// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
 template <class P>
 struct GaussianAsperityContactOf {
-  P strength = 0;   ///< C [N]
-  P deviation = 0;  ///< sigma [m]
+  P strength = 0;   ///< factor C of the force [N]
+  P deviation = 0;  ///< standard deviation sigma of the summit heights [m]
 
   static constexpr double first_touch = 4;  ///< h0: distance from the mean of the summits to the plane of first touch, in sigma
 

@@ -20,8 +20,8 @@ namespace softland {
 /// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
 template <class P>
 struct UniformAsperityContactOf {
-  P strength = 0;  ///< eta An E* sqrt(R) / Hm [N / m^2.5]
-  P height = 0;    ///< Hm [m]
+  P strength = 0;  ///< factor of the force, eta An E* sqrt(R) / Hm [N / m^2.5]
+  P height = 0;    ///< greatest height Hm of the summits [m]
 
   static constexpr bool grows_with_depth = true;  ///< the force is largest where the contact is deepest
 

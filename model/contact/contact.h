@@ -42,10 +42,10 @@ static_assert(is_complete<connections>());
 /// resistivity is unknown.
 struct Conduction {
   double resistivity = std::numeric_limits<double>::quiet_NaN();  ///< resistivity rho of the metals [Ohm m]
-  /// H of the softer metal; by default the hardness of the law, if it has one [Pa].
+  /// Hardness H of the softer metal; by default the hardness of the contact law, if the law has one [Pa].
   double hardness = std::numeric_limits<double>::quiet_NaN();
-  double film_resistance = 0;  ///< Rf in series with each contact [Ohm]
-  double mean_free_path = 0;   ///< l of the electrons [m]
+  double film_resistance = 0;  ///< resistance Rf of a film in series with each contact [Ohm]
+  double mean_free_path = 0;   ///< mean free path l of the electrons [m]
 
   [[nodiscard]] bool is_given() const { return resistivity > 0; }
 };
@@ -57,11 +57,11 @@ struct Contact {
   double pad_width = std::numeric_limits<double>::quiet_NaN();  ///< [m]; NaN: the width of the moving part
   std::string name = {};                                        ///< name; empty for the only contact
   std::optional<Place> at = {};                                 ///< centre of the pad; none: see Device::contact_position()
-  /// Rest distance of the contact to its plane [m]; Device::gap has that of the first contact.
+  /// Rest distance of the contact to its plane [m]; Device::gap has this distance of the first contact.
   double gap = std::numeric_limits<double>::quiet_NaN();
   Side side = Side::near;   ///< `far` for a back stop
   bool along_face = false;  ///< true for a contact at all points of a dielectric's face, whose law is per area
-  double count = 1;         ///< number of such contacts side by side across the beam
+  double count = 1;         ///< number of equal contacts side by side across the beam
   bool connects = true;     ///< true when the contact is part of the connection
   Conduction conduction = {};
 };

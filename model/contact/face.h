@@ -60,7 +60,7 @@ template <class Law>
 
 /// The pressure of a face with asperities on a beam of one width.
 struct RoughFacePressure {
-  UniformAsperityContact asperities;  ///< asperities per length
+  UniformAsperityContact asperities;  ///< law of the asperities, per length of the beam
   static constexpr bool drive_depends = false;
 
   /// Returns the load [N/m], away from the electrode.
@@ -76,7 +76,7 @@ struct RoughFacePressure {
 /// The pressure of a wall or a linear bed on a beam of one width.
 struct FacePressure {
   double stiffness = 0;  ///< stiffness per length, a k [N/m^2]
-  double from = 0;       ///< b [m]
+  double from = 0;       ///< height b above the face at which the pressure begins [m]
   static constexpr bool drive_depends = false;
 
   /// Returns the load [N/m], away from the electrode.

@@ -63,7 +63,7 @@ class KogutEtsionAsperity {
       const double u = fit.begin;
       const auto load = [u](const Fit& f) { return f.factor * std::pow(u, f.exponent); };
       fit.factor = load(below) / std::pow(u, fit.exponent);
-      // The constants make the integrals of both laws equal at u; the loads there are equal.
+      // The constants make the integrals of this fit and the fit below equal at u, where both loads are equal.
       fit.first = below.first + u * load(fit) * (1 / (below.exponent + 1) - 1 / (fit.exponent + 1));
       const auto second = [&](const Fit& f) { return f.first * u + u * u * load(f) / ((f.exponent + 1) * (f.exponent + 2)); };
       fit.second = below.second + second(below) - second(fit);

@@ -43,15 +43,15 @@ class OwnContactLaw {
   virtual ~OwnContactLaw() = default;
   /// Returns the name of the law in messages.
   [[nodiscard]] virtual std::string_view name() const = 0;
-  /// Returns P [N] at an interference [m] and its rate [m/s].
+  /// Returns the force P [N] at an interference [m] and its rate [m/s].
   [[nodiscard]] virtual double force(double interference, double rate) const = 0;
   /// Returns true when the force depends on the rate. Only such a law is evaluated at rates other than 0, and the energy audit
   /// counts its dissipation.
   [[nodiscard]] virtual bool depends_on_rate() const { return false; }
   /// Returns true when the force is negative somewhere, so that the contact may stay closed without any voltage.
   [[nodiscard]] virtual bool pulls() const { return false; }
-  /// Returns U [J] at an interference [m]. The default integrates by Gauss points in the root of the interference, exact to
-  /// rounding for sums of its half-integer powers.
+  /// Returns the stored energy U [J] at an interference [m]. The default integrates the force by Gauss points in the root of
+  /// the interference, exact to rounding for sums of half-integer powers of the interference.
   [[nodiscard]] virtual double energy(double interference) const;
 };
 

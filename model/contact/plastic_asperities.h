@@ -23,7 +23,7 @@ struct PlasticAsperities {
   static constexpr std::string_view name = "elastic-plastic", not_along_pad = many_dents;
   static constexpr bool per_area = true;
   Summits summits = {};
-  double height = 0;    ///< Hm [m]
+  double height = 0;    ///< greatest height Hm of the summits [m]
   double hardness = 0;  ///< hardness of the softer surface [Pa]
   Plasticity plasticity = Plasticity::zmc;
 

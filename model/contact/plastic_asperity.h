@@ -27,13 +27,13 @@ template <class Asperity, class P = double>
 class PlasticAsperityLoading {
  public:
   PlasticAsperityLoading() = default;
-  /// `summits` eta An, `height` Hm [m], `radius` R [m], `hardness` H and `modulus` E* [Pa]
+  /// `summits` is the number eta An; `height` is Hm [m], `radius` R [m], `hardness` H [Pa], `modulus` E* [Pa].
   PlasticAsperityLoading(const P& summits, const P& height, const P& radius, const P& hardness, const P& modulus)
       : height_(height), yield_(first_yield(radius, hardness, modulus)) {
     strength_ = summits / height * 2 / 3 * pi * Asperity::pressure_factor * hardness * radius * yield_ * yield_;
   }
 
-  /// Returns w1 [m].
+  /// Returns w1, the interference of an asperity at first yield [m].
   [[nodiscard]] static P first_yield(const P& radius, const P& hardness, const P& modulus) {
     const P root = pi * Asperity::pressure_factor * hardness / (2 * modulus);
     return root * root * radius;
@@ -58,7 +58,7 @@ class PlasticAsperityLoading {
  private:
   P height_ = 1;    // [m]
   P yield_ = 1;     // w1 [m]
-  P strength_ = 0;  // (eta An / Hm) P1 w1 [N]
+  P strength_ = 0;  // factor of the force, (eta An / Hm) P1 w1 [N]
 };
 
 }  // namespace softland

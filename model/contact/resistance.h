@@ -48,9 +48,9 @@ class ContactResistance {
  private:
   bool is_known_;
   Conduction metal_;
-  double contacts_;     // m
-  double summits_ = 0;  // N; 0 for a law without summits
-  double height_ = 0;   // Hm, or the standard deviation of Gaussian heights [m]
+  double contacts_;     // number m of contacts side by side
+  double summits_ = 0;  // number N of summits; 0 for a law without summits
+  double height_ = 0;   // greatest height Hm of summits, or the standard deviation of Gaussian heights [m]
   bool is_gaussian_ = false;
   double radius_ = 0;    // R [m]
   double modulus_ = 0;   // E* [Pa]

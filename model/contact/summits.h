@@ -10,7 +10,7 @@ namespace softland {
 /// The size of a contact pad, from which a law computes its number of summits.
 struct ContactPad {
   double width = 0;   ///< width [m]; times the number of pads side by side
-  double length = 0;  ///< lt [m]
+  double length = 0;  ///< length lt [m]
   double count = 1;   ///< number of pads side by side
 };
 

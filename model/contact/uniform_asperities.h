@@ -17,7 +17,7 @@ struct UniformAsperities {
   static constexpr std::string_view name = "asperity-uniform";
   static constexpr bool per_area = true;
   Summits summits = {};
-  double height = 0;   ///< Hm [m]
+  double height = 0;   ///< greatest height Hm of the summits [m]
   double damping = 0;  ///< damping of Hunt and Crossley [s/m]
 
   [[nodiscard]] bool operator==(const UniformAsperities&) const = default;

@@ -40,15 +40,15 @@ static_assert(is_complete<vector_instructions>());
 /// Returns true when this processor and this build of the program have these vector instructions.
 [[nodiscard]] bool has(Vectors vectors);
 /// Returns the widest vectors that this processor has, or the narrower ones that the environment variable SOFTLAND_VECTORS
-/// requests. Throws InvalidInput when its value is not a name of Vectors, or this processor does not have those instructions.
+/// requests. Throws InvalidInput when the value is not a name of Vectors, or this processor lacks the instructions.
 [[nodiscard]] Vectors vectors_in_use();
 
 /// Receives touches and rebounds of the closing in one lane.
 class LandingObserver {
  public:
   /// Receives a touch that is over, or, at the end of the run, a touch that has not ended, whose end is NaN. For several
-  /// contacts it is a touch of their connection (model/closing/connection.h), and arrives when the next touch begins, or at the
-  /// end.
+  /// contacts the touch is one of their connection (model/closing/connection.h), and arrives when the next touch begins, or at
+  /// the end.
   virtual void touch(const Touch& touch) = 0;
   /// Receives a separation after the first touch: begin [s], end [s] and height [m]. The end is NaN for a separation that has
   /// not ended at the end of the run.

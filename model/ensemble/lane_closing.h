@@ -25,7 +25,7 @@ struct Segment {
   int electrode = -1;  ///< number of the electrode; -1 without an electrode
   LaneFringing fringing = LaneFringing::none;
   bool far = false;  ///< true on the far side
-  int stretch = 0;   ///< stretch that contains its points; usual laws only
+  int stretch = 0;   ///< stretch that contains the segment's points; usual laws only
   [[nodiscard]] bool operator==(const Segment&) const = default;
 };
 
@@ -47,7 +47,7 @@ struct LaneContactKind {
 
 /// The properties that all lanes of a run share.
 struct LaneLayout {
-  bool usual = true;  ///< true for UsualLaws: segments follow one another; else they are pads, which may overlap in points
+  bool usual = true;  ///< true for UsualLaws, with segments in sequence; else segments are pads, which may share points
   int modes = 0, points = 0, segments = 0, electrodes = 0, drives = 0;
   bool piezo = false, stretching = false;
   LaneFringing fringing = LaneFringing::none;  ///< fringing law of all electrodes; usual laws only
@@ -67,9 +67,9 @@ struct LaneLayout {
 
 /// One contact of a switch as plain numbers.
 struct LaneContactNumbers {
-  double plane = 0;                 // rest distance of its place to its plane [m]
-  double shape[most_modes] = {};    // modes at its place, positive towards its plane [kg^(-1/2)]
-  double strength = 0, height = 0;  // parameters of its law; for linear the stiffness [N/m]
+  double plane = 0;                 // rest distance of the contact to its plane [m]
+  double shape[most_modes] = {};    // modes at the contact, positive towards its plane [kg^(-1/2)]
+  double strength = 0, height = 0;  // parameters of the law; strength of a linear law is its stiffness [N/m]
   double damping = 0;               // [s/m]
   double unloading_stiffness = 0;   // unloading stiffness of a law with a memory; `strength` is that of loading [N/m]
   double negligible_depth = 0;      // depth within which a step ends at the plane accurately enough [m]
@@ -104,7 +104,7 @@ class LaneObserver {
   /// Receives a touch of a contact: begin and end [s], impact velocity [m/s], depth [m]; of a damped contact also the largest
   /// force [N].
   virtual void touch(int contact, double begin, double end, double speed, double depth, double force) = 0;
-  /// Receives the closing of the connection of several contacts: time [s], speed of the contact that closes it [m/s].
+  /// Receives the closing of the connection of several contacts: time [s], speed of the contact that causes the closing [m/s].
   virtual void closes(double time, double speed) = 0;
   /// Receives the opening of the connection of several contacts [s].
   virtual void opens(double time) = 0;

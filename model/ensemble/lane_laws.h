@@ -1,8 +1,8 @@
 // The laws of a closing over lanes, in two variants: forces from coordinates and velocities.
 //
 // UsualLaws: up to four modes, electrodes on the near side that do not overlap, a strip film or none, an undamped contact of
-// asperities. All choices are made at compile time, and each point is visited once, in registers. With a capacity for several
-// stretches UsualLaws cover a beam of sections with several contacts of any law.
+// asperities. All choices are made at compile time, and each point is visited once, in registers. UsualLaws with a
+// capacity for several stretches cover a beam of sections with several contacts of any law.
 //
 // AnyLaws: more modes, other laws and several contacts, chosen by the layout. The points are visited law by law.
 //

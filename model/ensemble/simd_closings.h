@@ -785,7 +785,7 @@ class SimdClosings {
         const double v = trial_v_[i][l], a = trial_a_[i][l];
         trial_q_[i][l] = trial_q_[i][l] + later * (v + later / 2 * a);
         trial_v_[i][l] = v + later * a;
-        trial_a_[i][l] = a - later * square_[i][l] * v;  // the change of the forces within `later` is smaller
+        trial_a_[i][l] = a - later * square_[i][l] * v;  // other forces change less within `later`
       }
       moved_[l] = later;
       if constexpr (has_several) move_others(at, l);
@@ -1093,7 +1093,7 @@ class SimdClosings {
     for_contacts([&](Number c) { take(s.contact[c], c, l); });
     apart_[l] = false;
     enter_stretch(l);
-    if (idle) lane.closing = nullptr;  // an idle lane stays special
+    if (idle) lane.closing = nullptr;  // an idle lane remains in special_
   }
 
   // Sets the numbers of a contact of the lane's new switch, before its first touch.

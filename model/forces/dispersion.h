@@ -77,12 +77,12 @@ struct DispersionForce {
   P width = 0;  ///< a [m]
   static constexpr bool drive_depends = true;
 
-  /// Returns the load [N/m] at factor 1.
+  /// Returns the load [N/m] at force factor 1.
   template <class S>
   S load(S gap, S /*velocity*/) const {
     return S(width) * law.pressure(gap);
   }
-  /// Returns the potential [J/m] at factor 1.
+  /// Returns the potential [J/m] at force factor 1.
   [[nodiscard]] double potential(double gap) const { return width * law.energy(gap); }
 };
 

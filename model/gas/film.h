@@ -32,7 +32,7 @@ inline constexpr double incompressible = 10;
 struct FilmLimits {
   double least_knudsen = 0;
   double most_knudsen = std::numeric_limits<double>::infinity();
-  double most_squeeze = std::numeric_limits<double>::infinity();  ///< 12 mu a^2 omega / (p h^2)
+  double most_squeeze = std::numeric_limits<double>::infinity();  ///< largest squeeze number 12 mu a^2 omega / (p h^2)
   bool needs_thickness = false;                                   ///< true when the law needs the thickness of the moving part
 };
 

@@ -29,8 +29,9 @@ struct GasLaw : internal::LawsOf<Gas>::Type {
 /// Returns the damping of a rectangular film over that of a strip of the same length with closed ends; `ratio` is width over
 /// length.
 ///   1 - (192 / pi^5) ratio sum over odd n of tanh(n pi / (2 ratio)) / n^5
-/// It is 1 - 0.63 ratio for long films, 0.4217 for a square one. It solves Poisson's equation of the incompressible film on a
-/// rectangle (Griffin, Richardson & Yamanami, J. Basic Eng. 88 (1966) 451; the series is that of torsion of a rectangular bar).
+/// The share is 1 - 0.63 ratio for long films, 0.4217 for a square film. It follows from Poisson's equation of the
+/// incompressible film on a rectangle (Griffin, Richardson & Yamanami, J. Basic Eng. 88 (1966) 451; the series is that of
+/// torsion of a rectangular bar).
 [[nodiscard]] double end_flow(double ratio);
 
 /// Returns the gas law for a structure of constant width and thickness, or for this width and thickness [m]. For a compressible

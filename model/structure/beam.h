@@ -21,7 +21,7 @@ struct Beam {
   bool plate_strain = false;  ///< true to use E / (1 - nu^2)
   double poissons_ratio = not_given;
   std::vector<SectionPart> sections = {};  ///< sections from x = 0 on; empty for a uniform beam
-  std::vector<LayerPart> layers = {};      ///< layers on its faces
+  std::vector<LayerPart> layers = {};      ///< layers on the faces of the beam
   std::optional<Anchor> anchor = {};       ///< anchor at x = 0; a rigid clamp when absent
   std::optional<Anchor> far_anchor = {};   ///< anchor at the far end; a free end or a clamp, by kind, when absent
   std::optional<RestShape> rest_shape = {};
@@ -115,7 +115,7 @@ struct Bridge : Beam {
       "line; a layer needs a cantilever";
 
   double residual_stress = 0;  ///< stress before the beam bends, positive in tension [Pa]
-  bool biaxial = false;        ///< true when residual_stress is that of a film: the beam keeps residual_stress (1 - nu)
+  bool biaxial = false;        ///< true when residual_stress is that of a film: residual_stress (1 - nu) remains
   bool stretches = true;       ///< true when bending stretches the beam
 
   template <class S>

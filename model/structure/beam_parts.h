@@ -22,8 +22,8 @@ struct Holes {
 /// One section of a beam. A number that is not given is that of the structure.
 struct SectionPart {
   double length = 0;                  ///< length along the beam [m]
-  double width = not_given;           ///< width at its start [m]
-  double end_width = not_given;       ///< width at its end, linear in between; by default equal to `width` [m]
+  double width = not_given;           ///< width at the section's start [m]
+  double end_width = not_given;       ///< width at the section's end, linear in between; by default `width` [m]
   double thickness = not_given;       ///< [m]
   double youngs_modulus = not_given;  ///< [Pa]
   double density = not_given;         ///< [kg/m^3]

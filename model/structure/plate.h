@@ -27,7 +27,7 @@ class RigidPlate {
     [[nodiscard]] Eigen::VectorXd value(double) const { return Eigen::VectorXd::Ones(1); }
     [[nodiscard]] Eigen::VectorXd slope(double) const { return Eigen::VectorXd::Zero(1); }
     /// A rigid plate that is held at its contact cannot move at all. The frequency of the free plate is used instead: a rebound
-    /// takes no longer than its period.
+    /// takes no longer than the plate's period.
     [[nodiscard]] double pinned_inverse_square(double, std::optional<double> = {}) const { return 1; }
   };
 

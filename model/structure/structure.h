@@ -31,7 +31,7 @@ struct Structure {
   double length = 0;             ///< L [m]; area over width for a plate; length of the table for a table of modes
   double width = 0;              ///< a [m]
   double thickness = not_given;  ///< b [m]
-  int modes = 4;                 ///< number of modes; a plate has one, whatever this number is
+  int modes = 4;                 ///< number of modes; a plate has one mode, whatever this number is
   double damping_ratio = 0;      ///< zeta of every mode
   StructureKind kind = Cantilever{};
 
