@@ -20,7 +20,7 @@
 //
 // Every run audits its energy (closing/energy_audit.h). Dissipation is integrated by Simpson's rule over each step, and more
 // exactly once the residual exceeds 1e-4 of the energy that bends the beam by the contact gap. An integrator that loses the
-// contact between two steps, or a tolerance too loose for a stiff one, shows as energy that no source supplied. A residual
+// contact between two steps, or a tolerance too loose for a stiff contact, shows as energy that no source supplied. A residual
 // above 1 % of that bending energy is a warning; above 20 % the run is a numerical failure.
 //
 // A compressible gas film adds its pressures to the states; they diffuse within thousandths of a period. Such scenes run

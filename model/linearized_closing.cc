@@ -393,7 +393,7 @@ void LinearizedClosing::add_parts(std::size_t step, bool after_edge, bool before
   }
 }
 
-// Adds the jump of d = dy/dp at a breakpoint of the drives, at which f changes.
+// Adds the jump of d = dy/dp at a breakpoint of the drives, at which the right-hand side f changes.
 void LinearizedClosing::jump_at_pieces(const RecordedMotion::Motion& here, const ContactState& contact, std::size_t entered) {
   if (on_ == entered) return;
   Jump jump{.parts = parts_.size(), .matrix = {}, .moved = {}};

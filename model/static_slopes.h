@@ -2,7 +2,7 @@
 //
 //   F(q, V; p) = 0                      an equilibrium, F static modal accelerations
 //   q_p = -F_q^-1 F_p                   at constant voltages, away from a fold
-//   [F_q  F_l ] [q_p]     [F_p]         at a constant interference d of the contact point, l = strength of what holds it
+//   [F_q  F_l ] [q_p]     [F_p]         at a constant interference d of the contact point, l = strength of the holder
 //   [d_q   0  ] [l_p] = - [d_p]
 //
 // The pull-in voltage is the largest of the open branch, or that at the contact plane; the release voltage is the least of the

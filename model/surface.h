@@ -10,7 +10,7 @@
 //
 // In a cantilever the end is free: the faces' pull N_s is balanced by an equal compression of the bulk between them, and the
 // bending moments of the two cancel. So a residual stress changes nothing in small deflections (Gurtin, Markenscoff & Thurston
-// 1976; Lachut & Sader 2007). A part of the literature nevertheless keeps one of the two as a load 2 tau_0 a y'' on the
+// 1976; Lachut & Sader 2007). A part of the literature nevertheless counts one of these moments as a load 2 tau_0 a y'' on the
 // deflection and finds the cantilever softer for tau_0 > 0, up to buckling without any voltage (He & Lilley 2008; Mikhasev &
 // Radi 2025). `ResidualLoad::compression` is that model in the form that has an energy: the beam under the axial force -N_s,
 // with EI y''' = -N_s y' at the free end. It buckles at L = (pi / 2) sqrt(EI / N_s) and is refused from there on. The same load

@@ -1,4 +1,4 @@
-// The result of a closing: the motion of the contact point, touches, and what figures of merit need besides.
+// The result of a closing: the motion of the contact point, touches, and further numbers for figures of merit.
 #pragma once
 
 #include <limits>

@@ -1,14 +1,14 @@
 // The times at which the connection of a switch is electrically closed: while its contact force is above a value, or its
-// resistance below one, or both (Device::electrical); while it is in touch when neither value is given.
+// resistance below one, or both (Device::electrical); while it is in contact when neither value is given.
 //
-// The force of the connection is the least force of the contacts that make it, or with Connection::any the largest. Its
-// resistance is that of those contacts in series, or side by side (model/contact/resistance.h). A margin that is positive while
-// the connection is closed is a continuous function of the motion within a step. Its changes of sign are located on that
+// The force of the connection is the least force of its contacts, or with Connection::any the largest. Its
+// resistance is that of the contacts in series, or side by side (model/contact/resistance.h). A margin that is positive while
+// the connection is closed is a continuous function of the motion within a step. Its changes of sign are located on this
 // motion, as the events of the contacts are. The margin is evaluated after every piece of the step, where a contact turns back,
 // and at an extremum in between that the slopes at both ends reveal. Along a pad the force is taken as linear between these
 // times.
 //
-// An opening counts when it is longer than ElectricalClosing::after; a shorter one is ignored.
+// An opening counts when it is longer than ElectricalClosing::after; a shorter opening is ignored.
 #pragma once
 
 #include <cstddef>

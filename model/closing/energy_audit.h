@@ -6,7 +6,7 @@
 // Q = C (V - V0) is the charge of an electrode, V0 the voltage of a charge on its dielectric; its field stores C (V - V0)^2/2 +
 // V0 Q.
 //
-// The bracket is taken over each stretch between breakpoints, the integral of Q dV by Simpson's rule where a voltage changes. A
+// [V Q] is taken over each stretch between breakpoints, the integral of Q dV by Simpson's rule where a voltage changes. A
 // change of a force factor moves no charge: its work is the integral alone. Dissipation is integrated by Simpson's rule over
 // each step. Once the residual exceeds 1e-4 of the bending energy, Lobatto's rule with four points integrates it over a motion
 // that is exact for the modes.

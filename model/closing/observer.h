@@ -1,4 +1,4 @@
-// The interface through which a closing passes on its motion: its knots and touches, and more when an observer asks for it.
+// The interface through which a closing passes on its motion: its knots and touches, and more at an observer's request.
 #pragma once
 
 #include <cstddef>

@@ -46,7 +46,7 @@ RestingPlate::Stay RestingPlate::stay(const Knot& here, double stretch_end) {
   if (pressed && next < 0) {
     const double last = t;
     t = bracketed_zero([&](double at) { return load(here, at); }, here.time, last);
-    // Stop on the side on which the force pulls: a plate at rest at the time at which it leaves would rest again.
+    // End the rest where the force already pulls: at the zero of the force the plate would begin to rest again.
     for (double more = 1e-15 * last; (next = load(here, t)) >= 0; more *= 2) t = std::min(last, t + more);
   }
   force_ = next;

@@ -1,4 +1,4 @@
-// Rough contact with adhesion: asperities of uniform heights, each pulled by the DMT force once it touches.
+// Rough contact with adhesion: asperities of uniform heights, each pulled by the DMT force from its first touch on.
 //
 //   P = P_u(d) - 2 pi R W N(d),    N = eta An min(d, Hm) / Hm
 //   U = U_u(d) - pi R W eta An [d^2 - max(0, d - Hm)^2] / Hm

@@ -5,7 +5,7 @@
 //
 // p is the pressure of the face on the beam [Pa], d depth [m], h local gap between beam and face, b height above the face from
 // which the pressure acts, k stiffness per area [Pa/m], U energy per length [J/m], a local width [m]. The law is lossless.
-// Source: textbook, a bed of springs (Winkler), and the source of the law of the asperities. The asperities stand on the face,
+// Source: textbook, a bed of springs (Winkler), and for asperities the source of their law. The asperities stand on the face,
 // with heights up to Hm above it: the beam touches the highest asperity at h = Hm.
 //
 // The field below the face of a wall does not grow. The k of a wall is such that the field of the voltage 2 V1 presses the beam
@@ -14,7 +14,7 @@
 // of the faces [m^2].
 //
 // The field keeps growing below the face of a linear bed. A beam on a bed softer than 27 eps0 V^2 / (8 (H + b)^3) collapses
-// onto the electrode, like parallel plates whose springs are relaxed where the pressure begins. Asperities hold such plates off
+// onto the electrode, like parallel plates whose springs are relaxed where the pressure begins. Asperities keep the plates off
 // up to a voltage V:
 //
 //   eps0 V^2 / 2 = max over d of p(d) (H + b - d)^2

@@ -8,8 +8,8 @@
 //
 // w is the interference; w1 and P1 are those of first yield (plastic_asperity.h); K = 0.454 + 0.41 nu = 0.577, for Poisson's
 // ratio 0.3. As published the load jumps up by 3 % at w1, by 1.7 % at 6 w1 and by 8 % at 110 w1, where the fully plastic load 2
-// pi R w H takes over; an integrator of motion would take or give energy there. So every fit is scaled to begin where the one
-// below it ends: Hertz stays exact, and the fully plastic load is 0.885 of 2 pi R w H. Kinks remain at the three limits.
+// pi R w H takes over; an integrator of motion would take or give energy there. So every fit is scaled to begin where the fit
+// below ends: Hertz stays exact, and the fully plastic load is 0.885 of 2 pi R w H. Kinks remain at the three limits.
 // Validity: the fits are those of a frictionless elastic, perfectly plastic hemisphere on a rigid flat. Source: Kogut & Etsion
 // 2002, J. Appl. Mech. 69, 657; K: Chang, Etsion & Bogy 1987; the scaling is ours.
 #pragma once

@@ -1,4 +1,4 @@
-// Contact that remembers its deepest interference: it loads along one curve and unloads along the elastic curve of the same
+// Contact that remembers its deepest interference, loads along one curve and unloads along the elastic curve of the same
 // surfaces, shifted so that it passes through the turning point.
 //
 //   loading        P = L(d)                          d deeper than ever before

@@ -9,7 +9,7 @@
 // conduct side by side; H hardness of the softer metal [Pa]; Rf resistance of a film in series with each of the m contacts that
 // stand side by side (Contact::count) [Ohm]; R (in a) radius of the summits [m] and E* effective modulus [Pa] of a law that has
 // summits. Such a spot is elastic while its mean pressure is below the hardness; the larger radius decides this. Without
-// hardness it is elastic at any load. A law without summits has one plastic spot for each contact.
+// hardness a spot is elastic at any load. A law without summits has one plastic spot for each contact.
 //
 // Summits in touch at the interference d, of N in all: N min(d, Hm) / Hm for uniform heights, N Q(4 - d / sigma) for Gaussian
 // ones, at least one for each contact. A dented summit stays in touch until its force vanishes. The load is the contact force;

@@ -1,4 +1,4 @@
-// Drives as pieces for vector lanes; a finely sampled and filtered signal is replaced by a smooth one.
+// Drives as pieces for vector lanes; a finely sampled and filtered signal is replaced by a smooth signal.
 #pragma once
 
 #include <limits>

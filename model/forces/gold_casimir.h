@@ -12,7 +12,7 @@
 //   h < h_1: eta = n_0 x + n_1 x^2, x = h / h_1      p ~ h^-3, the van der Waals limit
 //   h > h_n: eta = 1 - f_0 x^(-1/2) - f_1 / x, x = h / h_n      the skin depth of a metal with losses grows like h^(1/2)
 //
-// Gold touches itself before a gap of 1 nm matters. Sources: E. M. Lifshitz 1956, Sov. Phys. JETP 2, 73, eq. 2.9; Drude
+// Gold surfaces touch before a gap of 1 nm matters. Sources: E. M. Lifshitz 1956, Sov. Phys. JETP 2, 73, eq. 2.9; Drude
 // parameters of gold: A. Lambrecht & S. Reynaud 2000, Eur. Phys. J. D 8, 309.
 #pragma once
 

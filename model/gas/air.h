@@ -7,7 +7,7 @@
 // beta = 1.458e-6 kg/(s m K^(1/2)), S = 110.4 K, mu is the viscosity [Pa s], T temperature [K], p ambient pressure [Pa], R_g =
 // 287 J/(kg K) of air, lambda mean free path [m], h local gap [m], Kn Knudsen number. lambda belongs to the viscosity in use,
 // whether a scene gives the viscosity or not: 67.00 nm for air at 101325 Pa and 300 K. Other conventions (hard spheres: about
-// 53 nm) differ by 20 %; a scene that needs one gives mean_free_path. Sources: W. Sutherland, Phil. Mag. 36 (1893) 507, with
+// 53 nm) differ by 20 %; a scene for another one gives mean_free_path. Sources: W. Sutherland, Phil. Mag. 36 (1893) 507, with
 // the constants of U.S. Standard Atmosphere, 1976, eq. 51, for 100 to 1900 K; textbook definition of the viscosity-based mean
 // free path.
 #pragma once

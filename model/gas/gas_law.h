@@ -1,4 +1,4 @@
-// The gas laws as one value, and the limits of each.
+// The gas laws as one type, and the limits of each law.
 #pragma once
 
 #include <cmath>

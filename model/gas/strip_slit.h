@@ -7,7 +7,7 @@
 // mu is the viscosity [Pa s], a the width of the film (height of the wall) [m], h the local gap [m], s the height of the slit
 // [m], l its length up to where the pressure is ambient [m] (half the wall's width when a film on the other side of the wall is
 // sucked as this one is squeezed), v the velocity towards the electrode [m/s]. r compares the flows through slit and film: a
-// wide slit, r -> infinity, gives the strip open at both edges, a closed one four times its damping, the strip of twice the
+// wide slit, r -> infinity, gives the strip open at both edges, a closed slit four times its damping, the strip of twice the
 // width. Derived from Reynolds' equation with p = 0 at the open edge and -dp/dx h^3 = p s^3 / l at the other; the same factor
 // as Li, Rouf & Horsley, Transducers 2013, for lateral oscillators. Continuum, incompressible, Poiseuille flow in the slit.
 // Singular at h = 0.
