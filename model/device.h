@@ -44,7 +44,7 @@ struct Landing {
 struct Dielectric {
   double thickness = 0;     ///< [m]
   double permittivity = 1;  ///< relative permittivity
-  double roughness = 0;     ///< air gap that remains when its summits touch [m]
+  double roughness = 0;     ///< air gap that remains when the summits of its face touch [m]
   double charge = 0;        ///< charge per area on its face [C/m^2], of either sign
   /// Landing on the face. A moving part that reaches a face without a landing has failed, unless the moving part is a plate on
   /// a contact at the face.

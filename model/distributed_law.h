@@ -109,7 +109,7 @@ class DistributedLawOf final : public DistributedLaw {
     for (Eigen::Index p = begin_; p < end_; ++p) {
       const double gap = field.gap[p], velocity = field.velocity[p];
       if (gap < floor_) continue;
-      // Seed the outer direction of each number, then the inner one.
+      // Seed the outer direction of each dual number, then the inner direction.
       const auto mixed = [&](double gap_outer, double gap_inner) {
         return law_
             .load(DualOf<Dual>(Dual(gap, gap_inner), Dual(gap_outer)),

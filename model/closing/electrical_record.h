@@ -27,7 +27,7 @@
 namespace softland {
 
 /// A contact in a step: its motion, its position at the start of the step's last piece and at the end, the state of its contact
-/// law, and whether it is at or below the plane of first touch.
+/// law, and whether the contact point is at or below the plane of first touch.
 struct ContactInStep {
   StepMotion& motion;
   const TrajectoryPoint& from;

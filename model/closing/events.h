@@ -8,7 +8,7 @@
 
 namespace softland {
 
-/// The contact point leaves its phase through an edge, or, without an edge, turns back while it loads a contact with memory.
+/// The contact point leaves its phase through an edge, or, without an edge, turns back while loading a contact with memory.
 struct Event {
   double time = 0;  ///< [s]
   std::optional<Edge> edge;

@@ -12,7 +12,7 @@ struct Knot {
   std::vector<double> rates;  ///< rates of all states but q: accelerations, then the rates of the film
 };
 
-/// The figures of the gap field at a knot that the closing needs. They are taken from the workspace as soon as the knot is
+/// The figures of the gap field at a knot that the closing needs. The figures are taken from the workspace as soon as the knot is
 /// computed, since the next use of the workspace overwrites the field.
 struct FieldFigures {
   double smallest_gap = 0;   ///< [m]

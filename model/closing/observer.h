@@ -14,7 +14,7 @@ namespace softland {
 struct PhaseChange {
   enum class Kind {
     edge,    ///< the contact point crosses `level`
-    turn,    ///< the contact point turns back while it loads a contact with memory
+    turn,    ///< the contact point turns back while loading a contact with memory
     impact,  ///< the contact point strikes a rigid contact and rebounds
     rests,   ///< the contact point stays on a rigid contact after an impact
     leaves   ///< the contact point leaves the rigid contact on which it has rested

@@ -9,8 +9,9 @@
 
 namespace softland {
 
-/// A mode's coordinate counts by the deflection that it causes at the contact point, its velocity by this deflection times the
-/// frequency of the mode. In flight the tolerance is relative to the contact gap, in contact to the penetration.
+/// The error of a mode's coordinate is weighted by the deflection that the mode causes at the contact point, that of its velocity
+/// by this deflection times the mode's frequency. The tolerance is relative to the contact gap in flight, to the penetration in
+/// contact.
 struct Tolerances {
   std::vector<double> in_flight, touching;  ///< tolerances of q, v, film
 

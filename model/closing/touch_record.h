@@ -17,7 +17,7 @@ class TouchRecord {
   TouchRecord(const Switch& model, std::size_t contact, const ContactPhase& phase, ClosingObserver& observer);
 
   [[nodiscard]] long count() const { return count_; }
-  [[nodiscard]] double first_begin() const { return first_begin_; }      ///< begin of the first touch [s]; NaN before
+  [[nodiscard]] double first_begin() const { return first_begin_; }      ///< begin of the first touch [s]; NaN without a touch
   [[nodiscard]] double deepest_penetration() const { return deepest_; }  ///< [m]
   /// Returns the present touch, or the last one.
   [[nodiscard]] Touch& last() { return touch_; }

@@ -33,7 +33,7 @@ inline constexpr auto contact_distributions =
     std::to_array<Named<ContactDistribution>>({{ContactDistribution::centre, "centre"}, {ContactDistribution::pad, "pad"}});
 static_assert(is_complete<contact_distributions>());
 
-/// Rule for the connection of several contacts: closed while all contacts that make it are closed, or while any of them is.
+/// Rule for the connection of several contacts: closed while all of its contacts are closed, or while any is.
 enum class Connection { all, any };
 inline constexpr auto connections = std::to_array<Named<Connection>>({{Connection::all, "all"}, {Connection::any, "any"}});
 static_assert(is_complete<connections>());

@@ -53,7 +53,7 @@ class PadQuadrature {
  private:
   static constexpr std::size_t count = 12;
   double length_;                       // [m]
-  std::array<double, count> places_{};  // in (0, 1), from the shallow end of the part in contact to the deep one
+  std::array<double, count> places_{};  // in (0, 1), from the shallow end of the part in contact to the deep end
   std::array<double, count> shares_{};  // weights with sum 1
 };
 

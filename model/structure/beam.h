@@ -16,7 +16,7 @@ namespace softland {
 
 /// The numbers of beams of both kinds, besides length, width and thickness.
 struct Beam {
-  double youngs_modulus = 0;  ///< E [Pa], used as given unless plate_strain
+  double youngs_modulus = 0;  ///< E [Pa], used as given without plate_strain
   double density = 0;         ///< rho [kg/m^3]
   bool plate_strain = false;  ///< true to use E / (1 - nu^2)
   double poissons_ratio = not_given;
