@@ -100,9 +100,9 @@ class NormalisedModes {
     std::vector<Section> sections;
     int modes = 0;
     bool far_clamp = false;
-    double axial_force = 0;                        ///< N L^2 / EI
-    double near_rotation = Anchor::rigid;          ///< c L / EI
-    double near_translation = Anchor::rigid;       ///< k L^3 / EI
+    double axial_force = 0;                        ///< axial force N L^2 / EI
+    double near_rotation = Anchor::rigid;          ///< rotational stiffness c L / EI at x = 0
+    double near_translation = Anchor::rigid;       ///< translational stiffness k L^3 / EI at x = 0
     double far_rotation = 0, far_translation = 0;  ///< stiffnesses of the far end in the same units; not used with far_clamp
     /// Returns true when the rigidity of a section changes linearly or an end stands on springs.
     [[nodiscard]] bool is_general() const;

@@ -55,7 +55,7 @@ class LinearizedClosing {
  public:
   using Modal = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_modes, 1>;  ///< one number per mode, without an allocation
 
-  /// A step of the recorded motion; a step in which the contact point turns back is split into two arcs there.
+  /// A step of the recorded motion; a step in which the velocity of the contact point changes sign is split there.
   struct Arc {
     double begin = 0, end = 0;  ///< [s]
     Modal q, v;                 ///< modal coordinates and velocities at `end`

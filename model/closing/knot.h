@@ -12,8 +12,8 @@ struct Knot {
   std::vector<double> rates;  ///< rates of all states but q: accelerations, then the rates of the film
 };
 
-/// The figures of the gap field at a knot that the closing needs. The figures are taken from the workspace as soon as the knot is
-/// computed, since the next use of the workspace overwrites the field.
+/// The figures of the gap field at a knot that the closing needs. The figures are read from the workspace as soon as the knot
+/// is computed, since the next use of the workspace overwrites the field.
 struct FieldFigures {
   double smallest_gap = 0;   ///< [m]
   bool at_far_side = false;  ///< see Switch::at_far_side()

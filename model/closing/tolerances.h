@@ -9,8 +9,8 @@
 
 namespace softland {
 
-/// The error of a mode's coordinate is weighted by the deflection that the mode causes at the contact point, that of its velocity
-/// by this deflection times the mode's frequency. The tolerance is relative to the contact gap in flight, to the penetration in
+/// The error of a mode's coordinate counts by the deflection of the contact point in this mode, the error of its velocity by
+/// this deflection times the mode's frequency. The tolerance is relative to the contact gap in flight, to the penetration in
 /// contact.
 struct Tolerances {
   std::vector<double> in_flight, touching;  ///< tolerances of q, v, film

@@ -82,8 +82,8 @@ struct EnsembleEnd {
   /// Figures of the contact force, defined as in Trajectory: [s], [N].
   double steady_force_time = std::numeric_limits<double>::quiet_NaN(),
          least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
-  double drive_energy = std::numeric_limits<double>::quiet_NaN();  ///< EnergyBalance::source_work + Trajectory::layer_energy [J];
-                                                                   ///< NaN if not measured
+  double drive_energy = std::numeric_limits<double>::quiet_NaN();  ///< EnergyBalance::source_work + Trajectory::layer_energy;
+                                                                   ///< NaN if not measured [J]
   /// Figures of a switch with several contacts, defined as in Trajectory: [s], [m/s].
   double first_touch = std::numeric_limits<double>::quiet_NaN(), first_touch_velocity = std::numeric_limits<double>::quiet_NaN();
 };

@@ -45,7 +45,7 @@ class ModalTable {
   [[nodiscard]] const std::vector<std::vector<double>>& shapes() const { return shapes_; }  ///< [kg^(-1/2)]
   [[nodiscard]] double value(int mode, double x) const {
     return splines_[static_cast<std::size_t>(mode)].value(x);
-  }  ///< x in [m]
+  }  ///< phi of a mode at x [m]
   [[nodiscard]] double slope(int mode, double x) const { return splines_[static_cast<std::size_t>(mode)].slope(x); }
   [[nodiscard]] const std::vector<double>& rest_offsets() const { return rest_offsets_; }  ///< [m]
   [[nodiscard]] const std::vector<double>& widths() const { return widths_; }              ///< [m]
