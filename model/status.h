@@ -8,7 +8,7 @@ namespace softland {
 enum class Status {
   not_run,
   done,
-  open,                      ///< an intended opening: the drives command the switch to stay open
+  open,                      ///< the contact stayed open, as the drives commanded
   no_contact,                ///< the contact point never reached the contact gap in the window
   not_settled,               ///< at the end of the window a rebound had not ended, or contact had only just begun
   collapsed_at_rest,         ///< no stable static equilibrium exists from which a run can start
