@@ -1,9 +1,10 @@
 // The cost that a search minimises. It relates figures of a closing to those of the plain step, a jump to the same hold levels,
 // so that the plain step ("the step" below) costs about 1.
 //
-// Bounce count and settling time jump when a rebound just reaches the contact plane, and after the first large rebound they are
-// chaotic: no search minimises them directly. Every search first minimises the smooth cost of `bounce`, which leads to closings
-// without a significant rebound. There the other figures are smooth, and a search for one of them continues with this figure.
+// Bounce count and settling time jump when a rebound just reaches the contact plane, and they are chaotic after the first large
+// rebound: no search minimises them directly. Every search first minimises the smooth cost of `bounce`, which leads to closings
+// without a significant rebound. There the other figures are smooth, and a search for another figure continues with that
+// figure.
 // Every cost is computed over a fixed time after first contact, so that a late first contact hides no bounce.
 //
 //   H  highest rebound, over that of the step           V  largest impact velocity, over that of the step
@@ -30,10 +31,11 @@
 // objective is its value (own_objective.h); the cost is F / (1 + F) for an own objective whose lands_first() is false.
 //
 // K has the largest weight in B: it is smooth even where the rebounds are chaotic, and where it is small there are no rebounds.
-// Squares make the sum flat and well-conditioned near a soft landing. Lateness costs little up to T_free and much beyond: the
-// softest landing would be a very late one. The bound h_s / 2 leaves a margin for the difference of a run at full accuracy. A
-// closing that never touches costs 10 plus the part of the gap that remains, which leads the search towards contact. A closing
-// that fails (touches the electrode, leaves the laws' validity, cannot be integrated) is infeasible: its cost is infinity.
+// Squares make the sum flat and well-conditioned near a soft closing. Lateness costs little up to T_free and much beyond: the
+// softest closing would be a very late one. The bound h_s / 2 leaves a margin for the difference of a run at full accuracy. A
+// closing that never reaches contact costs 10 plus the part of the gap that remains, which leads the search towards contact. A
+// closing that fails (touches the electrode, leaves the laws' validity, cannot be integrated) is infeasible: its cost is
+// infinity.
 #pragma once
 
 #include <array>
@@ -59,15 +61,15 @@ struct Shares {
   double lead = 0;    ///< cost of `bounce`
   double window = 0;  ///< time after the first touch over which the closing was simulated [s]
 
-  /// Returns a ratio that stays finite when the figure of the step is 0; NaN when the value is not known.
+  /// Returns a ratio that stays finite when the figure of the plain step is 0; NaN when `value` is NaN.
   [[nodiscard]] static double ratio(double value, double of_step) {
     if (std::isnan(value)) return value;
     return of_step > 0 ? value / of_step : value > 0 ? 1 : 0;
   }
-  /// Returns a figure over the same figure of the step, or over the figure `unit` of the step.
+  /// Returns a figure over the same figure of the plain step, or over the figure `unit` of the plain step.
   [[nodiscard]] double of(double Metrics::*figure) const { return ratio(own.*figure, step.*figure); }
   [[nodiscard]] double of(double Metrics::*figure, double Metrics::*unit) const { return ratio(own.*figure, step.*unit); }
-  /// Returns a time over the first touch of the step. A time that is not known counts as later than every time of the run.
+  /// Returns a time over the time of first contact of the plain step. NaN counts as later than every time of the run.
   [[nodiscard]] double of_time(double time) const {
     const double known = std::isfinite(time) ? time : 2 * (own.initial_contact_time + window);
     return ratio(known, step.initial_contact_time);
@@ -82,13 +84,13 @@ struct TargetRow {
   Target value;
   std::string_view name;
   Figure::Member figure;         ///< figure that results are compared by, and that enters the cost when the form below is null
-  Figure::Member unit = figure;  ///< figure of the step by which the own figure is divided in a sum of targets
+  Figure::Member unit = figure;  ///< figure of the plain step by which the own figure is divided in a sum of targets
   /// True when a search for the target continues with its own figure after the cost of `bounce`. It is false for figures that
   /// cannot improve further once no rebound is significant.
   bool has_own_cost = true;
   Form nominal = nullptr;             ///< function for the cost of a search on the nominal device
   Form robust = nullptr;              ///< function for the cost of a search under process variation
-  std::string_view no_gradient = {};  ///< reason why the cost has no gradient; empty where it has one
+  std::string_view no_gradient = {};  ///< reason why the cost has no gradient; empty when the cost has one
 
   [[nodiscard]] double in(Form form, const Shares& shares) const {
     if (form != nullptr) return form(shares);
@@ -98,7 +100,7 @@ struct TargetRow {
 };
 namespace internal {
 inline double lead(const Shares& s) { return s.lead; }
-/// Returns a time over the first touch of the step; a time that the switch does not reach counts as the end of its window.
+/// Returns a time over the first contact time of the plain step; a time that is never reached counts as the end of the run.
 inline double time_or_end(const Shares& s, double Metrics::*time) {
   return s.of(std::isfinite(s.own.*time) ? time : &Metrics::end, &Metrics::initial_contact_time);
 }
@@ -157,7 +159,7 @@ static_assert(is_complete<targets>());
 /// Returns the figure that a target minimises.
 [[nodiscard]] constexpr const Figure& figure_of(Target target) { return figure_of(row_of(targets, target).figure); }
 
-/// The aim of a search: one target or own objective, or a weighted sum of several.
+/// The aim of a search: a single target, a user's own objective, or a weighted sum of several.
 class Aim {
  public:
   struct Part {
@@ -169,31 +171,31 @@ class Aim {
     [[nodiscard]] std::string_view name() const { return own ? own->name() : to_string(target); }
   };
   Aim(Target target) : parts_{{.target = target}} {}  // NOLINT(google-explicit-constructor): a target is an aim
-  /// Throws InvalidInput when the objective is null.
+  /// Throws InvalidInput when the objective is a null pointer.
   explicit Aim(std::shared_ptr<const OwnObjective> objective)
       : Aim(std::vector<Part>{{.own = refuse_null(std::move(objective))}}) {}
-  /// Throws InvalidInput unless there is a part, weights are finite and > 0, and no target or own objective appears twice.
+  /// Throws InvalidInput unless there is a part, weights are finite and > 0, and no target or own objective occurs twice.
   explicit Aim(std::vector<Part> parts);
 
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
   [[nodiscard]] bool is_sum() const { return parts_.size() > 1; }
-  /// Returns true when a search for this aim continues with a cost of its own after the cost of `bounce`. A single target
-  /// decides by its row; a sum always has its own cost.
+  /// Returns true when a search for this aim first minimises the cost of `bounce` and then another cost. A single target
+  /// decides by TargetRow::has_own_cost; the answer for a sum is always true.
   [[nodiscard]] bool has_own_cost() const;
   [[nodiscard]] bool is_about(Target target) const;
   /// Returns true when a part is an own objective.
   [[nodiscard]] bool has_own_objective() const;
-  /// Returns true when the cost depends on the drive energy, as an own objective may.
+  /// Returns true when the cost depends on the drive energy. The cost of a user's own objective may depend on it.
   [[nodiscard]] bool measures_drive_energy() const;
   /// Returns the own objective that a search minimises from its first evaluation on; null when no part has one.
   [[nodiscard]] const OwnObjective* from_the_start() const;
-  /// Returns the same aim with the values of own objectives divided by their value for the plain step, if this value is below a
-  /// hundredth or above a hundred. Throws InvalidInput when this value is not finite.
+  /// Returns the same aim with the values of own objectives divided by their value for the plain step, if that value is below a
+  /// hundredth or above a hundred. Throws InvalidInput when that value is not finite.
   [[nodiscard]] Aim in_units_of(const Metrics& step) const;
-  /// Returns for example "bounce" or "0.7 bounce + 0.3 energy".
+  /// Returns the aim as text, for example "bounce" or "0.7 bounce + 0.3 energy".
   [[nodiscard]] std::string text() const;
-  /// Returns the weighted mean of value(row of the target). An own objective contributes its value for this closing, given the
-  /// plain step; throws InvalidInput when this value is below 0.
+  /// Returns the weighted mean of value(row) over the targets. A user's own objective contributes its value for this closing,
+  /// given the plain step; throws InvalidInput when an own objective's value is below 0.
   template <class Value>
   [[nodiscard]] double mean(const Metrics& closing, const Metrics& step, const Value& value) const {
     const auto of = [&](const Part& part) {
@@ -205,7 +207,7 @@ class Aim {
     return sum / weights;
   }
 
-  /// Returns mean() for many closings: an own objective is called once for all of them. `value` also receives the closing.
+  /// Returns mean() for each of many closings; calls a user's own objective once for all. `value` also receives the closing.
   template <class Value>
   [[nodiscard]] std::vector<double> means(std::span<const Metrics> closings, const Metrics& step, const Value& value) const {
     std::vector<double> sums(closings.size(), 0), of_part(closings.size());
@@ -232,21 +234,21 @@ class Aim {
   std::vector<Part> parts_;
 };
 
-/// Figures in which a closing may be harder than that of the plain step.
+/// Figures that measure how hard a closing is, to compare a closing with the plain step.
 inline constexpr auto hard_figures =
     std::to_array({&Metrics::largest_impact_velocity, &Metrics::peak_contact_force, &Metrics::impact_energy});
-/// Returns the largest relative excess of the hard figures over those of the step; 0 when no figure exceeds that of the step.
+/// Returns the largest relative excess of hard_figures over those of the plain step; 0 when no figure exceeds the plain step's.
 [[nodiscard]] double excess_over_step(const Metrics& closing, const Metrics& step);
 
 /// Scales of the cost. The figures are those of a run that ends a fixed time after first contact.
 struct CostScale {
   Metrics step;                 ///< figures of the plain step
-  double score_window = 0;      ///< [s]
+  double score_window = 0;      ///< time after first contact over which the cost is computed [s]
   double contact_gap = 0;       ///< [m]
-  double free_touch = 0;        ///< T_free, as a multiple of the first touch of the step
-  bool judges_hardness = true;  ///< false where the plain step breaks a condition of the search
+  double free_touch = 0;        ///< T_free, largest first contact time without penalty, over that of the plain step
+  bool judges_hardness = true;  ///< false when hard closings are not penalised: see excess_over_step()
 };
-/// Returns the cost; infinite for a run that could not be simulated to its end.
+/// Returns the cost of a closing; infinite for a run that could not be simulated to its end.
 [[nodiscard]] double cost(const Aim& aim, const Metrics& figures, const CostScale& scale, const MetricsOptions& options);
 
 }  // namespace softland

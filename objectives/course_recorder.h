@@ -1,9 +1,9 @@
-// Observes a closing and keeps what reports need: figures, rebounds and touches, and those knots of the motion that its plot
-// needs. The memory does not grow with the number of knots.
+// Observes a closing and records what reports need: figures, rebounds, touches, and the knots of the motion that a plot needs.
+// The memory does not grow with the number of knots.
 //
-// All knots are kept until there are more than most_recorded_knots and the contact point has been beyond the contact plane.
-// Consecutive knots share a bucket afterwards. A bucket keeps the first and the last knot, and those of the smallest and
-// largest position, velocity and contact force. Pairs of buckets are joined as often as that is needed.
+// All knots are recorded until there are more than most_recorded_knots and the contact point has been beyond the contact plane.
+// Afterwards consecutive knots are gathered in a bucket. A bucket stores the first and the last knot, and the knots of the
+// smallest and largest position, velocity and contact force. Pairs of buckets are joined when the memory is full.
 #pragma once
 
 #include <cstddef>
@@ -18,10 +18,10 @@ inline constexpr std::size_t most_recorded_knots = 40'000;
 
 class CourseRecorder final : public ClosingObserver {
  public:
-  /// `contact_gap` [m]; `most_knots`: at least 32.
+  /// `contact_gap` is in [m]; `most_knots` must be at least 32.
   explicit CourseRecorder(double contact_gap, const MetricsOptions& options = {}, std::size_t most_knots = most_recorded_knots);
 
-  /// Adds one of several contacts, the next in order, whose figures are kept beside those of the connection. `contact_gap` [m]
+  /// Adds a contact, the next in order, of a switch with several contacts; its figures are recorded as well. `contact_gap` [m]
   void follow_contact(double contact_gap, const MetricsOptions& options) {
     contacts_.push_back(std::make_unique<CourseRecorder>(contact_gap, options, most_knots_));
   }
@@ -33,16 +33,16 @@ class CourseRecorder final : public ClosingObserver {
     return number < contacts_.size() ? contacts_[number].get() : nullptr;
   }
 
-  /// Returns the figures of the run, from all knots, after its end: see metrics().
+  /// Returns the figures of the run, computed from all knots. Call it after the end of the run; see metrics() in metrics.h.
   [[nodiscard]] Metrics metrics(const Trajectory& end) { return figures_.metrics(end); }
-  /// Returns the rebounds of the run until the command to open, from all knots.
+  /// Returns the rebounds of the run before the command to open, computed from all knots.
   [[nodiscard]] std::vector<Rebound> rebounds() const;
-  /// Returns true when some knots are left out.
+  /// Returns true when some knots were not recorded.
   [[nodiscard]] bool is_thinned() const { return is_thinned_; }
-  /// Returns the figures of one of several contacts, after the end of the run.
+  /// Returns the figures of contact number `contact` of a switch with several contacts, after the end of the run.
   [[nodiscard]] Metrics metrics_of(std::size_t contact, const Trajectory& end);
   [[nodiscard]] std::vector<Rebound> rebounds_of(std::size_t contact) const { return contacts_[contact]->rebounds(); }
-  /// Moves the kept knots and touches into the run.
+  /// Moves the recorded knots and touches into `run`.
   void hand_over(Trajectory& run);
 
  private:
@@ -50,7 +50,7 @@ class CourseRecorder final : public ClosingObserver {
   // Returns the index in points_ at which the last, incomplete bucket begins.
   [[nodiscard]] std::size_t last_begin() const { return ends_.empty() ? 0 : ends_.back(); }
   void reduce_long_last();
-  // Removes from the points from `begin` on those that a bucket does not keep.
+  // Removes from points_, from index `begin` on, the knots that a bucket does not store.
   void reduce(std::size_t begin);
 
   double contact_gap_;
@@ -60,9 +60,9 @@ class CourseRecorder final : public ClosingObserver {
   ReboundFinder finder_;
   bool has_passed_ = false, is_thinned_ = false;
   std::vector<TrajectoryPoint> points_;
-  std::vector<std::size_t> ends_;  // ends of the full buckets, in points_
-  std::size_t bucket_ = 1;         // number of knots in a full bucket
-  std::size_t in_last_ = 0;        // number of knots since the last full bucket
+  std::vector<std::size_t> ends_;  // ends of the full buckets, as indices in points_
+  std::size_t bucket_ = 1;         // number of knots of the motion in a full bucket
+  std::size_t in_last_ = 0;        // number of knots of the motion since the last full bucket
   std::vector<Touch> touches_;
   std::vector<Rebound> rebounds_;
   bool opens_ = false;  // true after the command to open

@@ -1,5 +1,5 @@
 // Figures of a switch that is closed and opened repeatedly in one run. Every cycle has its own figures and begins in the state
-// at the end of the cycle before.
+// in which the previous cycle ended.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace softland {
 
-/// Times at which cycles begin, and at which the switch is commanded to open.
+/// Times at which cycles begin, and at which the switch is commanded to open in each cycle.
 struct CycleTimes {
   double period = 0;   ///< [s]
   double on_time = 0;  ///< time from the start of a cycle to its command to open [s]
@@ -19,20 +19,20 @@ struct CycleTimes {
   [[nodiscard]] double command(std::size_t cycle) const { return begin(cycle) + on_time; }             ///< [s]
 };
 
-/// One cycle of a run.
+/// The figures of one cycle of closing and opening.
 struct CycleFigures {
   /// Figures of the closing until the command to open, and of the opening after it. Times count from the start of the cycle,
-  /// the drive energy is that of the sources in this cycle, and the first touch is that of the connection.
+  /// the drive energy is the energy from the sources in this cycle, and the first contact is that of the whole connection.
   Metrics metrics;
   bool closes = false;  ///< true when the cycle begins open, and the contact closes before the command to open
   bool opens = false;   ///< true when the contact is open at the end of the cycle
-  double on_time = 0;   ///< time in which the switch is electrically closed [s]; needs a run that calls state()
+  double on_time = 0;   ///< time in which the switch is electrically closed [s]; needs a run that calls CycleRecorder::state()
   double swing = 0;     ///< largest distance from the open position in the last third of the time after the command to open [m]
 };
 
 class CycleRecorder final : public ClosingObserver {
  public:
-  /// `contact_gap` [m]; `options` define a significant rebound and the open position (MetricsOptions::opening).
+  /// `contact_gap` [m]; `options` define a significant rebound and, in MetricsOptions::opening, the open position.
   CycleRecorder(double contact_gap, const MetricsOptions& options, const CycleTimes& times);
 
   void knot(const TrajectoryPoint& point) override;
@@ -43,8 +43,7 @@ class CycleRecorder final : public ClosingObserver {
 
   /// Returns the number of cycles that have ended.
   [[nodiscard]] std::size_t ended() const { return current_; }
-  /// Returns the figures of a cycle that has begun. `run` has the hold force and the in-contact period of the closings, when
-  /// they are known.
+  /// Returns the figures of a cycle that has begun. `run` has the hold force and the in-contact period, or NaN if unknown.
   [[nodiscard]] CycleFigures figures(std::size_t cycle, const Trajectory& run);
 
  private:
@@ -55,16 +54,16 @@ class CycleRecorder final : public ClosingObserver {
     double swing = 0, on_time = 0;  // [m], [s]
   };
 
-  // Returns the time until `until` in which the switch has been closed in this cycle, for a switch that is closed now [s].
+  // Returns the time for which the switch has been closed in this cycle until `until` [s]; it must be closed at that time.
   [[nodiscard]] double closed_in(std::size_t cycle, double until) const;
 
   double contact_gap_, open_position_;  // [m]
   CycleTimes times_;
   std::vector<Cycle> cycles_;
   std::size_t current_ = 0;
-  double work_before_ = 0;  // source work at the start of the current cycle [J]
+  double work_before_ = 0;  // energy from the sources up to the start of the current cycle [J]
   std::size_t counted_ = 0;
-  std::optional<double> closed_from_ = {};  // time since which the switch is electrically closed [s]
+  std::optional<double> closed_from_ = {};  // time since which the switch is electrically closed [s]; empty while open
 };
 
 }  // namespace softland

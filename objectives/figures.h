@@ -1,4 +1,4 @@
-// The figures of merit of a closing in one table: name in results, unit, which direction is better, and how the error is
+// The figures of merit of a closing in one table: name in results, unit, whether a lower value is better, and how the error is
 // estimated. Every list of figures is this table or a selection of it.
 #pragma once
 
@@ -16,18 +16,18 @@
 
 namespace softland {
 
-/// The direction in which a figure is better.
+/// Tells whether a lower value of a figure is better.
 enum class Better { lower, neither };
 
-/// The part of the motion that a figure depends on. It decides whether the difference of two runs, of which one is more
-/// accurate, estimates the error of the figure.
+/// The part of the motion that a figure depends on. This part decides whether the difference between two runs of different
+/// accuracy estimates the error of the figure.
 enum class Conditioning {
-  first_touch,   ///< the motion until first contact: the difference estimates the error
-  high_rebound,  ///< one rebound: the difference estimates the error, unless the runs differ qualitatively before it
+  first_touch,   ///< the motion until first contact: the difference between two runs estimates the error
+  high_rebound,  ///< one rebound: the difference estimates the error, unless the runs differ qualitatively before that rebound
   every_touch,   ///< all touches: the difference estimates the error when both runs have the same touches
   last_rebound,  ///< the end of a sequence of rebounds, chaotic past the first large one: only an ensemble of runs gives the
                  ///< range
-  open,          ///< the motion of a switch that stays open: the difference estimates the error
+  open,          ///< the motion of a switch that stays open: the difference between two runs estimates the error
   rest,          ///< the equilibrium under the hold levels, whose only error is that of the quadrature
   drives         ///< the drives alone: the figure has no error
 };
@@ -36,46 +36,46 @@ struct Figure {
   using Member = std::variant<double Metrics::*, int Metrics::*, bool Metrics::*>;
 
   std::string_view key;     ///< name in every JSON; ends with the unit
-  std::string_view name;    ///< name in tables for people
+  std::string_view name;    ///< name in tables of a report
   std::string_view also;    ///< another name in common use; may be empty
-  std::string_view symbol;  ///< short name, where the figure has one
-  std::string_view unit;    ///< empty for a count and for yes or no
+  std::string_view symbol;  ///< short name; may be empty
+  std::string_view unit;    ///< unit; empty for a count and for yes or no
   Better better = Better::neither;
   Conditioning conditioning = Conditioning::first_touch;
   Member member;
-  /// Figure whose derivative this figure has: the end of the last rebound for the permanent contact. Null when the figure has
-  /// no derivative.
+  /// Figure whose derivative this figure has; that of the permanent contact time is the end of the last rebound. Null when the
+  /// figure has no derivative.
   double Metrics::*slope = nullptr;
   bool of_results = true, of_devices = false;  ///< true when results show the figure for one closing, or for varied devices
-  bool AskedFigures::*asked = nullptr;         ///< request of a scene that makes results show the figure; null: always shown
-  double worst = std::numeric_limits<double>::infinity();  ///< value that counts for a device that does not close
+  bool AskedFigures::*asked = nullptr;         ///< request without which results omit the figure; null: always shown
+  double worst = std::numeric_limits<double>::infinity();  ///< value that is assigned to a device that does not close
 
   [[nodiscard]] constexpr bool is_count() const { return std::holds_alternative<int Metrics::*>(member); }
   [[nodiscard]] constexpr bool is_yes_or_no() const { return std::holds_alternative<bool Metrics::*>(member); }
-  /// Returns true when the difference of two runs estimates the figure's error.
+  /// Returns true when the difference between two runs of different accuracy estimates the figure's error.
   [[nodiscard]] constexpr bool is_told_by_two_runs() const {
     return conditioning == Conditioning::first_touch || conditioning == Conditioning::high_rebound ||
            conditioning == Conditioning::every_touch || conditioning == Conditioning::open;
   }
-  /// Returns true when results show the figure for a scene with these requests.
+  /// Returns true when results show the figure for a scene that requests `of_scene`.
   [[nodiscard]] constexpr bool is_asked(const AskedFigures& of_scene) const { return asked == nullptr || of_scene.*asked; }
-  /// Returns true when certify() gives the figure an error.
+  /// Returns true when certify() estimates an error of the figure.
   [[nodiscard]] constexpr bool has_error() const { return !is_yes_or_no() && conditioning != Conditioning::drives; }
 
-  /// Returns for example "Permanent contact (settling time)".
+  /// Returns the name with the other name in common use, for example "Permanent contact (settling time)".
   [[nodiscard]] std::string label() const;
-  /// Returns the key without its unit: "initial_contact_time".
+  /// Returns the key without its unit, for example "initial_contact_time".
   [[nodiscard]] constexpr std::string_view quantity() const {
     return unit.empty() ? key : key.substr(0, key.size() - unit.size() - 1);
   }
-  /// Returns the figure of a closing, 1 for yes and 0 for no; NaN when it is not known.
+  /// Returns the figure of a closing, 1 for yes and 0 for no; NaN when the figure is not known.
   [[nodiscard]] double value(const Metrics& metrics) const;
-  /// Returns the value for comparisons: a rebound that is not significant counts as the significant height, and a least force
+  /// Returns the value for comparisons. A rebound height below the significant height counts as that height, and a least force
   /// below the steady force as the steady force.
   [[nodiscard]] double counted(const Metrics& metrics, const MetricsOptions& options) const;
 };
 
-/// The table of all figures.
+/// The table of all figures of merit.
 inline constexpr auto figure_table = std::to_array<Figure>({
     {.key = "initial_contact_time_s",
      .name = "First contact",
@@ -388,7 +388,7 @@ inline constexpr auto figure_table = std::to_array<Figure>({
      .of_results = false},
 });
 
-/// Returns a selection of the table, in its order.
+/// Returns the figures for which `chosen` returns true, in the order of figure_table.
 template <bool (*chosen)(const Figure&)>
 [[nodiscard]] consteval auto figures_that_are() {
   std::array<Figure, static_cast<std::size_t>(std::count_if(figure_table.begin(), figure_table.end(), chosen))> all{};
@@ -401,34 +401,34 @@ constexpr bool is_of_devices(const Figure& one) { return one.of_devices; }
 constexpr bool is_number_of_results(const Figure& one) { return one.of_results && !one.is_yes_or_no(); }
 constexpr bool is_derived(const Figure& one) { return one.slope != nullptr && (one.of_results || one.of_devices); }
 }  // namespace internal
-/// The selections are: figures that results show for a closing; figures of varied devices, on which conditions on devices may
-/// be set; figures that conditions on one closing may use; figures that have derivatives.
+/// Selections of figure_table: figures that results show for a closing; figures of varied devices, on which conditions on
+/// devices may be set; figures that conditions on one closing may use; figures that have derivatives.
 inline constexpr auto all_figures = figures_that_are<internal::is_of_results>();
 inline constexpr auto device_figures = figures_that_are<internal::is_of_devices>();
 inline constexpr auto conditioned_figures = figures_that_are<internal::is_number_of_results>();
 inline constexpr auto derived_figures = figures_that_are<internal::is_derived>();
 
-/// Returns the figures of a selection that the requests of a scene include.
+/// Returns the members of `figures` that a scene with the requests `asked` shows.
 [[nodiscard]] std::vector<Figure> asked_among(std::span<const Figure> figures, const AskedFigures& asked);
 
-/// Returns the row of a member of Metrics.
+/// Returns the row of figure_table for a member of Metrics.
 [[nodiscard]] constexpr const Figure& figure_of(Figure::Member member) {
   return *std::find_if(figure_table.begin(), figure_table.end(), [&](const Figure& one) { return one.member == member; });
 }
 [[nodiscard]] constexpr std::string_view key_of(Figure::Member member) { return figure_of(member).key; }
-/// Returns the row with this key, which must be in the table.
+/// Returns the row of figure_table with this key, which must exist.
 [[nodiscard]] constexpr const Figure& figure_of(std::string_view key) {
   return *std::find_if(figure_table.begin(), figure_table.end(), [&](const Figure& one) { return one.key == key; });
 }
 
-/// The figures by which a closing is compared with a closing by another law or another number of modes.
+/// The figures by which closings with different laws or different numbers of modes are compared.
 inline constexpr std::array compared_figures{figure_of(&Metrics::initial_contact_time), figure_of(&Metrics::impact_velocity),
                                              figure_of(&Metrics::major_bounce_height)};
-/// The figures that an accuracy study of a closing compares: the figures above, and one that needs a contact law.
+/// The figures that an accuracy study of a closing compares: compared_figures, and the peak contact force.
 inline constexpr std::array studied_figures{compared_figures[0], compared_figures[1], compared_figures[2],
                                             figure_of(&Metrics::peak_contact_force)};
 
-/// One value of type T for every figure.
+/// Holds one value of type T for every figure in figure_table.
 template <class T>
 class PerFigure {
  public:
@@ -446,7 +446,7 @@ class PerFigure {
   }
 };
 
-/// A number for every figure: its value, or its error. NaN when it is not known.
+/// A number for every figure: its value, or its error. NaN when the number is not known.
 class FigureValues : public PerFigure<double> {
  public:
   constexpr FigureValues() { values_.fill(Metrics::unset); }
@@ -455,10 +455,10 @@ class FigureValues : public PerFigure<double> {
   AskedFigures asked = {};  ///< requests of the scene: see Figure::is_asked()
 };
 
-/// Returns the relative change of a figure, (value - reference) / max(|reference|, least); NaN when either is not known.
+/// Returns the relative change of a figure, (value - reference) / max(|reference|, least); NaN when an argument is NaN.
 [[nodiscard]] double relative_change(double value, double reference, double least = 0);
-/// Returns the size of the relative change, for comparison with a tolerance: 0 when both are equal or neither is known,
-/// infinite when only one is known.
+/// Returns the absolute relative change of a figure, for comparison with a tolerance: 0 when both values are equal or both are
+/// NaN, infinite when one is NaN.
 [[nodiscard]] double relative_difference(double value, double reference, double least = 0);
 
 }  // namespace softland

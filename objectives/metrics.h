@@ -1,5 +1,5 @@
-// Figures of merit of a closing (names after Bognash 2019). Every figure is taken at the contact point. objectives/figures.h
-// has their names and units in results.
+// Figures of merit of a closing (names after Bognash 2019). Every figure is taken at the contact point. The table in
+// objectives/figures.h has the names and units of figures in results.
 #pragma once
 
 #include <algorithm>
@@ -17,17 +17,17 @@
 
 namespace softland {
 
-/// Figures that appear in results only for scenes that ask for them.
+/// Figures that appear in results only for scenes that request them.
 struct AskedFigures {
   bool resistance = false;    ///< true when the contacts that make the connection have a resistivity
-  bool electrical = false;    ///< true when Device::electrical asks for these figures
-  bool opening = false;       ///< true when a run opens on command
+  bool electrical = false;    ///< true when the device requests electrical figures (Device::electrical)
+  bool opening = false;       ///< true when the run opens the switch on command
   bool pressure = false;      ///< true when a contact that makes the connection has summits and a hardness
-  bool charge = false;        ///< true when Device::load is given
-  bool break_charge = false;  ///< true when Device::load is given, and the run opens on command
+  bool charge = false;        ///< true when the device has a load circuit (Device::load)
+  bool break_charge = false;  ///< true when the device has a load circuit, and the run opens on command
   bool operator==(const AskedFigures&) const = default;
 };
-/// Returns the figures that a device asks for.
+/// Returns the figures that a device requests.
 [[nodiscard]] inline AskedFigures asked_figures(const Device& device) {
   return {.resistance = device.conducts(),
           .electrical = device.electrical.is_asked(),
@@ -38,10 +38,10 @@ struct AskedFigures {
 
 struct MetricsOptions {
   double significant_rebound = 1e-9;  ///< a rebound counts when it is higher than this [m]
-  double steady_force = 0.1;          ///< the contact force is steady from this share of the hold force on
+  double steady_force = 0.1;          ///< the contact force is steady when it is above this share of the hold force
   AskedFigures asked = {};
-  OpeningCommand opening = {};    ///< command to open; figures of the closing count until this time
-  TransferOptions transfer = {};  ///< set where Device::load is given
+  OpeningCommand opening = {};    ///< command to open; figures of the closing count until the time of this command
+  TransferOptions transfer = {};  ///< load circuit for the transferred charge; set when Device::load is given
 };
 
 struct Metrics {
@@ -51,8 +51,8 @@ struct Metrics {
   double initial_contact_time = unset;     ///< t_i [s]
   double permanent_contact_time = unset;   ///< t_p [s]; NaN when not settled
   double bounce_time = unset;              ///< t_b = t_p - t_i [s]
-  int bounce_count = 0;                    ///< N_B, number of significant rebounds; meaningless when there is no touch
-  double major_bounce_height = unset;      ///< B_H [m]; 0 when there is no rebound
+  int bounce_count = 0;                    ///< N_B, number of significant rebounds; meaningless without contact
+  double major_bounce_height = unset;      ///< B_H, height of the highest rebound [m]; 0 when there is no rebound
   double first_rebound_time = unset;       ///< duration of the first significant rebound [s]; 0 without a rebound
   double impact_velocity = unset;          ///< v_i [m/s]
   double peak_contact_force = unset;       ///< largest contact force of the run [N]
@@ -68,37 +68,37 @@ struct Metrics {
   double electrical_settling = unset;  ///< ElectricalOutcome::closed_from [s]
   int electrical_bounces = 0;          ///< ElectricalOutcome::openings; meaningless when the switch never closes electrically
   double pressure = unset;             ///< largest Touch::pressure of the run
-  /// Charge passed until the command to open, or the end of the run [C]; see objectives/transferred_charge.h.
+  /// Charge through the contact until the command to open, or the end of the run [C]; see objectives/transferred_charge.h.
   double make_charge = unset;
-  double break_charge = unset;  ///< charge passed after the command to open [C]
+  double break_charge = unset;  ///< charge through the contact after the command to open [C]
   AskedFigures asked = {};      ///< MetricsOptions::asked
   // The following figures are known when the drives command the switch to open: see OpeningOnCommand.
   double open_command = unset;           ///< time of the command to open [s]
   double opening_time = unset;           ///< time from the command to the last break of the contact [s]
-  int release_bounces = 0;               ///< meaningless when the contact is closed at the end
-  double release_bounce_height = unset;  ///< highest separation that ends in a touch [m]; 0 without a bounce
+  int release_bounces = 0;               ///< bounces on opening; meaningless if the run ends closed
+  double release_bounce_height = unset;  ///< highest separation on opening that ends in a touch [m]; 0 without a bounce
   double release_settling_time = unset;  ///< time from the command to rest in the open state [s]
   double overshoot_open = unset;         ///< largest excursion beyond the open position, away from the contact [m]
   double least_gap_open = unset;         ///< smallest separation after the opening [m]
-  double closed_time = unset;            ///< time in touch from the first touch to the last break [s]
-  /// Largest impact velocity on a back stop after the command to open, 0 if none [m/s]; set by simulate().
+  double closed_time = unset;            ///< time in contact from the first touch to the last break [s]
+  /// Largest impact velocity on a back stop after the command to open, 0 without an impact [m/s]; set by simulate().
   double back_stop_velocity = unset;
   // simulate() sets the following figures when the switch never touches: see set_open_figures().
   double static_deflection = unset;  ///< position of the contact point in the open equilibrium under the hold levels [m]
-  double overshoot = unset;          ///< largest excursion beyond static_deflection, seen from where the run started [m]
-  /// Time from which the contact point stays near static_deflection [s]; NaN when it does not.
+  double overshoot = unset;          ///< largest excursion beyond static_deflection, away from the initial position [m]
+  /// Time from which the contact point stays near static_deflection [s]; NaN when the point does not.
   double open_settling_time = unset;
-  // simulate() sets the following figures, which need the drives.
+  // simulate() sets the following figures, which depend on the drives.
   /// Largest |V| of the electrodes' drives in the window; that of the piezo's drive when there is no electrode [V].
   double peak_voltage = unset;
-  double peak_slew = unset;                ///< largest |dV/dt| of any drive [V/s]; infinite for a jump
+  double peak_slew = unset;                ///< largest |dV/dt| of any drive [V/s]; infinite for a jump of the voltage
   double largest_impact_velocity = unset;  ///< largest impact velocity of all touches, not only of the first [m/s]
   // The following figures enter costs; results do not show them.
   double closest = unset;    ///< smallest separation before the first touch [m]; known also for a run that never touches
   double separated = unset;  ///< time above the first-touch plane after the first touch [s]
-  /// End of the last significant rebound; end of the run when the last rebound has not ended; t_i if none [s].
+  /// End of the last significant rebound; end of the run when the last rebound has not ended; t_i without one [s].
   double last_rebound_end = unset;
-  double landing_excess = unset;  ///< Trajectory::landing_excess, not below 0 [J]
+  double landing_excess = unset;  ///< Trajectory::landing_excess, but not below 0 [J]
   double end = unset;             ///< end of the run [s]
   bool reopened = false;          ///< true when the contact is open at the end of the run, by more than half of the contact gap
 
@@ -111,23 +111,23 @@ struct Metrics {
   }
 };
 
-/// Computes the figures of a landing from its touches and rebounds.
+/// Computes the figures of a closing from its touches and rebounds.
 class LandingFigures {
  public:
   explicit LandingFigures(const MetricsOptions& options = {}) : options_(options) {}
   void touch(const Touch& touch);
   void rebound(const Rebound& rebound);
 
-  /// The motion of the contact point, as far as it is known at the end of a run.
+  /// The motion of the contact point up to the end of a run.
   struct Course {
-    bool sound = true;  ///< true when every knot was finite, and in order of time
+    bool sound = true;  ///< true when every knot was finite, and the knots were in order of time
     bool touched = false;
     bool above = false;  ///< true when the last rebound, already passed to rebound(), had not ended at the end of the run
     double first_touch = Metrics::unset, impact_velocity = Metrics::unset;  ///< [s], [m/s]
     double last_time = 0;                                                   ///< time of the last knot [s]
     double closest = Metrics::unset;                                        ///< smallest separation before the first touch [m]
   };
-  /// Returns the figures of the run, after its end: see metrics().
+  /// Returns the figures of the run. Call it after the end of the run; see the function metrics() below.
   [[nodiscard]] Metrics metrics(const Trajectory& end, const Course& course) const;
 
  private:
@@ -139,7 +139,7 @@ class LandingFigures {
   double peak_force_ = 0, impact_energy_ = 0, largest_impact_velocity_ = 0, pressure_ = Metrics::unset;
 };
 
-/// Computes the figures during a closing, without keeping its motion.
+/// Computes the figures of merit during a closing, without storing its motion.
 class MetricsObserver final : public ClosingObserver {
  public:
   /// `contact_gap` [m]
@@ -154,7 +154,7 @@ class MetricsObserver final : public ClosingObserver {
   void touch(const Touch& touch) override {
     if (touch.begin < options_.opening.time) figures_.touch(touch);
   }
-  /// Returns the figures of the run, after its end: see metrics().
+  /// Returns the figures of the run. Call it after the end of the run; see the function metrics() below.
   [[nodiscard]] Metrics metrics(const Trajectory& end);
 
  private:
@@ -167,29 +167,30 @@ class MetricsObserver final : public ClosingObserver {
   TransferredCharge charge_;
   double contact_gap_, closest_;  // [m]
   TrajectoryPoint last_{.time = Metrics::unset};
-  double make_charge_ = Metrics::unset;            // charge at make, complete once the opening has begun [C]
+  double make_charge_ = Metrics::unset;            // charge during closing, complete once the opening has begun [C]
   std::optional<CommandedOpening> opening_;        // opening on command; empty before the command
-  std::optional<LandingFigures::Course> landing_;  // motion of the landing until the command to open
+  std::optional<LandingFigures::Course> landing_;  // motion of the closing until the command to open
 };
 
-/// Returns all rebounds, significant or not, in order, up to the first knot that is not finite; a separation below 1e-12 of the
-/// contact gap does not count. Heights are extrema of the trajectory's interpolant, not of its knots.
+/// Returns all rebounds, significant or not, in order of time, up to the first knot that is not finite. A separation below
+/// 1e-12 of the contact gap does not count. Heights are extrema of the trajectory's interpolant, not of its knots.
 [[nodiscard]] std::vector<Rebound> rebounds(const Trajectory& trajectory);
 
-/// Computes the figures of a trajectory. Never throws: trouble is in the status (the trajectory's own if that is not `done`,
-/// else done | no_contact | not_settled, or numerical_failure when a knot is not finite or goes back in time). The figures that
-/// are known depend on the run:
+/// Computes the figures of a trajectory. Never throws: the status reports failures. It is the trajectory's own status if that
+/// is not `done`; else done, no_contact, not_settled, or numerical_failure when a knot is not finite or goes back in time. The
+/// known figures depend on the run:
 ///
-/// - A run that did not reach the end of its window: initial_contact_time and impact_velocity when there was a touch before,
+/// - A run that did not reach the end of its window: initial_contact_time and impact_velocity if the switch reached contact,
 /// and no other figure.
 /// - Several contacts: initial_contact_time and impact_velocity are those of the first touch of any contact. Rebounds count
 /// from the time at which all contacts of the connection, or any of them, are closed. A connection that never closes is
 /// not_settled.
-/// - No touch: drive_energy and capacitance alone. This also holds for a run that began closed: it has no landing and is
-/// not_settled until set_open_figures() finds it open and at rest.
-/// - A run that ends at the touch, because it has no contact law: initial_contact_time, impact_velocity and drive_energy.
-/// - Not settled: less than one in_contact_period after permanent contact (first contact where there is no significant
-/// rebound), or a significant rebound and a period that is NaN.
+/// - No contact: drive_energy and capacitance alone. This also holds for a run that began closed: such a run has no closing and
+/// is not_settled until set_open_figures() finds the switch open and at rest.
+/// - A run that ends at first contact, because the scene has no contact law: initial_contact_time, impact_velocity,
+/// drive_energy.
+/// - Not settled: less than one in_contact_period after permanent contact (first contact when there is no significant rebound),
+/// or a significant rebound and a period that is NaN.
 [[nodiscard]] Metrics metrics(const Trajectory& trajectory, const MetricsOptions& options = {});
 
 }  // namespace softland

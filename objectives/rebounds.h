@@ -1,4 +1,4 @@
-// The rebounds of a closing, found during the run: no past knots are kept.
+// The rebounds of a closing, found during the run without storing past knots.
 #pragma once
 
 #include <algorithm>
@@ -13,24 +13,24 @@
 
 namespace softland {
 
-/// An interval in which the contact point stands above the first-touch plane, after first contact.
+/// A time interval after first contact in which the contact point is above the first-touch plane.
 struct Rebound {
-  double begin = 0;           ///< [s]
-  double end = 0;             ///< [s]; NaN when the rebound has not ended at the end of the window
+  double begin = 0;           ///< start of the rebound [s]
+  double end = 0;             ///< end of the rebound [s]; NaN when the rebound has not ended at the end of the window
   double height = 0;          ///< largest separation of the rebound [m]; a lower bound when the rebound has not ended
-  double time_of_height = 0;  ///< [s]
+  double time_of_height = 0;  ///< time at which the largest separation occurs [s]
 };
 
 /// Finds rebounds in the separation of the contact point from the first-touch plane. Turning points and crossings of the plane
 /// between knots are those of the quintic through the knots. A separation below 1e-12 of the contact gap does not count: the
-/// integrator stops at the plane to rounding.
+/// integrator stops at the plane only to within rounding.
 class ReboundFinder {
  public:
   /// `contact_gap` [m]
   explicit ReboundFinder(double contact_gap) : gap_(contact_gap), usable_(std::isfinite(contact_gap)) {}
 
-  /// Takes the next knot and calls found(rebound) for every rebound that ends before this knot. Returns false, from then on,
-  /// for a knot that is not finite or goes back in time: neither this knot nor later ones count.
+  /// Adds the next knot and calls found(rebound) for every rebound that ends before this knot. Ignores a knot that is not
+  /// finite or goes back in time, and all later knots, and returns false for them.
   template <class Found>
   bool knot(const TrajectoryPoint& next, Found&& found) {
     usable_ = usable_ && std::isfinite(next.time) && std::isfinite(next.position) && std::isfinite(next.velocity) &&
@@ -46,22 +46,20 @@ class ReboundFinder {
     return true;
   }
 
-  /// Returns true when every knot so far could be used.
+  /// Returns true when every knot so far was finite and in order of time.
   [[nodiscard]] bool usable() const { return usable_; }
   [[nodiscard]] bool touched() const { return touched_; }
-  [[nodiscard]] double first_touch() const { return first_touch_; }  ///< time of the first touch [s]; NaN before
-  [[nodiscard]] double impact_velocity() const {
-    return impact_velocity_;
-  }                                                              ///< impact velocity of the first touch [m/s]; NaN before
-  [[nodiscard]] double last_time() const { return last_.time; }  ///< time of the last knot that counted [s]
-  /// Returns the rebound that has not ended yet.
+  [[nodiscard]] double first_touch() const { return first_touch_; }          ///< time of first touch [s]; NaN before a touch
+  [[nodiscard]] double impact_velocity() const { return impact_velocity_; }  ///< first impact velocity [m/s]; NaN before a touch
+  [[nodiscard]] double last_time() const { return last_.time; }              ///< time of the last knot that was not ignored [s]
+  /// Returns the rebound that has not ended yet, if any.
   [[nodiscard]] const std::optional<Rebound>& under_way() const { return under_way_; }
 
  private:
-  /// A point from which the separation is monotone and keeps its sign up to the next one.
+  /// A point of the motion; the separation is monotone and does not change its sign from here to the next Node.
   struct Node {
     double time = 0;        ///< [s]
-    double separation = 0;  ///< [m], 0 on the plane
+    double separation = 0;  ///< separation from the first-touch plane [m]
     double velocity = 0;    ///< [m/s]
   };
 
@@ -109,8 +107,8 @@ class ReboundFinder {
     node_ = next;
   }
 
-  /// Returns true when the control points of the quintic's Bernstein form are in order: a cheap proof that the velocity keeps
-  /// its sign between the knots.
+  /// Returns true when the control points of the quintic's Bernstein form are in order. This is a cheap sufficient condition
+  /// for a velocity that does not change its sign between the knots.
   [[nodiscard]] static bool surely_monotone(const TrajectoryPoint& a, const TrajectoryPoint& b) {
     const double h = b.time - a.time;
     const double from_a = a.velocity * h / 5;

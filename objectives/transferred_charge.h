@@ -1,14 +1,14 @@
-// The charge that a contact passes while it closes, and while it opens. The contact force is then below the steady force, and
-// the current flows through few small spots, which it can melt. The transferred material is proportional to this charge.
+// The charge that flows through a contact while it closes and while it opens. The contact force is then below the steady force,
+// and the current can melt the few small spots through which it flows. The transferred material is proportional to this charge.
 //
-//   i = V / (R_L + R),   Q = integral of i dt over the times in touch at which the contact force is below F_s
+// i = V / (R_L + R),   Q = integral of i dt over the times in contact at which the contact force is below F_s
 //
 // V is the voltage of the source [V] and R_L the resistance in series with it [Ohm] of the load circuit. R is the resistance of
 // the contact [Ohm]; when R is not known it counts as 0, and Q is an upper bound of the charge. F_s is the steady force [N].
 //
-// Limits: the load is a resistance, without inductance or capacitance, which add arcs and surges; nothing flows through a gap;
-// the contact does not heat. Q compares waveforms on one contact. How much material it moves depends on the metals, and must be
-// measured. Sources: R. Holm, Electric Contacts (1967), on the transfer of material; T. G. Bull & J. W. McBride,
+// Limits: the load is a resistance, without inductance or capacitance, which add arcs and surges; no current flows through a
+// gap; the contact does not heat. Q compares waveforms on one contact. The mass of material that Q moves depends on the metals,
+// and must be measured. Sources: R. Holm, Electric Contacts (1967), on the transfer of material; T. G. Bull & J. W. McBride,
 // Technologies 6 (2018) 47, for gold in a MEMS switch.
 #pragma once
 
@@ -23,20 +23,20 @@ namespace softland {
 
 struct TransferOptions {
   SwitchedLoad load = {};
-  /// F_s [N]; the charge is NaN when F_s is NaN, not known.
+  /// Steady force, below which charge counts [N]; the charge is NaN when this force is NaN.
   double light_below = std::numeric_limits<double>::quiet_NaN();
-  std::optional<ContactResistance> contact = {};  ///< contact resistance; neglected where absent
+  std::optional<ContactResistance> contact = {};  ///< contact resistance; counts as 0 if empty
 };
 
-/// Computes the charge during a run.
+/// Computes the charge through a contact during a run.
 class TransferredCharge {
  public:
   /// `contact_gap` [m]
   TransferredCharge(const TransferOptions& options, double contact_gap) : options_(options), contact_gap_(contact_gap) {}
-  /// Adds the motion between two knots, over which the contact is open or in touch throughout. The contact force between them
-  /// is taken as linear.
+  /// Adds the motion between two knots, over which the contact is open or closed throughout. The contact force between the
+  /// knots is taken as linear in time.
   void follow(const TrajectoryPoint& from, const TrajectoryPoint& to);
-  /// Returns the charge so far [C]; NaN when it is not known.
+  /// Returns the charge up to the last added knot [C]; NaN when the charge is not known.
   [[nodiscard]] double charge() const;
 
  private:
