@@ -1,7 +1,7 @@
 // The charge that flows through a contact while it closes and while it opens. The contact force is then below the steady force,
 // and the current can melt the few small spots through which it flows. The transferred material is proportional to this charge.
 //
-// i = V / (R_L + R),   Q = integral of i dt over the times in contact at which the contact force is below F_s
+//   i = V / (R_L + R),   Q = integral of i dt over the times in contact at which the contact force is below F_s
 //
 // V is the voltage of the source [V] and R_L the resistance in series with it [Ohm] of the load circuit. R is the resistance of
 // the contact [Ohm]; when R is not known it counts as 0, and Q is an upper bound of the charge. F_s is the steady force [N].

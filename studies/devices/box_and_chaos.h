@@ -1,25 +1,25 @@
 // Two further descriptions of process variation, beside the statistics of a sample (studies/devices/robustness.h): the range of
 // a figure over a box of the varied quantities, and polynomial chaos.
 //
-// Box. An interval analysis requests the least and the largest figure while every quantity is anywhere between two bounds. Each
-// varied quantity is a function of a standard normal number z_i, and the bounds are the same for all of them,
+// Box. An interval analysis requests the least and the largest figure while every varied quantity is anywhere between two
+// bounds. Each varied quantity is a function of a standard normal number z_i, and the bounds are the same for all z_i,
 //
 //   |z_i| <= b,   (2 Phi(b) - 1)^d = 0.95,   d: number of varied quantities
 //
-// so that the box holds 95 % of all devices. The largest figure in the box is never below the 95th percentile: read it as an
-// upper bound of that percentile. A normal quantity reaches b standard deviations. If quantities are correlated, z_i are the
-// independent numbers from which they are made (sampling/copula.h).
+// so that the box holds 95 % of all devices. The largest figure in the box is never below the 95th percentile of all devices:
+// read this figure as an upper bound of the percentile. A normal quantity reaches b standard deviations. If quantities are
+// correlated, z_i are the independent numbers from which the quantities are made (sampling/copula.h).
 //
 // Each end of the range is found by a global search that starts from the corners of the box and from the best sampled devices
 // in it (optimizers/). A search proves nothing: the true range is at least as wide. A device that does not close counts as the
 // worst.
 //
-// Chaos. Each figure is a sum of polynomials in the varied quantities (sampling/polynomial_chaos.h). It is fitted to the first
-// devices of the sample, and so needs no further closings. Its prediction error is estimated twice: by cross-validation over
-// the fitted devices, and on the other devices of the sample. Both errors are large for a figure that jumps, since no sum of
-// few polynomials describes it.
+// Chaos. Each figure is a sum of polynomials in the varied quantities (sampling/polynomial_chaos.h). The sum is fitted to the
+// first devices of the sample, and so needs no further closings. Its prediction error is estimated twice: by cross-validation
+// over the fitted devices, and on the other devices of the sample. Both errors are large for a figure that jumps, since no sum
+// of few polynomials describes such a figure.
 //
-// Errors of measurement are left out of the box. Chaos cannot predict their part of the figures.
+// Errors of measurement are left out of the box. Polynomial chaos cannot predict their part of the figures.
 #pragma once
 
 #include <cstddef>
@@ -33,32 +33,32 @@
 
 namespace softland {
 
-/// Share of the devices that the box holds.
+/// Share of all devices that the box holds.
 inline constexpr double box_share = 0.95;
 
 /// Returns the half width b of the box for d varied quantities, at least one [standard deviations of a normal number].
 [[nodiscard]] double box_half_width(std::size_t d);
 
-/// A device at an end of a range.
+/// A device at an end of the range of a figure over the box.
 struct BoxDevice {
-  std::vector<double> values;  ///< values of its varied quantities [SI unit, or factor]
+  std::vector<double> values;  ///< values of the device's varied quantities [SI unit, or factor]
   double figure = Metrics::unset;
   DeviceOutcome outcome = {};
 };
 struct FigureRange {
   std::string_view key;     ///< key of device_figures
-  BoxDevice least, most;    ///< `least` has no values if no device in the box is known to close
+  BoxDevice least, most;    ///< devices with the least and the largest figure; `least` is empty if none closes
   Interval of_sample = {};  ///< range of the figure over the sampled devices in the box
 };
 
 struct FigureChaos {
   std::string_view key;               ///< key of device_figures
-  std::size_t fitted = 0;             ///< number of devices to which it is fitted
-  std::size_t unseen = 0;             ///< number of devices on which it is tested
+  std::size_t fitted = 0;             ///< number of devices to which the polynomials are fitted
+  std::size_t unseen = 0;             ///< number of devices on which the polynomials are tested
   int degree = 0;                     ///< degree of the polynomials
   std::size_t terms = 0;              ///< number of terms, the constant included
-  double q2 = Metrics::unset;         ///< predicted share of the variance, by cross-validation
-  double q2_unseen = Metrics::unset;  ///< predicted share of the variance of the devices on which it is tested
+  double q2 = Metrics::unset;         ///< predicted share of the figure's variance, by cross-validation
+  double q2_unseen = Metrics::unset;  ///< predicted share of the variance of the devices that were not fitted
   double mean = Metrics::unset, standard_deviation = Metrics::unset;
   double quantile_95 = Metrics::unset;
 };
@@ -74,17 +74,17 @@ struct BoxAndChaos {
   long closings = 0;                   ///< number of closings of all searches
   std::vector<FigureRange> ranges = {};
   std::vector<FigureChaos> chaos = {};
-  std::size_t left_out = 0;   ///< devices of the fit that do not close; chaos does not describe them
+  std::size_t left_out = 0;   ///< number of devices of the fit that do not close; they are left out of the fit
   std::string why_none = {};  ///< reason for missing ranges; empty if there are ranges
 };
 
-/// Finds ranges and chaos of explained_figures for this drive, which was simulated on the devices of `options`. The results are
-/// functions of the arguments.
+/// Finds the box ranges and the polynomial chaos of explained_figures for this drive, which was simulated on the devices of
+/// `options`. The results depend on nothing but the arguments.
 [[nodiscard]] BoxAndChaos box_and_chaos(const PreparedScene& nominal, const DriveRobustness& drive,
                                         const RobustnessOptions& options, const BoxAndChaosOptions& effort = {},
                                         const Progress& progress = {});
 
-/// Returns the scene of a device at an end of a range. `simulate` runs it to the same closing.
+/// Returns the scene of a device at an end of a range. `simulate` runs this scene to the same closing.
 [[nodiscard]] SceneFile scene_of_device(const PreparedScene& nominal, const DriveRobustness& drive, const BoxDevice& device,
                                         const RobustnessOptions& options);
 

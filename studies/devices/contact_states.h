@@ -1,9 +1,9 @@
-// When the contact of a switch is closed and open in a run, and its resistance while it is closed, as a circuit or firmware
-// observes it. The run is that of a scene, or those of devices of its [spread].
+// When the contact of a switch is closed and open in a run, and its resistance while closed, as a circuit or firmware observes
+// the contact. The run is that of a scene, or those of devices of its [spread].
 //
 // Closed means electrically closed (model/closing/electrical_record.h). A scene with neither metrics.closed_force nor
-// metrics.closed_resistance is closed while in touch. Openings that last no longer than metrics.closed_after are ignored. An
-// impact on a rigid contact has no duration, and so is no closed state.
+// metrics.closed_resistance is closed while in contact. Openings that last no longer than metrics.closed_after are ignored. An
+// impact on a rigid contact has no duration, and so is not a closed state.
 #pragma once
 
 #include <cstddef>
@@ -20,21 +20,21 @@
 
 namespace softland {
 
-/// Largest resistance of a closed contact that is reported [Ohm]. A larger one occurs at the edge of a touch, where nothing
-/// presses yet.
+/// Largest resistance of a closed contact that is reported [Ohm]. A larger resistance occurs at the start and the end of a
+/// contact, where the contact force is near 0.
 inline constexpr double largest_resistance = 1e6;
 
-/// A resistance over time, interpolated linearly between these points [s, Ohm].
+/// A resistance over time, interpolated linearly between the points of this list [s, Ohm].
 using ResistanceLine = std::vector<std::pair<double, double>>;
 
 /// A time span in which a contact is closed.
 struct ClosedSpan {
   double begin = 0;                                      ///< [s]
   double end = std::numeric_limits<double>::infinity();  ///< [s]; infinite if the contact is closed when the run ends
-  ResistanceLine resistance = {};                        ///< from `begin` to the end of the span; empty if it is not known
+  ResistanceLine resistance = {};                        ///< resistance from `begin` to `end`; empty if unknown
 };
 
-/// The states of the connection of a switch, or of one of its contacts, over a run from t = 0 on.
+/// The closed states of the connection of a switch, or of one of its contacts, over a run from t = 0 on.
 struct StateChannel {
   std::optional<std::size_t> device = {};  ///< number of the device in the ensemble, from 0; none for the nominal design
   std::string contact = {};                ///< name of one of several contacts; empty for the connection
@@ -47,16 +47,16 @@ struct StateRecord {
   std::vector<StateChannel> channels;
 };
 
-/// Receives a message about a run that did not come to its end, or about a device that cannot be described.
+/// Receives a message about a run that ended early, or about a device that cannot be described.
 using NoteSink = std::function<void(const std::string&)>;
 
-/// Returns the states in the run of simulate() with errors. Its channels are the connection and, if there are several contacts,
-/// each of them. Throws InvalidInput for a switch without a contact, and Interrupted if `progress` asks to stop.
+/// Returns the contact states in the run of simulate() with errors. The channels are the connection and, if there are several
+/// contacts, each contact. Throws InvalidInput for a switch without a contact, and Interrupted if `progress` asks to stop.
 [[nodiscard]] StateRecord contact_states(const PreparedScene& prepared, const Progress& progress, const NoteSink& note);
 
-/// Returns the states for the first `devices` devices of the spread with this seed, at the tolerance of the scene. The drives
-/// have the waveforms of the nominal device, and the errors of each device's own sources. The result does not depend on `jobs`,
-/// the number of threads.
+/// Returns the contact states for the first `devices` devices of the [spread] with this seed, at the tolerance of the scene.
+/// The drives have the waveforms of the nominal device, and the errors of each device's own sources. The result does not depend
+/// on `jobs`, the number of threads.
 [[nodiscard]] StateRecord contact_states_of_devices(const PreparedScene& nominal, std::size_t devices, std::uint64_t seed,
                                                     int jobs, const Progress& progress, const NoteSink& note);
 

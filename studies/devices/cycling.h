@@ -1,5 +1,5 @@
-// A switch that is closed and opened periodically: the figures of its cycles, and the largest rate at which it lands as it does
-// from rest. At higher rates the beam has not come to rest before the next cycle, or the closing is cut short.
+// A switch that is closed and opened periodically: the figures of its cycles, and the largest rate at which the switch closes
+// as it does from rest. At higher rates the beam has not come to rest before the next cycle, or the closing is cut short.
 #pragma once
 
 #include <cstddef>
@@ -25,42 +25,42 @@ struct CycleWaveforms {
   std::vector<Signal> closing, opening;
 };
 
-/// Returns the waveforms repeated from the rest before the first closing on.
+/// Returns the waveforms of a cycle repeated at `times`. The switch is at rest before the first cycle.
 [[nodiscard]] std::vector<Signal> cycled(const CycleWaveforms& waveforms, const CycleTimes& times);
 
 struct Cycles {
   CycleTimes times;
-  Status status = Status::not_run;   ///< done if the run came to its end
-  std::string message = {};          ///< reason if the run did not come to its end
+  Status status = Status::not_run;   ///< done if the run reached the end of its last cycle
+  std::string message = {};          ///< reason if the run ended early
   std::vector<CycleFigures> cycles;  ///< completed cycles
   /// Distance of the contact point to the contact plane [m] over time [s]; only if requested.
   std::vector<std::pair<double, double>> gap = {};
-  std::vector<Touch> touches = {};  ///< touches in that course; only if requested
+  std::vector<Touch> touches = {};  ///< touches in the run; only if requested
 };
 
-/// Permitted differences of a cycle from the first one.
+/// Permitted differences of a cycle from the first cycle of the run.
 struct CycleTolerances {
   double share = 0.05;    ///< relative difference of the largest impact velocity and the highest rebound
-  double rebound = 1e-9;  ///< difference of the highest rebound that is always permitted [m]
+  double rebound = 1e-9;  ///< absolute difference of the highest rebound that is always permitted [m]
 };
 
-/// True if the switch closes and opens in a cycle, and lands as in the first one.
+/// True if the switch closes and opens in `cycle`, with the impact velocity and rebound height of the first cycle.
 [[nodiscard]] bool lands_alike(const CycleFigures& cycle, const CycleFigures& first, const CycleTolerances& tolerances);
 
-/// The cycles of one switch: the nominal design of a scene, or one of its devices.
+/// The cycles of one switch: the nominal design of a scene, or one of the devices of its [spread].
 class CycledSwitch {
  public:
-  /// Keeps references. `driven` is the scene whose sources apply the waveforms.
+  /// Keeps references. `driven` is the scene whose sources apply the waveforms to `model`.
   CycledSwitch(const PreparedScene& driven, const Switch& model, const CycleWaveforms& waveforms);
 
-  /// Runs cycles. With `is_told` it also records their course, and their figures include those of a load and of the electrical
-  /// state.
+  /// Runs cycles. With `is_told` the result also has the course of the gap and the touches, and the figures include those of a
+  /// load and of the electrical state.
   [[nodiscard]] Cycles run(const CycleTimes& times, bool is_told, const Progress& progress = {}) const;
-  /// True if the switch lands in all cycles as in the first one. The run ends at the first cycle in which it does not.
+  /// True if the switch closes in every cycle as in the first cycle. The run ends at the first cycle that differs.
   [[nodiscard]] bool is_steady(const CycleTimes& times, const CycleTolerances& tolerances, const Progress& progress = {}) const;
-  /// Times that a cycle needs for its closing and for its opening [s]. `rest` is the time until the switch is at rest, within
-  /// windows that are long enough to show it. `least` is the time until the first touch or the end of the waveform. Infinite if
-  /// the switch does not get there.
+  /// Times that a cycle needs for its closing and for its opening [s]. `rest` is the time until the switch is at rest,
+  /// simulated in windows that are long enough for it. `least` is the time until the first contact or the end of the waveform.
+  /// A time is infinite if the switch does not reach that state.
   struct PartTimes {
     double rest_on = std::numeric_limits<double>::infinity(), rest_off = std::numeric_limits<double>::infinity();
     double least_on = std::numeric_limits<double>::infinity(), least_off = std::numeric_limits<double>::infinity();
@@ -68,7 +68,7 @@ class CycledSwitch {
   [[nodiscard]] PartTimes part_times(const Progress& progress = {}) const;
 
  private:
-  // `is_enough` returns true to end the run; it may be null.
+  // Ends the run when `is_enough` returns true; `is_enough` may be null.
   [[nodiscard]] Trajectory observe(const CycleTimes& times, ClosingObserver& observer, const Progress& progress,
                                    const std::function<bool()>& is_enough) const;
 
@@ -83,59 +83,59 @@ struct RateScan {
     double rate = 0;  ///< [Hz]
     bool is_steady = false;
   };
-  std::vector<Rate> rates;  ///< tried rates, in increasing order
-  /// Largest rate up to which every tried rate is steady [Hz]; NaN if there is none.
+  std::vector<Rate> rates;  ///< simulated rates, in increasing order
+  /// Largest rate up to which every simulated rate is steady [Hz]; NaN without one.
   double largest = std::numeric_limits<double>::quiet_NaN();
   /// Ranges of steady rates above `largest` [Hz].
   std::vector<std::pair<double, double>> windows = {};
 };
 
 struct ScanOptions {
-  double duty = 0.5;         ///< part of a cycle before its command to open
+  double duty = 0.5;         ///< share of a cycle that lies before its command to open
   double step = 0.05;        ///< relative step from one rate to the next
-  std::size_t cycles = 10;   ///< number of cycles; all others are compared with the first
+  std::size_t cycles = 10;   ///< number of cycles of a run; the first is the reference for the others
   bool beyond_first = true;  ///< true to continue above the first rate that is not steady
   CycleTolerances tolerances = {};
 };
 
-/// Scans rates. At the first rate every cycle begins and ends at rest; it is lowered until it is steady. At the last rate the
-/// closing or the opening is too short for its waveform.
+/// Scans rates. At the first rate every cycle begins and ends at rest; this rate is lowered until it is steady. At the last
+/// rate the closing or the opening is too short for its waveform.
 [[nodiscard]] RateScan scan_rates(const CycledSwitch& cycled, const ScanOptions& options, const Progress& progress = {});
 
 struct CyclingOptions {
-  std::optional<double> rate = {};  ///< rate of the reported cycles [Hz]; none for the largest steady rate of the last waveforms
+  std::optional<double> rate = {};  ///< rate of the reported cycles [Hz]; none: largest steady rate of the last waveforms
   bool scans = true;                ///< false to run only the cycles at `rate`
   double duty = ScanOptions{}.duty;
   std::size_t cycles = ScanOptions{}.cycles;
-  std::uint64_t devices = 50;  ///< number of devices of [spread] that are scanned as well; 0 for none
+  std::uint64_t devices = 50;  ///< number of devices of [spread] whose rates are scanned as well; 0 for none
   std::uint64_t seed = 1;
   int jobs = 1;
 };
 
-/// A switch that is cycled by one pair of waveforms, and the results.
+/// The results of a switch that is cycled by one pair of waveforms, for closing and opening.
 struct CycledDrive {
   CycleWaveforms waveforms;
   RateScan scan;                        ///< rates of the nominal design
-  std::vector<double> of_devices = {};  ///< RateScan::largest of each device [Hz]; 0 if none
+  std::vector<double> of_devices = {};  ///< RateScan::largest of each device [Hz]; 0 without a steady rate
   std::optional<Cycles> cycles = {};    ///< cycles of the nominal design at the reported rate
 };
 
 struct Cycling {
   CyclingOptions options;
   double rate = std::numeric_limits<double>::quiet_NaN();  ///< rate of the reported cycles [Hz]; NaN without them
-  std::vector<CycledDrive> drives;                         ///< the plain waveforms first; only these if no others were given
+  std::vector<CycledDrive> drives;                         ///< results of the plain waveforms, then of the given ones
   bool interrupted = false;
 };
 
-/// Completes the waveforms: a missing one goes at once to the beginning of the opening, or to 0 V.
+/// Completes the waveforms of a cycle: a missing closing steps to the start of the opening, a missing opening to 0 V.
 void complete(CycleWaveforms& waveforms, const PreparedScene& given);
-/// Returns the plain cycle. Every drive goes at once, as fast as its driver permits, to the last level of the closing, and on
-/// command to the last level of the opening.
+/// Returns the plain cycle. Every drive goes at once, as fast as its driver permits, to the last level of its closing waveform,
+/// and on command to the last level of its opening waveform.
 [[nodiscard]] CycleWaveforms plain_cycle(const PreparedScene& given, const CycleWaveforms& waveforms);
 
-/// Scans the rates of the plain waveforms and of the given ones, and runs the cycles at one rate. Devices have the drives of
-/// the nominal design, without errors of the sources. Throws InvalidInput for a scene without contact, and for waveforms that
-/// are longer than their part of a cycle at the requested rate.
+/// Scans the rates of the plain waveforms and of the given waveforms, and runs the cycles at one rate. Devices have the drives
+/// of the nominal design, without errors of the sources. Throws InvalidInput for a scene without contact, and for waveforms
+/// that are longer than their part of a cycle at the requested rate.
 [[nodiscard]] Cycling cycling(const PreparedScene& given, const CycleWaveforms& waveforms, const CyclingOptions& options,
                               const Progress& progress = {});
 

@@ -10,12 +10,12 @@
 //
 // The derivatives contain make and break of contact, impacts and dents (model/linearized_closing.h), and all parts of a device
 // (model/switch_slopes.h). The voltages are those of the nominal device or, with a per-device calibration, scale with each
-// device's own units, which are taken as exact. Errors of sources are included.
+// device's own units, which count as exact. Errors of sources are included.
 //
 // Derivatives are valid as long as no touch is added or removed: a further rebound is not a small change. If a touch is nearly
-// added or removed (grazing), they are valid for much smaller changes than those of a spread. After many rebounds they become
-// too large to use, and too large for an integrator to resolve. A figure whose derivatives change by more than a twentieth with
-// the tolerance gets none.
+// added or removed (grazing), derivatives are valid only for much smaller changes than those of a [spread]. After many rebounds
+// derivatives become too large to use, and too large for an integrator to resolve. A figure whose derivatives change by more
+// than a twentieth with the tolerance gets none.
 #pragma once
 
 #include <string>
@@ -29,51 +29,50 @@
 namespace softland {
 
 struct FigureDerivatives {
-  std::string_view key;           ///< key of device_figures
-  double value = Metrics::unset;  ///< value of the nominal device
-  std::vector<double>
-      by_variable;  ///< derivative by each variable [unit of the figure over that of the variable]; NaN if it does not exist
-  double deviation = Metrics::unset;  ///< sigma_f, from the variables with derivatives
-  double error = Metrics::unset;  ///< largest difference of the derivatives to those of a looser run, over the largest derivative
-  std::string why_none = {};      ///< reason for missing derivatives; empty if they exist
+  std::string_view key;               ///< key of device_figures
+  double value = Metrics::unset;      ///< value of the figure for the nominal device
+  std::vector<double> by_variable;    ///< derivative by each variable [unit of figure over unit of variable]; NaN if none exists
+  double deviation = Metrics::unset;  ///< sigma_f, standard deviation of the figure, from the variables with derivatives
+  double error = Metrics::unset;  ///< largest change of the derivatives against a looser tolerance, over the largest derivative
+  std::string why_none = {};      ///< reason for missing derivatives of the figure; empty if they exist
 
   [[nodiscard]] bool is_known() const { return !by_variable.empty(); }
 };
 
 struct Derivatives {
   struct Variable {
-    std::string name;           ///< name in the spread
-    double nominal = 0;         ///< nominal value; 1 for a factor
-    double deviation = 0;       ///< sigma_i
+    std::string name;           ///< name of the variable in [spread]
+    double nominal = 0;         ///< value for the nominal device; 1 for a factor
+    double deviation = 0;       ///< sigma_i, standard deviation of the variable
     std::string why_none = {};  ///< reason for missing derivatives by this variable; empty if they exist
   };
-  std::vector<Variable> variables;         ///< variables in the order of the spread
-  std::vector<FigureDerivatives> figures;  ///< the device_figures that have slopes
+  std::vector<Variable> variables;         ///< variables in the order of [spread]
+  std::vector<FigureDerivatives> figures;  ///< figures among device_figures that have derivatives
   double grazing = 1;                      ///< CostSlopes::grazing of the nominal closing
-  std::string why_none = {};               ///< reason for missing derivatives; empty if they exist
+  std::string why_none = {};               ///< reason for missing derivatives of all figures; empty if they exist
 
   [[nodiscard]] bool grazes() const;
 };
 
 struct DerivativeOptions {
-  double tolerance = 0;  ///< tolerance of the integrator; 0 for the scene's, or 1e-8 if that is looser
-  int refinement = 4;    ///< parts of an integrator step (LinearizedClosing)
+  double tolerance = 0;  ///< relative tolerance of the integrator; 0: that of the scene, but at most 1e-8
+  int refinement = 4;    ///< number of parts into which an integrator step is divided (LinearizedClosing)
 };
 
-/// Returns derivatives under these waveforms, in the known units of each device, which are taken as exact. None for a
-/// compressible film, for devices that are sorted into classes, if the nominal device does not close, and after a stop.
+/// Returns derivatives under the waveforms of this drive, in the known units of each device, which count as exact. None for a
+/// compressible film, for devices that are sorted into classes, if the nominal device does not close, and if interrupted.
 [[nodiscard]] Derivatives derivatives(const PreparedScene& scene, const EnsembleDrive& drive,
                                       const DerivativeOptions& options = {}, const Progress& progress = {});
 
-/// A number on which waveforms depend.
+/// A parameter of the waveforms by which derivatives are taken.
 struct WaveformParameter {
   std::string name;
   double value = 0;
-  double size = 0;  ///< size of a large change of the number, above 0
+  double size = 0;  ///< scale of the number, for example its range; must be above 0
 };
-/// Returns derivatives by these numbers, for the nominal device under the signals that they determine. Each number is a
-/// variable whose deviation is a hundredth of its size. A number has no derivatives if the signals have other pieces at
-/// slightly smaller and larger values.
+/// Returns derivatives by these parameters, for the nominal device under the signals that the parameters determine. Each
+/// parameter is a variable whose standard deviation is a hundredth of its size. A parameter has no derivatives if the signals
+/// have other pieces at slightly smaller and larger values.
 [[nodiscard]] Derivatives derivatives_by_waveforms(const PreparedScene& scene, const std::vector<WaveformParameter>& parameters,
                                                    const SignalSlopes::SignalsOf& signals, const DerivativeOptions& options = {},
                                                    const Progress& progress = {});

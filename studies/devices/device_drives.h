@@ -1,6 +1,6 @@
-// The drives of one device: the waveforms of the nominal device, scaled by the units of the device, with the errors of its
-// sources (waveforms/source_errors.h). All drives of a device have one clock. The clock starts at the first edge of any drive
-// if jitter moves it before t = 0.
+// The drives of one device: the waveforms of the nominal device, scaled by the units of the device, with the errors of the
+// device's sources (waveforms/source_errors.h). All drives of a device have one clock. The clock starts at the first edge of
+// any drive if jitter moves this edge before t = 0.
 #pragma once
 
 #include <cmath>
@@ -14,14 +14,14 @@
 
 namespace softland {
 
-/// Known units of a device over those of the nominal one: factors for the voltages and the times of its drives.
+/// Measured units of a device over those of the nominal device: factors for the voltages and the times of its drives.
 struct DeviceUnits {
   double volts = 1, time = 1;
-  double piezo = 1;  ///< factor for the voltages of a piezo, which do not scale with Vdp
-  /// Relative change of `volts` with a measured closing time from which it is computed [1/s].
+  double piezo = 1;  ///< factor for the voltages of a piezo, which do not scale with the pull-in voltage Vdp
+  /// Relative change of `volts` with the measured closing time from which `volts` is computed [1/s].
   double volts_by_time = 0;
 
-  /// True if the units are known.
+  /// True if the voltage factors are finite numbers.
   [[nodiscard]] bool are_known() const { return std::isfinite(volts) && std::isfinite(piezo); }
 };
 
@@ -33,46 +33,47 @@ struct DeviceUnits {
 
 class DeviceDrives {
  public:
-  /// Keeps a reference to `nominal`, whose [spread] lists the errors.
+  /// Keeps a reference to `nominal`, whose [spread] lists the errors of the sources.
   explicit DeviceDrives(const PreparedScene& nominal);
 
-  /// True if a device with these units has other drives than the nominal one.
+  /// True if a device with these units has drives that differ from those of the nominal device.
   [[nodiscard]] bool differ(const DeviceUnits& units) const {
     return has_errors_ || units.volts != 1 || units.piezo != 1 || units.time != 1;
   }
-  /// Returns the applied voltages of a device with these values of its varied quantities. `nominal` are the waveforms of the
+  /// Returns the applied voltages of a device with these values of its varied quantities. `nominal` holds the waveforms of the
   /// nominal device, in the order of Switch::drives() [V].
   [[nodiscard]] std::vector<Signal> signals(const std::vector<Waveform>& nominal, const DeviceUnits& units,
                                             const std::vector<double>& values) const;
-  /// Returns the factors between signals() and without_gains(), one per drive. None if they differ by more than factors, as
-  /// with measured units, offsets, delays and jitter.
+  /// Returns the factors between signals() and without_gains(), one per drive. None if the signals differ by more than factors,
+  /// as with measured units, offsets, delays and jitter.
   [[nodiscard]] std::optional<std::vector<double>> gains(const DeviceUnits& units, const std::vector<double>& values) const;
-  /// Returns the drives of a device in the units of the nominal one, with sources whose gain is 1; `nominal` as for signals().
+  /// Returns the drives of a device in the units of the nominal device, with sources whose gain is 1; `nominal` as in
+  /// signals().
   [[nodiscard]] std::vector<Signal> without_gains(const std::vector<Waveform>& nominal) const;
   /// Returns the errors of the source of drive k for these values of the varied quantities, except its jitter.
   [[nodiscard]] SourceErrors errors(std::size_t k, const std::vector<double>& values) const;
-  /// Returns the derivatives of errors() by varied quantity i: those of gain, offset [V] and delay [s].
+  /// Returns the derivatives of errors() by varied quantity i: the derivatives of gain, offset [V] and delay [s].
   [[nodiscard]] SourceErrors errors_by(std::size_t k, std::size_t i) const;
-  /// A waveform in the scene of a device, with the gain, offset and delay of its source.
+  /// A waveform for the scene of a device, with the gain, offset and delay of the drive's source.
   struct Written {
     Waveform waveform;
     SourceErrors errors = {};
   };
-  /// Returns signals() as waveforms: in the family of the nominal waveform if possible, else as tables. A table is exact,
-  /// except for a sine, which it follows within 1e-4 of the peak up to the end of the window. Varied errors are part of the
-  /// waveform. If the source samples it, they act after the samples and are returned apart, except a delay below 0, which is
-  /// left out.
+  /// Returns signals() as waveforms: of the same kind as the nominal waveform if possible, else as tables. A table is exact,
+  /// except for a sine, which it approximates within 1e-4 of the peak up to the end of the window. Varied errors of a source
+  /// are part of the waveform. If the source samples the waveform, these errors act after the samples and are returned in
+  /// `errors`, except a delay below 0, which is left out.
   [[nodiscard]] std::vector<Written> written(const std::vector<Waveform>& nominal, const DeviceUnits& units,
                                              const std::vector<double>& values) const;
-  /// True if the errors of a drive vary, by its index in Switch::drives().
+  /// True if the errors of a drive's source vary. `drive` is its index in Switch::drives().
   [[nodiscard]] bool has_errors(std::size_t drive) const { return !sources_[drive].empty(); }
-  /// Returns the values of the varied quantities for display. That of jitter is the random time of the first edge [s].
+  /// Returns the values of the varied quantities for display. The value of jitter is the random time of the first edge [s].
   [[nodiscard]] std::vector<double> shown(std::vector<double> values) const;
 
  private:
-  /// A variable of the spread that is an error of the source of a drive.
+  /// A varied quantity of [spread] that is an error of the source of a drive.
   struct Source {
-    std::size_t variable, key;  // index of the variable, and of its key
+    std::size_t variable, key;  // indices of the variable in [spread], and of the key in the variable
     DriveError error;
   };
   struct Driven;

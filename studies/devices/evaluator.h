@@ -1,11 +1,11 @@
-// Figures of merit as a function of numbers of a scene: many rows at once, in lanes and on all cores. The scene is prepared
-// once. It serves optimizers, samplers and surrogates outside of softland.
+// Figures of merit as a function of numbers of a scene: evaluates many rows at once, in SIMD lanes and on all cores, with a
+// scene that is prepared once. Serves optimizers, samplers and surrogates outside of softland.
 //
-// A column is a number of the scene.
+// A column of the input is a number of the scene, and a row is a set of values for all columns.
 // - A column of the device, or of an error of a drive, has a name as in [spread]: "gap.contact", "electrode.main.span[2]",
-//   "driver.main.gain". The row describes the device that a spread would have with these values. Its figures are bit for bit
+//   "driver.main.gain". A row describes the device that [spread] would give with these values. The figures are bit for bit
 //   those of `robustness`.
-// - A column of a waveform is a parameter of it: "waveform.main.level", "waveform.main.times[1]" [V], [s], [rad/s], [rad].
+// - A column of a waveform is one of its parameters: "waveform.main.level", "waveform.main.times[1]" [V], [s], [rad/s], [rad].
 // Voltages are those of the nominal scene, or scale with the pull-in voltages of each row (VoltsOf).
 #pragma once
 
@@ -25,10 +25,10 @@
 
 namespace softland {
 
-/// Whose pull-in voltages the units Vsp and Vdp are.
+/// Selects the device whose pull-in voltages are the units Vsp and Vdp.
 enum class VoltsOf {
-  nominal,  ///< those of the scene: every row has the same voltages
-  each      ///< those of the row: any key of the scene may vary; every row is prepared anew, which takes several closings
+  nominal,  ///< the nominal device: every row has the same voltages
+  each      ///< the device of the row: any key of the scene may vary; every row is prepared anew, which takes several closings
 };
 
 struct EvaluatorOptions {
@@ -36,22 +36,22 @@ struct EvaluatorOptions {
   double tolerance = EnsembleRun{}.tolerance;  ///< tolerance of the integrator
 };
 
-/// The status of a row.
+/// The status of an evaluated row.
 struct RowEnd {
-  std::string status;       ///< "done" or another status of a result, or "infeasible" if the device or the waveform is impossible
-  std::string reason = {};  ///< reason for missing figures
+  std::string status;  ///< "done" or another status of a closing, or "infeasible" if the device or the waveform is impossible
+  std::string reason = {};  ///< reason for missing figures of the row
 };
 
 class Evaluator {
  public:
-  /// Throws InvalidInput for a scene that cannot be run, for a key that cannot vary or occurs twice, and for a figure that is
-  /// not available in lanes (measured()).
+  /// Throws InvalidInput for a scene that cannot be run, for a key that cannot vary or occurs twice, and for a figure that
+  /// closings in SIMD lanes do not give: see measured().
   Evaluator(const SceneFile& file, std::vector<std::string> keys, std::vector<Figure> figures,
             const EvaluatorOptions& options = {}, const Progress& progress = {});
   Evaluator(const Evaluator&) = delete;
   Evaluator& operator=(const Evaluator&) = delete;
 
-  /// True if closings in lanes give this figure.
+  /// True if closings in SIMD lanes give this figure.
   [[nodiscard]] static bool measured(const Figure& figure);
 
   [[nodiscard]] const std::vector<std::string>& keys() const { return keys_; }
@@ -60,20 +60,20 @@ class Evaluator {
   [[nodiscard]] const std::vector<Figure>& figures() const { return figures_; }
   [[nodiscard]] const PreparedScene& scene() const { return *nominal_; }
 
-  /// Evaluates rows. `rows` holds them one after another, with a number for each key [SI unit]. `figures` holds the figures of
-  /// each row in the same way, NaN if missing, and `ends` has one entry per row. The results depend neither on `jobs` nor on
-  /// the other rows. Throws InvalidInput if the sizes do not match, and Interrupted if `progress` asks to stop. May be called
-  /// by several threads at once.
+  /// Evaluates rows. `rows` contains the rows one after another, with a number for each key [SI unit]. `figures` receives the
+  /// figures of each row in the same order, NaN if missing, and `ends` one entry per row. The results depend neither on `jobs`,
+  /// the number of threads, nor on the other rows. Throws InvalidInput if the sizes do not match, and Interrupted if `progress`
+  /// asks to stop. May be called by several threads at once.
   void evaluate(std::span<const double> rows, std::span<double> figures, std::span<RowEnd> ends, int jobs,
                 const Progress& progress = {}) const;
 
-  /// Returns the derivatives of the figures by the keys at a row, figures x keys [unit of the figure over that of the key].
-  /// They are exact derivatives of the closing (studies/devices/derivatives.h). With VoltsOf::each all voltages must be written
-  /// in Vdp of one electrode, or none may be. Throws InvalidInput with the reason if a derivative is missing.
+  /// Returns the derivatives of the figures by the keys at a row, figures x keys [unit of the figure over that of the key]. The
+  /// matrix contains exact derivatives of the closing (studies/devices/derivatives.h). With VoltsOf::each all voltages must be
+  /// written in Vdp of one electrode, or none may be. Throws InvalidInput with the reason if a derivative is missing.
   [[nodiscard]] Eigen::MatrixXd jacobian(std::span<const double> row, const Progress& progress = {}) const;
 
  private:
-  /// A parameter of a waveform that a column sets.
+  /// A parameter of a waveform that a column of the rows sets.
   struct WaveformKey {
     std::size_t column, drive;
     std::string parameter;
@@ -101,15 +101,15 @@ class Evaluator {
   std::vector<Figure> figures_;
   EvaluatorOptions options_;
   std::vector<WaveformKey> of_waveforms_;
-  std::vector<std::size_t> of_device_;      ///< columns of the device, in the order of the spread's variables
+  std::vector<std::size_t> of_device_;      ///< indices of the columns of the device, in the order of the variables of [spread]
   std::unique_ptr<PreparedScene> nominal_;  ///< prepared scene, whose [spread] has the columns of the device
-  std::unique_ptr<Ensemble> ensemble_;      ///< none if there is no column of the device
+  std::unique_ptr<Ensemble> ensemble_;      ///< devices of the rows; none if no column is one of the device
   std::unique_ptr<DeviceDrives> drives_;
   std::vector<Waveform> waveforms_;  ///< waveforms of the scene, in the order of the drives
   std::vector<Signal> signals_;      ///< applied voltages of these waveforms
   std::optional<ClosedEquilibrium> closed_;
   mutable std::mutex builders_lock_;
-  mutable std::vector<std::unique_ptr<DeviceBuilder>> builders_;  ///< builders that no task uses, kept for later rows
+  mutable std::vector<std::unique_ptr<DeviceBuilder>> builders_;  ///< builders that no thread uses at present, for later rows
 };
 
 }  // namespace softland

@@ -5,16 +5,17 @@
 //   frequency     of small undamped vibrations of the open switch about its rest at a level [Hz]
 //   capacitance   of an electrode of the open switch at rest at a level [F]
 //   closing_time  time of the first touch under a step to a level, or under waveforms [s]
-//   contact       times of the first edges of the contact's state under waveforms: touch, first opening, next touch [s]
+//   contact       times of the first edges of the contact's state under waveforms: contact, first opening, next contact [s]
 //   position      of the contact point at given times, under waveforms: towards the contact, from a straight beam [m]
 //   velocity      of the contact point at given times, under waveforms [m/s]
 //
-// Voltages and levels are commanded voltages. The gain and the offset of the source act between them and the switch: V = gain *
-// commanded + offset. The other drives are at their bias (bias_of()), or at 0 V for frequencies and capacitances. `fit` and
-// `calibrate` use the same readings.
+// Voltages and levels are commanded voltages. The voltage at the switch includes the gain and the offset of the source: V =
+// gain * commanded + offset. The other drives are at their bias (bias_of()), or at 0 V for frequencies and capacitances. `fit`
+// and `calibrate` use the same readings.
 //
-// Derivatives of the first four come from model/static_slopes.h, those of the first touch from model/linearized_closing.h. The
-// other readings have no exact derivatives: theirs are differences between closings on either side.
+// Derivatives of the first four readings come from model/static_slopes.h, those of first contact from
+// model/linearized_closing.h. The other readings have no exact derivatives: finite differences between closings on either side
+// replace them.
 #pragma once
 
 #include <Eigen/Core>
@@ -34,8 +35,8 @@ enum class Measurable { pull_in, release, frequency, capacitance, closing_time, 
 struct MeasurableRow {
   Measurable value;
   std::string_view name;
-  std::string_view unit;   ///< SI
-  std::string_view words;  ///< name in sentences
+  std::string_view unit;   ///< SI unit of the reading
+  std::string_view words;  ///< name of the reading in sentences
 };
 inline constexpr std::array measurables{
     MeasurableRow{Measurable::pull_in, "pull_in", "V", "pull-in voltage"},
@@ -52,32 +53,33 @@ static_assert(is_complete<measurables>());
 
 struct Instrument {
   Measurable what = Measurable::pull_in;
-  std::size_t drive = 0;                 ///< index among Switch::drives()
+  std::size_t drive = 0;                 ///< index of the measured drive in Switch::drives()
   double level = 0;                      ///< commanded level [V]
   std::size_t mode = 0;                  ///< mode of a frequency, from 0
   std::vector<Waveform> waveforms = {};  ///< commanded waveforms of every drive; empty for a step of `drive` to the level
   std::vector<double> times = {};        ///< times of a position or velocity [s]
-  std::size_t edges = 1;                 ///< number of edges of the contact's state to read
+  std::size_t edges = 1;                 ///< number of edges of the contact's state to read: contact, opening, next contact
 
   /// Returns the number of values that the instrument reads.
   [[nodiscard]] std::size_t size() const;
 };
 
-/// Reads one figure of a switch, with `level` as the applied voltage. The figure must be a single number, and no closing under
-/// waveforms. NaN if the switch does not have it. `duration` is the time within which a step must close the switch [s].
+/// Reads one figure of a switch, with `level` as the applied voltage. The instrument must read a single number, without
+/// waveforms. Returns NaN if the switch does not have the figure. `duration` is the time within which a step must close the
+/// switch [s].
 [[nodiscard]] double read(const Instrument& instrument, const Switch& model, Bias bias, double duration);
 
-/// Reads the devices of a scene by the values of their varied quantities.
+/// Reads the devices of a scene, each given by the values of its varied quantities.
 class DeviceReader {
  public:
   /// The scene's [spread] must have no jitter. Keeps a reference to `nominal`.
   explicit DeviceReader(const PreparedScene& nominal) : nominal_(nominal), near_(nominal) {}
 
-  /// Moves to the device with these values (DeviceSpread::to_values). Returns false if that device is impossible.
+  /// Selects the device with these values (DeviceSpread::to_values). Returns false if that device is impossible.
   [[nodiscard]] bool move_to(const std::vector<double>& values);
 
   struct Reading {
-    Eigen::VectorXd values;  ///< one per value of the instrument; NaN if the device does not have it
+    Eigen::VectorXd values;  ///< one number per value of the instrument; NaN if the device does not have the figure
     Eigen::MatrixXd slopes;  ///< a row for each value, a column for each varied quantity; empty if not requested
   };
   [[nodiscard]] Reading read(const Instrument& instrument, bool with_slopes);

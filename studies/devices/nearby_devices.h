@@ -1,5 +1,5 @@
-// The devices on either side of one device, a small step apart in each varied quantity. Derivatives by these quantities are
-// computed from them.
+// The neighbours of a device: each is a small step away from the device in one varied quantity. Derivatives by the varied
+// quantities are computed from these neighbours.
 #pragma once
 
 #include <optional>
@@ -27,30 +27,30 @@ class NearbyDevices {
   /// Starts at the nominal device of a scene under this drive. The scene's [spread] must have no jitter. Keeps references.
   NearbyDevices(const PreparedScene& nominal, const EnsembleDrive& drive);
 
-  /// Does the same without a drive: call drive_by() before asking for signals.
+  /// Starts at the nominal device without a drive: call drive_by() before a function that returns signals.
   explicit NearbyDevices(const PreparedScene& nominal);
   NearbyDevices(const NearbyDevices&) = delete;
   NearbyDevices& operator=(const NearbyDevices&) = delete;
-  /// Replaces the drive by one with the same calibration. Keeps a reference.
+  /// Replaces the drive by another drive with the same calibration. Keeps a reference to `drive`.
   void drive_by(const EnsembleDrive& drive) { drive_ = &drive; }
 
-  /// Moves to the device with these values (DeviceSpread::to_values).
+  /// Selects the device with these values (DeviceSpread::to_values).
   void move_to(const std::vector<double>& values);
   [[nodiscard]] const std::vector<double>& values() const { return values_; }
-  /// Returns the current device. Throws InvalidInput if it cannot be described.
+  /// Returns the current device. Throws InvalidInput if the device cannot be described.
   [[nodiscard]] Switch device() { return device_at(values_); }
-  /// Returns the step to either side in quantity i [unit of its value].
+  /// Returns the size of the step in quantity i [unit of the quantity].
   [[nodiscard]] double step(std::size_t i) const { return steps_[i]; }
-  /// Returns the device one step above the current one in quantity i (`side` 1) or below it (-1). Throws as device() does.
+  /// Returns the device one step above the current device in quantity i (`side` 1) or below it (-1). Throws as device() does.
   [[nodiscard]] Switch device_beside(std::size_t i, double side) { return device_at(beside(i, side)); }
-  /// Return the signals of the current device, and of the device beside it.
+  /// Return the signals of the current device, and of the device one step beside it in quantity i.
   [[nodiscard]] std::vector<Signal> signals() { return signals_of(values_); }
   [[nodiscard]] std::vector<Signal> signals_beside(std::size_t i, double side) { return signals_of(beside(i, side)); }
 
-  /// Returns the derivatives of device(), which is `model`, and of its signals. If `why_none` of a quantity is empty and the
-  /// quantity has no derivatives, it receives the reason.
+  /// Returns the derivatives of device(), which is `model`, and of its signals. Writes the reason into `why_none` of each
+  /// quantity that has no derivatives, unless that string already has a reason.
   [[nodiscard]] DeviceChanges changes(const Switch& model, std::vector<std::string>& why_none, const Progress& progress = {});
-  /// Return the derivatives of the switch alone, and of the signals alone. They throw as device() does.
+  /// Return the derivatives of the switch alone, and of the signals alone. Both functions throw as device() does.
   [[nodiscard]] SwitchSlopes changes_of_switch(const Switch& model);
   [[nodiscard]] SignalSlopes changes_of_signals();
   /// Returns the errors of the source of drive k on the current device, except its jitter.

@@ -1,5 +1,5 @@
-// Performance of drives on devices with process variation: statistics of every figure of merit over one ensemble, the same
-// devices for every drive.
+// Performance of drives on devices with process variation: statistics of every figure of merit over one ensemble. All drives
+// are simulated on the same devices.
 #pragma once
 
 #include <array>
@@ -33,7 +33,7 @@ struct FigureStatistics {
   std::array<EstimatedQuantile, robustness_quantiles.size()> quantiles = {};  ///< quantiles over all devices
 };
 
-/// A share of all devices, such as those that close.
+/// A share of all devices, such as the share of devices that close.
 struct Yield {
   std::size_t devices = 0;
   double value = Metrics::unset;
@@ -47,13 +47,13 @@ struct Yield {
 struct DriveRobustness {
   std::string name;
   DriveWaveforms waveforms;             ///< waveforms of the nominal device, in volts
-  MeasuredUnits known = {};             ///< known units of the devices
-  std::vector<DeviceOutcome> outcomes;  ///< outcomes by device
-  PerFigure<FigureStatistics> figures;  ///< statistics of device_figures
+  MeasuredUnits known = {};             ///< units that the calibration assigns to the devices
+  std::vector<DeviceOutcome> outcomes;  ///< outcomes of the closings, by device
+  PerFigure<FigureStatistics> figures;  ///< statistics of the figures in device_figures
   Yield closing;                        ///< share of devices that touch and are simulated to the end of the window
   Yield collapsed;                      ///< share of devices whose beam collapses onto the electrode
   Yield bounce_free;                    ///< share of devices that close and settle without a significant rebound
-  std::vector<std::size_t> worst;       ///< devices in order of decreasing rebound height, after those that fail
+  std::vector<std::size_t> worst;       ///< devices in order of decreasing rebound height, after those that do not close
 };
 
 struct RobustnessOptions {
@@ -62,10 +62,10 @@ struct RobustnessOptions {
   PointSet points = PointSet::sobol;
   int jobs = 1;  ///< number of threads; does not change the result
   Vectors vectors = vectors_in_use();
-  bool measures_drive_energy = false;  ///< true to measure it on every device
-  /// True to repeat the last drive, if it is calibrated, with other calibrations: without one, with each measurement alone, and
-  /// with all measurements without error. The latter is done with the devices sorted into classes, and with each device in its
-  /// own units.
+  bool measures_drive_energy = false;  ///< true to measure the drive energy on every device
+  /// True to repeat the last drive, if it has a calibration, with other calibrations: without one, with each measurement alone,
+  /// and with all measurements without error. The calibration without error is simulated with the devices sorted into classes,
+  /// and with each device in its own units.
   bool worth_of_measuring = false;
   bool opens_on_command = false;  ///< EnsembleRun::opens_on_command
 };
@@ -80,7 +80,7 @@ struct Robustness {
   double tolerance = 0;  ///< tolerance of the integrator
 };
 
-/// Keys of the figures that sensitivity() and other_ways() explain.
+/// Keys of the figures that sensitivity() and box_and_chaos() explain.
 inline constexpr std::array explained_figures{key_of(&Metrics::initial_contact_time), key_of(&Metrics::largest_impact_velocity),
                                               key_of(&Metrics::major_bounce_height)};
 
@@ -90,12 +90,12 @@ struct FigureSensitivity {
   SobolEstimate estimate;
 };
 struct Sensitivity {
-  std::vector<std::string> variables;      ///< variables of the spread
-  std::vector<FigureSensitivity> figures;  ///< sensitivities of explained_figures
-  std::string why_none;                    ///< reason for missing indices; empty if they exist
+  std::vector<std::string> variables;      ///< names of the variables of [spread]
+  std::vector<FigureSensitivity> figures;  ///< sensitivities of the figures in explained_figures
+  std::string why_none;                    ///< reason for missing Sobol' indices; empty if the indices exist
 };
 
-/// The closing of the device at a quantile of the highest rebound.
+/// The closing of the device at a quantile (`probability`) of the highest rebound.
 struct DeviceCourse {
   double probability = 0;
   std::size_t device = 0;
@@ -108,25 +108,25 @@ struct GapCourses {
   std::vector<std::vector<double>> gaps = {};  ///< gaps by device, then by instant [m]; below 0 in contact
 };
 
-/// A drive to judge.
+/// A drive whose performance robustness() computes.
 struct NamedDrive {
   std::string name;
   DriveWaveforms waveforms;      ///< waveforms in volts
-  Calibration calibration = {};  ///< none if every device has the voltages of the nominal one
+  Calibration calibration = {};  ///< calibration; empty if every device has the voltages of the nominal device
 };
 
-/// Closes the devices of the spread of `nominal` under the plain step to the same hold levels, then under each drive. Throws
-/// InvalidInput for a scene without [spread] or without contact, and for a drive that the scene lacks or that exceeds its
-/// limits.
+/// Closes the devices of the [spread] of `nominal` under the plain step to the same hold levels, then under each drive. Throws
+/// InvalidInput for a scene without [spread] or without contact, and for a drive that the scene lacks or whose limits are
+/// exceeded.
 [[nodiscard]] Robustness robustness(const PreparedScene& nominal, const std::vector<NamedDrive>& drives,
                                     const RobustnessOptions& options, const Progress& progress = {});
 
 /// Computes Sobol' indices of the figures under this drive, from `rows` rows of a design. None for correlated variables, whose
-/// shares of the variance cannot be separated, and for a single variable. Measurements are taken as exact.
+/// shares of the variance cannot be separated, and for a single variable. Measurements count as exact.
 [[nodiscard]] Sensitivity sensitivity(const PreparedScene& nominal, const DriveRobustness& drive, std::uint64_t rows,
                                       const RobustnessOptions& options, const Progress& progress = {});
 
-/// Returns the devices with the 5th, 50th and 95th percentile of the highest rebound, and their closings.
+/// Returns the devices at the 5th, 50th and 95th percentile of the highest rebound, and their closings.
 [[nodiscard]] std::vector<DeviceCourse> device_courses(const PreparedScene& nominal, const DriveRobustness& drive,
                                                        const Robustness& found, const RobustnessOptions& options);
 
@@ -136,22 +136,22 @@ struct NamedDrive {
                                      std::size_t instants, double end, const RobustnessOptions& options,
                                      const Progress& progress = {});
 
-/// Returns the scene of a device of that ensemble under one of its drives, with the errors of its sources written out.
-/// `simulate` runs it to the same closing, as for Ensemble::scene(). An exception is a sine with errors of times or voltages,
-/// which becomes a table (DeviceDrives::written).
+/// Returns the scene of a device of the ensemble under one of its drives, with the errors of the device's sources written out.
+/// `simulate` runs this scene to the same closing, within the limits of Ensemble::scene(). An exception is a sine with errors
+/// of times or voltages, which becomes a table (DeviceDrives::written).
 [[nodiscard]] SceneFile scene_of_device(const PreparedScene& nominal, const DriveRobustness& drive, std::size_t device,
                                         const RobustnessOptions& options);
 
 namespace internal {
 
-/// Returns the statistics of these outcomes, which are ordered by device.
+/// Returns the statistics of a drive from the outcomes of the devices, which are ordered by device.
 [[nodiscard]] DriveRobustness summarised(NamedDrive drive, MeasuredUnits known, std::vector<DeviceOutcome> outcomes);
-/// Returns the options of further runs of a drive of a Robustness.
+/// Returns the options for further runs of a drive of a Robustness.
 [[nodiscard]] EnsembleRun run_of(const PreparedScene& nominal, const RobustnessOptions& options);
-/// Returns the drive with exact measurements.
+/// Returns the drive with exact measurements of its calibration.
 [[nodiscard]] EnsembleDrive exactly_measured(const PreparedScene& nominal, const DriveRobustness& drive);
-/// Returns the scene of the device with these values of the varied quantities. `device` is the number on which the errors of
-/// its measurements depend.
+/// Returns the scene of the device with these values of the varied quantities. `device` is the number that determines the
+/// errors of the device's measurements.
 [[nodiscard]] SceneFile scene_of_values(const Ensemble& ensemble, const DriveRobustness& drive, const std::vector<double>& values,
                                         std::uint64_t seed, std::size_t device);
 

@@ -1,10 +1,10 @@
-// The stable approach: a drive moves the switch to its contact through stable equilibria. This file finds the drive, and the
-// share of devices on which it can do so.
+// The stable approach: a drive moves the contact point to the contact through stable equilibria. These functions find the
+// drive, and the share of devices on which this drive has such a path.
 //
-// The drive can do so if all static equilibria from rest to the contact plane are stable and within the limits of its driver.
-// That holds for a piezo, and for an electrode whose contact plane comes before the pull-in instability. The other drives are
-// constant. An electrode that holds the closed switch is at a low level until contact. A slow waveform along such a path closes
-// every device, at a speed that is the spread of the touching voltages over the available time.
+// A drive has a path of stable equilibria if all static equilibria from rest to the contact plane are stable and within the
+// limits of its driver. A piezo has such a path, and so has an electrode whose contact plane comes before the pull-in
+// instability. The other drives are constant. An electrode that holds the closed switch is at a low level until contact. A slow
+// waveform along the path closes every device, at a speed that is the spread of the touching voltages over the available time.
 #pragma once
 
 #include <cstdint>
@@ -22,30 +22,30 @@ struct StableApproach {
   std::string holder;    ///< electrode that holds the closed switch; empty if `drive` holds it
   double low = 0;        ///< level of the holder before contact [V]
   double reaches = 0;    ///< commanded voltage of `drive` at which the nominal design touches [V]
-  double deviation = 0;  ///< standard deviation of `reaches` over the devices of the spread, to first order [V]
+  double deviation = 0;  ///< standard deviation of `reaches` over varied devices, to first order [V]; 0 without [spread]
   double slope = 0;      ///< derivative of the contact point's deflection by the voltage of `drive`, nominal design [m/V]
   double limit = 0;      ///< limit of the driver in the direction of `reaches` [V]
 
-  /// Returns the range of positions, on the path of the nominal design, at which 90 % of the devices touch: from the 5th to the
-  /// 95th percentile, to first order [m].
+  /// Returns the length of the range of positions at which 90 % of the devices close, from the 5th to the 95th percentile, to
+  /// first order [m]. Positions are those of the nominal design at the touching voltages of the devices.
   [[nodiscard]] double touch_places() const;
 };
 
 /// Returns the time in which a two-impulse input shaper brings the switch near its contact without vibration [s].
 [[nodiscard]] double shortest_rise(const PreparedScene& nominal);
-/// Returns a reference speed for slow approaches that land every device with one waveform [m/s]. It is touch_places() over the
-/// time that the shortest rise leaves until `steady` [s]: the contact point passes these positions at a constant speed.
-/// Infinite if no time is left.
+/// Returns a reference speed for slow approaches that close every device without a bounce with one waveform [m/s]:
+/// touch_places() over the time that the shortest rise leaves until `steady` [s]. The contact point passes these positions at
+/// this constant speed. Infinite if no time is left.
 [[nodiscard]] double quasi_static_speed(const StableApproach& approach, const PreparedScene& nominal, double steady);
 
-/// Finds the approach by a drive that a search with this actuator may shape; none if no drive has such a path on the nominal
-/// design. Drives without limits are not considered. The deviation is 0 for a scene without [spread].
+/// Finds the approach by a drive that a search with this actuator may vary; none if no drive has a path of stable equilibria to
+/// contact on the nominal design. Drives without limits are not considered.
 [[nodiscard]] std::optional<StableApproach> stable_approach(const PreparedScene& nominal, Actuator actuator);
 
-/// Returns the commanded voltage at which the nominal design touches while the holder is at `low` [V]; NaN without a path.
+/// Returns the commanded voltage at which the nominal design closes while the holder is at `low` [V]; NaN without a path.
 [[nodiscard]] double touching_voltage(const PreparedScene& nominal, const StableApproach& approach, double low);
 
-/// Returns the share of devices of the spread that have such a path within the limits of the driver.
+/// Returns the share of the devices of [spread] that have a stable path to contact within the limits of the driver.
 [[nodiscard]] double share_with_path(const PreparedScene& nominal, const StableApproach& approach, std::uint64_t devices,
                                      std::uint64_t seed, int jobs, const Progress& progress = {});
 
