@@ -1,15 +1,15 @@
-// The cost of accuracy on the user's own scene. The study gives the error of every delivered figure of merit (not of a single
-// integration step) against computing time and evaluations of the right-hand side. It does so for every integrator, tolerance,
+// The cost of accuracy on the user's own scene. An accuracy study gives the error of every reported figure of merit (not of a
+// single integration step) against computing time and evaluations of the right-hand side, for every integrator, tolerance,
 // number of quadrature points and number of modes.
 //
-// The reference run has a ten-thousandth of the tightest tolerance and twice the largest number of quadrature points, or as
-// near to that as its time limit allows. Settings that are as tight as the reference, or tighter, are skipped.
+// The reference run has a ten-thousandth of the tightest tolerance and twice the largest number of quadrature points, or values
+// as near to these as its time limit allows. Settings that are as tight as the reference, or tighter, are skipped.
 // - A rigid plate has the same gap everywhere, so the study varies no quadrature for it.
 // - The applied voltages stay the same for every number of modes.
 // - The effect of another number of modes is a property of the model, not an integration error, and is reported separately.
 // - Runs whose integrator is not restarted at the contact are also reported separately: simulate() always restarts it.
-// - A figure that imperceptible perturbations of the drives change visibly has no error. Its range over a cloud of perturbed
-//   runs is given instead.
+// - A figure that changes visibly under imperceptible perturbations of the drives has no error. Its range over a cloud of
+//   perturbed runs is given instead.
 #pragma once
 
 #include <array>
@@ -27,67 +27,67 @@
 
 namespace softland {
 
-/// Errors of `studied_figures`, in their order.
+/// Errors of the figures in `studied_figures`, in the same order.
 using FigureErrors = std::array<double, studied_figures.size()>;
 
-/// Returns the relative_difference() of each studied figure, with missing figures as Figure::counted() has them; NaN for a
-/// figure that the reference does not have.
+/// Returns the relative_difference() of each studied figure, after Figure::counted() has replaced insignificant values; NaN for
+/// a figure that the reference does not have.
 [[nodiscard]] FigureErrors relative_errors(const Metrics& value, const Metrics& reference, const MetricsOptions& options);
 
 struct AccuracyOptions {
   std::vector<double> tolerances{1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9};  ///< tolerances from loose to tight
   std::vector<double> points{6, 8, 12, 16, 24, 48};          ///< numbers of quadrature points per length, ascending
-  std::vector<double> wanted{1e-2, 1e-3, 1e-4, 1e-5, 1e-6};  ///< accuracies to recommend a setting for
-  int runs = 7;                   ///< number of timed runs, whose median is taken; fewer if they take long
-  double most_seconds = 2;        ///< limit for one closing [s]; a longer one is stopped, and tighter tolerances are not tried
-  double reference_seconds = 10;  ///< limit for the reference runs [s], which go from loose to tight; longer ones are not run
-  double all_seconds = 15;        ///< limit for all other runs [s]; settings that come later are not tried
+  std::vector<double> wanted{1e-2, 1e-3, 1e-4, 1e-5, 1e-6};  ///< accuracies for which a setting is recommended
+  int runs = 7;                   ///< number of timed runs, whose median is reported; fewer if the runs take long
+  double most_seconds = 2;        ///< limit for one closing [s]; a longer closing is stopped, and tighter tolerances are skipped
+  double reference_seconds = 10;  ///< limit for the reference runs [s], in order from loose to tight; later runs are skipped
+  double all_seconds = 15;        ///< limit for all other runs [s]; later settings are skipped
   std::function<void(std::size_t done, std::size_t of)> on_progress = {};
   const std::atomic<bool>* stop = nullptr;
-  std::function<double()> clock = wall_clock;  ///< clock for all these limits [s]; read once in 64 steps
+  std::function<double()> clock = wall_clock;  ///< clock for all these limits [s]; read once in 64 steps of the integrator
 };
 
-/// One setting and its results.
+/// One setting of the integrator and the discretisation, with its results.
 struct AccuracyRow {
   Integrator integrator = Integrator::automatic;
   double tolerance = 0;
-  std::optional<double> points_per_length = {};  ///< quadrature points; none for a plate
+  std::optional<double> points_per_length = {};  ///< quadrature points per length; none for a rigid plate
   int modes = 0;
   bool restart = true;       ///< true if the integrator is restarted at make and break of contact
-  std::string missing = {};  ///< reason for missing figures; empty if there are figures
+  std::string missing = {};  ///< reason for missing figures; empty if the figures exist
   Metrics figures = {};
-  FigureErrors errors = {};  ///< relative errors against the reference
+  FigureErrors errors = {};  ///< relative errors of the figures against the reference
   Work work = {};
   double seconds = Metrics::unset;  ///< median processor time of one closing
   int runs = 0;                     ///< number of timed runs
 };
 
-/// The quickest setting whose errors are within an accuracy. The tighter tolerances of the same setting must be within it as
-/// well, which excludes settings that are accurate by chance.
+/// The fastest setting whose errors are within an accuracy. The errors at the tighter tolerances of the same setting must be
+/// within this accuracy as well, which excludes settings that are accurate by chance.
 struct Recommendation {
   double accuracy = 0;
-  std::optional<std::size_t> row;  ///< index of AccuracyStudy::rows; none if no tried setting is that accurate
+  std::optional<std::size_t> row;  ///< index of AccuracyStudy::rows; none if no simulated setting is accurate enough
 };
 
 struct AccuracyStudy {
-  Status status = Status::not_run;  ///< status of the reference; without contact there is nothing to study
-  std::string message = {};         ///< reason for a missing reference, or for one looser than planned
+  Status status = Status::not_run;  ///< status of the reference run; a scene without contact cannot be studied
+  std::string message = {};         ///< reason for a missing reference, or for a reference that is looser than planned
   AccuracyRow reference;
-  /// Relative difference of the figures between the reference and a second one, with a hundred times its tolerance and half its
-  /// quadrature points. Smaller errors are not resolved.
+  /// Relative difference of the figures between the reference and a second reference, with a hundred times its tolerance and
+  /// half its quadrature points. Smaller errors are not resolved.
   FigureErrors resolution = {};
-  /// Runs with the integrator that simulate() takes, for every tolerance and number of quadrature points, beginning with the
-  /// number that simulate() takes. The other integrators run at that number only, for every tolerance.
+  /// Runs with the integrator that simulate() uses, for every tolerance and number of quadrature points, beginning with the
+  /// number that simulate() uses. The other integrators run with that number alone, for every tolerance.
   std::vector<AccuracyRow> rows;
-  std::vector<AccuracyRow> modes;    ///< other numbers of modes, at the tightest tolerance
-  std::vector<AccuracyRow> through;  ///< runs without restart at make and break of contact: every integrator, every tolerance
-  std::string why_always_restarted;  ///< reason for missing runs without a restart
-  std::array<Spread, studied_figures.size()> cloud;      ///< spreads over perturbed runs at the tightest tolerance
-  Spread permanent_contact_time, bounce_count;           ///< spreads over the same perturbed runs
+  std::vector<AccuracyRow> modes;    ///< runs with other numbers of modes, at the tightest tolerance
+  std::vector<AccuracyRow> through;  ///< runs without restart at make and break of contact, for every integrator and tolerance
+  std::string why_always_restarted;  ///< reason for missing runs without restart of the integrator
+  std::array<Spread, studied_figures.size()> cloud;  ///< spreads of studied_figures over perturbed runs at the tightest tolerance
+  Spread permanent_contact_time, bounce_count;       ///< spreads of these figures over the same runs as `cloud`
   std::array<bool, studied_figures.size()> conditioned;  ///< true for a well-conditioned figure, whose error is meaningful
   std::vector<Recommendation> recommendations;
 
-  /// Returns the largest error of the well-conditioned figures; NaN if the row lacks one.
+  /// Returns the largest error of the well-conditioned figures; NaN if the row lacks one of these figures.
   [[nodiscard]] double worst_error(const AccuracyRow& row) const;
 };
 

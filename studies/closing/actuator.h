@@ -15,15 +15,15 @@ inline constexpr auto actuators = std::to_array<Named<Actuator>>(
     {{Actuator::electrostatic, "electrostatic"}, {Actuator::pzt, "pzt"}, {Actuator::both, "both"}});
 static_assert(is_complete<actuators>());
 
-/// True if an electrode pulls towards the contact, so that it is not on the far side.
+/// True if the device has an electrode that pulls towards the contact, that is, an electrode on the near side.
 [[nodiscard]] bool has_pulling_electrode(const Device& device);
 /// Returns the electrode that closes the switch: `main` if it exists, else the first electrode that pulls towards the contact.
-/// Throws InvalidInput if there is none.
+/// Throws InvalidInput if no electrode pulls towards the contact.
 [[nodiscard]] std::string searched_electrode(const Device& device);
-/// Returns the index of searched_electrode() among the drives.
+/// Returns the index of searched_electrode() in Switch::drives().
 [[nodiscard]] std::size_t searched_drive(const Device& device);
-/// Returns the electrodes on the far side whose driver has limits: a search uses them as brakes. Other electrodes on the far
-/// side keep the scene's waveform.
+/// Returns the electrodes on the far side whose driver has limits: a search uses these electrodes as brakes. Other electrodes
+/// on the far side keep the scene's waveform.
 [[nodiscard]] std::vector<std::string> braking_electrodes(const PreparedScene& prepared);
 
 }  // namespace softland

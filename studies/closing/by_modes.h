@@ -1,10 +1,10 @@
 // The effect of more modes on the statics of a switch: its equilibria, their stability, and its voltages.
 //
-// A verdict about a switch may depend on the number of modes that its scene keeps, and so may a voltage. The closed state of a
-// bridge that collapses onto its electrode on one side is the less stable, the more modes it has. A bridge that is bent by many
-// of its thicknesses acts like a membrane, which few bending modes make too stiff. Statics are cheap, so they are computed with
-// the modes of the scene, with twice and with four times as many, up to most_static_modes: symmetric ones and antisymmetric
-// ones.
+// The stability of a switch may depend on the number of modes in its scene, and so may a voltage. For a bridge that collapses
+// onto its electrode on one side, the closed state is the less stable, the more modes the model has. A bridge that is bent by
+// many of its thicknesses acts like a membrane, for which few bending modes are too stiff. Statics are cheap, so they are
+// computed with the modes of the scene, with twice and with four times as many, up to most_static_modes, symmetric and
+// antisymmetric.
 #pragma once
 
 #include <limits>
@@ -19,36 +19,36 @@
 
 namespace softland {
 
-/// Least relative shift of a voltage by more modes that is reported, with the value that they lead to.
+/// Smallest relative change of a voltage by more modes that is reported, with the converged voltage.
 inline constexpr double mode_shift_worth_telling = 0.01;
 
-/// One number, such as a voltage or an eigenvalue, by the number of modes that it was found with.
+/// A number, such as a voltage or an eigenvalue, computed with several numbers of modes.
 struct ByModes {
-  std::map<int, double> values = {};  ///< NaN: no value
-  /// Limit for further modes: by Aitken's extrapolation of a geometric series, or with the most modes for statics. NaN if the
-  /// values do not converge.
+  std::map<int, double> values = {};  ///< values by number of modes; NaN: no value
+  /// Limit of the values for further modes: by Aitken's extrapolation of a geometric series, or for statics the value with the
+  /// most modes. NaN if the values do not converge.
   double converged = std::numeric_limits<double>::quiet_NaN();
   /// Relative change from the first value to the limit, or to the value with the most modes if the limit is not known. Infinite
-  /// if more modes make a value come or go, NaN without values.
+  /// if a value exists with some numbers of modes only, NaN without values.
   [[nodiscard]] double moved() const;
   [[nodiscard]] bool is_worth_telling() const;
 };
-/// Extrapolates values by the number of modes.
+/// Returns the values with their limit, extrapolated by the number of modes.
 [[nodiscard]] ByModes by_modes(std::map<int, double> values);
 
-/// The switches of a scene with its own modes and with more. A plate and a table of modes have no more.
+/// The switches of a scene with the scene's own modes and with more modes. A plate and a table of modes have no further modes.
 class ModeLadder {
  public:
-  /// `own` is the switch of the scene.
+  /// `own` is the switch of the scene, with the scene's modes.
   ModeLadder(const Scene& scene, const Switch& own);
   explicit ModeLadder(const PreparedScene& prepared) : ModeLadder(prepared.scene, prepared.model) {}
   /// True if more modes than the scene's are possible.
   [[nodiscard]] bool exists() const { return !richer_.empty(); }
-  /// The switches, that of the scene first. Valid as long as the scene and its switch are.
+  /// Returns the switches, that of the scene first. The pointers are valid as long as `this`, the scene and its switch exist.
   [[nodiscard]] std::vector<const Switch*> switches() const;
-  /// The switch with most_static_modes, built at the first call.
+  /// Returns the switch with most_static_modes, built at the first call.
   [[nodiscard]] const Switch& finest() const;
-  /// Builds the switch with this number of modes, up to most_static_modes.
+  /// Returns the switch with this number of modes, at most most_static_modes.
   [[nodiscard]] Switch with(int modes) const;
 
  private:
@@ -58,43 +58,47 @@ class ModeLadder {
   mutable std::optional<Switch> finest_;
 };
 
-/// The closed equilibria under constant voltages, that of the scene first; each is found from the one before.
+/// Returns the closed equilibria under constant voltages, that of the scene's switch first. Each search starts from the
+/// previous equilibrium.
 [[nodiscard]] std::vector<std::optional<ClosedEquilibrium>> closed_equilibria(const ModeLadder& ladder,
                                                                               std::span<const double> volts);
 
-/// Stability of the equilibria, by their smallest eigenvalues. A missing one (NaN) is not stable.
+/// Stability of equilibria with several numbers of modes, by the smallest eigenvalues. A missing equilibrium (NaN) is not
+/// stable.
 struct StabilityByModes {
-  ByModes eigenvalues;         ///< [rad^2/s^2]
-  std::optional<bool> stable;  ///< true if stable with every number of modes that can tell, and by the limit of the eigenvalue
-  bool flips = false;          ///< some of those are stable, others not
+  ByModes eigenvalues;         ///< smallest eigenvalue of the tangent stiffness [rad^2/s^2]
+  std::optional<bool> stable;  ///< true if stable with every number of modes that suffices to decide, and in the limit
+  bool flips = false;          ///< true if the equilibrium is stable with some of these numbers of modes and unstable with others
 };
 [[nodiscard]] StabilityByModes stability(const ModeLadder& ladder, std::span<const std::optional<ClosedEquilibrium>> closed);
-/// The same of the open equilibrium.
+/// Returns the stability of the open equilibrium under constant voltages.
 [[nodiscard]] StabilityByModes open_stability(const ModeLadder& ladder, std::span<const double> volts);
 
-/// Static voltages of an electrode under the bias of the other drives (bias_of()) [V].
+/// Static voltages of an electrode with several numbers of modes, under the bias of the other drives (bias_of()) [V].
 struct VoltagesByModes {
   ByModes static_pull_in, release, pulled_through;  ///< without values if there is no contact
 };
-/// Finds the voltages. `pulled_through` is the scene's collapse voltage, from its release voltage on.
+/// Returns the voltages of an electrode. `pulled_through` is the collapse voltage of the scene's own switch, above its release
+/// voltage.
 [[nodiscard]] VoltagesByModes voltages_by_modes(const ModeLadder& ladder, const Scene& scene, std::size_t electrode,
                                                 double pulled_through);
 [[nodiscard]] ByModes static_pull_in_by_modes(const ModeLadder& ladder, const Scene& scene, std::size_t electrode);
-/// pull_through_voltage() by modes; `own` is that of the scene, if it has one [V].
+/// Returns pull_through_voltage() with several numbers of modes; `own` is that of the scene's switch, NaN without one [V].
 [[nodiscard]] ByModes pulled_through_by_modes(const ModeLadder& ladder, std::size_t electrode, std::vector<double> volts,
                                               double own);
 
-/// Capacitance of the searched electrode in the closed state under these voltages [F], for a switch that lands on the face of a
-/// dielectric. Also with the most modes that a closing takes, if more modes move it by a reported amount.
+/// Returns the capacitance of the searched electrode in the closed state under these voltages [F], for a switch that closes
+/// onto the face of a dielectric. Includes the most modes that a closing uses, if more modes change the capacitance by a
+/// reported amount.
 [[nodiscard]] ByModes closed_capacitance_by_modes(const ModeLadder& ladder, std::span<const double> volts);
-/// Returns the least tried number of modes from which on values stay within mode_shift_worth_telling of the limit; none if the
-/// last one does not, or the values do not converge.
+/// Returns the smallest computed number of modes from which on values stay within mode_shift_worth_telling of the limit. None
+/// if the value with the most modes does not, or if the values do not converge.
 [[nodiscard]] std::optional<int> modes_needed(const ByModes& found);
 
-/// "−6.1 %, to 142.7 V": the shift of a voltage, or another value, by more modes, and its limit if that is reported.
+/// Returns the change of a value by more modes as text, with its limit if that is reported: "−6.1 %, to 142.7 V".
 [[nodiscard]] std::string shift_prose(const ByModes& value, std::string_view unit = "V");
 
-/// Sentences about shifts of a scene's static pull-in voltages, and of the capacitance of its closed state, that are reported.
+/// Returns warnings about changes by more modes in the static pull-in voltages and in the capacitance of the closed state.
 [[nodiscard]] std::vector<std::string> mode_warnings(const PreparedScene& prepared);
 
 }  // namespace softland

@@ -1,12 +1,12 @@
-// Figures of merit with reliable errors, and ranges in the place of figures that have none.
+// Figures of merit with reliable errors, and ranges for figures that have no error.
 //
-// The figures are those of simulate(). The error of a figure is a multiple of its difference to the run that judges it, plus a
-// hundredth of the tolerance for the common error of both runs. The errors are calibrated on random scenes
+// The figures are those of simulate(). The error of a figure is a multiple of its difference to a more accurate run, the judge,
+// plus a hundredth of the tolerance for the common error of both runs. The errors are calibrated on random scenes
 // (bench/certify_coverage.cc). Pull-in voltages that serve as units of the drives are computed again with the judge's
 // quadrature, and their errors are propagated to the figures.
 //
-// A figure is ill-conditioned if imperceptible changes of the drives change it visibly. It is then given as median and range
-// over a cloud of perturbed runs, and its error reaches to the end of that range.
+// A figure is ill-conditioned if imperceptible changes of the drives change it visibly. Such a figure is then given as median
+// and range over a cloud of perturbed runs, and its error reaches to the end of that range.
 #pragma once
 
 #include <optional>
@@ -18,14 +18,14 @@
 
 namespace softland {
 
-/// The rebound at which the runs of a cloud diverge. Until then all runs have the same rebounds.
+/// The first rebound at which perturbed runs diverge. Before this rebound all runs have the same rebounds.
 struct GrazingRebound {
   int number = 0;              ///< number of the rebound among all rebounds of the first run, counted from 1
   double time = 0;             ///< beginning of the rebound [s]
   double height = 0;           ///< [m]
   double impact_velocity = 0;  ///< impact velocity of the touch before the rebound [m/s]
-  bool at_threshold =
-      false;  ///< true if the rebound is significant in some runs only; false if the touch before it is the gentlest so far
+  bool at_threshold = false;   ///< true if the rebound is significant in some runs only; false if the touch before it has the
+                               ///< smallest impact velocity so far
 };
 
 struct IllConditioned {
@@ -35,18 +35,18 @@ struct IllConditioned {
 
 struct Certificate {
   std::vector<IllConditioned> ill_conditioned;
-  std::optional<GrazingRebound> grazing;  ///< none if the runs do not diverge at a rebound
+  std::optional<GrazingRebound> grazing;  ///< rebound at which the runs diverge; none if they do not diverge at a rebound
   int runs = 0;
 };
 
-/// Ratio of a stated error to the difference between the run and the better one.
+/// Ratio of a stated error to the difference between a run and the more accurate run.
 inline constexpr double error_safety = 3;
 
-/// Returns the first rebound in which the runs differ, with the cause of the difference; none if they do not differ.
+/// Returns the first rebound in which the runs differ, with the cause of the difference; none if the runs do not differ.
 [[nodiscard]] std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, const MetricsOptions& options);
 
-/// Runs the scene's own waveforms with simulate() and certifies the figures, if both the run and its judge came to their end.
-/// `jobs` is the number of threads for the cloud; it does not change the result.
+/// Runs the scene's own waveforms with simulate() and certifies the figures, if the run and its more accurate judge are
+/// complete. `jobs` is the number of threads for perturbed runs; it does not change the result.
 [[nodiscard]] Closing certify(const PreparedScene& prepared, const Progress& progress = {}, int jobs = 1);
 
 }  // namespace softland

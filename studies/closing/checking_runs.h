@@ -9,13 +9,13 @@
 
 namespace softland {
 
-/// Tolerance of the integrator in a run that confirms another.
+/// Tolerance of the integrator in a run that confirms another run.
 inline constexpr double tight_tolerance = 1e-9;
 
-/// The difference of a repeated simulation from the closing that it confirms.
+/// Which part of the model or the method differs in a run that confirms a closing.
 enum class Varied { integrator, modes, gas };
 
-/// One way of simulating a closing again, as a switch and a tolerance.
+/// A switch and a tolerance with which a closing is simulated again.
 struct OtherWay {
   std::string name;  ///< "tolerance 1e-9", "modes 6", "gas veijola"
   Varied varied = Varied::integrator;
@@ -24,25 +24,25 @@ struct OtherWay {
 };
 
 struct CheckingRun {
-  std::string name;  ///< name of the way
+  std::string name;  ///< name of the setting: OtherWay::name
   Varied varied = Varied::integrator;
   Metrics metrics;
 };
 
-/// Returns the device with two, four and six more modes, as far as possible; none for a plate, which has one mode.
+/// Returns the device with two, four and six more modes, up to the limit of modes; none for a plate, which has one mode.
 [[nodiscard]] std::vector<Device> with_more_modes(const Device& device);
-/// Returns the quadrature for `device`, which has more modes than `quadrature` was chosen for.
+/// Returns the quadrature for `device`, which has more modes than the device for which `quadrature` was chosen.
 [[nodiscard]] SwitchOptions quadrature_of_richer(SwitchOptions quadrature, const Device& device);
 
-/// Returns a simulation with a tighter integrator, then one with each larger number of modes.
+/// Returns a setting with a tighter integrator, then a setting with each larger number of modes.
 [[nodiscard]] std::vector<OtherWay> other_numerics(const PreparedScene& closing);
-/// Returns a simulation under each of the gas laws strip, veijola and gallis-torczynski, without the scene's own law and those
-/// that the scene cannot have. None if its gas is a damper, and without gas.
+/// Returns a setting for each of the gas laws strip, veijola and gallis-torczynski, without the scene's own law and the laws
+/// that are impossible for the scene. None if the gas is a linear damper, and without gas.
 [[nodiscard]] std::vector<OtherWay> other_gas_laws(const PreparedScene& closing);
 
-/// Simulates the closing in another way.
+/// Simulates the closing with this switch and tolerance.
 [[nodiscard]] CheckingRun simulated(const PreparedScene& closing, const OtherWay& way);
-/// Simulates the closing in every other way. A run under another gas law is left out if it leaves the limits of that law.
+/// Simulates the closing with every other setting. A run is left out if it leaves the limits of its gas law.
 [[nodiscard]] std::vector<CheckingRun> run_checks(const PreparedScene& closing);
 
 }  // namespace softland

@@ -1,6 +1,6 @@
-// The closed state under the hold levels. The drives keep a closed switch closed if it has a stable equilibrium on the contact.
-// A switch that is quiet at the end of its window may still be leaving an unstable equilibrium, since such a motion grows from
-// rounding errors.
+// The closed state under the hold levels. The drives keep a closed switch closed if a stable equilibrium on the contact exists.
+// A switch that seems at rest at the end of its window may still be leaving an unstable equilibrium, since such a motion grows
+// from rounding errors.
 #pragma once
 
 #include <limits>
@@ -15,12 +15,12 @@
 namespace softland {
 
 struct ClosedState {
-  bool exists = false;         ///< true if there is an equilibrium with a contact force above zero
-  std::optional<bool> stable;  ///< true if stable with every number of modes that suffices to decide it; unset if none suffices
+  bool exists = false;         ///< true if an equilibrium with a contact force above zero exists
+  std::optional<bool> stable;  ///< true if stable with every number of modes that suffices to decide; unset if none suffices
   double contact_force = std::numeric_limits<double>::quiet_NaN();        ///< contact force of the equilibrium [N]
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();  ///< ClosedEquilibrium::smallest_eigenvalue [rad^2/s^2]
-  /// Collapse voltage of each electrode that pulls towards the contact [V]: from it on the closed switch collapses onto the
-  /// electrode. NaN if it is above ten times the hold level.
+  /// Collapse voltage of each electrode that pulls towards the contact [V]: above this voltage the beam of the closed switch
+  /// collapses onto the electrode. NaN if it is above ten times the hold level.
   std::map<std::string, double> pulled_through;
   /// The smallest eigenvalue and the collapse voltages with more modes (by_modes.h); none if more modes are impossible.
   std::optional<ByModes> by_modes;
@@ -31,23 +31,23 @@ struct ClosedState {
 /// The voltages of an electrode between which a closed switch stays closed, with the other drives at a bias.
 struct ClosedRange {
   double release = std::numeric_limits<double>::quiet_NaN();         ///< release_voltage() [V]
-  double pulled_through = std::numeric_limits<double>::quiet_NaN();  ///< pull_through_voltage() from the release voltage on [V]
+  double pulled_through = std::numeric_limits<double>::quiet_NaN();  ///< pull_through_voltage() above the release voltage [V]
 };
-/// Returns the range. Both voltages are NaN without contact, and for an electrode on the far side.
+/// Returns the closed range of an electrode. Both voltages are NaN without contact, and for an electrode on the far side.
 [[nodiscard]] ClosedRange closed_range(const Switch& model, std::size_t electrode, std::vector<double> bias);
 
 /// Returns the closed state under the hold levels of these drives, for a switch with a contact.
 [[nodiscard]] ClosedState closed_state(const PreparedScene& prepared, const std::vector<Signal>& signals);
 
-/// True if a switch at rest under the levels `before` of its drives stays at rest under `levels`, since the forces balance
-/// there.
+/// True if a switch at rest under the levels `before` of its drives stays at rest under `levels`, since the forces balance at
+/// the rest position.
 [[nodiscard]] bool leaves_at_rest(const Switch& model, const std::vector<double>& before, const std::vector<double>& levels);
 
-/// Returns a warning about a switch that its hold levels leave at rest in an unstable equilibrium, from which any asymmetry of
-/// a device closes it. Empty if the hold levels move the switch, or if the equilibrium is stable.
+/// Returns a warning about a switch that stays at rest under its hold levels in an unstable equilibrium, from which any
+/// asymmetry of a device closes the switch. Empty if the hold levels move the switch, or if the equilibrium is stable.
 [[nodiscard]] std::string unstable_rest(const Switch& model, const std::vector<Signal>& signals);
 
-/// Returns a warning about the closed state; empty if the switch stays closed.
+/// Returns a warning about an unstable closed state; empty if the switch stays closed.
 [[nodiscard]] std::string warning(const ClosedState& state);
 
 }  // namespace softland

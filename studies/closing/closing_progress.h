@@ -11,7 +11,8 @@
 namespace softland {
 
 /// Returns a ClosingOptions::observer that reports the progress of a closing of `duration` [s]. The closing is the `share` of a
-/// computation of which `done` is complete. The observer is empty if it has no listener, and must not outlive `progress`.
+/// computation of which `done` is complete. The observer is empty if `progress` has no listener, and must not outlive
+/// `progress`.
 [[nodiscard]] inline std::function<bool(double, const double*, const double*)> observer(const Progress& progress,
                                                                                         std::string what, double duration,
                                                                                         double done = 0, double share = 1) {

@@ -1,5 +1,5 @@
-// A cloud: a closing repeated under imperceptibly perturbed drives. The bounce count and the permanent contact time of a
-// chaotic closing do not converge with the tolerance, so they are given as ranges over such a cloud.
+// A cloud: a closing that is repeated under imperceptibly perturbed drives. The bounce count and the permanent contact time of
+// a chaotic closing do not converge with the tolerance, so each is given as a range over a cloud.
 #pragma once
 
 #include <array>
@@ -21,23 +21,23 @@ struct CloudOptions {
   int jobs = 1;  ///< number of threads; does not change the runs
 };
 
-/// Returns the runs in order, as a function of the arguments alone. If `closing.stop` ends a run, that run and all after it are
-/// left out. An observer of `closing` is called from several threads at once if jobs > 1; `progress` is called from one at a
-/// time.
+/// Returns the runs in order; they depend on the arguments alone. If `closing.stop` ends a run, that run and all later runs are
+/// left out. If jobs > 1, several threads call the observer of `closing` at once, but only one thread at a time calls
+/// `progress`.
 [[nodiscard]] std::vector<Trajectory> perturbed_closings(const Switch& model, std::span<const Signal> drives,
                                                          const ClosingOptions& closing, const CloudOptions& options = {},
                                                          const Progress& progress = {});
 
-/// Range of a figure over those runs in which it exists; NaN if there are none.
+/// Range of a figure over the runs in which the figure exists; NaN if it exists in no run.
 struct Spread {
   double low = Metrics::unset, median = Metrics::unset, high = Metrics::unset;
   int runs = 0;
 };
 [[nodiscard]] Spread spread(std::vector<double> values);
 
-/// Relative range over the cloud from which on a figure is ill-conditioned: a thousandfold of the largest perturbation.
+/// Relative range over a cloud above which a figure is ill-conditioned: a thousand times the largest perturbation.
 inline constexpr double ill_conditioned_range = 1e-4;
-/// True if the last digits of the drives change a figure visibly; `values` are those of Figure::counted().
+/// True if the last digits of the drives change a figure visibly; `values` are values by Figure::counted().
 [[nodiscard]] bool ill_conditioned(const Spread& values);
 
 }  // namespace softland

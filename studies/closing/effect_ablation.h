@@ -1,5 +1,5 @@
-// Finds the effects that a scene can do without. Each described effect is left out in turn, and the closing is run again under
-// the same voltages. `effects = "auto"` in [simulate] leaves out the effects that change the figures negligibly.
+// Finds the effects that a scene can omit. Each described effect is left out in turn, and the closing is simulated again under
+// the same voltages. `effects = "auto"` in [simulate] leaves out the effects that hardly change the figures.
 #pragma once
 
 #include <algorithm>
@@ -14,14 +14,14 @@
 
 namespace softland {
 
-/// A number for comparison, such as "damping per length, closed" in "N s/m^2".
+/// A number with its name and unit, such as "damping per length, closed" in "N s/m^2".
 struct NamedNumber {
   std::string name;
-  std::string unit;  ///< empty: dimensionless
+  std::string unit;  ///< unit; empty: dimensionless
   double value = Metrics::unset;
 };
 
-/// A part of a scene that can be left out.
+/// An effect, described by a key or section of a scene, that can be left out.
 struct OmissibleEffect {
   std::string effect;       ///< key path of the effect: "gas", "electrode.main.fringing"
   std::string choice = {};  ///< value of the key in the scene: "strip", "meijs-fokkema"
@@ -32,7 +32,7 @@ struct OmissibleEffect {
   bool automatic = true;  ///< true if effects = "auto" may leave it out
 };
 
-/// A closing that ends with the window, or earlier if it exceeds its bound.
+/// The results of a closing that ends with the window, or earlier if it exceeds the bound on its cost.
 struct BoundedClosing {
   Metrics metrics;
   long steps = 0;
@@ -42,53 +42,54 @@ struct BoundedClosing {
   std::vector<double> states = {};  ///< states at which a right-hand side is timed (timing.h)
 };
 
-/// The largest cost of a closing without an effect. A switch may lose the effect that stops its rebounds, such as the film over
-/// a rigid face. The closing then takes up to a thousand times as many steps. A law with states of its own takes up to a
-/// hundred times as long per step.
+/// The largest cost of a closing without an effect. Without the effect that stops the rebounds, such as the film over a rigid
+/// face, a closing takes up to a thousand times as many steps. A law with states of its own takes up to a hundred times as long
+/// per step.
 struct ClosingBound {
   static constexpr long fewest_steps = 100'000, steps_over_own = 10;
   static constexpr double least_seconds = 10, seconds_over_own = 100;
 
   long steps = std::numeric_limits<long>::max();
   double seconds = std::numeric_limits<double>::infinity();  ///< processor time [s]
-  /// Returns the bound that follows from the cost of the scene's own closing.
+  /// Returns the bound on the cost of other closings that follows from the cost of the scene's own closing.
   [[nodiscard]] static ClosingBound after(const BoundedClosing& own) {
     return {.steps = std::max(fewest_steps, steps_over_own * own.steps),
             .seconds = std::max(least_seconds, seconds_over_own * own.seconds)};
   }
 };
-/// Runs a closing within a bound. `what` names the closing in progress reports, and `done` and `share` are as in observer().
+/// Runs a closing within a bound on its cost. `what` names the closing in progress reports; `done` and `share` are as in
+/// observer().
 [[nodiscard]] BoundedClosing bounded_closing(const PreparedScene& prepared, const Switch& model, const ClosingBound& bound,
                                              const Progress& progress, const std::string& what, double done = 0,
                                              double share = 1);
 
-/// The scene without one effect.
+/// The results of the scene without one effect.
 struct EffectAblation {
   OmissibleEffect what;
   Metrics metrics;
-  double influence = 0;            ///< see influence()
+  double influence = 0;            ///< largest relative change of a figure: see the function influence()
   double rhs_seconds = 0;          ///< time per evaluation of the right-hand side [s]; NaN if not measured
   std::optional<double> end = {};  ///< time at which the bound ended the closing [s]; none if it ran to the end of the window
 };
 
-/// Returns all described effects that the scene could do without, in the order of its sections. Drives with a waveform are not
-/// effects.
+/// Returns all described effects that the scene could omit, in the order of its sections. Drives with a waveform do not count
+/// as effects.
 [[nodiscard]] std::vector<OmissibleEffect> omissible_effects(const PreparedScene& prepared);
 
-/// Returns the scene without these effects. Its waveforms keep their voltages.
+/// Returns the scene without these effects. The waveforms keep their voltages.
 [[nodiscard]] PreparedScene copy_without(const PreparedScene& prepared, const std::vector<OmissibleEffect>& effects);
 
-/// Returns the largest relative difference of t_i, v_i and B_H, as Figure::counted() has them. Infinite if one of these figures
-/// exists in one closing only, and if the scene's own closing does not touch.
+/// Returns the largest relative difference of t_i, v_i and B_H (initial contact time, impact velocity, highest rebound), by
+/// Figure::counted(). Infinite if one of them exists in one closing only, and if the scene's own closing reaches no contact.
 [[nodiscard]] double influence(const Metrics& own, const Metrics& other, const MetricsOptions& options);
 
-/// Leaves out one effect after the other. The list ends with the last complete closing if `progress` asks to stop. No closing
-/// costs more than the bound that follows from `own`, the scene's own closing. `timed` also measures the time per right-hand
-/// side.
+/// Leaves out one effect after another. If `progress` asks to stop, the list ends with the last complete closing. No closing
+/// costs more than the bound that follows from `own`, the scene's own closing. `timed` also measures the time per evaluation of
+/// the right-hand side.
 [[nodiscard]] std::vector<EffectAblation> ablate_effects(const PreparedScene& prepared, const BoundedClosing& own, bool timed,
                                                          const Progress& progress = {});
 
-/// The choice of effects = "auto".
+/// The effects that effects = "auto" leaves out.
 struct EffectsChoice {
   std::vector<EffectAblation> left_out;
   double influence = 0;  ///< influence of all left-out effects together
@@ -99,10 +100,9 @@ struct DescribedEffects {
   EffectsChoice choice;
 };
 
-/// Returns the effects that the scene can do without. Each of them, and all together, have an influence of at most `tolerance`,
-/// and without each the closing ran to its end. If all together exceed the tolerance, the most influential effect is put back,
-/// until they do not. No effect is left out of a scene whose closing does not touch. Throws Interrupted if `progress` asks to
-/// stop.
+/// Returns the effects that the scene can omit. Each effect alone, and all together, have an influence of at most `tolerance`,
+/// and the closing without each effect is complete. While all together exceed the tolerance, the most influential effect is
+/// restored. No effect is left out of a scene whose closing reaches no contact. Throws Interrupted if `progress` asks to stop.
 [[nodiscard]] EffectsChoice negligible_effects(const PreparedScene& prepared, double tolerance, const Progress& progress = {});
 
 }  // namespace softland

@@ -1,5 +1,5 @@
 // Compares the effect and the cost of laws in a scene. The closing of the scene is repeated without each effect in turn, and
-// with each gas law in the place of the scene's own. The voltages stay the same, so that only the law differs.
+// with each other gas law. The voltages stay the same, so that only the law differs.
 #pragma once
 
 #include <optional>
@@ -13,9 +13,9 @@
 
 namespace softland {
 
-/// The scene with one law in the place of its own.
+/// The results of the scene with one law in place of the scene's own.
 struct Effect {
-  std::string section;    ///< section of the scene: "gas"
+  std::string section;    ///< section of the scene that describes the law: "gas"
   std::string choice;     ///< name of the law; "none" if the effect is left out
   bool in_scene = false;  ///< true for the law of the scene itself
   NamedNumber magnitude;
@@ -27,23 +27,23 @@ struct Effect {
       {};  ///< time at which the bound ended the closing [s] (BoundedClosing); none for the scene's own closing
 };
 
-/// A law that cannot take the place of the scene's own.
+/// A law that cannot replace the scene's own.
 struct NotCompared {
   std::string choice;
   std::string reason;
 };
 
 struct Effects {
-  std::vector<Effect> list;               ///< the laws of the gas
-  std::vector<NotCompared> not_compared;  ///< the laws that the scene cannot have
+  std::vector<Effect> list;               ///< results of the gas laws
+  std::vector<NotCompared> not_compared;  ///< laws that are impossible for the scene
   std::vector<EffectAblation> ablations;
   double window = 0;         ///< window of every closing [s]
-  bool interrupted = false;  ///< true after a stop: the lists then hold complete closings only, at least the scene's own
+  bool interrupted = false;  ///< true if interrupted: the lists then have complete closings only, at least the scene's own
 
-  /// Returns the entry of the scene's own law in this section.
+  /// Returns the results of the scene's own law in this section.
   [[nodiscard]] const Effect& own(const std::string& section) const;
   /// Returns the largest less the smallest value of a figure over the laws of a section, except "none", relative to the figure
-  /// of the scene's own closing. NaN if the figure is missing in any of these closings.
+  /// of the scene's own closing. NaN if the figure is missing in any of the compared closings.
   [[nodiscard]] double spread(const std::string& section, const Figure& figure) const;
 };
 
@@ -51,7 +51,7 @@ struct Effects {
 /// - The gas has the state that the scene describes (air at 101325 Pa and 300 K by default). Keys of other gas laws are
 ///   removed.
 /// - The linear damper and the film over a slit are compared only if the scene describes them.
-/// - The cost of the scene's own closing bounds that of the others (ClosingBound).
+/// - The cost of the scene's own closing bounds that of the other closings (ClosingBound).
 /// Throws Interrupted if `progress` asks to stop before the scene's own closing is complete.
 [[nodiscard]] Effects compare_effects(const PreparedScene& prepared, const Progress& progress = {});
 

@@ -1,4 +1,4 @@
-// The hold: whether the hold levels keep a closed switch closed, and with which contact force.
+// The hold: whether the hold levels of the drives keep a closed switch closed, and with which contact force.
 #pragma once
 
 #include <optional>
@@ -20,26 +20,26 @@ inline constexpr std::string_view not_held =
     "the hold levels do not keep the switch closed: it has no closed equilibrium under them. They are below its release "
     "voltage, or so high that the electrode pulls the beam past the contact";
 
-/// Returns a warning if the hold levels of these drives do not keep the switch closed; empty if they do. `state` is its closed
-/// state under these levels.
+/// Returns a warning if the hold levels of these drives do not keep the switch closed; empty if they do. `state` is the closed
+/// state under the hold levels.
 [[nodiscard]] std::string hold_warning(const Switch& model, const std::vector<Signal>& signals, const ClosedState& state);
 
 /// The effect of the hold levels of drives on a closed switch.
 struct Hold {
-  std::optional<ClosedEquilibrium> closed;  ///< none if the switch has no closed equilibrium
+  std::optional<ClosedEquilibrium> closed;  ///< closed equilibrium; none if the switch has no closed equilibrium
   double force = Metrics::unset;    ///< contact force of a stable equilibrium, or of the connection of several contacts [N]
   std::vector<double> forces = {};  ///< force of each of several contacts [N]; empty if the switch is not held
   double resistance =
       Metrics::unset;  ///< resistance of the contact, or of the connection of several contacts [Ohm]; NaN if open or not known
   std::vector<double> resistances = {};  ///< resistance of each of several contacts [Ohm]; empty if the switch is not held
-  /// True if the switch is held. A switch with a contact is not held if its closed equilibrium is unstable. Without a closed
-  /// equilibrium it is held only if the contact may hold by adhesion.
+  /// True if the hold levels keep the switch closed. That is not the case if a switch with a contact has an unstable closed
+  /// equilibrium. A switch without a closed equilibrium can stay closed only by adhesion.
   bool is_held = true;
-  /// ClosingOptions::steady_force [N]; NaN if the switch is not held.
+  /// Returns the contact force above which the force is steady [N]; NaN if the switch is not held.
   [[nodiscard]] double steady_force(const MetricsOptions& options) const { return options.steady_force * force; }
 };
 /// Computes the hold under these levels, one per drive of the switch [V]. `near` is a closed equilibrium of a similar switch
-/// under similar levels: it speeds up the search.
+/// under similar levels: the search for the equilibrium starts from it.
 [[nodiscard]] Hold hold_under(const Switch& model, const std::vector<double>& levels,
                               const std::optional<ClosedEquilibrium>& near = {});
 /// Computes the hold under the hold levels of these drives.
@@ -47,15 +47,15 @@ struct Hold {
                                   const std::optional<ClosedEquilibrium>& near = {}) {
   return hold_under(model, hold_levels(signals), near);
 }
-/// Sets the hold force, and whether the switch is held.
+/// Sets the hold force, and whether the hold levels keep the switch closed, in `trajectory`.
 void set_hold(Trajectory& trajectory, const Hold& hold);
-/// Sets what set_hold() sets, and the capacitance of the switch at rest under the hold levels.
+/// Sets the members that set_hold() sets, and the capacitance of the switch at rest under the hold levels, in `trajectory`.
 void set_rest(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals, const Hold& hold);
-/// Returns the options with the load that the switch carries. The run starts from `start`; `held` are its drives until the
+/// Returns the options with the load circuit of the switch. The run starts from `start`; `held` are the drives until the
 /// command to open.
 [[nodiscard]] MetricsOptions with_load(MetricsOptions options, const Switch& model, StartState start,
                                        const std::vector<Signal>& held);
-/// True if a run that began closed has left its contact for good.
+/// True if a run that began closed is open at the end and does not close again.
 [[nodiscard]] bool has_opened(const Trajectory& run);
 
 }  // namespace softland

@@ -1,4 +1,4 @@
-// The command to open: the instant from which on the drives of a run no longer hold a closed switch.
+// The command to open: the instant from which on the drives of a run no longer keep a closed switch closed.
 #pragma once
 
 #include <optional>
@@ -11,34 +11,35 @@
 namespace softland {
 
 struct OpenCommand {
-  double time = 0;           ///< [s]
-  std::vector<Signal> held;  ///< the drives until the command, and constant at their levels just before it from then on
+  double time = 0;           ///< time of the command to open [s]
+  std::vector<Signal> held;  ///< drives until the command, and constant at their levels just before it from then on
 };
 
-/// Finds the command to open that these drives give, one per drive of the switch. It is the beginning of their last fall to
-/// levels under which no closed state is stable and the open state is. The levels up to the end of the waveforms count. A
-/// switch that starts closed is commanded to open by the first such fall. A fall is the time in which the voltages of the
-/// electrodes that cause it only approach 0 V. A downward jump is a fall that begins at the jump. There is no command if the
-/// hold levels keep the switch closed or collapse it, and if the drives never held it.
+/// Finds the command to open that these drives give, one per drive of the switch. The command is the beginning of their last
+/// fall to levels under which no closed state is stable and the open state is stable. The levels up to the end of the waveforms
+/// count. A switch that starts closed is commanded to open by the first such fall. A fall is the time in which the voltages of
+/// the electrodes that cause the opening only approach 0 V. A downward jump is a fall that begins at the jump. None if the hold
+/// levels keep the switch closed or collapse it, and if the drives never kept it closed.
 [[nodiscard]] std::optional<OpenCommand> open_command(const Switch& model, const std::vector<Signal>& signals, StartState start);
 
-/// Finds the command of these drives of a scene: simulate.open_at if the scene has it. The command may come after the window.
+/// Finds the command to open of these drives: simulate.open_at if the scene has this key. The command may come after the
+/// window.
 [[nodiscard]] std::optional<OpenCommand> open_command(const PreparedScene& prepared, const std::vector<Signal>& signals);
 
-/// Returns the drives as they are until their command to open, and constant at their levels just before it from then on.
-/// Returns them unchanged if there is no command.
+/// Returns the drives unchanged until their command to open, and constant at their levels just before the command from then on.
+/// Returns all drives unchanged if there is no command.
 [[nodiscard]] std::vector<Signal> until_command(const PreparedScene& prepared, std::vector<Signal> signals);
 
 /// Returns the scene without its opening: the window ends at the command to open at the latest, and the drives stay at their
-/// levels just before it. Returns it unchanged if there is no command, and if it starts closed.
+/// levels just before the command. Returns the scene unchanged if there is no command, and if the scene starts closed.
 [[nodiscard]] PreparedScene closing_of(const PreparedScene& prepared);
 
-/// Returns the deflection of the connection in a state of the beam, as observers of a closing get it
+/// Returns the deflection of the connection in a state of the beam, as observers of a closing receive it
 /// (model/closing/connection.h) [m].
 [[nodiscard]] double connection_deflection(const Switch& model, const Eigen::VectorXd& q);
 
-/// Returns the options for a run that opens on command under these drives. They contain the deflection at which the connection
-/// comes to rest.
+/// Returns the options for a run that opens on command under these drives. The options contain the deflection at which the
+/// connection comes to rest.
 [[nodiscard]] MetricsOptions with_opening(MetricsOptions options, const Switch& model, const std::vector<Signal>& signals,
                                           const std::optional<OpenCommand>& command);
 

@@ -1,5 +1,5 @@
-// A switch that stays open: the rest position under its hold levels, the motion to it, and whether its drives are meant to
-// close it.
+// A switch that stays open: the rest position under its hold levels, the motion to this position, and whether the drives are
+// meant to close the switch.
 #pragma once
 
 #include <vector>
@@ -12,19 +12,20 @@
 
 namespace softland {
 
-/// Band in which the contact point has settled: its distance from the static deflection over the largest such distance of the
-/// run.
+/// The contact point has settled when its distance from the static deflection stays below this share of the largest distance in
+/// the run.
 inline constexpr double settled_share = 0.02;
 
-/// Sets static_deflection, overshoot and open_settling_time of a run that came to its end without a touch, or that began closed
-/// and has left its contact. They need a stable open equilibrium under the hold levels of these drives, and stay unset without
-/// one. The run has not settled if it came near less than a period of the first mode before the end. A run that began closed is
-/// done if it has settled.
+/// Sets static_deflection, overshoot and open_settling_time of a run that ended without contact, or that began closed and has
+/// opened. These figures need a stable open equilibrium under the hold levels of these drives, and stay unset without one. The
+/// run has not settled if it came near the equilibrium less than a period of the first mode before the end. A run that began
+/// closed is done if it has settled.
 void set_open_figures(Metrics& metrics, const Trajectory& run, const Switch& model, const std::vector<Signal>& signals);
 
-/// True if these drives ask for no closing. Their hold levels must have a stable open equilibrium, and so must the least and
-/// the largest value of each of them in the window [s], with the others at their hold levels. No step of an electrode, or of
-/// the dispersion force, to its largest value may reach the contact plane, so that none is at its dynamic pull-in voltage.
+/// True if these drives are not meant to close the switch. Their hold levels must have a stable open equilibrium, and so must
+/// the least and the largest value of each drive in the window [s], with the others at their hold levels. No step of an
+/// electrode, or of the dispersion force, to its largest value may reach the contact plane, so that none is at its dynamic
+/// pull-in voltage.
 [[nodiscard]] bool stays_open(const Switch& model, const std::vector<Signal>& signals, double duration,
                               const Progress& progress = {});
 

@@ -1,4 +1,4 @@
-// The plain step, with which found waveforms are compared: each voltage steps to its hold level at once.
+// The plain step, the reference for found waveforms: each voltage jumps to its hold level at t = 0.
 #pragma once
 
 #include <string>
@@ -10,15 +10,16 @@
 
 namespace softland {
 
-/// Returns the waveforms [V] that take the place of the scene's. An actuator with electrodes steps to the hold levels that the
+/// Returns the waveforms [V] that replace those of the scene. An actuator with electrodes steps to the hold levels that the
 /// scene describes, as steep as the driver permits; electrodes that brake stay at 0 V. The piezo stays at 0 V unless it is the
-/// only drive, and steps to its own level then. Throws InvalidInput if an electrode is needed and none pulls in.
+/// only drive of the actuator, and then steps to its own level. Throws InvalidInput if an electrode is needed and none pulls
+/// in.
 [[nodiscard]] DriveWaveforms plain_step(const PreparedScene& prepared, Actuator actuator);
 
 /// Returns the step of a drive from one level to another [V], as steep as its driver permits.
 [[nodiscard]] Step step_from(const Drive& drive, double from, double level);
 
-/// True if the signals are the same, one by one.
+/// True if both lists have the same signals in the same order.
 [[nodiscard]] bool same_drives(const std::vector<Signal>& a, const std::vector<Signal>& b);
 
 }  // namespace softland
