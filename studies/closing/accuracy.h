@@ -39,7 +39,7 @@ struct AccuracyOptions {
   std::vector<double> points{6, 8, 12, 16, 24, 48};          ///< numbers of quadrature points per length, ascending
   std::vector<double> wanted{1e-2, 1e-3, 1e-4, 1e-5, 1e-6};  ///< accuracies for which a setting is recommended
   int runs = 7;                   ///< number of timed runs, whose median is reported; fewer if the runs take long
-  double most_seconds = 2;        ///< limit for one closing [s]; a longer closing is stopped, and tighter tolerances are skipped
+  double most_seconds = 2;        ///< limit for one closing [s]; a longer closing is stopped, and tighter tolerances skipped
   double reference_seconds = 10;  ///< limit for the reference runs [s], in order from loose to tight; later runs are skipped
   double all_seconds = 15;        ///< limit for all other runs [s]; later settings are skipped
   std::function<void(std::size_t done, std::size_t of)> on_progress = {};
@@ -82,8 +82,8 @@ struct AccuracyStudy {
   std::vector<AccuracyRow> modes;    ///< runs with other numbers of modes, at the tightest tolerance
   std::vector<AccuracyRow> through;  ///< runs without restart at make and break of contact, for every integrator and tolerance
   std::string why_always_restarted;  ///< reason for missing runs without restart of the integrator
-  std::array<Spread, studied_figures.size()> cloud;  ///< spreads of studied_figures over perturbed runs at the tightest tolerance
-  Spread permanent_contact_time, bounce_count;       ///< spreads of these figures over the same runs as `cloud`
+  std::array<Spread, studied_figures.size()> cloud;      ///< spreads of studied_figures over perturbed runs
+  Spread permanent_contact_time, bounce_count;           ///< spreads of these figures over the same runs as `cloud`
   std::array<bool, studied_figures.size()> conditioned;  ///< true for a well-conditioned figure, whose error is meaningful
   std::vector<Recommendation> recommendations;
 

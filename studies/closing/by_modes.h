@@ -66,7 +66,7 @@ class ModeLadder {
 /// Stability of equilibria with several numbers of modes, by the smallest eigenvalues. A missing equilibrium (NaN) is not
 /// stable.
 struct StabilityByModes {
-  ByModes eigenvalues;         ///< smallest eigenvalue of the tangent stiffness [rad^2/s^2]
+  ByModes eigenvalues;         ///< true if stable with some of these numbers of modes and unstable with others
   std::optional<bool> stable;  ///< true if stable with every number of modes that suffices to decide, and in the limit
   bool flips = false;          ///< true if the equilibrium is stable with some of these numbers of modes and unstable with others
 };

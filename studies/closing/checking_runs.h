@@ -12,7 +12,7 @@ namespace softland {
 /// Tolerance of the integrator in a run that confirms another run.
 inline constexpr double tight_tolerance = 1e-9;
 
-/// Which part of the model or the method differs in a run that confirms a closing.
+/// The property that differs in a run that confirms a closing: the integrator, the number of modes or the gas law.
 enum class Varied { integrator, modes, gas };
 
 /// A switch and a tolerance with which a closing is simulated again.

@@ -32,8 +32,8 @@ struct Hold {
   double resistance =
       Metrics::unset;  ///< resistance of the contact, or of the connection of several contacts [Ohm]; NaN if open or not known
   std::vector<double> resistances = {};  ///< resistance of each of several contacts [Ohm]; empty if the switch is not held
-  /// True if the hold levels keep the switch closed. That is not the case if a switch with a contact has an unstable closed
-  /// equilibrium. A switch without a closed equilibrium can stay closed only by adhesion.
+  /// True if the hold levels keep the switch closed; false if a switch with a contact has an unstable closed equilibrium. A
+  /// switch without a closed equilibrium can stay closed only by adhesion.
   bool is_held = true;
   /// Returns the contact force above which the force is steady [N]; NaN if the switch is not held.
   [[nodiscard]] double steady_force(const MetricsOptions& options) const { return options.steady_force * force; }

@@ -1,5 +1,5 @@
-// A scene that is ready to run: its switch is composed, its pull-in voltages are known if a unit needs them, and every drive is
-// a signal in volts.
+// A scene that is ready to run: its switch is composed, its pull-in voltages are computed if a unit needs them, and every drive
+// is a signal in volts.
 #pragma once
 
 #include <functional>
@@ -26,10 +26,10 @@ struct ElectrodePullIn {
   DynamicPullIn dynamically;
 };
 
-/// Returns the bias [V] of the other drives for the pull-in voltages of this one: Scene::standing, with this drive at 0 V.
+/// Returns the bias [V] of the other drives for the pull-in voltages of this drive: Scene::standing, with this drive at 0 V.
 [[nodiscard]] std::vector<double> bias_of(const Scene& scene, std::size_t drive);
 
-/// Note about an electrode that has a face on either side of the beam and pulls the resting switch away from the contact.
+/// Note about an electrode with a face on either side of the beam that pulls the switch at rest away from the contact.
 inline constexpr std::string_view pulls_away = "it pulls away from the contact; its other side is nearer";
 
 struct DescribedEffects;
@@ -38,37 +38,37 @@ struct PreparedScene {
   Scene scene;
   Switch model;
   std::map<std::string, ElectrodePullIn> pull_in;  ///< pull-in voltages of the electrodes that need them
-  /// Pull-in voltages with the other drives at 0 V. Electrodes have them here if only their limits are in Vsp or Vdp, and if
-  /// there are no pull-in voltages under the levels of the other drives.
+  /// Pull-in voltages with the other drives at 0 V. An electrode has an entry if only its limits are in Vsp or Vdp, and if it
+  /// has no pull-in voltages under the levels of the other drives.
   std::map<std::string, PullInVoltages> pull_in_of_limits = {};
   Drives drives;         ///< drives in volts; a source with a resistance charges the open switch
-  double duration = 0;   ///< window [s]
-  double tolerance = 0;  ///< tolerance of the integrator
-  /// Time from which on the drives stay at their levels just before it [s]: see closing_of().
+  double duration = 0;   ///< time to simulate [s]
+  double tolerance = 0;  ///< relative tolerance of the integrator
+  /// Time from which on the drives stay constant at their levels just before this time [s]: see closing_of().
   double held_from = std::numeric_limits<double>::infinity();
   SwitchOptions quadrature = {};
   double quadrature_accuracy = 0;  ///< accuracy for which the quadrature was chosen
-  /// The scene with all described effects, and the effects that effects = "auto" left out; none without that choice. `scene` is
-  /// without them.
+  /// The scene with all described effects, and the effects that effects = "auto" left out; null without that choice. The member
+  /// `scene` is without these effects.
   std::shared_ptr<const DescribedEffects> effects = {};
 
   /// Returns the names of the drives in the order of Switch::drives().
   [[nodiscard]] std::vector<std::string> drive_names() const { return softland::drive_names(scene.device); }
   /// Returns one waveform per drive, in the order of drive_names(); a drive without a waveform stays at 0 V.
   [[nodiscard]] std::vector<Waveform> in_drive_order(const DriveWaveforms& waveforms) const;
-  /// Returns the scene's own waveforms in the order of drive_names(), with those of `instead` for the drives that it names.
+  /// Returns the scene's own waveforms in the order of drive_names(); `instead` replaces those of the drives that it names.
   [[nodiscard]] std::vector<Waveform> waveforms(const DriveWaveforms& instead = {}) const;
   /// Returns the level of every drive before t = 0, in the order of drive_names() [V].
   [[nodiscard]] std::vector<double> values_before() const;
-  /// Returns the state in which runs start.
+  /// Returns the state in which runs start: open or closed.
   [[nodiscard]] StartState start() const { return scene.begins_closed ? StartState::closed : StartState::open; }
-  /// Returns the equilibrium of the open switch under the levels before t = 0. None if it is not stable or does not exist.
+  /// Returns the equilibrium of the open switch under the levels before t = 0; none if it is not stable or does not exist.
   [[nodiscard]] std::optional<Eigen::VectorXd> rest() const { return model.open_equilibrium(values_before()); }
-  /// Returns the equilibrium in which runs start: the open one, or the stable closed one if the scene begins closed. Empty if
-  /// it does not exist.
+  /// Returns the equilibrium in which runs start: the open equilibrium, or the stable closed equilibrium if the scene begins
+  /// closed. Empty if this equilibrium does not exist.
   [[nodiscard]] std::optional<Eigen::VectorXd> start_equilibrium() const;
   /// Returns the commanded signal of drive k for a waveform: the waveform from t = 0 on, and the scene's level before. Throws
-  /// as signal() does.
+  /// the exceptions of signal().
   [[nodiscard]] Signal commanded(std::size_t k, const Waveform& waveform) const;
   /// Returns one commanded signal per drive, in the order of drive_names().
   [[nodiscard]] std::vector<Signal> commanded(const std::vector<Waveform>& waveforms) const;
@@ -82,54 +82,55 @@ struct PreparedScene {
   /// Returns the applied voltage of drive k for a commanded signal, with gain, offset and delay of the scene, or with `errors`.
   [[nodiscard]] Signal applied(std::size_t k, const Signal& commanded) const { return applied(k, commanded, drives[k].errors); }
   [[nodiscard]] Signal applied(std::size_t k, const Signal& commanded, const SourceErrors& errors) const;
-  /// Returns the commanded signal as the samples of drive k's converter; unchanged if the source takes no samples.
+  /// Returns the commanded signal as the samples of drive k's converter; unchanged if the source of the drive does not sample.
   [[nodiscard]] Signal commanded_samples(std::size_t k, const Signal& commanded) const;
-  /// Returns the limits of drive k; no limits if the scene has none.
+  /// Returns the limits of the driver of drive k; no limits if the scene has none.
   [[nodiscard]] DriverLimits limits(std::size_t k) const { return drives[k].limits.value_or(DriverLimits{}); }
-  /// Returns the pull-in voltages as units of voltages.
+  /// Returns the pull-in voltages of the electrodes as units of voltages.
   [[nodiscard]] std::map<std::string, PullInVoltages> voltage_units() const;
   /// Returns the scene with all of its open values computed.
   [[nodiscard]] SceneFile resolved() const { return softland::resolved(scene, voltage_units()); }
 };
 
-/// Returns the reason why the waveforms of another scene begin from other levels than those of this one; empty if they begin
-/// from the same levels. `before` has the level of each drive of the other scene before t = 0; a missing drive is at 0 V.
+/// Returns the reason why the waveforms of another scene begin at other levels than those of `scene`; empty if the levels are
+/// the same. `before` has the level of each drive of the other scene before t = 0; a missing drive is at 0 V.
 [[nodiscard]] std::string initial_state_difference(const DriveWaveforms& waveforms, const std::map<std::string, double>& before,
                                                    const PreparedScene& scene);
 
-/// Throws InvalidInput about the scene's key if runs begin closed. Studies that close the switch from its open state call it.
-/// `study` says in the third person what the study does: "accuracy closes the switch".
+/// Throws InvalidInput about the scene's key if runs begin closed. Studies that close the switch from its open state call this
+/// function. `study` says in the third person what the study does: "accuracy closes the switch".
 void require_open_start(const Scene& scene, std::string_view study);
 
-/// Returns the key of the state in which a run begins, such as "waveform.main.before_state". It belongs to the first drive that
-/// has the key or is not at 0 V before t = 0, else to the first drive that has a waveform.
+/// Returns the key of the state in which a run begins, such as "waveform.main.before_state". The key belongs to the first drive
+/// that has it or is not at 0 V before t = 0, else to the first drive that has a waveform.
 [[nodiscard]] std::string before_state_path(const PreparedScene& scene);
 
-/// Returns a hint to the other start state: "; waveform.main.before_state = "closed" begins there".
+/// Returns a hint at the other start state, for messages: "; waveform.main.before_state = "closed" begins there".
 [[nodiscard]] std::string other_start_hint(const PreparedScene& scene);
 
-/// Describes the state in which runs begin, or the other one if that state does not exist. Empty if runs begin open and at 0 V.
+/// Describes the state in which runs begin, or the other start state if that one does not exist. Empty if runs begin open and
+/// at 0 V.
 [[nodiscard]] std::string start_prose(const PreparedScene& scene);
 
-/// Integrator tolerance that delivers a relative `accuracy` of t_i, v_i, B_H and the peak force.
+/// Returns the integrator tolerance that gives t_i, v_i, B_H and the peak force a relative `accuracy`.
 [[nodiscard]] double tolerance_for(double accuracy, bool stiff = false);  ///< `stiff`: with a compressible film
 
-/// Finds the pull-in voltages of an electrode of a switch, by its number, under a bias of the other drives. It is
-/// electrode_pull_in(), or a function that remembers its results.
+/// Finds the pull-in voltages of an electrode of a switch, by its number, under a bias of the other drives. The function is
+/// electrode_pull_in(), or one that remembers its results.
 using PullInFinder =
     std::function<ElectrodePullIn(const Switch& model, std::size_t electrode, Bias bias, const Progress& progress)>;
 [[nodiscard]] ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, Bias bias,
                                                 const Progress& progress = {});
 
-/// Prepares a scene for statics. The scene is read and its switch composed. Pull-in voltages, drives, window and tolerance are
-/// not known, and there are no warnings of the quadrature. Throws as read_scene() does.
+/// Prepares a scene for statics: reads the scene and composes its switch. Pull-in voltages, drives, window and tolerance are
+/// not computed, and there are no warnings about the quadrature. Throws the exceptions of read_scene().
 [[nodiscard]] PreparedScene prepare_statics(const SceneFile& file);
 
 /// Reads, composes and resolves a scene. Pull-in voltages are computed for the electrodes that need them, and with
-/// `default_limits` for all electrodes that have no written limit. The choices of the scene are still open (auto_settings.h):
+/// `default_limits` for all electrodes that have no written limit. The choices of the scene are not made yet (auto_settings.h):
 /// modes = "auto" stands for the default number, and effects = "auto" for all effects.
-/// Throws InvalidInput for a bad scene, and for one whose pull-in voltage is needed and does not exist. Throws Interrupted if
-/// `progress` asks to stop.
+/// Throws InvalidInput for an invalid scene, and for a scene whose pull-in voltage is needed and does not exist. Throws
+/// Interrupted if `progress` asks to stop.
 [[nodiscard]] PreparedScene prepare(const SceneFile& file, bool default_limits = false, const Progress& progress = {},
                                     const PullInFinder& find_pull_in = electrode_pull_in);
 

@@ -1,8 +1,8 @@
-// The number of quadrature points along a switch.
+// The number of quadrature points along the beam of a switch.
 //
-// Loads grow as 1/h^2 and faster with decreasing gap h, so they are steepest where the beam is closest to an electrode. With
-// the curvature h'' of the gap there, the region of large load is sqrt(2 h / h'') wide. It is narrowest at touch, where the
-// number of points is checked by doubling it.
+// Loads grow as 1/h^2 and faster with decreasing gap h, so they are steepest where the beam is closest to an electrode. If the
+// gap has the curvature h'' at this position, the region of large load is sqrt(2 h / h'') wide. This region is narrowest at
+// contact, where the number of points is checked by doubling it.
 #pragma once
 
 #include <optional>
@@ -11,26 +11,27 @@
 
 namespace softland {
 
-/// Returns the quadrature for a smooth load at a relative accuracy.
+/// Returns the quadrature with which smooth loads have a relative accuracy.
 [[nodiscard]] SwitchOptions quadrature_for(double accuracy, int modes);
-/// Returns a quadrature with twice the points.
+/// Returns a quadrature with twice as many points.
 [[nodiscard]] SwitchOptions finer_than(const SwitchOptions& quadrature);
 
 /// Returns the relative difference of the modal loads in a state q between two quadratures of one switch, in the norm of the
-/// static energy. It is the largest one of all drives and of the gas.
+/// static energy. The result is the largest difference of all drives and of the gas.
 [[nodiscard]] double load_difference(const Switch& one, const Switch& other, const Eigen::VectorXd& q);
 
-/// A switch whose quadrature delivers a relative accuracy at touch.
+/// A switch whose quadrature delivers a relative accuracy of the loads at contact.
 struct ResolvedSwitch {
   Switch model;
   SwitchOptions quadrature;
-  double error = 0;  ///< relative error of the loads at touch
+  double error = 0;  ///< relative error of the loads at contact
 };
-/// Finds a small number of points that delivers the accuracy, beginning with quadrature_for(accuracy, modes). If more points do
-/// not help, since the loads are not smooth, `error` is above `accuracy`. `modes` replaces the structure's number of modes.
+/// Returns a switch with a small number of points that delivers the accuracy, beginning with quadrature_for(accuracy, modes).
+/// If more points do not help, since the loads are not smooth, `error` is above `accuracy`. `modes` replaces the structure's
+/// number of modes.
 [[nodiscard]] ResolvedSwitch resolved_switch(const Device& device, double accuracy, std::optional<int> modes = {});
-/// Returns the switch of a varied device. `quadrature` delivers `accuracy` for the nominal switch. A varied device that touches
-/// nearer to the electrode gets a finer quadrature.
+/// Returns the switch of a varied device. `quadrature` delivers `accuracy` for the nominal switch. A varied device whose
+/// contact is nearer to the electrode gets a finer quadrature.
 [[nodiscard]] Switch switch_like(const Device& device, const Switch& nominal, const SwitchOptions& quadrature, double accuracy);
 
 }  // namespace softland

@@ -1,4 +1,4 @@
-// The resistance of a connection over time in a run.
+// The resistance of a connection as a function of time in a run.
 #pragma once
 
 #include <cstddef>
@@ -11,12 +11,12 @@
 
 namespace softland {
 
-/// Returns the resistance of the connection, or of one of several contacts, at these increasing times [Ohm]; NaN where the
-/// contact is open. Between the knots, which may be thinned, the position is interpolated by a quintic and the contact force
-/// linearly. Empty if the contact does not conduct, or if no knots are kept.
+/// Returns the resistance of the connection, or of contact number `contact`, at these increasing times [Ohm]; NaN while open.
+/// Between the recorded knots, the position is interpolated by a quintic and the contact force linearly. Empty if the contact
+/// does not conduct, or if no knots are recorded.
 [[nodiscard]] std::vector<double> resistance_course(const Device& device, const Trajectory& run, std::span<const double> times,
                                                     std::optional<std::size_t> contact = {});
-/// True if the scene describes the resistance of the connection, or of this contact.
+/// True if the scene describes the resistance of the connection, or of contact number `contact`.
 [[nodiscard]] bool conducts(const Device& device, std::optional<std::size_t> contact);
 
 }  // namespace softland

@@ -1,4 +1,4 @@
-// The drives of a scene for export to generators and circuit simulators.
+// The signals of a scene's drives for export to generators and circuit simulators.
 #pragma once
 
 #include <map>
@@ -10,21 +10,22 @@
 
 namespace softland {
 
-/// Returns the voltages of the scene as its sources apply them. The factor of the dispersion force is not among them.
+/// Returns the voltages of the scene as its sources apply them, by name of the drive, without the dispersion force's factor.
 [[nodiscard]] std::map<std::string, Signal> named_signals(const PreparedScene& prepared);
 
-/// The exported signals: the commanded ones (samples for sources that take samples), or the outputs of the sources.
+/// The exported signals: commanded signals (samples for sources that take samples), or outputs of the sources.
 enum class Sent { commanded, output };
 struct SentSignals {
   std::map<std::string, Signal> signals;
   std::map<std::string, double> sample_rates = {};  ///< rates of sampled signals [Hz]
-  /// Gains of the amplifiers. The signals are voltages at the switch, which an amplifier makes from those of its source.
+  /// Gains of the amplifiers. `signals` are voltages at the switch; an amplifier makes them from the voltages of its source.
   std::map<std::string, double> amplifiers = {};
 };
-/// Returns the signals for one waveform per drive, in the order of Switch::drives().
+/// Returns the exported signals for one waveform per drive, in the order of Switch::drives().
 [[nodiscard]] SentSignals sent_signals(const PreparedScene& prepared, const std::vector<Waveform>& waveforms,
                                        Sent sent = Sent::commanded);
-/// Returns the commanded signals of the scene's sources as CSV. Under the same drivers the file gives the same closing.
+/// Returns the commanded signals of the scene's sources as CSV. A scene that plays this file with the same drivers has the same
+/// closing.
 [[nodiscard]] std::string told_csv(const PreparedScene& prepared);
 
 }  // namespace softland

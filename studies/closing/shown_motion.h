@@ -1,4 +1,4 @@
-// The motion of a switch in a closing, for an animation: all modes, at instants so close that straight lines join them.
+// The motion of a switch in a closing, for an animation: the amplitudes of all modes, at times between which they are linear.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace softland {
 
-/// At position x and time t the lower face is at the height rest(x) - sum over modes of amplitude_i(t) shape_i(x). Heights are
-/// measured from the face of a straight structure at rest. Deflection towards the near electrode is positive.
+/// At position x and time t the lower face of the beam is at the height rest(x) - sum over modes of amplitude_i(t) shape_i(x).
+/// Heights are measured from the face of a straight structure at rest. Deflection towards the near electrode is positive.
 struct ShownMotion {
   struct Contact {
     std::string name;  ///< may be empty if there is one contact
@@ -27,19 +27,19 @@ struct ShownMotion {
   };
   std::vector<double> time;                     ///< increasing times [s]
   std::vector<std::vector<double>> amplitudes;  ///< largest deflection of each mode at these times [m]
-  std::vector<double> places;                   ///< positions x along the structure, which include those of the contacts [m]
-  std::vector<double> rest;                     ///< height of the face at rest at each position [m]
-  std::vector<std::vector<double>> shapes;      ///< shape of each mode at these positions, scaled to a largest size of 1
+  std::vector<double> places;               ///< positions x along the structure, which include the positions of the contacts [m]
+  std::vector<double> rest;                 ///< height of the face at rest at each position [m]
+  std::vector<std::vector<double>> shapes;  ///< shape of each mode at these positions, scaled to a largest size of 1
   std::vector<Contact> contacts;
   std::vector<Pad> electrodes;
 };
 
-/// Largest number of instants, and largest product of the numbers of modes and instants.
+/// Largest number of instants, and largest product of the numbers of modes and instants, of a ShownMotion.
 inline constexpr std::size_t most_instants = 2000, most_amplitudes = 24'000;
 
-/// Runs the closing once more to record its modes. The kept instants are the first and the last one, the beginning, the end and
-/// the extreme of touches and of the highest rebounds, and between them those that linear interpolation misses by the most.
-/// None if the run did not come to its end.
+/// Simulates the closing once more to record its modes. The recorded instants are the first and the last instant, the
+/// beginning, the end and the extreme of touches and of the highest rebounds, and between these the instants at which linear
+/// interpolation has the largest error. None if the run is not complete.
 [[nodiscard]] std::optional<ShownMotion> shown_motion(const PreparedScene& prepared, const Closing& closing);
 
 }  // namespace softland

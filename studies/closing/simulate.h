@@ -1,4 +1,4 @@
-// One closing, with figures of merit and their errors, at the requested accuracy of the scene.
+// One closing, with figures of merit and their errors, at the accuracy that the scene requests.
 #pragma once
 
 #include <memory>
@@ -17,19 +17,19 @@ namespace softland {
 
 struct Certificate;
 
-/// The run that judges another run: its errors are estimated from the difference to the judge. The judge has a hundredth of the
-/// tolerance of the other run and twice its quadrature points. If rounding forbids that, or such a run fails, it has a hundred
-/// times the tolerance, and the difference is the integration error of the judge.
+/// The run that judges another run: the errors of the other run are estimated from the difference. The judge has a hundredth of
+/// the tolerance of the other run and twice its quadrature points. If rounding forbids that, or such a run fails, the judge has
+/// a hundred times the tolerance, and the difference is the integration error of the judge.
 struct Judge {
   Status status = Status::not_run;
   bool came_to_its_end = false;
-  std::string message = {};  ///< reason if the judge did not come to its end
+  std::string message = {};  ///< reason if the judge is not complete
   Metrics metrics;
   double tolerance = 0;
   SwitchOptions quadrature;
 };
 
-/// One of several contacts in a closing.
+/// The figures of one of several contacts in a closing.
 struct ContactClosing {
   Metrics metrics;
   std::vector<Rebound> rebounds;
@@ -37,35 +37,35 @@ struct ContactClosing {
 
 struct Closing {
   Trajectory trajectory;
-  bool is_thinned = false;             ///< true if the trajectory lacks knots, so that it serves plots only (CourseRecorder)
-  std::vector<Rebound> rebounds = {};  ///< rebounds in all knots, until the command to open if there is one
+  bool is_thinned = false;             ///< true if the trajectory lacks knots and suffices for plots only (CourseRecorder)
+  std::vector<Rebound> rebounds = {};  ///< rebounds in all knots, until the command to open if there is a command
   Metrics metrics;
-  std::optional<OpenCommand> command = {};    ///< command to open that the drives give
+  std::optional<OpenCommand> command = {};    ///< command to open that the drives give; none without a command
   std::vector<ContactClosing> contacts = {};  ///< ordered as Trajectory::contacts; empty for a single contact
   /// Absolute error estimates: the difference to the judge's figures plus rounding, or the errors of certify(). The error of
   /// the drive energy is at least the residual of the energy balance. NaN if not estimated. Two runs do not give the range of a
-  /// chaotic figure, so only certify() estimates the errors of t_p, t_b and N_B, and of figures of the time after the two runs
-  /// diverge in the height of a rebound.
+  /// chaotic figure, so only certify() estimates the errors of t_p, t_b and N_B, and of figures that depend on the motion after
+  /// the height of a rebound differs between the two runs.
   FigureValues errors;
-  double tolerance = 0;        ///< tolerance of the integrator in the run of the figures
-  SwitchOptions quadrature;    ///< quadrature of the run of the figures
-  std::optional<Judge> judge;  ///< judge of the run of the figures, if errors are estimated
-  /// True for a touch that does not last: under the hold levels the switch has neither a stable closed equilibrium nor an open
-  /// equilibrium to return to.
+  double tolerance = 0;        ///< tolerance of the integrator in the run from which the figures are
+  SwitchOptions quadrature;    ///< quadrature of the run from which the figures are
+  std::optional<Judge> judge;  ///< judge of the run from which the figures are; none if errors are not estimated
+  /// True for a contact that does not last: under the hold levels the switch has neither a stable closed equilibrium nor an
+  /// open equilibrium to which it can return.
   bool is_pulled_through = false;
   std::vector<std::string> warnings;                    ///< warnings of the scene, of the laws, and of ill-conditioned figures
   std::shared_ptr<const Certificate> certificate = {};  ///< set by certify() only
 };
 
-/// Ratio of a stated error to the difference of two runs: the tighter run has an error as well.
+/// Ratio of a stated error to the difference of two runs. The ratio is above 1 because the tighter run has an error as well.
 inline constexpr double stated_safety = 2;
 
-/// True if the figures of a run can be judged by another run. It ran through its window, or it touched and then collapsed onto
-/// the electrode, so that t_i and v_i are known.
+/// True if the figures of a run can be compared with those of another run: the run is complete, or the beam collapsed onto the
+/// electrode after contact, so that t_i and v_i are known.
 [[nodiscard]] bool came_to_its_end(const Trajectory& run);
 
-/// Raises the error of the drive energy to the residual of the energy balance, all of which may be an error of the drive
-/// energy.
+/// Raises the error of the drive energy to the residual of the energy balance, since the whole residual may be an error of the
+/// drive energy.
 void allow_for_residual(FigureValues& errors, const Trajectory& run);
 
 /// Returns the peak contact force that counts as zero [N]: a hundredth of the force that bends the beam by the contact gap.
@@ -74,22 +74,21 @@ void allow_for_residual(FigureValues& errors, const Trajectory& run);
 /// Sets the peak voltage and the peak slew rate of these drives in the window.
 void set_drive_figures(Metrics& metrics, const PreparedScene& prepared, const std::vector<Signal>& signals);
 
-/// Runs the scene's own waveforms. With `estimate_errors` a second, tighter run gives the error of each figure.
+/// Simulates the scene's own waveforms. With `estimate_errors` a second, tighter run gives the error of each figure.
 /// - Accuracy: if t_i, v_i, B_H or the peak force miss the accuracy that the scene requests, tolerance and quadrature are
-///   tightened until they reach it or until that no longer helps. The figures are those of the tightest run. Errors are
+///   tightened until all reach it or until tightening no longer helps. The figures are those of the tightest run. Errors are
 ///   relative; that of B_H is relative to at least the significant rebound, that of the force to at least least_peak_force().
 ///   No run is its own judge, and no error is 0.
-/// - Interruption: after a stop the status of the figures is interrupted. They are those of the last complete run, without
-///   errors, or of the finished part of the first run.
-/// - Hold: a switch that is not held (set_hold()) has not settled, even if it is quiet at the end of the window.
-/// - Command to open (open_command.h): until the command the switch has the figures of its landing, with the hold force under
-///   the levels before it. The opening has its own figures. The run is done if the switch settled closed before the command,
-///   and is open and at rest at the end.
-/// - Closed start (PreparedScene::start()): the run has no figures of a landing, and is done if the switch ends open and at
+/// - Interruption: the status of the figures is interrupted. The figures are those of the last complete run, without errors, or
+///   of the finished part of the first run.
+/// - Hold: a switch that its hold levels do not keep closed has not settled, even if it is at rest at the end of the window.
+/// - Command to open (open_command.h): until the command the switch has the figures of its closing, with the hold force under
+///   the levels before the command. The opening has its own figures. The run is done if the switch settled closed before the
+///   command, and is open and at rest at the end.
+/// - Closed start (PreparedScene::start()): the run has no figures of a closing, and is done if the switch ends open and at
 ///   rest.
-/// - The status is collapsed_at_rest if the state in which the run has to begin does not exist. The message names the other
-///   state.
-/// - The status is `open` if the switch did not touch and its drives are not meant to close it (stays_open()).
+/// - The status is collapsed_at_rest if the start state of the run does not exist. The message names the other start state.
+/// - The status is `open` if the switch made no contact and its drives are not meant to close it (stays_open()).
 [[nodiscard]] Closing simulate(const PreparedScene& prepared, bool estimate_errors, const Progress& progress = {});
 
 }  // namespace softland

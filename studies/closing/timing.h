@@ -1,4 +1,4 @@
-// The time that an evaluation of the right-hand side takes on this machine.
+// The time that an evaluation of the right-hand side of the equations of motion takes on this machine.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace softland {
 
-/// Adds a state of a closing (q, v and further states of the laws) to `states`, up to 20,000 states.
+/// Adds a state of a closing (q, v and further states of the laws) to `states`, which holds at most 20,000 states.
 void keep_state(const Switch& model, const double* q, std::vector<double>& states);
 
 /// Returns the median time of a call of Switch::accelerations [s], over `repeats` passes through these states, under these
@@ -16,7 +16,7 @@ void keep_state(const Switch& model, const double* q, std::vector<double>& state
 [[nodiscard]] double right_hand_side_seconds(const Switch& model, const std::vector<double>& volts,
                                              const std::vector<double>& states, int repeats = 9);
 
-/// Does the same over the first states of a closing, which contain flight and contact in their true proportion.
+/// Returns the same median time, over the first states of a closing, with flight and contact in the proportion of the closing.
 [[nodiscard]] double right_hand_side_seconds(const Switch& model, const std::vector<Signal>& signals, double duration,
                                              int repeats = 9);
 
