@@ -66,9 +66,9 @@ class ModeLadder {
 /// Stability of equilibria with several numbers of modes, by the smallest eigenvalues. A missing equilibrium (NaN) is not
 /// stable.
 struct StabilityByModes {
-  ByModes eigenvalues;         ///< true if stable with some of these numbers of modes and unstable with others
+  ByModes eigenvalues;         ///< smallest eigenvalue of each equilibrium [rad^2/s^2]
   std::optional<bool> stable;  ///< true if stable with every number of modes that suffices to decide, and in the limit
-  bool flips = false;          ///< true if the equilibrium is stable with some of these numbers of modes and unstable with others
+  bool flips = false;          ///< true if stable with some of these numbers of modes and unstable with others
 };
 [[nodiscard]] StabilityByModes stability(const ModeLadder& ladder, std::span<const std::optional<ClosedEquilibrium>> closed);
 /// Returns the stability of the open equilibrium under constant voltages.

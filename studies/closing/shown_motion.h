@@ -27,9 +27,9 @@ struct ShownMotion {
   };
   std::vector<double> time;                     ///< increasing times [s]
   std::vector<std::vector<double>> amplitudes;  ///< largest deflection of each mode at these times [m]
-  std::vector<double> places;               ///< positions x along the structure, which include the positions of the contacts [m]
-  std::vector<double> rest;                 ///< height of the face at rest at each position [m]
-  std::vector<std::vector<double>> shapes;  ///< shape of each mode at these positions, scaled to a largest size of 1
+  std::vector<double> places;                   ///< positions x along the structure, contacts included [m]
+  std::vector<double> rest;                     ///< height of the face at rest at each position [m]
+  std::vector<std::vector<double>> shapes;      ///< shape of each mode at these positions, scaled to a largest size of 1
   std::vector<Contact> contacts;
   std::vector<Pad> electrodes;
 };

@@ -25,7 +25,7 @@ struct SweepPoint {
   double voltage = 0;                                             ///< voltage of the swept electrode [V]
   double deflection = std::numeric_limits<double>::quiet_NaN();   ///< deflection of the contact point, towards the contact [m]
   double capacitance = std::numeric_limits<double>::quiet_NaN();  ///< capacitance of the swept electrode [F]
-  bool is_up = true;  ///< true while the voltage rises from the first value to the last
+  bool is_up = true;                                              ///< true while the voltage rises
   SweepState state = SweepState::none;
 };
 

@@ -1,7 +1,7 @@
-// The belief about a device from its records: devices with weights, in the standard normal coordinates z of TuningModel. It is
-// the posterior of studies/inverse/posterior.h with these terms:
+// The belief about a device after its records: a set of devices with weights, in the standard normal coordinates z of
+// TuningModel. The belief is the posterior of studies/inverse/posterior.h with these terms:
 //
-//   -ln p(z | records) = |z|^2 / 2 + sum over records L(record, closing of the device z under the same shot) + const
+//   -ln p(z | records) = |z|^2 / 2 + sum over records L(record, closing of the device z in the same shot) + const
 //
 //   first touch  r = (t - t_record) / s,  s^2 = edge_error^2 + (g / 2000 v)^2 + (T_0 / 3400)^2,  L = r^2 / 2, linear beyond 6;
 //                v impact velocity of the first touch: g / 2000 is the error of the model in position, T_0 / 3400 that in time
@@ -26,13 +26,14 @@
 
 namespace softland {
 
-/// A shot on the device, and its record.
+/// A shot (one commanded closing of the device), and its record.
 struct LearnedShot {
   std::vector<Waveform> waveforms;  ///< commanded waveforms, in the order of Switch::drives() [V]
   ContactRecord record;
 };
 
-/// A sequence of random numbers, standard normal or uniform in (0, 1). Each is a function of the seed and of its position.
+/// A sequence of random numbers, standard normal or uniform in (0, 1). Each number depends on the seed and on its position
+/// alone.
 class Draws {
  public:
   Draws(std::uint64_t seed, std::uint64_t first) : seed_(seed), next_(first) {}
@@ -44,16 +45,17 @@ class Draws {
   std::uint64_t seed_, next_;
 };
 
-/// The likelihood of records, by the terms at the top of this file.
+/// The likelihood of the records of a device, by the terms at the top of this file.
 class Likelihood {
  public:
-  /// Keeps references.
+  /// Keeps references to `scene` and `shots`.
   Likelihood(const TuningModel& scene, std::span<const LearnedShot> shots) : scene_(scene), shots_(shots) {}
-  /// Returns the residual r of the first touch in one shot: +-30 if only one of record and closing touches, 0 if neither does.
+  /// Returns the residual r of the first contact in one shot: +-30 if only the record or only the closing has a contact, 0 if
+  /// neither has.
   [[nodiscard]] double touch_residual(const PredictedClosing& closing, const ContactRecord& record) const;
-  /// Returns the log likelihood of all records. `closings` are those of one device under all shots, in order.
+  /// Returns the log likelihood of all records. `closings` are the closings of one device in all shots, in order.
   [[nodiscard]] double of(std::span<const PredictedClosing> closings) const;
-  /// Returns the standard deviation of a recorded first touch with this impact velocity [s].
+  /// Returns the standard deviation of a recorded time of first contact with this impact velocity [s].
   [[nodiscard]] double touch_deviation(double speed) const;
 
  private:
@@ -65,38 +67,39 @@ class Likelihood {
 };
 
 struct Belief {
-  std::vector<Eigen::VectorXd> points;  ///< z of the devices
-  std::vector<double> weights;          ///< their sum is 1
+  std::vector<Eigen::VectorXd> points;  ///< coordinates z of the devices
+  std::vector<double> weights;          ///< weights of the devices; their sum is 1
   NormalBelief moments;                 ///< mean and covariance of z
-  Eigen::VectorXd mode;                 ///< mode of z
+  Eigen::VectorXd mode;                 ///< z with the largest posterior
   double effective_devices = 0;         ///< 1 / (sum of the squared weights), by the weights of the likelihood itself
   double log_posterior = 0;             ///< log posterior of the mode, without its constant
 
-  /// Returns the prior: samples of the standard normal distribution.
+  /// Returns the prior, the belief without records: samples of the standard normal distribution.
   [[nodiscard]] static Belief prior(Eigen::Index size, Draws& draws);
   /// Returns `count` points, sampled in proportion to their weights (systematic resampling, Kitagawa 1996), in random order.
   [[nodiscard]] std::vector<Eigen::VectorXd> resampled(std::size_t count, Draws& draws) const;
 };
 
-/// Fits the first touches of these shots alone, starting from the belief and from devices all over the spread, until the misfit
-/// of a device is within the bound. If exactly one record has a contact that stayed open it is left out: a loose wire says
-/// nothing about the device.
+/// Fits the times of first contact in these shots alone, starting from the belief and from devices all over [spread], until the
+/// misfit of a device is within the bound. If exactly one record has a contact that stayed open, this record is left out: a
+/// loose wire says nothing about the device.
 ///
-/// For closings that are linear in z the first touches y are normal, with the covariance J J^T + I in units of their errors.
+/// If closings are linear in z, the first contact times y are normal, with the covariance J J^T + I in units of their errors.
 /// The least |z|^2 + |r|^2 is then y^T (J J^T + I)^-1 y, which is chi-square distributed with as many degrees of freedom as
-/// records. The bound is its quantile at 0.999 by E. B. Wilson & M. M. Hilferty, Proc. Natl. Acad. Sci. 17 (1931) 684. The
-/// least is over all peaks of the posterior. Throws Interrupted if `progress` asks to stop.
+/// records. The bound is the 0.999 quantile of this distribution by E. B. Wilson & M. M. Hilferty, Proc. Natl. Acad. Sci. 17
+/// (1931) 684. The search for the least covers all peaks of the posterior. Throws Interrupted if `progress` asks to stop.
 [[nodiscard]] TouchMisfit touch_misfit(const TuningModel& scene, std::span<const LearnedShot> shots, const Belief& belief,
                                        Draws& draws, const Progress& progress = {});
 
 /// Returns the increase of the least |z|^2 + sum of r^2 if the ratio of contact to electrode gap is fixed at that of the scene;
-/// 0 if the spread has no such ratio. On devices of the spread the increase is chi-square distributed with one degree of
-/// freedom. The search over all peaks ends when the increase is below `enough`. Throws Interrupted if `progress` asks to stop.
+/// 0 if [spread] has no such ratio. For devices of [spread] the increase is chi-square distributed with one degree of freedom.
+/// The search over all peaks of the posterior ends when the increase is below `enough`. Throws Interrupted if `progress` asks
+/// to stop.
 [[nodiscard]] double gap_ratio_misfit(const TuningModel& scene, std::span<const LearnedShot> shots, const Belief& belief,
                                       double enough, Draws& draws, const Progress& progress = {});
 
-/// Returns the belief after these shots, at least one. Some of the searches start from `last`. Throws Interrupted if `progress`
-/// asks to stop.
+/// Returns the belief after these shots, at least one. Some of the searches for it start from the belief `last`. Throws
+/// Interrupted if `progress` asks to stop.
 [[nodiscard]] Belief updated_belief(const TuningModel& scene, std::span<const LearnedShot> shots, const Belief& last,
                                     Draws& draws, const Progress& progress = {});
 

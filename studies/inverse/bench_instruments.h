@@ -1,4 +1,4 @@
-// The instrument that reads a measurement of a bench file on a scene.
+// The instrument for a measurement of a bench file, which lists the measurements of a laboratory on devices.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 
 namespace softland {
 
-/// Returns the instrument that reads row `i` of a measurement, or all of its rows. Throws InvalidInput for a measurement that
-/// the scene cannot have.
+/// Returns the instrument that reads row `i` of a measurement, or all rows of a trace or contact record. Throws InvalidInput for
+/// a measurement that is impossible for the scene.
 [[nodiscard]] Instrument instrument_of(const PreparedScene& scene, const BenchMeasurement& measurement, std::size_t i);
 
 }  // namespace softland

@@ -1,5 +1,5 @@
-// The times at which the capacitance of a switch passes a threshold. An instrument can record them for a closing without a
-// contact current, such as a landing on a dielectric.
+// The times at which the capacitance of a switch crosses a threshold. An instrument can record these times for a closing
+// without a contact current, such as a closing onto a dielectric.
 #pragma once
 
 #include <cstddef>
@@ -11,14 +11,15 @@
 
 namespace softland {
 
-/// A time span with the capacitance above the threshold.
+/// A time span in which the capacitance is above a threshold.
 struct CapacitanceRise {
-  double begin = 0;  ///< [s]
-  double end = 0;    ///< [s]; NaN if the capacitance stays above the threshold until the run ends
+  double begin = 0;  ///< start of the span [s]
+  double end = 0;    ///< end of the span [s]; NaN if the capacitance stays above the threshold until the run ends
   double rate = 0;   ///< time derivative of the capacitance at `begin` [F/s]
 };
 
-/// Records the capacitance of one electrode in every step of the integrator. A rise and a fall within one step are missed.
+/// Records when the capacitance of one electrode crosses a threshold, in every step of the integrator. A rise and a fall within
+/// one step are missed.
 class CapacitanceEdges final : public ClosingObserver {
  public:
   /// `drive` is the index of the electrode, `threshold` is in F. Keeps a reference to the switch.
@@ -26,7 +27,7 @@ class CapacitanceEdges final : public ClosingObserver {
 
   [[nodiscard]] bool follows_motion() const override { return true; }
   void step(const Knot& begin, const Knot& end, const ContactState& contact) override;
-  /// Returns the rises in order of time.
+  /// Returns the spans above the threshold in order of time.
   [[nodiscard]] const std::vector<CapacitanceRise>& rises() const { return rises_; }
 
  private:
@@ -38,12 +39,12 @@ class CapacitanceEdges final : public ClosingObserver {
   double threshold_;
   Switch::Workspace work_;
   std::vector<double> between_;  // modal coordinates between two knots
-  double last_;                  // capacitance less the threshold after the last step [F]; NaN before the first
+  double last_;                  // capacitance less the threshold after the last step [F]; NaN before the first step
   std::vector<CapacitanceRise> rises_;
 };
 
 /// Returns the capacitance of the nominal design in its closed state less that in its open state [F]. Throws InvalidInput if
-/// the threshold is not between the two, and if one of these states or a pulling electrode is missing.
+/// the threshold is not between the two, and if the closed state, the open state or a pulling electrode is missing.
 [[nodiscard]] double capacitance_rise(const PreparedScene& nominal, double threshold);
 
 }  // namespace softland

@@ -1,4 +1,4 @@
-// The interface of the module that holds Ceres. The module is a shared library that is loaded at the first fit.
+// The interface of the shared library that contains the Ceres solver. The library is loaded at the first fit.
 #pragma once
 
 #include <exception>
@@ -9,7 +9,7 @@
 namespace softland {
 
 inline constexpr const char* ceres_solve_name = "softland_ceres_solve";
-/// Signature of solve() in the module. `fault` receives what `evaluate` has thrown.
+/// Signature of solve() in the shared library. `fault` receives the exception that `evaluate` has thrown.
 using CeresSolve = void(const LeastSquares& problem, std::vector<double> start, const Progress& progress, LeastSquaresEnd& end,
                         std::exception_ptr& fault);
 

@@ -11,17 +11,17 @@
 namespace softland {
 
 /// Errors of the instruments of a laboratory. All but `unseen` are standard deviations. A simulated laboratory has these
-/// errors, except `trigger_delay`, and a belief expects them.
+/// errors, except `trigger_delay`, and the belief about a device assumes them.
 struct LaboratoryErrors {
   double edge_error = 50e-9;  ///< error of the time of an edge [s]
-  double unseen = 100e-9;     ///< openings shorter than this are not recorded [s]
+  double unseen = 100e-9;     ///< openings shorter than this time are not recorded [s]
   double gain_error = 0.005;  ///< relative error of the gain of a source: constant but unknown
   double shot_error = 2e-4;   ///< relative scatter of the gain from shot to shot
   /// Standard deviation of the delay of records behind the drives, which is constant but unknown [s]; 0 if records begin with
-  /// the drives. A simulated laboratory has its own delay (PracticeOptions).
+  /// the drives. A simulated laboratory has PracticeOptions::trigger_delay instead.
   double trigger_delay = 2e-6;
-  /// Threshold of the capacitance of the closing electrode [F]. Records have the times at which the capacitance is above it; if
-  /// NaN, the times at which the contact is closed.
+  /// Threshold of the capacitance of the closing electrode [F]. Records contain the times at which the capacitance is above
+  /// this threshold; if NaN, the times at which the contact is closed.
   double capacitance = std::numeric_limits<double>::quiet_NaN();
   [[nodiscard]] bool sees_capacitance() const { return !std::isnan(capacitance); }
 };
@@ -32,37 +32,37 @@ class SceneFile;
 /// 200th, a 100th and a 48th of the period of the first mode. Throws InvalidInput for a scene that cannot be read.
 [[nodiscard]] LaboratoryErrors usual_errors(const SceneFile& file);
 
-/// An edge of the contact's state.
+/// A change of the contact's state, from open to closed or back.
 struct ContactEdge {
   double time = 0;      ///< time since t = 0, when the drives begin [s]
   bool closed = false;  ///< true if the contact is closed after this edge
 };
 
-/// The record of one shot: edges, or closing time and number of openings, or an error. A record without any of these means that
-/// the contact stayed open.
+/// The record of one shot: edges, or closing time and number of openings, or an error. A record without these members means
+/// that the contact stayed open.
 struct ContactRecord {
-  std::vector<ContactEdge> edges = {};      ///< edges in order of time, alternately closed and open, the first one closed
-  std::optional<double> closing_time = {};  ///< time of the first touch, if there are no edges [s]
-  std::optional<int> bounce_count = {};     ///< number of openings after the first touch
-  std::optional<double> loudness = {};      ///< a positive number that increases with the impact, in any unit
-  std::string error = {};                   ///< reason for a missing record; the other members are then ignored
+  std::vector<ContactEdge> edges = {};      ///< edges in order of time; the first one closes the contact
+  std::optional<double> closing_time = {};  ///< time of first contact [s], if there are no edges
+  std::optional<int> bounce_count = {};     ///< number of openings after the first contact
+  std::optional<double> loudness = {};      ///< loudness of the impact in any unit, above 0
+  std::string error = {};                   ///< reason for a missing record; all other members are then ignored
 };
 
-/// An opening of the contact after a touch.
+/// A time span after the first contact in which the contact is open.
 struct ContactOpening {
   double begin = 0, end = 0;  ///< [s]; the end is infinite if the contact is open at the end of the record
 };
 
-/// Returns the rule that a record of a shot of `duration` [s] breaks, with the key at fault; empty if it breaks none. Times
-/// must be above 0, within the record, and in order. Edges must alternate, with a closed contact after the first. A record must
-/// not have both edges and a closing time.
+/// Returns the rule that a record of a shot of `duration` [s] violates, with the key at fault; empty if the record is valid.
+/// Times must be above 0, within the record, and in order. Edges must alternate, with a closed contact after the first edge. A
+/// record must not have both edges and a closing time.
 [[nodiscard]] std::string record_fault(const ContactRecord& record, double duration = std::numeric_limits<double>::infinity());
 
-/// Returns the time of the first touch [s]; none if the contact stayed open.
+/// Returns the time of first contact [s]; none if the contact stayed open.
 [[nodiscard]] std::optional<double> first_touch(const ContactRecord& record);
-/// Returns the openings between the edges, in order.
+/// Returns the openings between the edges, in order of time.
 [[nodiscard]] std::vector<ContactOpening> openings(const ContactRecord& record);
-/// Returns the number of openings, from the edges or as recorded; none if neither is recorded.
+/// Returns the number of openings, from the edges or from bounce_count; none if the record has neither.
 [[nodiscard]] std::optional<int> bounce_count(const ContactRecord& record);
 /// True if the contact closed and the record shows that it stayed closed.
 [[nodiscard]] bool is_bounce_free(const ContactRecord& record);

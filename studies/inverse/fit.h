@@ -4,13 +4,13 @@
 //
 // y_i(x) is the reading of an instrument on the device (studies/devices/instruments.h), m_i the measured value, s_i its error,
 // and rho the robust loss (least_squares.h). z are the unknowns x, each in units of its scale: one standard deviation of
-// [spread]. R are the correlations of [spread]. A key without an entry in [spread] has no prior, and a tenth of the scene's
-// value as its scale. Distributions other than the normal one are replaced by their mean and standard deviation.
+// [spread]. R are the correlations of [spread]. A key without an entry in [spread] has no prior, and its scale is a tenth of
+// the scene's value. Distributions other than the normal distribution are replaced by their mean and standard deviation.
 //
 // An unknown belongs to one device, or is shared by all. Searches start at the nominal device and at points of low discrepancy
-// over the prior, and the best end is the fit. Standard errors are those of the problem linearised there. At first only the
-// rows of traces up to the first touch are used. The best ends are then fitted to more rows, as long as the scene describes
-// these (trace_windows.h).
+// over the prior; the result is the end of the best search. Standard errors are those of the problem linearised at this end. At
+// first only the rows of traces up to first contact are used. The best ends are then fitted to more rows, as long as the model
+// describes these rows (trace_windows.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -31,7 +31,7 @@ namespace softland {
 
 struct FitOptions {
   std::vector<std::string> unknowns = {};  ///< entries of [spread], or keys; empty for all entries of [spread]
-  std::vector<std::string> shared = {};    ///< the unknowns that all devices share
+  std::vector<std::string> shared = {};    ///< unknowns with one value for all devices
   Loss loss = Loss::huber;
   std::size_t starts = 20;
   std::uint64_t seed = 1;
@@ -42,13 +42,13 @@ inline constexpr std::size_t most_starts = 10'000;
 
 struct FittedUnknown {
   std::string name;                      ///< name of the entry in [spread], or the key
-  std::string device;                    ///< device; empty if shared by all, or for the only device
+  std::string device;                    ///< name of the device; empty if shared by all, or for the only device
   std::string unit;                      ///< SI unit; empty for a factor of the scene's values
   double nominal = 0;                    ///< value of the scene [unit]
   double value = 0, standard_error = 0;  ///< NaN if the fit is in doubt
   double low = 0, high = 0;              ///< 95 % interval; NaN if the fit is in doubt
   double prior_mean = Metrics::unset, prior_deviation = Metrics::unset;  ///< NaN without a prior
-  double scale = 0;                                                      ///< scale of z
+  double scale = 0;                                                      ///< change of the value when z changes by 1
 };
 
 struct FitResidual {
@@ -57,20 +57,20 @@ struct FitResidual {
   Measurable what = Measurable::pull_in;
   std::string drive;
   std::optional<double> level, time;                      ///< [V], [s]
-  double measured = 0, error = 0, before = 0, after = 0;  ///< before: reading in the given scene; after: in the fitted one
+  double measured = 0, error = 0, before = 0, after = 0;  ///< before: reading in the given scene; after: in the fitted scene
   [[nodiscard]] double normalized() const { return (after - measured) / error; }
   [[nodiscard]] double normalized_before() const { return (before - measured) / error; }
 };
 
-/// The rows of a trace (position or velocity) that the fit uses: those that the scene describes.
+/// The rows of a trace (position or velocity) that the fit uses: the rows that the model describes.
 struct FittedTrace {
-  std::size_t measurement = 0;  ///< number in the bench file
+  std::size_t measurement = 0;  ///< number of the measurement in the bench file
   Measurable what = Measurable::velocity;
   double until = 0, recorded = 0;  ///< times of the last used row, and of the last row [s]
 };
 
 struct NextMeasurement {
-  std::string name;  ///< "closing time at 22 V"
+  std::string name;  ///< name, such as "closing time at 22 V"
   Measurable what = Measurable::pull_in;
   std::optional<double> level;  ///< [V]
   double error = 0;             ///< assumed error [SI unit]
@@ -79,35 +79,35 @@ struct NextMeasurement {
 
 /// The fitted population of several devices.
 struct FittedPopulation {
-  std::vector<std::size_t> variables;  ///< indices of the variables in the scene's spread
+  std::vector<std::size_t> variables;  ///< indices of the variables in the scene's [spread]
   std::vector<std::string> names;
   std::vector<double> mean, deviation;  ///< [unit of the value]
   Eigen::MatrixXd correlation;
 };
 
 struct Fit {
-  PreparedScene scene;  ///< given scene; its [spread] has the unknowns
+  PreparedScene scene;  ///< given scene; its [spread] contains the unknowns
   bool spread_assumed = false;
   std::vector<std::string> devices;
   std::vector<FittedUnknown> unknowns;
   Estimate estimate;  ///< weak directions are those of the mean device, in the unknowns of the first device
   std::vector<FitResidual> residuals;
   std::vector<FittedTrace> traces = {};
-  std::vector<NextMeasurement> next;  ///< further measurements, the best first
+  std::vector<NextMeasurement> next;  ///< possible further measurements, the most useful first
   std::optional<FittedPopulation> population;
   std::size_t starts = 0, converged = 0, minima = 0;
   std::vector<double> costs;  ///< cost at the end of each search, by start; NaN for a failed search
   Loss loss = Loss::huber;
   std::uint64_t seed = 1;
   bool found = false;
-  /// Reasons to doubt the result, as sentences: an unknown is far from its prior, the data are not described, or another
-  /// minimum describes them as well. A result in doubt has no standard errors.
+  /// Reasons to doubt the result, as sentences: an unknown is far from its prior, the model does not describe the data, or
+  /// another minimum describes the data as well. A result in doubt has no standard errors.
   std::vector<std::string> doubts = {};
 
-  /// Return the sum of the squared normalized residuals, without weights.
+  /// Return the sum of the squared normalized residuals, without weights, after and before the fit.
   [[nodiscard]] double chi_squared() const;
   [[nodiscard]] double chi_squared_before() const;
-  /// A key and its value, which replaces that of the scene in the fitted scene of a device.
+  /// A key and its fitted value, which replaces that of the scene in the fitted scene of a device.
   struct FittedKey {
     std::string path;
     std::size_t element = 0;
@@ -116,8 +116,8 @@ struct Fit {
   [[nodiscard]] std::vector<FittedKey> keys(const std::string& device) const;
 };
 
-/// Throws InvalidInput for unknowns that no device can have, for measurements that the scene cannot have, and if the scene
-/// itself or a device of the bench file does not allow any of it. Throws Interrupted.
+/// Throws InvalidInput for unknowns that no device can have, for measurements that are impossible for the scene, and if the
+/// scene or a device of the bench file cannot be fitted. Throws Interrupted if `progress` asks to stop.
 [[nodiscard]] Fit fit(const SceneFile& file, const Bench& bench, const FitOptions& options, const Progress& progress = {});
 
 }  // namespace softland

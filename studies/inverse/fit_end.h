@@ -12,15 +12,15 @@ namespace softland {
 
 class EndOfFit {
  public:
-  /// Computes residuals, estimate and unknowns into `fit`. Keeps references.
+  /// Computes residuals, estimate and unknowns and stores them in `fit`. Keeps references.
   EndOfFit(const FitProblem& problem, const LeastSquaresEnd& end, Fit& fit);
 
-  /// Throws InvalidRequest for an unknown without a prior that no datum depends on: it would keep the value at which its search
-  /// began.
+  /// Throws InvalidRequest for an unknown without a prior on which no datum depends: its fitted value would be the start of its
+  /// search.
   void require_all_seen(const std::string& bench) const;
-  /// Adds the population of the devices' own unknowns, with shared unknowns as they were found.
+  /// Adds the population of the unknowns that belong to single devices. Shared unknowns have their fitted values.
   void add_population();
-  /// Adds the possible measurements, the best first.
+  /// Adds the possible further measurements, the most useful first.
   void add_next(const Progress& progress);
 
  private:

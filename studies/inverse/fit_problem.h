@@ -15,22 +15,22 @@ namespace softland {
 /// A measured value of the bench file.
 struct Datum {
   std::size_t device = 0;
-  std::size_t instrument = 0;    ///< number among the instruments of the device
-  Eigen::Index row = 0;          ///< row of the reading
-  std::size_t measurement = 0;   ///< number in the bench file
+  std::size_t instrument = 0;    ///< index among the instruments of the device
+  Eigen::Index row = 0;          ///< row of this value in the reading of the instrument
+  std::size_t measurement = 0;   ///< number of the measurement in the bench file
   double time = Metrics::unset;  ///< time of a row of a trace [s]; NaN: not a trace
 };
 
 struct FitDevice {
   std::string name;
-  PreparedScene nominal;  ///< scene with the spread of the unknowns alone
+  PreparedScene nominal;  ///< scene whose [spread] contains the unknowns alone
   std::vector<Instrument> instruments = {};
 };
 
-/// An unknown: a variable of the spread, of one device or shared by all.
+/// An unknown of a fit: a variable of [spread], of one device or shared by all.
 struct FitParameter {
   std::size_t variable = 0;
-  std::optional<std::size_t> device = {};  ///< none: shared by all
+  std::optional<std::size_t> device = {};  ///< index of the device; none: shared by all devices
   double mean = 0, scale = 1;              ///< value = mean + scale z
   bool has_prior = true;
 };
@@ -40,24 +40,24 @@ struct FitProblem {
   std::vector<Datum> data;
   Eigen::VectorXd measured, errors;  ///< values and standard deviations of the data [SI unit]
   std::vector<FitParameter> parameters;
-  std::vector<std::vector<std::size_t>> of_device;  ///< numbers of the parameters of each device, by variable
-  Eigen::MatrixXd prior;                            ///< P
+  std::vector<std::vector<std::size_t>> of_device;  ///< indices of the parameters of each device, by variable
+  Eigen::MatrixXd prior;                            ///< P, the information of the prior
   Eigen::MatrixXd prior_root;                       ///< residuals of the prior are prior_root z
   Loss loss = Loss::huber;
 
-  /// Returns the residuals of predicted values, in standard deviations.
+  /// Returns the residuals of the data and of these predictions, in standard deviations of the data.
   [[nodiscard]] Eigen::VectorXd residuals(const Eigen::VectorXd& predicted) const;
-  /// Returns the weights of these residuals in the information.
+  /// Returns the weights of these residuals in the information of the data, by the robust loss.
   [[nodiscard]] Eigen::VectorXd weights(const Eigen::VectorXd& residuals) const;
 };
 
 /// Share of the scene's value that is the scale of an unknown without a prior.
 inline constexpr double scale_without_prior = 0.1;
 
-/// Returns the problem without data. Throws what fit() throws.
+/// Returns the problem without data. Throws the exceptions of fit().
 [[nodiscard]] FitProblem problem_without_data(const SceneFile& file, const Bench& bench, const FitOptions& options,
                                               const Progress& progress);
-/// Returns the problem with the data of these measurements in place of its own.
+/// Returns the problem with the data of the measurements in `bench`, without its former data.
 [[nodiscard]] FitProblem with_data(FitProblem problem, const Bench& bench);
 
 }  // namespace softland

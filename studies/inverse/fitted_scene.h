@@ -1,4 +1,4 @@
-// The scene with the results of a fit.
+// Writes the results of a fit into the text of a scene.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace softland {
 
-/// Sets the [spread] of the scene to the deviations and correlations of the fitted population: normal, about the scene's
-/// values.
+/// Sets the [spread] of the scene to the deviations and correlations of the fitted population: normal distributions about the
+/// scene's values.
 void set_spread(SceneFile& file, const Fit& fit);
 
-/// Returns this text of a scene, which is that of the file `path`, with the results for this device; for several devices, with
+/// Returns the text of a scene, which is that of the file `path`, with the fitted values of a device; for several devices, with
 /// the mean of their population and its spread. Comments, sources and units stay. Throws InvalidInput for a text that is not a
 /// scene.
 [[nodiscard]] std::string fitted_text(const Fit& fit, std::string_view text, const std::string& path, const std::string& device);

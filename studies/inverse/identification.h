@@ -1,5 +1,5 @@
-// Finds the measurable figures of a device that determine its waveform. One figure or two predict the factors of voltage and
-// time that a recipe needs on a device. The devices then close with the predicted factors.
+// Finds the measurable figures of a device that determine its waveform. One or two figures predict the factors of voltage and
+// time that a waveform needs on a device. The devices are then closed with the predicted factors.
 //
 //   best factors   (s_V, s_t) of device k minimise  s_k + (ln s_V)^2 + (ln s_t)^2,   s_k its score for `bounce` (robust_cost.h)
 //                  under V(t) = s_V V_0(t / s_t), the recipe V_0 being the scene's own drive; searched by Nelder and Mead's
@@ -8,13 +8,13 @@
 //   predicted      ln s = a + sum_i b_i ln x_i, the figures of the device being x_i. Least squares over one half of the devices
 //   factors        give a and b_i for the other half, and vice versa.
 //
-// The score is flat if a device already lands softly, and the best factors would be arbitrary there. The squares choose the
-// smallest change of the waveform that lands it, and are too small to spoil a landing. All factors are fitted by the same
-// figures, so that the fit does not depend on the weight of either error. The fit is judged by closings alone: figures are
-// ranked by the 95th percentile of the scores of all devices, each with factors fitted to the other half.
+// The score is flat if a device already closes without a bounce, and the best factors would be arbitrary. The squares select
+// the smallest change of the waveform that closes it without a bounce, and are too small to spoil a soft closing. All factors
+// are fitted by the same figures, so that the fit does not depend on the weight of either error. Closings alone rate the fit:
+// figures are ranked by the 95th percentile of the scores of all devices, each with factors fitted to the other half.
 //
-// Closing times are those under steps to multiples of the nominal device's Vdp, the same volts for all devices. Each measured
-// figure has its error, both in the fit and in the prediction.
+// Closing times are measured under steps to multiples of the nominal device's Vdp, with the same volts for all devices. Each
+// measured figure has its error, both in the fit and in the prediction.
 #pragma once
 
 #include <cstddef>
@@ -29,53 +29,53 @@ namespace softland {
 
 /// A figure that can be measured on a device.
 struct MeasurableFigure {
-  std::string name;            ///< "Vdp", "time at 1.25 Vdp"
-  std::string unit;            ///< SI
+  std::string name;            ///< name, such as "Vdp" or "time at 1.25 Vdp"
+  std::string unit;            ///< SI unit of the figure
   double nominal = 0;          ///< value of the nominal device [unit]
-  double error = 0;            ///< relative standard deviation of a measurement
-  std::vector<double> values;  ///< values by device, without error [unit]; NaN: the device does not have it
+  double error = 0;            ///< relative standard deviation of the measurement error
+  std::vector<double> values;  ///< values by device, without error [unit]; NaN if the device does not have the figure
 };
 
-/// Results of devices whose factors are predicted from these figures.
+/// Results of devices whose factors are predicted from one or several figures.
 struct Prediction {
   std::string name;
-  std::vector<std::size_t> figures;  ///< numbers in IdentificationStudy::figures
+  std::vector<std::size_t> figures;  ///< indices in IdentificationStudy::figures
   /// Errors of the predicted logarithms of the best factors of volts, of time and of a piezo's volts: the root mean square over
-  /// devices that were not fitted to, and its square over their variance. NaN if nothing is fitted; for a piezo also if it is
-  /// not driven.
+  /// devices that were not fitted, and its square over the variance of the logarithm. NaN if nothing is fitted; for a piezo
+  /// also if it is not driven.
   double volts_miss = Metrics::unset, time_miss = Metrics::unset, piezo_miss = Metrics::unset;
   double volts_unexplained = Metrics::unset, time_unexplained = Metrics::unset, piezo_unexplained = Metrics::unset;
-  bool is_judged = false;         ///< the members below are known
-  double score = Metrics::unset;  ///< 95th percentile
+  bool is_judged = false;         ///< true if closings gave the members below
+  double score = Metrics::unset;  ///< 95th percentile of the score
   Yield bounce_free;
-  EstimatedQuantile impact_speed;    ///< 95th percentile, largest of all touches [m/s]
-  EstimatedQuantile rebound_height;  ///< 95th percentile [m]
+  EstimatedQuantile impact_speed;    ///< 95th percentile of the largest impact velocity of all touches [m/s]
+  EstimatedQuantile rebound_height;  ///< 95th percentile of the highest rebound [m]
 };
 
 struct IdentificationOptions {
   std::uint64_t samples = 256;
   std::uint64_t seed = 1;
-  int jobs = 1;                               ///< threads; does not change the result
+  int jobs = 1;                               ///< number of threads; does not change the result
   std::vector<double> steps{1.1, 1.25, 1.5};  ///< steps whose closing times are measured, over the nominal Vdp
   double pull_in_error = 0, static_pull_in_error = 0, release_error = 0, frequency_error = 0, piezo_error = 0, time_error = 0;
 };
 
 struct IdentificationStudy {
   std::vector<MeasurableFigure> figures;
-  std::vector<DeviceUnits> best;        ///< best factors by device; NaN if none were found under which it closes
-  std::vector<Prediction> references;   ///< nothing, own units, all figures, the best factors themselves
-  std::vector<Prediction> predictions;  ///< single figures and pairs, the best first; those not judged last
+  std::vector<DeviceUnits> best;        ///< best factors by device; NaN if the device closes with no factors that were found
+  std::vector<Prediction> references;   ///< results with no figures, own units, all figures, best factors
+  std::vector<Prediction> predictions;  ///< results of single figures and pairs, the best first; those without closings last
   std::size_t devices = 0;
-  bool spread_assumed = false;  ///< the scene does not describe the process variation
-  bool drives_piezo = false;    ///< piezo voltages have a factor of their own
+  bool spread_assumed = false;  ///< true if the scene does not describe the process variation
+  bool drives_piezo = false;    ///< true if piezo voltages have a factor of their own
   bool interrupted = false;
 };
 
 inline constexpr std::uint64_t fewest_measured = 16, most_measured = 100'000;
 
 /// Assumes a spread if the scene has none. Throws InvalidInput for a scene without contact, or without an electrode that pulls
-/// in; for a plain step, which has no landing to determine; for samples outside [fewest_measured, most_measured]. Throws
-/// Interrupted if `progress` asks to stop before the best factors of all devices are known.
+/// in; for a plain step, which has no soft closing; for samples outside [fewest_measured, most_measured]. Throws Interrupted if
+/// `progress` asks to stop before the best factors of all devices are known.
 [[nodiscard]] IdentificationStudy identify(SceneFile file, const IdentificationOptions& options, const Progress& progress = {});
 
 }  // namespace softland

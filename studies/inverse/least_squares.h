@@ -1,6 +1,6 @@
 // Nonlinear least squares with a robust loss, by Ceres (Agarwal, Mierle and others, ceres-solver.org): the trust-region method
-// of Levenberg and Marquardt, with a dense QR decomposition. Ceres is in a module of its own (ceres_module.h), which is loaded
-// at the first use.
+// of Levenberg and Marquardt, with a dense QR decomposition. Ceres is in a shared library (ceres_module.h), which is loaded at
+// the first use.
 //
 //   minimise  sum over the first `robust` residuals of rho(r_i^2) + sum over the others of r_i^2
 //
@@ -28,45 +28,45 @@ inline constexpr std::array losses{Named<Loss>{Loss::huber, "huber"}, Named<Loss
                                    Named<Loss>{Loss::none, "none"}};
 static_assert(is_complete<losses>());
 
-/// The scale a: the residual from which on the loss deviates from the square.
+/// The scale a: for larger residuals the loss deviates from the square.
 inline constexpr double loss_scale = 3;
-/// Returns rho'(r^2): the weight of the residual in the information.
+/// Returns rho'(r^2), the weight of a residual r in the information of the data.
 [[nodiscard]] double loss_weight(Loss loss, double residual);
-/// rho(r^2), which deviates from squares from a residual of `scale` on.
+/// Returns rho(r^2), which deviates from the square for residuals above `scale`.
 [[nodiscard]] double loss_value(Loss loss, double residual, double scale = loss_scale);
 
 struct LeastSquares {
   std::size_t unknowns = 0, residuals = 0;
-  std::size_t robust = 0;  ///< number of residuals, from the first on, to which the loss applies
+  std::size_t robust = 0;  ///< number of residuals, from the first on, to which the robust loss applies
   Loss loss = Loss::huber;
-  /// Writes the residuals at x and, if `jacobian` is not null, their derivatives, row by row. Returns false if they do not
-  /// exist.
+  /// Writes the residuals at x and, if `jacobian` is not null, their derivatives, row by row. Returns false if the residuals do
+  /// not exist.
   std::function<bool(std::span<const double> x, std::span<double> residuals, double* jacobian)> evaluate;
 };
 
 struct LeastSquaresEnd {
   bool converged = false;      ///< true if the search ended at a minimum
-  std::vector<double> x = {};  ///< empty if the residuals do not exist at the start
+  std::vector<double> x = {};  ///< x at the end of the search; empty if the residuals do not exist at the start
   double cost = 0;             ///< half of the minimised sum
   long evaluations = 0, with_jacobian = 0;
-  std::string message = {};  ///< message of Ceres
+  std::string message = {};  ///< message of Ceres about the end of the search
 };
 
 /// True if Ceres is available.
 [[nodiscard]] bool has_ceres();
 
-/// Minimises from this start. The result does not depend on other solves that run at the same time. Throws what `evaluate`
-/// throws, Interrupted if `progress` asks to stop, and InvalidInput if Ceres is not available.
+/// Minimises from the point `start`. The result does not depend on other solves that run at the same time. Throws the
+/// exceptions of `evaluate`, Interrupted if `progress` asks to stop, and InvalidInput if Ceres is not available.
 [[nodiscard]] LeastSquaresEnd solve(const LeastSquares& problem, std::vector<double> start, const Progress& progress = {});
 
-/// The ends of searches from several starts. They do not depend on the number of threads.
+/// The ends of least-squares searches from several starts. They do not depend on the number of threads.
 struct ManyEnds {
   std::vector<LeastSquaresEnd> ends;  ///< ends in the order of the starts
-  std::size_t best = 0;               ///< index of the end with the least cost among those with an x
+  std::size_t best = 0;               ///< index of the end with the least cost among the ends with an x
   std::size_t minima = 0;             ///< number of distinct minima among the converged ends
   [[nodiscard]] bool found() const { return !ends.empty() && !ends[best].x.empty(); }
 };
-/// Solves from all starts. `make` gives each search its own problem. `same` decides whether two ends are one minimum.
+/// Solves from all starts. `make` gives each search its own problem. `same` returns true if two ends are the same minimum.
 [[nodiscard]] ManyEnds solve_from(const std::function<LeastSquares()>& make, const std::vector<std::vector<double>>& starts,
                                   int jobs, const std::function<bool(const LeastSquaresEnd&, const LeastSquaresEnd&)>& same,
                                   const Progress& progress = {});

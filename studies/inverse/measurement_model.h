@@ -1,4 +1,4 @@
-// The measurement model of a fit: what the instruments read on devices at z, and the derivatives by z (fit.h).
+// The measurement model of a fit: the readings of the instruments on devices at z, and their derivatives by z (fit.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -11,21 +11,21 @@
 
 namespace softland {
 
-/// Each search has a model of its own: a reader is one device at a time.
+/// Predicts measurements. Each search has its own model, since a reader represents one device at a time.
 class MeasurementModel {
  public:
-  /// Keeps a reference.
+  /// Keeps a reference to `problem`.
   explicit MeasurementModel(const FitProblem& problem);
 
-  /// Computes the predicted values of all data and, if `slopes` is not null, their derivatives, a row for each. Returns false
-  /// if a device is impossible or cannot be read.
+  /// Computes the predicted values of all data and, if `slopes` is not null, their derivatives by z, one row per datum. Returns
+  /// false if a device is impossible or cannot be read.
   [[nodiscard]] bool predict(std::span<const double> z, Eigen::VectorXd& values, Eigen::MatrixXd* slopes);
 
   struct Prediction {
     double value = 0;
     Eigen::VectorXd slopes;  ///< derivatives by z
   };
-  /// Predicts the reading of one further instrument on a device; none if it cannot be read.
+  /// Predicts the reading of one further instrument on a device; none if the instrument cannot read the device.
   [[nodiscard]] std::optional<Prediction> predict(std::size_t device, std::span<const double> z, const Instrument& instrument);
 
  private:
@@ -36,7 +36,7 @@ class MeasurementModel {
   std::deque<DeviceReader> readers_;
 };
 
-/// Returns the problem as least squares: the residuals of the data, then those of the prior. Keeps a reference.
+/// Returns the problem as least squares: residuals of the data, then of the prior. Keeps a reference to `problem`.
 [[nodiscard]] LeastSquares least_squares_of(const FitProblem& problem);
 
 }  // namespace softland

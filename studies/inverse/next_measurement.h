@@ -9,10 +9,10 @@
 namespace softland {
 
 struct PossibleMeasurement {
-  std::string name;  ///< "closing time at 22 V"
+  std::string name;  ///< name, such as "closing time at 22 V"
   Instrument instrument;
-  double error = 0;           ///< standard deviation [SI unit], or
-  double relative_error = 0;  ///< standard deviation over the value
+  double error = 0;           ///< standard deviation of the measurement error [SI unit], or
+  double relative_error = 0;  ///< standard deviation of the measurement error over the value
 };
 
 /// Returns the possible measurements on devices of this scene.

@@ -1,19 +1,19 @@
-// A simulated device in a simulated laboratory, for practice. The device is one of the spread. For each drive it returns the
-// record that a laboratory would make of the closing.
+// A simulated device in a simulated laboratory, for practice. The device is one of those of [spread]. For each shot the
+// simulated laboratory returns the record that a real laboratory would make of the closing.
 //
 //   commanded f(t)  ->  the scene's source  ->  V(t) = (1 + g) (1 + s_n) (1 + d (n - 1)) f(t)  ->  the device  ->  the record
 //
-// g    error of the gain of a drive, constant and unknown       s_n  scatter of the gain in shot n
+//   g    error of the gain of a drive, constant and unknown       s_n  scatter of the gain in shot n
 //   d    drift of all voltages from one shot to the next
 //
-// The record begins late by the delay of the trigger, the same in all shots. It has the edges of the contact, closed or open,
-// each with a random error of its time. An opening shorter than the resolution of the instrument is not recorded, nor is a
-// touch whose edges are swapped by the errors. If the instrument records the capacitance, the contact counts as closed while
-// the capacitance is above a threshold.
+// The record begins late by the delay of the trigger, which is the same in all shots. The record has the edges of the contact's
+// state, each with a random error of its time. An opening shorter than the resolution of the instrument is not recorded, nor is
+// a contact whose edges are swapped by the errors. If the instrument records the capacitance, the contact counts as closed
+// while the capacitance is above a threshold.
 //
 // The device differs from the scene as [spread], or the assumed spread (config/assumed_spread.h), describes. Its model may
-// differ as well, which a belief based on the scene cannot know. Its random numbers have their own streams, which no ensemble
-// uses.
+// differ as well, which a belief based on the scene cannot know. The device's random numbers have their own streams, which no
+// ensemble uses.
 #pragma once
 
 #include <cstdint>
@@ -30,10 +30,10 @@ namespace softland {
 
 /// Differences of the device's model from the model of its scene.
 struct PracticeModel {
-  int more_modes = 0;                 ///< modes in addition to those of the scene
-  std::string gas = {};               ///< law of the film in place of the scene's; empty for the scene's
-  double stiffness = 1;               ///< factor of the contact's stiffness, or modulus
-  std::vector<std::string> set = {};  ///< further keys of the scene: "gap.contact=2.05 um"
+  int more_modes = 0;                 ///< number of modes in addition to those of the scene
+  std::string gas = {};               ///< law of the gas film in place of the scene's; empty for the scene's own law
+  double stiffness = 1;               ///< factor of the contact's stiffness or modulus
+  std::vector<std::string> set = {};  ///< further keys of the scene, with their values: "gap.contact=2.05 um"
 };
 
 struct PracticeOptions {
@@ -61,14 +61,14 @@ class PracticeDevice {
   /// Throws InvalidInput for a scene that cannot be simulated or has no contact, and for a model that the scene cannot have.
   explicit PracticeDevice(SceneFile file, const PracticeOptions& options = {});
 
-  /// Returns the scene, with the limits of its drivers in volts: what is known about the device.
+  /// Returns the scene, with the limits of its drivers in volts. This is all that a user knows about the device.
   [[nodiscard]] const PreparedScene& nominal() const { return nominal_; }
-  /// Return the device, and the values of its varied quantities: what is not known about it.
+  /// Returns the device with the values of its varied quantities. A user does not know these values.
   [[nodiscard]] const SampledDevice& device() const { return device_; }
 
   /// Simulates the closing in shot number `shot`, counted from 1, for `duration` [s]. `waveforms` are the commanded waveforms,
-  /// in the order of Switch::drives() [V]. Shots do not depend on each other. Throws InvalidInput if a waveform exceeds the
-  /// limits of its driver, if `shot` is 0, and if `duration` is not positive.
+  /// in the order of Switch::drives() [V]. The shots are independent. Throws InvalidInput if a waveform exceeds the limits of
+  /// its driver, if `shot` is 0, and if `duration` is not positive.
   [[nodiscard]] PracticeClosing close(std::uint64_t shot, const std::vector<Waveform>& waveforms, double duration) const;
 
  private:
