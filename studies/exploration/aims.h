@@ -12,29 +12,29 @@ namespace softland {
 
 /// A variable or a figure of an exploration.
 struct ExploredColumn {
-  std::string key;   ///< key in options and files: "impact_velocity_m_s"
-  std::string name;  ///< displayed name: "Impact speed", or the key of the scene
+  std::string key;   ///< key in options and files, such as "impact_velocity_m_s"
+  std::string name;  ///< displayed name, such as "Impact speed", or the key of the scene
   std::string unit;  ///< SI unit; empty for a dimensionless number
   bool is_variable = false;
 };
 [[nodiscard]] std::vector<ExploredColumn> explored_columns(const StoredPlan& plan);
 
-/// A figure to minimise or to maximise.
+/// A figure of an exploration that is minimised or maximised.
 struct ExploredAim {
   std::size_t column = 0;
   bool is_largest = false;
 };
-/// Prefix of a figure to maximise.
+/// Prefix of a figure that is maximised.
 inline constexpr std::string_view largest_mark = "max:";
 
-/// True if `name` is a name of the column: its key, its key without the unit, or its displayed name.
+/// True if `name` identifies the column: its key, its key without the unit, or its displayed name.
 [[nodiscard]] bool goes_by(const ExploredColumn& column, const std::string& name);
 
 /// Returns the aims in a list such as "impact_velocity,max:bounce_free". Throws InvalidRequest about the field `pareto` for a
 /// name that is not a figure or occurs twice, and for fewer than two aims.
 [[nodiscard]] std::vector<ExploredAim> explored_aims(const std::vector<ExploredColumn>& columns, const std::string& list);
 
-/// True if a point with this status may be on a front. A closing that still bounces when the window ends must not beat others.
+/// True if a point with this status may be on a Pareto front. A closing that still bounces when its window ends may not.
 [[nodiscard]] bool may_lead(std::string_view status);
 
 }  // namespace softland

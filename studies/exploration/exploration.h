@@ -1,18 +1,20 @@
 // The computation of an exploration at one point of its plan: a row of figures, and a status. The row depends only on the scene
-// of the point and on the options of the study. It is bit for bit the result of the verb of the same name for that scene.
+// of the point and on the options of the study. The row is bit for bit the result of the verb of the same name for that scene.
 //
-//   simulate    every figure of merit of the closing under the scene's waveforms, with `certify` their errors too. Closings run
-//               one at a time: in lanes (model/ensemble/ensemble_closings.h) their last digits would differ.
+//   simulate    every figure of merit of the closing under the scene's waveforms, with `certify` also the errors of the
+//               figures. Closings run one at a time: in SIMD lanes (model/ensemble/ensemble_closings.h) their last digits would
+//               differ.
 //   pull-in     static and dynamic pull-in voltage and release voltage; for a switch without electrodes the factors of the
 //               dispersion force
 //   robustness  yields and quantiles of the figures over `samples` varied devices of [spread], under the scene's own
 //               waveforms
 //   limit, release, effects, check
-//               the numbers of the verb's record: the columns are those of the record of the plan's own scene
+//               the numbers of the verb's record; the columns come from the record of the plan's own scene
 //   optimize    a whole search on the nominal device: the figures of the found waveform, its parameters, the goal, and the
 //               figures of the plain step. Unlike the verb it does not begin with half its budget.
 //
-// A point never throws: an impossible scene has the status `infeasible` with the reason, a numerical failure its own status.
+// A point whose scene fails throws no exception: an impossible scene has the status `infeasible` with the reason, a numerical
+// failure its own status.
 #pragma once
 
 #include <cstdint>
@@ -40,19 +42,20 @@ inline constexpr auto point_studies = std::to_array<Named<PointStudy>>({{PointSt
                                                                         {PointStudy::optimize, "optimize"}});
 static_assert(is_complete<point_studies>());
 
-/// A study that is registered from outside: a verb that takes one scene.
+/// A study that is registered from outside of this file: a verb that takes one scene.
 struct OtherStudy {
   using Options = std::map<std::string, std::string>;
-  /// The numbers of a record, such as "touch.least_time_s", and its status. True or false is 1 or 0.
+  /// The numbers of a record, such as "touch.least_time_s", and the status. True is 1, false is 0.
   struct Record {
     std::string status;
     std::vector<std::pair<std::string, double>> numbers;
   };
 
   std::string name;
-  /// Throws InvalidInput for an option that the study lacks, and for a value that breaks the option's rule.
+  /// Throws InvalidInput for an option that the study lacks, and for a value that violates the option's rule.
   std::function<void(const Options&)> check;
-  /// Returns the record of a scene. Throws Interrupted if `progress` asks to stop, and InvalidInput.
+  /// Returns the record of a scene. Throws InvalidInput for a scene without a record, and Interrupted if `progress` asks to
+  /// stop.
   std::function<Record(const SceneFile&, const Options&, std::uint64_t seed, int jobs, const Progress&)> record;
 };
 using OtherStudies = std::vector<OtherStudy>;
@@ -61,26 +64,26 @@ struct PointRow {
   std::string status;
   std::string reason = {};
   std::vector<double> figures;  ///< figures in the order of Exploration::figures(); NaN if not available
-  std::string scene = {};       ///< only for a search: scene with the found waveform, which `simulate` runs to the same figures
+  std::string scene = {};       ///< only for a search: scene with the found waveform; `simulate` gives it the same figures
   /// Only for a search: waveforms by drive for plots, as the ends of straight lines [s, V].
   std::map<std::string, std::vector<std::pair<double, double>>> waveforms = {};
 };
 
-/// Checks the study and its options, and writes out the options that are not given, so that the plan does not depend on
-/// defaults. Throws InvalidInput, with the place of the entry first.
+/// Checks the study of a request and its options, and adds the options that are not given, so that the plan does not depend on
+/// defaults. Throws InvalidInput; the message begins with the place of the entry.
 void complete(PlanRequest& request, const OtherStudies& others = {});
 
 class Exploration {
  public:
-  /// The plan's study must be complete (complete()). `columns` are those of the record of another study, if known; otherwise
-  /// they are found by making the record of the plan's own scene. Throws InvalidInput if the scene of the plan lacks something
-  /// that the study needs.
+  /// The plan's study must be complete: see complete(). `columns` are the columns of another study's record, if known;
+  /// otherwise the record of the plan's own scene is computed to find them. Throws InvalidInput if the scene of the plan lacks
+  /// something that the study needs.
   explicit Exploration(Plan plan, const Progress& progress = {}, const OtherStudies& others = {},
                        std::vector<PointFigure> columns = {});
 
   [[nodiscard]] const Plan& plan() const { return plan_; }
   [[nodiscard]] const std::vector<PointFigure>& figures() const { return figures_; }
-  /// Returns a text of everything on which the row of a scene depends: equal texts have equal rows.
+  /// Returns a text that contains everything on which the row of a scene depends: equal texts have equal rows.
   [[nodiscard]] std::string content(const SceneFile& scene) const;
   /// Returns the drives of a scene of the plan as the ends of straight lines [s, V]; none for an impossible scene.
   [[nodiscard]] std::map<std::string, std::vector<std::pair<double, double>>> waveforms(const SceneFile& scene,
@@ -100,12 +103,12 @@ class Exploration {
   [[nodiscard]] PreparedScene prepared(const SceneFile& scene, bool default_limits, const Progress& progress);
 
   Plan plan_;
-  std::optional<PointStudy> study_;  // none if the study is `other_`
+  std::optional<PointStudy> study_;  // study of the plan; none if the study is `other_`
   std::optional<OtherStudy> other_;
   std::vector<PointFigure> figures_;
   AskedFigures asked_ = {};              // figures that the scene of the plan requests
-  std::vector<std::string> parameters_;  // searched parameters of a search
-  bool shares_switches_ = false;         // true if points of the plan may have the same switch
+  std::vector<std::string> parameters_;  // parameters that a search varies
+  bool shares_switches_ = false;         // true if several points of the plan may have the same switch
   PullInMemory pull_in_;
 };
 

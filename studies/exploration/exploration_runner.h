@@ -1,4 +1,4 @@
-// Computes the points of a part of a plan into its store.
+// Computes the points of a part of a plan and stores them in a database file.
 #pragma once
 
 #include <atomic>
@@ -17,13 +17,13 @@ namespace softland {
 /// The progress of an exploration.
 struct ExplorationProgress {
   std::int64_t points = 0;  ///< number of points of the part
-  std::int64_t known = 0;   ///< number of points in the store at the beginning
+  std::int64_t known = 0;   ///< number of points in the database file at the beginning
   std::int64_t computed = 0;
-  std::int64_t reused = 0;     ///< number of rows taken over from earlier plans
-  std::int64_t earlier = 0;    ///< number of rows of earlier plans: at most as many can be reused
+  std::int64_t reused = 0;     ///< number of rows copied from earlier plans
+  std::int64_t earlier = 0;    ///< number of rows of earlier plans: at most this number can be reused
   double seconds = 0;          ///< time since the beginning [s]
-  double computing = 0;        ///< time since the first new point was begun [s]
-  double waited_on_store = 0;  ///< total time for which threads waited for the store [s]
+  double computing = 0;        ///< time since the computation of the first new point began [s]
+  double waited_on_store = 0;  ///< total time for which threads waited for the database file [s]
 
   [[nodiscard]] std::int64_t there() const { return known + computed + reused; }
   [[nodiscard]] std::int64_t remaining() const { return points - there(); }
@@ -32,17 +32,17 @@ struct ExplorationProgress {
 struct ExplorationRunnerOptions {
   Shard shard = {};
   int jobs = 1;
-  const std::atomic<bool>* stop = nullptr;                             ///< ends the exploration early; the points so far are kept
+  const std::atomic<bool>* stop = nullptr;  ///< ends the exploration early when true; finished points are stored
   std::function<void(const ExplorationProgress&)> on_point = nullptr;  ///< called under a lock after every point
 };
 
 class ExplorationRunner {
  public:
-  /// Keeps references. The store must belong to stored_plan(exploration, options.shard).
+  /// Keeps references. `store` must belong to stored_plan(exploration, options.shard).
   ExplorationRunner(Exploration& exploration, StudyStore& store, const ExplorationRunnerOptions& options);
 
-  /// Computes the points that the store lacks. The rows do not depend on the number of threads. Throws as StudyStore::add()
-  /// does.
+  /// Computes the points that the database file lacks. The rows do not depend on the number of threads. Throws the exceptions
+  /// of StudyStore::add().
   void run();
   [[nodiscard]] ExplorationProgress progress() const;
 
@@ -63,7 +63,7 @@ class ExplorationRunner {
   bool reuses_;
   int inner_jobs_ = 1;
   Progress progress_;
-  mutable std::mutex mutex_;  // guards the progress, and the time at which computing began
+  mutable std::mutex mutex_;  // guards the progress, and the time at which the computation began
   ExplorationProgress told_;
   std::atomic<double> store_seconds_ = 0;
   Clock::time_point begin_ = Clock::now();

@@ -1,4 +1,4 @@
-// Searches the Pareto front of an exploration, and stores its points as they are found.
+// Searches the Pareto front of an exploration, and stores the points as soon as they are computed.
 #pragma once
 
 #include <atomic>
@@ -13,17 +13,17 @@
 
 namespace softland {
 
-/// Default `sample` of a plan that searches a front.
+/// Default `sample` of a plan that searches a Pareto front.
 inline constexpr std::string_view usual_front_sample = "nsga2:2000";
 
-/// Returns the aims of a plan that searches a front. Throws as explored_aims() does.
+/// Returns the aims of a plan that searches a Pareto front. Throws the exceptions of explored_aims().
 [[nodiscard]] std::vector<ExploredAim> aims_of(const Exploration& exploration);
 
-/// The progress of a search for a front.
+/// The progress of a search for a Pareto front.
 struct FrontFound {
   std::int64_t points = 0;    ///< number of points of the plan
   std::int64_t asked = 0;     ///< number of points that the search has requested
-  std::int64_t known = 0;     ///< number of points in the store at the beginning
+  std::int64_t known = 0;     ///< number of points in the database file at the beginning
   std::int64_t computed = 0;  ///< number of computed points
   Termination termination = Termination::interrupted;
 };
@@ -34,9 +34,9 @@ struct FrontOptions {
   std::function<void(const FrontFound&)> on_point = nullptr;  ///< called under a lock after every point
 };
 
-/// Searches the front of an exploration whose plan is such a search. Point k is the k-th point that the search requests. A
-/// point in `known`, or of an earlier plan in the store, is not computed again, so that an interrupted search ends with the
-/// same rows. Throws as StudyStore::add() does.
+/// Searches the Pareto front of an exploration whose plan requests such a search. Point k is the k-th point that the search
+/// requests. A point in `known`, or of an earlier plan in `store`, is not computed again, so that an interrupted and repeated
+/// search ends with the same rows. Throws the exceptions of StudyStore::add().
 [[nodiscard]] FrontFound search_front(Exploration& exploration, StudyStore& store, KnownRows known,
                                       const std::vector<ExploredAim>& aims, const FrontOptions& options);
 

@@ -1,4 +1,4 @@
-// Remembers pull-in voltages: many points of an exploration have the same switch and differ only in their drives.
+// Remembers pull-in voltages, since many points of an exploration have the same switch and differ only in their drives.
 #pragma once
 
 #include <deque>
@@ -13,18 +13,18 @@ namespace softland {
 
 class PullInMemory {
  public:
-  /// Returns a finder of the pull-in voltages of the switch of `scene`; it must be called for that switch only. It reuses
-  /// voltages that were found for a scene with the same switch. Such a scene may differ in waveforms (except the voltages of
-  /// the other drives), limits of the drivers, window and reported figures. May be called on any thread: a thread waits while
-  /// another one computes the same voltages. The finder must not outlive this object.
+  /// Returns a finder of the pull-in voltages of the switch of `scene`; it must be called for that switch only. The finder
+  /// reuses voltages that were found for a scene with the same switch. Such a scene may differ in waveforms (except the
+  /// voltages of the other drives), limits of the drivers, window and reported figures. May be called on any thread: a thread
+  /// waits while another thread computes the same voltages. The finder must not outlive this object.
   [[nodiscard]] PullInFinder finder(const SceneFile& scene);
 
  private:
   [[nodiscard]] ElectrodePullIn find(const std::string& switch_text, const Switch& model, std::size_t electrode, Bias bias,
                                      const Progress& progress);
 
-  // Largest number of kept entries, the newest: a plan visits the points of one switch together, or after up to a thousand
-  // others.
+  // Largest number of remembered entries; the oldest are dropped. A plan computes the points of one switch one after another,
+  // or after up to a thousand other points.
   static constexpr std::size_t most_remembered = 16384;
   std::mutex mutex_;
   std::map<std::string, std::shared_future<ElectrodePullIn>> known_;

@@ -1,4 +1,4 @@
-// An exploration in its store.
+// Connects an exploration with the database file that stores its points.
 #pragma once
 
 #include <filesystem>
@@ -11,19 +11,21 @@
 
 namespace softland {
 
-/// Returns the part of the plan that its store holds.
+/// Returns the part of the plan that a database file stores.
 [[nodiscard]] StoredPlan stored_plan(const Exploration& exploration, const Shard& shard);
-/// Returns the exploration of `plan` for the store. If the store holds it already, the columns are those in the store.
+/// Returns the exploration of `plan` for the database file `store`. If the file has this exploration already, the columns are
+/// those in the file.
 [[nodiscard]] Exploration exploration_for(Plan plan, const std::filesystem::path& store, const Progress& progress = {},
                                           const OtherStudies& others = {});
-/// Throws InvalidRequest about the field `shard` if the exploration has no such part: a search of a front cannot be divided.
+/// Throws InvalidRequest about the field `shard` if the exploration has no such part: a search for a Pareto front cannot be
+/// divided.
 void require_part(const Exploration& exploration, const Shard& shard);
-/// Returns the plan of the exploration that a store holds. Throws InvalidInput if the store holds a search.
+/// Returns the plan of the exploration in a database file. Throws InvalidInput if the file contains a search instead.
 [[nodiscard]] PlanRequest exploration_in(const StudyReader& store);
 /// Returns the row to store for a point with these values of the variables [SI unit].
 [[nodiscard]] StoredRow stored_row(std::int64_t point, const ContentKey& content, std::vector<double> values, PointRow row);
 
-/// The rows of a store, by the values of their variables.
+/// The rows of a database file, by the values of their variables.
 using KnownRows = std::map<std::vector<double>, StoredRow>;
 [[nodiscard]] KnownRows known_rows(const std::filesystem::path& store);
 

@@ -52,7 +52,7 @@ struct FittedUnknown {
 };
 
 struct FitResidual {
-  std::size_t measurement = 0;  ///< number in the bench file
+  std::size_t measurement = 0;  ///< number of the measurement in the bench file
   std::string device;
   Measurable what = Measurable::pull_in;
   std::string drive;

@@ -1,13 +1,14 @@
-// Proposes the next waveform: the one with the least expected cost over the devices of a belief (tuner.h defines the cost).
+// Proposes the next waveform for a device: the waveform with the least expected cost over the devices of a belief (cost:
+// tuner.h).
 //
 // Shapes. The electrode that closes the switch has the waveform family catch of search_space.h: three levels with durations
-// that accelerate the beam, let it coast and brake it, then the hold level. Every other shaped drive has the family pulse.
+// that accelerate the beam, let it coast and brake it, then the hold level. Every other varied drive has the family pulse.
 // Edges are as short as these families allow. The quasi-static approach uses the shapes of quasi_static.h.
 //
-// Recipes are waveforms that are searched once per scene, by CMA-ES on devices that vary as little as a recorded closing leaves
-// open. One recipe is for the nominal device. On request there are others for devices whose unit of voltage is one and two
-// standard deviations away. Scaled by the units of a device, recipes are starts of its searches, beside the waveforms of
-// earlier shots.
+// Recipes are waveforms that are searched once per scene, by CMA-ES on devices whose remaining uncertainty is that after one
+// recorded closing. One recipe is for the nominal device. On request there are further recipes for devices whose unit of
+// voltage is one and two standard deviations away. Scaled by the units of a device, recipes are starts of the searches for this
+// device, beside the waveforms of earlier shots.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,7 @@
 
 namespace softland {
 
-/// The cost of a closing: that of the landing, and that of its time.
+/// The cost of a closing: a part for impact and rebounds, and a part for the time of first contact.
 struct LandingCost {
   double landing = 0, time = 0;
   [[nodiscard]] double total() const { return landing + time; }
@@ -28,22 +29,22 @@ struct LandingCost {
 /// Cost of a switch that does not close.
 inline constexpr double not_landed = 3;
 
-/// The waveforms that a search may try, as functions of its variables.
+/// The waveforms that a search may propose, as functions of the variables of the search.
 class TuningSpace {
  public:
-  /// Makes the shapes of the scene's approach. Keeps a reference to the scene. Throws what SearchSpace throws.
+  /// Makes the shapes of the scene's approach. Keeps a reference to the scene. Throws the exceptions of SearchSpace.
   explicit TuningSpace(const TuningModel& scene);
-  /// Returns the shapes with a limit `highest` [V] of the closing electrode's levels, within the limits of its driver. The hold
-  /// level is multiplied by `hold`, and limited as well.
+  /// Returns the same shapes with a limit `highest` [V] on the closing electrode's levels, within the limits of its driver. The
+  /// hold level is multiplied by `hold`, and limited as well.
   [[nodiscard]] TuningSpace within(double highest, double hold) const;
 
   [[nodiscard]] const std::vector<Variable>& variables() const { return variables_; }
-  /// True for a variable that hardly affects the landing: level and duration of the last pull.
+  /// True for a variable that hardly affects the closing: level and duration of the last pull.
   [[nodiscard]] bool is_coarse(std::size_t k) const { return coarse_[k]; }
   [[nodiscard]] std::vector<std::vector<double>> starts() const;
-  /// Returns waveforms in the order of Switch::drives() [V]. Variables beyond their bounds are moved to them.
+  /// Returns waveforms in the order of Switch::drives() [V]. Variables beyond their bounds are replaced by the bounds.
   [[nodiscard]] std::vector<Waveform> waveforms(std::vector<double> x) const;
-  /// Converts variables from the units `from` of a device to the units `to` of another one: it scales levels of electrodes and
+  /// Converts variables from the units `from` of a device to the units `to` of another device: scales levels of electrodes and
   /// all times.
   [[nodiscard]] std::vector<double> in_units(std::vector<double> x, const TuningModel::Units& from,
                                              const TuningModel::Units& to) const;
@@ -51,7 +52,7 @@ class TuningSpace {
   [[nodiscard]] bool is_allowed(const std::vector<Waveform>& waveforms) const;
   /// Returns the highest level of the closing electrode that its driver permits [V]; infinite for a piezo.
   [[nodiscard]] double highest_level() const;
-  /// Returns the largest factor of all voltages that the limits of the drivers and the highest level allow.
+  /// Returns the largest factor of all voltages at which the limits of the drivers and the highest level are not exceeded.
   [[nodiscard]] double largest_factor(const std::vector<Waveform>& waveforms) const;
 
  private:
@@ -59,31 +60,31 @@ class TuningSpace {
 
   const TuningModel* scene_;
   std::vector<DriveSearch> drives_;
-  std::optional<QuasiStatic> joint_;  // moves all drives together; only for the quasi-static approach
+  std::optional<QuasiStatic> joint_;  // shapes that vary all drives together; only for the quasi-static approach
   DriveWaveforms others_;
   std::vector<std::vector<double>> starts_;
   std::vector<Variable> variables_;
   std::vector<bool> coarse_,
-      of_electrode_;  // variables that hardly affect the landing, and variables that scale with the voltage unit of an electrode
+      of_electrode_;  // variables that hardly affect the closing, and variables that scale with an electrode's voltage unit
   double highest_ = std::numeric_limits<double>::infinity();
 };
 
-/// Devices of a belief, each with its own gain in the next shot.
+/// Devices of a belief, each with its own random gain, that forecast the outcome of the next shot.
 class OutcomeForecast {
  public:
   /// Keeps a reference to `scene`.
   OutcomeForecast(const TuningModel& scene, const std::vector<Eigen::VectorXd>& points, Draws& draws, const Progress& progress);
   [[nodiscard]] std::size_t size() const { return devices_.size(); }
-  /// Returns the mean cost over the first `count` devices. If the mean over the first few of them is above `give_up`, it
+  /// Returns the mean cost over the first `count` devices. If the mean over the first few of these devices is above `give_up`,
   /// returns that mean.
   [[nodiscard]] LandingCost expected(const std::vector<Waveform>& waveforms, std::size_t count,
                                      double give_up = std::numeric_limits<double>::infinity()) const;
   [[nodiscard]] PredictedRecord predicted(const std::vector<Waveform>& waveforms) const;
-  /// Returns the median of dt_i / d ln(voltage) [s]; NaN if no device has it.
+  /// Returns the median over the devices of dt_i / d ln(voltage), t_i the first contact time [s]; NaN if no device has it.
   [[nodiscard]] double touch_slope(const std::vector<Waveform>& waveforms) const;
 
  private:
-  // Simulates the closings of the devices from `begin` to `end`.
+  // Simulates the closings of devices `begin` to `end` - 1.
   [[nodiscard]] std::vector<PredictedClosing> close(const std::vector<Waveform>& waveforms, std::size_t begin, std::size_t end,
                                                     double gain = 1) const;
 
@@ -96,16 +97,16 @@ class OutcomeForecast {
 [[nodiscard]] inline TuningModel::Units units_of(const CandidateWaveform& recipe) {
   return {.volts = recipe.volts, .time = recipe.time};
 }
-/// Returns the recipes of the options. If there are none, it searches those of each approach of the scene, returns the cheaper
-/// ones and chooses their approach. The recipe of the nominal device comes first. Throws InvalidInput for recipes of other
-/// shapes, and Interrupted if `progress` asks to stop.
+/// Returns the recipes in the options. If the options have none, searches recipes for each approach of the scene, returns those
+/// of the approach with the lower cost and chooses this approach. The recipe of the nominal device comes first. Throws
+/// InvalidInput for recipes of other shapes, and Interrupted if `progress` asks to stop.
 [[nodiscard]] std::vector<CandidateWaveform> recipes_of(TuningModel& scene, const Progress& progress);
 
 struct Proposal {
   std::vector<double> x;
   LandingCost cost;
 };
-/// Returns the best point that searches from these candidates find. Throws Interrupted if `progress` asks to stop.
+/// Returns the best point of the searches that start from these candidates. Throws Interrupted if `progress` asks to stop.
 [[nodiscard]] Proposal propose(const TuningModel& scene, const TuningSpace& space, const OutcomeForecast& forecast,
                                const std::vector<std::vector<double>>& candidates, std::uint64_t seed, const Progress& progress);
 

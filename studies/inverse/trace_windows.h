@@ -1,6 +1,6 @@
-// The rows of a trace that a fit uses: first those up to the first touch, then more and more, as long as the scene describes
-// them. After some bounces the smallest change of a device changes the rest of the trace completely, and a search over the
-// whole trace ends in one of many minima.
+// The rows of a trace that a fit uses: first the rows up to first contact, then more and more rows, as long as the model
+// describes them. After some bounces the smallest change of a device changes the rest of the trace completely, and a search
+// over the whole trace ends in one of many minima.
 #pragma once
 
 #include <limits>
@@ -12,20 +12,21 @@ namespace softland {
 
 class TraceWindows {
  public:
-  /// `touches` are the times of the first touch of the nominal design, for each measurement [s]. All rows of a measurement are
-  /// used from the beginning if its time is not finite, or if the measurement sets its own end (`until`).
+  /// `touches` are the times of first contact of the nominal design, for each measurement [s]. All rows of a measurement are
+  /// used from the beginning if this time is not finite, or if the measurement sets its own end (`until`).
   TraceWindows(const Bench& bench, const std::vector<double>& touches);
 
-  /// Returns the measurements with the rows in use.
+  /// Returns the measurements with the rows that are used at present.
   [[nodiscard]] Bench inside() const;
-  /// Adds the next rows to every trace that has more; returns false if no trace has.
+  /// Adds the next rows to every trace that has more rows; returns false if no trace has more.
   bool grow();
   /// True if a time of this measurement belongs to the rows that were added last.
   [[nodiscard]] bool is_new(std::size_t measurement, double time) const;
-  /// Keeps the rows that were added last if `described` is true for all measurements. Otherwise all traces lose them again, and
-  /// those that are not described get no further rows. Returns false if the fit to the removed rows must be dropped.
+  /// Confirms the rows that were added last if `described` is true for all measurements. Otherwise removes these rows from all
+  /// traces, and adds no further rows to traces that are not described. Returns false if the fit to the removed rows must be
+  /// discarded.
   bool keep(const std::vector<bool>& described);
-  /// Returns the time of the last row in use [s].
+  /// Returns the time of the last row that is used at present [s].
   [[nodiscard]] double end(std::size_t measurement) const;
 
  private:

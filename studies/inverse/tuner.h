@@ -1,34 +1,35 @@
-// Tunes a waveform on one device, closing after closing, from the state of its contact alone. Every closing is open loop.
+// Tunes a waveform on one device, one closing after another, from the recorded state of its contact alone. Every closing is
+// open loop.
 //
-// The belief about the device is a set of weighted devices of the scene's spread (or the assumed one,
-// config/assumed_spread.h). They also differ in gain of the sources, viscosity of the film, stiffness of the contact, and the
-// ratio of contact to electrode gap, if a scene has such a thing. The time by which their records begin late differs, too. Two
-// steps follow every closing.
+// The belief about the device is a set of weighted devices of the scene's [spread] (or the assumed spread,
+// config/assumed_spread.h). These devices also differ in gain of the sources, viscosity of the film, stiffness of the contact,
+// and the ratio of contact to electrode gap, if a scene has such quantities. The time by which their records begin late
+// differs, too. Two steps follow every closing.
 //
-//   1. The posterior of all records is computed anew: Levenberg-Marquardt on the touch times from many starts, then rounds of
-//      weighted samples with the likelihood of the whole record (belief.h).
-//   2. The waveform with the least expected cost over the belief is searched (proposal.h). From the second closing on its hold
-//      level is in the device's own unit of volts.
+//   1. The posterior of all records is computed anew: Levenberg-Marquardt on the first contact times from many starts, then
+//      rounds of weighted samples with the likelihood of the whole record (belief.h).
+//   2. The waveform with the least expected cost over the belief is searched (proposal.h). From the second closing on the hold
+//      level of the waveform is in the device's own unit of volts.
 //
 // The cost of a closing is
 //
 //   [B / (B + m) + B / (B + h)] / 2 + 10 B / g + 0.34 max(0, t_i / T_0 - 0.88),  or 3 if the switch does not close
 //
-// with B highest rebound, t_i first touch, T_0 first touch of the plain step on the nominal device, h significant rebound, g
-// contact gap, m = sqrt(h g / 20). For a quasi-static approach the cost of its permanent contact time t_p is added, at most
+// with B highest rebound, t_i first contact, T_0 first contact of the plain step on the nominal device, h significant rebound,
+// g contact gap, m = sqrt(h g / 20). For a quasi-static approach a cost of the permanent contact time t_p is added, at most
 // 0.02 max(0, t_p / T_p - 1), where T_p is that of the plain step. If a drive can move the switch to its contact through stable
-// equilibria, the approach of the cheaper recipe is tuned.
+// equilibria, the approach of the recipe with the lower cost is tuned.
 //
 // No shot exceeds the limits of the drivers, or has a level at which more than one in a thousand devices of the belief would
-// collapse onto the electrode. After two closings without a bounce, and with none expected, the same shot is repeated. Its
-// voltages are then multiplied by a factor s that follows the touch time, s <- s [1 - 0.2 (t_i - t_ref) / (dt_i / d ln s)],
-// until the device bounces. Then all records but the last eight are dropped.
+// collapse onto the electrode. After two closings without a bounce, and if none is expected, the same shot is repeated. Its
+// voltages are then multiplied by a factor s that corrects t_i, s <- s [1 - 0.2 (t_i - t_ref) / (dt_i / d ln s)], until the
+// device bounces. Then all records but the last eight are dropped.
 //
-// All numbers depend only on scene, options and the pairs of shot and record. A tuner that learns the records of a log again,
-// shot by shot, reaches bit for bit the same state, for any number of jobs.
+// All numbers depend only on scene, options and the pairs of shot and record. A tuner that receives the records of a log again,
+// shot by shot, has bit for bit the same state, for any number of jobs.
 //
 // Source of the task: M. W. Blecke, D. S. Epp, H. Sumali, G. G. Parker, "A simple learning control to eliminate RF-MEMS switch
-// bounce", J. Microelectromech. Syst. 18 (2009) 458, who learn a waveform from the state of the contact. The belief is our own
+// bounce", J. Microelectromech. Syst. 18 (2009) 458, who adapt a waveform to the state of the contact. The belief is our own
 // method.
 #pragma once
 
@@ -50,35 +51,35 @@
 
 namespace softland {
 
-/// How the tuned waveforms close the switch.
+/// The way in which the tuned waveforms close the switch.
 enum class Approach {
-  fast,          ///< a drive accelerates the beam towards the contact and brakes it before touch
+  fast,          ///< a drive accelerates the beam towards the contact and brakes it before contact
   quasi_static,  ///< a drive moves the beam slowly through stable equilibria
 };
 inline constexpr auto approaches =
     std::to_array<Named<Approach>>({{Approach::fast, "catch"}, {Approach::quasi_static, "quasi-static"}});
 static_assert(is_complete<approaches>());
 
-/// A waveform from which searches start, found once for a scene.
+/// A waveform from which searches start, optimised once for a scene.
 struct CandidateWaveform {
   Approach approach = Approach::fast;
-  std::vector<double> x;       ///< variables of its shape
-  double volts = 1, time = 1;  ///< units of the devices for which it was found, over those of the nominal one
-  double cost = 0;             ///< expected cost over the devices for which it was found
+  std::vector<double> x;       ///< variables of the waveform's shape
+  double volts = 1, time = 1;  ///< units of the devices for which the waveform was optimised, over those of the nominal device
+  double cost = 0;             ///< expected cost over the devices for which the waveform was optimised
 };
 
 struct TunerOptions {
-  Actuator actuator = Actuator::electrostatic;  ///< actuator whose drives are shaped
+  Actuator actuator = Actuator::electrostatic;  ///< actuator whose drives have tuned waveforms
   std::uint64_t seed = 1;
   int jobs = 1;  ///< number of threads; does not change the results
   LaboratoryErrors laboratory = {};
   int most_recipes = 1;  ///< number of voltage units for which recipes are searched, 1 to 5
-  double effort = 1;     ///< factor of the usual number of evaluations of every search
-  /// Limit of the first touch: before or by a time; none for no limit.
+  double effort = 1;     ///< factor on the usual number of evaluations of every search
+  /// Limit of the first contact time: before or by a time; none for no limit.
   std::optional<Condition> touch = {};
-  /// Beliefs about devices of the same wafer that were tuned before. They make the prior of this device.
+  /// Beliefs about devices of the same wafer that were tuned before. They determine the prior of the tuned device.
   std::vector<TunedBelief> wafer = {};
-  /// Result of Tuner::recipes() for this scene and these options; if empty, recipes are searched.
+  /// Result of Tuner::recipes() for the same scene and options; if empty, recipes are searched.
   std::vector<CandidateWaveform> recipes = {};
   Vectors vectors = vectors_in_use();
 };
@@ -86,13 +87,13 @@ struct TunerOptions {
 /// Throws InvalidInput for options out of range.
 void check(const TunerOptions& options);
 
-/// The prediction of a shot by the belief.
+/// The prediction that a belief makes for the record of a shot.
 struct PredictedRecord {
-  double touches = 0;       ///< share of the devices that touch
-  double touch_median = 0;  ///< median first touch [s]; NaN if none touches
-  double touch_low = 0;     ///< 2.5th percentile of the first touch, as for a normal distribution, with errors of measurement [s]
-  double touch_high = 0;    ///< 97.5th percentile of the first touch, likewise [s]
-  double bounces = 0;       ///< share of the devices with a visible opening
+  double touches = 0;         ///< share of the devices that reach contact
+  double touch_median = 0;    ///< median time of first contact [s]; NaN if no device reaches contact
+  double touch_low = 0;       ///< 2.5th percentile of first contact, from a normal distribution with measurement errors [s]
+  double touch_high = 0;      ///< 97.5th percentile of first contact, from the same distribution [s]
+  double bounces = 0;         ///< share of the devices with an opening that is long enough to be recorded
   double rebound_median = 0;  ///< median of the highest rebound [m]
   double rebound_high = 0;    ///< 95th percentile of the highest rebound [m]
 };
@@ -100,98 +101,99 @@ struct PredictedRecord {
 struct TunerShot {
   int number = 0;                        ///< number of the shot, counted from 1
   std::vector<Waveform> waveforms = {};  ///< commanded waveforms, in the order of Switch::drives() [V]
-  double hold_time = 0;                  ///< time to hold the last levels, and to record, after the last breakpoint [s]
-  double expected_cost = 0;              ///< mean cost over the belief
+  double hold_time = 0;                  ///< time of holding and recording after the last breakpoint [s]
+  double expected_cost = 0;              ///< mean cost over the devices of the belief
   PredictedRecord predicted = {};
 };
 
-/// Name of the delay of records behind the drives, as a quantity of the belief.
+/// Name of the delay of records behind the drives, as a quantity in a belief.
 inline constexpr const char* trigger_delay_name = "trigger delay";
 
-/// A quantity of the device, and the belief about it.
+/// A quantity of the device, with its mean and deviation before and after the records.
 struct BelievedQuantity {
-  std::string name;                            ///< name of its entry in the spread, or trigger_delay_name
+  std::string name;                            ///< name of the quantity's entry in [spread], or trigger_delay_name
   std::string unit;                            ///< SI unit; empty for a factor
   double prior_mean = 0, prior_deviation = 0;  ///< factors of the scene's value, or values in `unit`
   double mean = 0, deviation = 0;
 };
 
-/// The misfit of the recorded first touches, for any device of the spread.
+/// The misfit of the recorded first contact times to the devices of [spread].
 struct TouchMisfit {
   double least = 0;         ///< |z|^2 + sum of r^2 over the records (belief.h), for the device z that fits the records best
-  double bound = 0;         ///< one device of the spread in a thousand has a larger `least`
+  double bound = 0;         ///< value of `least` that one in a thousand devices of [spread] exceeds
   std::size_t records = 0;  ///< number of used records
   [[nodiscard]] bool is_beyond() const { return least > bound; }
 };
 
 struct BeliefSummary {
   std::vector<BelievedQuantity> quantities;
-  /// Contact gap over electrode gap, relative to the scene, if the ratio is constant over the spread.
+  /// Contact gap over electrode gap, relative to the scene, if all devices of [spread] have the same ratio.
   std::optional<BelievedQuantity> gap_ratio = {};
   double effective_devices = 0;         ///< effective number of devices: 1 over the sum of the squared weights
   TouchMisfit touch_misfit = {};        ///< misfit of the records from which the belief was computed
   std::vector<std::string> correlated;  ///< sentences about quantities that the records do not separate
-  /// Belief for tuning another device of the wafer, in standard normal coordinates of the spread. The last coordinate is the
-  /// delay.
+  /// Belief for tuning another device of the wafer, in standard normal coordinates of [spread]. The last coordinate is the
+  /// trigger delay.
   TunedBelief coordinates = {};
 };
 
 class Tuner {
  public:
-  /// Prepares the scene and searches the recipes of its nominal device, which takes seconds in lanes. Throws InvalidInput for a
-  /// scene that cannot be tuned (no contact, no drive to shape, options out of range), for a wafer of other quantities, and for
-  /// recipes of other shapes. Throws Interrupted if `progress` asks to stop.
+  /// Prepares the scene and searches the recipes of its nominal device, which takes seconds in SIMD lanes. Throws InvalidInput
+  /// for a scene that cannot be tuned (no contact, no drive to vary, options out of range), for a wafer of other quantities,
+  /// and for recipes of other shapes. Throws Interrupted if `progress` asks to stop.
   Tuner(const SceneFile& file, const TunerOptions& options, const Progress& progress = {});
   ~Tuner();
   Tuner(Tuner&&) noexcept;
   Tuner& operator=(Tuner&&) noexcept;
 
-  /// Returns a tuner of the same scene before its first closing, for the next device.
+  /// Returns a tuner of the same scene in its state before the first closing, for the next device.
   [[nodiscard]] Tuner restarted() const;
 
-  /// Returns the scene of the belief: nominal device, drives and limits.
+  /// Returns the scene of the belief, with nominal device, drives and limits.
   [[nodiscard]] const PreparedScene& scene() const;
   /// Returns the recipes; that of the nominal device comes first.
   [[nodiscard]] const std::vector<CandidateWaveform>& recipes() const;
   [[nodiscard]] Approach approach() const;
-  /// Returns the first touch of the plain step on the nominal device [s].
+  /// Returns the time of first contact of the plain step on the nominal device [s].
   [[nodiscard]] double step_closing_time() const;
   /// Returns the permanent contact time of the plain step on the nominal device [s]; NaN unless the approach is quasi-static.
   [[nodiscard]] double step_permanent_contact() const;
-  /// True if the scene has no [spread] and one was assumed.
+  /// True if the scene has no [spread] and a spread was assumed.
   [[nodiscard]] bool spread_is_assumed() const;
 
-  /// Returns the next shot. It stays the same until a record is learned.
+  /// Returns the next shot. The shot does not change until learn() adds a record.
   [[nodiscard]] const TunerShot& next() const;
-  /// Learns the record of next(), and proposes the shot after it. After a record with an error the same waveform is proposed
-  /// again, under the next number. Throws InvalidInput for an invalid record, and Interrupted if `progress` asks to stop:
-  /// nothing is learned then.
+  /// Adds the record of next() to the belief, and proposes the following shot. After a record with an error the same waveform
+  /// is proposed again, under the next number. Throws InvalidInput for an invalid record, and Interrupted if `progress` asks to
+  /// stop; the record is then not added.
   void learn(const ContactRecord& record, const Progress& progress = {});
 
-  /// Returns the number of closings that were learned.
+  /// Returns the number of closings whose records were added.
   [[nodiscard]] int closings() const;
   [[nodiscard]] BeliefSummary belief() const;
-  /// Returns the best known shot, with its prediction. It is a waveform that did not bounce in its last shot, unless the next
-  /// waveform is expected to be clearly better. While a shot is repeated it is the last one that did not bounce.
+  /// Returns the best known shot, with its prediction: a shot whose waveform did not bounce when it was last applied, unless
+  /// the next waveform is expected to be clearly better. While a shot is repeated, the last shot that did not bounce is
+  /// returned.
   [[nodiscard]] const TunerShot& kept() const;
-  /// True if the last closing had the waveform of kept().
+  /// True if the last closing had the waveform of the shot kept().
   [[nodiscard]] bool was_kept_last() const;
-  /// Proposes the waveform of kept() if it was used before: a waveform that landed some closings ago may bounce after a drift
-  /// of the sources.
+  /// Proposes the waveform of kept() again if it was applied before: a waveform that closed without a bounce some closings ago
+  /// may bounce after a drift of the sources.
   void fire_kept_again();
-  /// Returns the number of successive closings without a bounce up to the last one.
+  /// Returns the number of successive closings without a bounce, up to and including the last closing.
   [[nodiscard]] int bounce_free_in_a_row() const;
   static constexpr int enough_in_a_row = 5;
   [[nodiscard]] bool is_done() const { return bounce_free_in_a_row() >= enough_in_a_row; }
-  /// Returns the difference between recorded and predicted first touch of each closing, in standard deviations. It is 0 if the
-  /// belief had too few devices to predict, and if the contact closed or stayed open against the prediction. Repeated shots are
-  /// left out until they bounce.
+  /// Returns the difference between recorded and predicted time of first contact for each closing, in standard deviations. The
+  /// difference is 0 if the belief had too few devices to predict, and if the contact closed or stayed open against the
+  /// prediction. Repeated shots are left out until they bounce.
   [[nodiscard]] const std::vector<double>& surprises() const;
-  /// Returns the number of closings with a bounce that is longer than errors of the model explain, and that at most one in
-  /// twenty devices of the belief predicted.
+  /// Returns the number of closings with a bounce that is too long for an error of the model, and that at most one in twenty
+  /// devices of the belief predicted.
   [[nodiscard]] int unexpected_bounces() const;
-  /// Returns the reason why the device does not match the model; none if it may match. No device of the spread touches as
-  /// recorded, closings bounced against the prediction, or the gaps have another ratio than in the scene.
+  /// Returns the reason why the device does not match the model; none if it may match. Reasons are: no device of [spread]
+  /// closes at the recorded times, closings bounced against the prediction, or the gaps have another ratio than in the scene.
   [[nodiscard]] std::optional<std::string> broken_assumption() const;
 
  private:

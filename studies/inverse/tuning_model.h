@@ -1,8 +1,8 @@
-// A scene prepared for a belief about one of its devices: the quantities in which the device may differ, as independent
-// standard normal coordinates z, and the closings of such devices.
+// A scene prepared for a belief about one of its devices: independent standard normal coordinates z for the quantities in which
+// the device may differ from the scene, and the closings of such devices.
 //
-// The quantities of [spread] keep their distributions. These quantities vary as well, if the scene has them and [spread] does
-// not:
+// The quantities of [spread] have the distributions that [spread] gives them. The following quantities vary as well, if the
+// scene has them and [spread] does not:
 //
 //   gain of each shaped drive              normal, LaboratoryErrors::gain_error
 //   gas.viscosity                          lognormal, 5 %
@@ -12,8 +12,8 @@
 //                                          step
 //
 // Contacts that make the connection together share one quantity of each kind. If devices of the same wafer were tuned before,
-// the coordinates are those of the prediction for the next device (wafer.h). Jitter is random for every edge and no quantity of
-// the device, so it is left out.
+// the coordinates are those of the prediction for the next device (wafer.h). Jitter is left out, since it is random for every
+// edge and not a quantity of the device.
 #pragma once
 
 #include <Eigen/Core>
@@ -39,45 +39,46 @@ namespace softland {
   return contact.name.empty() ? "contact" : "contact." + contact.name;
 }
 
-/// The scales of a scene by which costs and errors are measured.
+/// The scales of a scene by which costs and errors are divided.
 struct TuningScales {
-  double closing_time = 0;  ///< T_0: first touch of the plain step on the nominal device [s]
+  double closing_time = 0;  ///< T_0: first contact time of the plain step on the nominal device [s]
   double gap = 0;           ///< contact gap [m]
   double rebound = 0;       ///< significant rebound [m]
-  double rise = 0;  ///< capacitance of the closed state less that of the open one [F]; 0 if the capacitance is not recorded
-  double latest_touch = std::numeric_limits<double>::infinity();  ///< requested latest first touch [s]
+  double rise = 0;  ///< capacitance of the closed state less that of the open state [F]; 0 if the capacitance is not recorded
+  double latest_touch = std::numeric_limits<double>::infinity();  ///< requested limit for the time of first contact [s]
   /// Permanent contact time of the plain step on the nominal device [s]; NaN unless the approach is quasi-static.
   double permanent_contact = std::numeric_limits<double>::quiet_NaN();
   [[nodiscard]] double speed() const { return gap / closing_time; }  ///< [m/s]
 };
 
-/// A simulated device of a belief.
+/// A simulated device of the belief about a device.
 struct Particle {
   Eigen::VectorXd z;
   SampledDevice sampled;
-  double delay = 0;  ///< delay of its records behind the drives [s]
+  double delay = 0;  ///< delay of the device's records behind the drives [s]
 };
 
 /// A closing as an instrument without errors records it.
 template <class Openings>
 struct SeenClosing {
   double touch = std::numeric_limits<double>::quiet_NaN();  ///< first closing of the contact after the drives begin [s]
-  /// Impact velocity at that time [m/s]. From the capacitance it is the rate of the capacitance over its rise, times the
-  /// contact gap.
+  /// Impact velocity at the time `touch` [m/s]. If the capacitance is recorded, this speed is the rate of the capacitance over
+  /// TuningScales::rise, times the contact gap.
   double speed = std::numeric_limits<double>::quiet_NaN();
-  Openings openings = {};  ///< openings, in time after the drives begin [s]
+  Openings openings = {};  ///< openings, by time after the drives begin [s]
 };
 
 /// A simulated closing of a device of a belief, without errors of measurement.
 struct PredictedClosing {
-  bool followed = false;                                      ///< true if simulated to the end of its window
-  double touch = std::numeric_limits<double>::quiet_NaN();    ///< first touch after the drives begin [s]; NaN without touch
+  bool followed = false;  ///< true if simulated to the end of its window
+  double touch =
+      std::numeric_limits<double>::quiet_NaN();  ///< time of first contact after the drives begin [s]; NaN without contact
   double speed = std::numeric_limits<double>::quiet_NaN();    ///< impact velocity of the first touch [m/s]
   double fastest = std::numeric_limits<double>::quiet_NaN();  ///< largest impact velocity of all touches [m/s]
   double highest = 0;                                         ///< highest rebound [m]
-  std::vector<ContactOpening> openings = {};                  ///< openings, in time after the drives begin [s]
-  double delay = 0;                                           ///< delay of its record behind the drives [s]
-  /// The closing as its capacitance shows it; none if the instrument records the contact.
+  std::vector<ContactOpening> openings = {};                  ///< openings, by time after the drives begin [s]
+  double delay = 0;                                           ///< delay of the record of the closing behind the drives [s]
+  /// The closing according to the capacitance; none if the instrument records the contact.
   std::optional<SeenClosing<std::vector<ContactOpening>>> by_capacitance = {};
   [[nodiscard]] bool closes() const { return followed && touch == touch; }
   [[nodiscard]] SeenClosing<std::span<const ContactOpening>> seen() const {
@@ -86,13 +87,13 @@ struct PredictedClosing {
   }
   /// True if a record of the closing shows that the switch closes.
   [[nodiscard]] bool is_seen_to_close() const { return followed && !std::isnan(seen().touch); }
-  /// Returns the time of the first touch in a record [s]; NaN without touch.
+  /// Returns the time of first contact in a record of the closing [s]; NaN without contact.
   [[nodiscard]] double recorded_touch() const { return seen().touch - delay; }
-  /// Returns the time from which on the contact stays closed [s]; infinite if it is open at the end.
+  /// Returns the time from which on the contact stays closed [s]; infinite if the contact is open at the end of the run.
   [[nodiscard]] double stays_from() const { return openings.empty() ? touch : std::max(touch, openings.back().end); }
 };
 
-/// A device under one waveform for every drive.
+/// A device in a shot, with one waveform for every drive.
 struct PredictedShot {
   const Particle* device = nullptr;
   const std::vector<Waveform>* waveforms = nullptr;
@@ -101,78 +102,79 @@ struct PredictedShot {
 
 class TuningModel {
  public:
-  /// Throws what Tuner throws.
+  /// Throws the exceptions of the constructor of Tuner.
   TuningModel(const SceneFile& file, const TunerOptions& options, const Progress& progress);
   TuningModel(const TuningModel&) = delete;
   TuningModel& operator=(const TuningModel&) = delete;
 
   [[nodiscard]] const TunerOptions& options() const { return options_; }
-  /// Returns the scene with the spread of all quantities but the trigger delay, prepared for closings with an accuracy of 1e-4.
+  /// Returns the scene with all quantities in [spread] except the trigger delay, prepared for closings with an accuracy of
+  /// 1e-4.
   [[nodiscard]] const PreparedScene& nominal() const { return nominal_; }
   [[nodiscard]] const TuningScales& scales() const { return scales_; }
-  /// Returns the approach of the waveforms: fast, unless another one is chosen.
+  /// Returns the approach of the waveforms: fast unless choose() was called.
   [[nodiscard]] Approach approach() const { return approach_; }
-  /// True if a shaped drive can move the switch to its contact through stable equilibria.
+  /// True if a varied drive can move the switch to its contact through stable equilibria.
   [[nodiscard]] bool has_stable_path() const { return std::isfinite(step_stays_from_); }
-  /// Chooses the approach. Throws InvalidInput for a quasi-static approach of a scene without a stable path.
+  /// Sets the approach. Throws InvalidInput for a quasi-static approach if the scene has no stable path to contact.
   void choose(Approach approach);
   [[nodiscard]] bool spread_is_assumed() const { return spread_is_assumed_; }
-  /// True if closings are computed in lanes.
+  /// True if closings are computed in SIMD lanes.
   [[nodiscard]] bool is_in_lanes() const {
     return why_not_in_lanes(nominal_.model).empty() && options_.vectors != Vectors::none &&
            !options_.laboratory.sees_capacitance();
   }
-  /// Returns the number of coordinates; the last one is the trigger delay.
+  /// Returns the number of coordinates z; the last coordinate is the trigger delay.
   [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(nominal_.scene.spread.variables.size()) + 1; }
   /// True for a coordinate that does not change the units of voltage and time: viscosity, contact stiffness, trigger delay.
   [[nodiscard]] bool is_nuisance(Eigen::Index k) const { return nuisances_[static_cast<std::size_t>(k)]; }
-  /// Returns a standard deviation of the trigger delay before the first record [s].
+  /// Returns the standard deviation of the trigger delay before the first record [s].
   [[nodiscard]] double delay_deviation() const;
-  /// Returns the trigger delay of a device at z, by which its records begin late [s].
+  /// Returns the trigger delay of a device at z, by which the device's records begin late [s].
   [[nodiscard]] double delay(const Eigen::VectorXd& z) const { return delay_deviation() * spread_point(z)[size() - 1]; }
 
-  /// Replaces the coordinates by those in which this belief about z is standard normal.
+  /// Replaces the coordinates z by coordinates in which this belief about z is standard normal.
   void begin_with(const NormalBelief& prior);
   [[nodiscard]] const std::optional<NormalBelief>& prior() const { return prior_; }
-  /// Converts a belief in the current coordinates to the coordinates of the spread.
+  /// Converts a belief in the current coordinates to the coordinates of [spread].
   [[nodiscard]] NormalBelief in_spread(const NormalBelief& belief) const;
 
   /// Returns the values of the varied quantities at z (DeviceSpread::to_values).
   [[nodiscard]] std::vector<double> values(const Eigen::VectorXd& z) const;
-  /// Returns contact gap over electrode gap of a device with these values, relative to the scene. None if [spread] has the
+  /// Returns contact gap over electrode gap of a device with these values, relative to the scene. None if [spread] varies the
   /// contact gap as a quantity of its own.
   [[nodiscard]] std::optional<double> gap_ratio(std::span<const double> values) const;
-  /// Returns "gap.contact / gap.electrode", for a scene that has such a ratio.
+  /// Returns the name of the gap ratio, "gap.contact / gap.electrode", for a scene that has such a ratio.
   [[nodiscard]] std::string gap_ratio_name() const {
     return nominal_.scene.spread.variables[gap_ratio_->contact].name + " / gap.electrode";
   }
-  /// Returns the deviation of the ratio at z from that of the scene, in units of gap_ratio_deviation; none if the scene has no
-  /// ratio.
+  /// Returns the deviation of the gap ratio at z from that of the scene, in units of gap_ratio_deviation; none if the scene has
+  /// no gap ratio.
   [[nodiscard]] std::optional<double> gap_ratio_coordinate(const Eigen::VectorXd& z) const;
-  /// Returns the nearest point to z with the ratio of the scene; z if the scene has no ratio.
+  /// Returns the nearest point to z with the gap ratio of the scene; z if the scene has no gap ratio.
   [[nodiscard]] Eigen::VectorXd with_gap_ratio_of_scene(const Eigen::VectorXd& z) const;
-  /// Standard deviation of the ratio. On devices of [spread] the ratio is constant.
+  /// Standard deviation of the gap ratio in a belief. For devices of [spread] the gap ratio is constant.
   static constexpr double gap_ratio_deviation = 0.03;
   [[nodiscard]] std::vector<Particle> devices(std::span<const Eigen::VectorXd> points, const Progress& progress = {}) const;
   /// Returns the applied voltages of a shot.
   [[nodiscard]] std::vector<Signal> signals(const PredictedShot& shot) const;
-  /// Simulates the closings, in order. An outcome does not depend on the other shots. Throws Interrupted if `progress` asks to
-  /// stop.
+  /// Simulates the closings of these shots, in order. An outcome does not depend on the other shots. Throws Interrupted if
+  /// `progress` asks to stop.
   [[nodiscard]] std::vector<PredictedClosing> close(std::span<const PredictedShot> shots, const Progress& progress = {}) const;
-  /// Returns the time for which a closing with a touch is simulated after the last breakpoint [s].
+  /// Returns the time for which a closing with contact is simulated after the last breakpoint of the waveforms [s].
   [[nodiscard]] double hold_time() const;
 
-  /// Units of a device at z over those of the nominal one, to first order in the logarithm. The unit of the commanded voltages
-  /// is the static pull-in voltage of the closing electrode over the gain of its source. The unit of time is the period of the
-  /// first mode.
+  /// Units of a device at z over those of the nominal device, to first order in the logarithm. The unit of the commanded
+  /// voltages is the static pull-in voltage of the closing electrode over the gain of its source. The unit of time is the
+  /// period of the first mode.
   struct Units {
     double volts = 1, time = 1;
   };
   [[nodiscard]] Units units(const Eigen::VectorXd& z) const;
-  /// Returns the derivative of ln volts by the coordinates of the spread.
+  /// Returns the derivative of ln Units::volts by the coordinates of [spread].
   [[nodiscard]] const Eigen::VectorXd& volts_slope() const { return volts_slope_; }
-  /// The level of that electrode below which at most one in a thousand devices of this distribution of z collapses onto the
-  /// electrode [V]; infinite if none does.
+  /// Returns the level of the closing electrode below which at most one in a thousand devices of this distribution of z
+  /// collapses onto the electrode [V]; infinite if no device collapses.
   [[nodiscard]] double safe_level(const NormalBelief& belief) const;
 
  private:
@@ -198,7 +200,7 @@ class TuningModel {
   Approach approach_ = Approach::fast;
   double step_stays_from_ =
       std::numeric_limits<double>::quiet_NaN();  // permanent contact time of the plain step [s]; NaN without a stable path
-  std::optional<std::size_t> electrode_;         // index of the electrode that closes the switch, among the drives
+  std::optional<std::size_t> electrode_;         // index of the electrode that closes the switch in Switch::drives()
   Eigen::VectorXd volts_slope_, time_slope_, pulled_through_slope_;
   std::optional<NormalBelief> prior_;
   Eigen::MatrixXd prior_factor_;                                     // factor L of the prior: L L^T is its covariance
