@@ -69,7 +69,7 @@ class SlopeFinder {
   using Arc = LinearizedClosing::Arc;
 
   [[nodiscard]] const Arc& arc(std::size_t i) const { return motion_.arcs()[i]; }
-  // Collects of(j) for every parameter that changes the switch; empty when no parameter does.
+  // Collects of(j) for every parameter j that changes the switch; empty when no parameter changes the switch.
   template <class Of>
   [[nodiscard]] VectorXd by_device(Of&& of) const {
     if (motion_.by_device() == nullptr) return {};
@@ -77,24 +77,24 @@ class SlopeFinder {
     for (Eigen::Index j = 0; j < all.size(); ++j) all[j] = of(*motion_.by_device(), static_cast<std::size_t>(j));
     return all;
   }
-  // Returns the slope of the contact point's position over the plane at a fixed time [m].
+  // Returns the derivative of the contact point's position over the contact plane at a fixed time [m].
   [[nodiscard]] FigureSlope position(std::size_t i, double factor) const {
     return {.weights = {{.arc = i, .by_q = factor * shape_, .by_v = zero_}},
             .moved = {},
             .by_device =
                 by_device([&](const SwitchSlopes& s, std::size_t j) { return factor * s.interference(j, arc(i).q.data()); })};
   }
-  // Returns the slope of the contact point's speed as it crosses the plane at the end of an arc [m/s].
+  // Returns the derivative of the contact point's speed when it crosses the contact plane at the end of arc i [m/s].
   [[nodiscard]] FigureSlope crossing_speed(std::size_t i) const {
     FigureSlope slope = position(i, -shape_.dot(arc(i).accelerations) / shape_.dot(arc(i).v));
     slope.weights[0].by_v = shape_;
     slope.by_device += by_device([&](const SwitchSlopes& s, std::size_t j) { return s.velocity(j, arc(i).v.data()); });
     return slope;
   }
-  // Returns the slope of the time at which the contact point crosses a level at the end of an arc [s].
+  // Returns the derivative of the time at which the contact point crosses a position at the end of arc i [s].
   [[nodiscard]] FigureSlope crossing_time(std::size_t i) const { return position(i, -1 / shape_.dot(arc(i).v)); }
 
-  // Considers turning points and the ends of the run for the extreme values.
+  // Updates the extreme values of the motion with the point at the end of arc i.
   void consider(std::size_t i) {
     const double at = shape_.dot(arc(i).q);
     if (touches_ == 0) {
@@ -130,7 +130,7 @@ class SlopeFinder {
     force_slope_ = slope_of([&](const ContactLaw& of, double d) { return contact_force(of, d, law, 0); });
   }
 
-  // Returns true when a touch begins here.
+  // Returns true when a touch begins at the end of arc i.
   bool cross(std::size_t i, const PhaseChange& change) {
     using Kind = PhaseChange::Kind;
     if (change.kind == Kind::turn || change.level != plane_) return false;
@@ -198,8 +198,8 @@ class SlopeFinder {
     return true;
   }
 
-  // Computes the energy above the closed equilibrium at the first touch or, if that is later, when the drives reach their hold
-  // levels.
+  // Computes the energy above the closed equilibrium, at first contact or when the drives reach their hold levels, whichever is
+  // later.
   void measure_landing(std::size_t i, bool begins_to_touch) {
     if (measured_ || touches_ == 0) return;
     const Arc& at = arc(i);
@@ -238,7 +238,7 @@ class SlopeFinder {
   double first_speed_ = 0, fastest_ = 0;                      // [m/s]
   double closest_ = std::numeric_limits<double>::infinity();  // [m]
   double depth_ = 0, force_ = 0, largest_force_ = 0;          // depth [m] and force [N] of the current touch; largest force [N]
-  double height_ = 0, highest_ = 0;                           // height of the current rebound, and of the highest one [m]
+  double height_ = 0, highest_ = 0;                           // height of the current rebound and of the highest rebound [m]
   FigureSlope energy_slope_, force_slope_, height_slope_;
 };
 
@@ -271,11 +271,11 @@ std::optional<FigureSlope> cost_slope(const Aim& aim, const Metrics& figures, co
                             {&Metrics::impact_energy, step.impact_energy},
                             {&Metrics::landing_excess, step.landing_excess},
                             {&Metrics::peak_contact_force, step.peak_contact_force}};
-  FigureSlope sum;  // summed in the order of the parts, which decides its last bits
+  FigureSlope sum;  // summed in the order of the parts: another order changes the last bits
   for (const CostTerm& part : parts) {
     const double value = figures.*part.figure;
     if (!std::isfinite(value)) continue;
-    // The cost is a closed form of its figures, so that differences are accurate to about 1e-10.
+    // The cost is a closed form of its figures, so that finite differences are accurate to about 1e-10.
     const double size = std::abs(value) > 0 ? std::abs(value) : part.scale;
     if (!(size > 0) || !std::isfinite(size)) continue;
     const double h = 1e-6 * size;

@@ -10,7 +10,7 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t most_kept = 8;  // knots that a bucket keeps at most
+constexpr std::size_t most_kept = 8;  // largest number of knots that a bucket stores
 
 }  // namespace
 
@@ -78,7 +78,7 @@ void CourseRecorder::hand_over(Trajectory& run) {
   run.touches = std::move(touches_);
 }
 
-// Ends the bucket that is not full yet: it becomes the last full bucket, or is joined with the last full one.
+// Joins pairs of full buckets. The knots after the last pair form the new incomplete bucket.
 void CourseRecorder::coarsen() {
   const std::vector<TrajectoryPoint> all = std::exchange(points_, {});
   const std::vector<std::size_t> ends = std::exchange(ends_, {});

@@ -10,7 +10,7 @@ std::string Figure::label() const {
 
 double Figure::value(const Metrics& metrics) const {
   if (const auto* const number = std::get_if<double Metrics::*>(&member)) return metrics.**number;
-  // Counts and flags have no value for "not known". A figure of the motion after the first touch is known when the highest
+  // Counts and flags have no value for "not known". A figure of the motion after first contact is known when the highest
   // rebound is known.
   if (asked == &AskedFigures::opening && is_count())
     return std::isfinite(metrics.opening_time) ? metrics.*std::get<int Metrics::*>(member) : Metrics::unset;
@@ -19,7 +19,7 @@ double Figure::value(const Metrics& metrics) const {
   if (const auto* const count = std::get_if<int Metrics::*>(&member)) return followed ? metrics.**count : Metrics::unset;
   const bool touched = std::isfinite(metrics.initial_contact_time);
   const bool yes = metrics.*std::get<bool Metrics::*>(member);
-  const bool is_open = metrics.status == Status::open;  // a switch that stays open does not settle on the contact
+  const bool is_open = metrics.status == Status::open;  // a switch that stays open does not settle in contact
   return is_open || (touched && !followed) ? Metrics::unset : yes ? 1 : 0;
 }
 

@@ -17,7 +17,7 @@ std::vector<Rebound> rebounds(const Trajectory& trajectory) {
 
 void LandingFigures::touch(const Touch& touch) {
   touched_ = true;
-  // std::max would lose a NaN; here a NaN is kept.
+  // The largest value must be NaN when a value is NaN; std::max would lose it.
   if (std::isnan(touch.peak_force) || touch.peak_force > peak_force_) peak_force_ = touch.peak_force;
   impact_energy_ += touch.peak_energy;
   largest_impact_velocity_ = std::max(largest_impact_velocity_, touch.impact_velocity);
@@ -29,7 +29,7 @@ void LandingFigures::rebound(const Rebound& rebound) {
   latest_ = rebound;
   if (std::isfinite(rebound.end)) separated_ += rebound.end - rebound.begin;
   if (!(rebound.height > options_.significant_rebound)) return;
-  if (++significant_ == 1) first_duration_ = rebound.end - rebound.begin;  // NaN when the rebound has not ended
+  if (++significant_ == 1) first_duration_ = rebound.end - rebound.begin;  // NaN for a rebound that has not ended
   last_end_ = rebound.end;
 }
 
@@ -52,7 +52,7 @@ void MetricsObserver::knot(const TrajectoryPoint& point) {
   if (!opening_ && point.time >= options_.opening.time) begin_opening();
 }
 
-// A rebound that has not ended belongs to the landing; later rebounds belong to the opening.
+// A rebound that has not ended belongs to the closing; later rebounds belong to the opening.
 void MetricsObserver::begin_opening() {
   landing_ = course();
   if (landing_->above) figures_.rebound(*rebounds_.under_way());
@@ -84,7 +84,7 @@ Metrics MetricsObserver::metrics(const Trajectory& end) {
   result.release_settling_time = opening.settling_time;
   result.overshoot_open = opening.overshoot;
   result.least_gap_open = opening.least_gap;
-  const double apart = std::isfinite(result.separated) ? result.separated : 0;  // a run that began closed has no separated time
+  const double apart = std::isfinite(result.separated) ? result.separated : 0;  // no value if the run began closed
   result.closed_time = options_.opening.time - landing_->first_touch - apart + opening.opening_time - opening.separated;
   return result;
 }
@@ -117,7 +117,7 @@ Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) con
     if (end.status == Status::done) result.status = result.touched() ? Status::not_settled : Status::no_contact;
     return result;
   }
-  if (end.ends_at_touch) return result;  // the other figures depend on a contact that is not described
+  if (end.ends_at_touch) return result;  // the other figures depend on the missing contact law
   result.hold_force = end.hold_force;
   result.resistance = end.hold_resistance;
   result.electrical_contact = end.electrical.first_closed;
@@ -140,7 +140,7 @@ Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) con
   const double permanent = significant_ > 0 ? last_end_ : course.first_touch;
   result.last_rebound_end = std::isnan(permanent) ? course.last_time : permanent;
   const double rest = course.last_time - permanent;
-  // An unknown in-contact period matters only after a rebound.
+  // An unknown in-contact period is needed only after a rebound.
   const bool long_enough = rest >= end.in_contact_period || (result.bounce_count == 0 && std::isnan(end.in_contact_period));
   result.settled = end.status == Status::done && end.is_held && !course.above && long_enough;
   if (!result.settled) {

@@ -21,7 +21,7 @@
 namespace softland {
 namespace {
 
-// Records the states of a run, and the knots of its motion where the resistance is known.
+// Records the contact states of a run, and the knots of its motion if the resistance is known.
 class StatesObserver final : public ClosingObserver {
  public:
   explicit StatesObserver(const Switch& model)
@@ -44,7 +44,7 @@ class StatesObserver final : public ClosingObserver {
   [[nodiscard]] ClosingObserver* contact(std::size_t number) override { return conducts_ ? course_.contact(number) : nullptr; }
   void hand_over(Trajectory& run) { course_.hand_over(run); }
 
-  /// Returns the spans of the connection, then of each of several contacts.
+  /// Returns the closed spans of the connection, then of each of several contacts.
   [[nodiscard]] std::vector<std::vector<ClosedSpan>>& spans() { return spans_; }
 
  private:
@@ -53,9 +53,9 @@ class StatesObserver final : public ClosingObserver {
   CourseRecorder course_;
 };
 
-// Joins spans that are separated by an opening of at most `shortest_opening`.
+// Joins closed spans that are separated by an opening of at most `shortest_opening`.
 void join(std::vector<ClosedSpan>& spans, double shortest_opening) {
-  constexpr double rounding = 1e-12;  // relative difference of two times that count as equal
+  constexpr double rounding = 1e-12;  // relative difference below which two times are equal
   std::vector<ClosedSpan> joined;
   for (ClosedSpan& span : spans) {
     if (!joined.empty() && span.begin - joined.back().end <= std::max(shortest_opening, rounding * span.begin))
@@ -68,10 +68,10 @@ void join(std::vector<ClosedSpan>& spans, double shortest_opening) {
 
 // Leaves out the points that linear interpolation between the others reproduces.
 ResistanceLine on_lines(const ResistanceLine& points) {
-  constexpr double near = 1e-3;  // relative error of the resistance that is allowed
+  constexpr double near = 1e-3;  // permitted relative error of the resistance
   constexpr double any = std::numeric_limits<double>::infinity();
   ResistanceLine kept;
-  double least = -any, most = any;  // range of slopes from the last kept point that reproduce the points since then
+  double least = -any, most = any;  // range of slopes from the last retained point that reproduce the points after it
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto slope_to = [&](std::size_t k, double factor) {
       return (factor * points[k].second - kept.back().second) / (points[k].first - kept.back().first);
@@ -92,7 +92,7 @@ ResistanceLine on_lines(const ResistanceLine& points) {
 }
 
 struct ResistanceSample {
-  double time = 0, resistance = 0;  // [s], [Ohm]; NaN if it is not reported
+  double time = 0, resistance = 0;  // [s], [Ohm]; the resistance is NaN if it is not reported
   bool ends = false;                // true at the end of a span
   bool is_on_line = false;          // true if linear interpolation to the next sample is accurate enough
 };
@@ -100,8 +100,8 @@ struct ResistanceSample {
 /// Returns the resistances at increasing times [Ohm]; NaN where they are not reported.
 using ResistanceCourse = std::function<std::vector<double>(const std::vector<double>&)>;
 
-// Returns the resistance over the closed spans at the knots of the run, and between them until linear interpolation is
-// accurate.
+// Returns the resistance over the closed spans at the knots of the run, and at points between the knots until linear
+// interpolation is accurate.
 std::vector<ResistanceSample> resistance_samples(const std::vector<ClosedSpan>& spans, const ResistanceCourse& course,
                                                  const std::vector<double>& knots, double end) {
   constexpr double near = 1e-2, shortest = 2e-12;  // relative error of the resistance, and shortest interval [s]
@@ -141,8 +141,8 @@ std::vector<ResistanceSample> resistance_samples(const std::vector<ClosedSpan>& 
   return samples;
 }
 
-// Adds the resistance to the spans. An edge of a span at which the resistance is not reported gets that of the nearest time at
-// which it is.
+// Adds the resistance to the closed spans. An edge of a span without a reported resistance gets the resistance of the nearest
+// time with one.
 void add_resistance(std::vector<ClosedSpan>& spans, const ResistanceCourse& course, const std::vector<double>& knots,
                     double end) {
   auto span = spans.begin();
@@ -220,7 +220,7 @@ StateRecord contact_states(const PreparedScene& prepared, const Progress& progre
   require_contact(prepared);
   const Closing closing = simulate(prepared, true, progress);
   progress.throw_if_stopped();
-  // Repeat the run of the figures with an observer of its states.
+  // Repeat the run from which the figures are, with an observer of the contact states.
   const bool is_tighter = closing.tolerance != prepared.tolerance;
   const Switch tighter = is_tighter ? Switch(prepared.scene.device, closing.quadrature) : prepared.model;
   constexpr double never = std::numeric_limits<double>::infinity();

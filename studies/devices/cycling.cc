@@ -21,8 +21,8 @@ namespace softland {
 namespace {
 
 constexpr double slower = 1.5;             // factor by which the first rate of a scan is lowered if it is not steady
-constexpr int most_slower = 6;             // largest number of such reductions
-constexpr double periods_of_opening = 60;  // periods of the first mode within which an opening has to come to rest
+constexpr int most_slower = 6;             // largest number of reductions of the first rate
+constexpr double periods_of_opening = 60;  // periods of the first mode within which the switch must come to rest after opening
 
 // Appends the pieces of a signal that begin before `until`, shifted in time by `later`.
 void append(std::vector<SignalPiece>& pieces, const Signal& signal, double until, double later) {
@@ -34,7 +34,7 @@ void append(std::vector<SignalPiece>& pieces, const Signal& signal, double until
   }
 }
 
-// Records the cycles, and the course of the contact point.
+// Records the figures of the cycles, and the motion of the contact point.
 class KeptCourse final : public ClosingObserver {
  public:
   explicit KeptCourse(CycleRecorder& recorder, double contact_gap) : recorder_(recorder), contact_gap_(contact_gap) {}
@@ -122,8 +122,8 @@ Cycles CycledSwitch::run(const CycleTimes& times, bool is_told, const Progress& 
   return found;
 }
 
-// Returns true if all cycles are steady. A touch is known only after the next one has begun, so a cycle is judged when the next
-// cycle has ended.
+// Returns true if all cycles are steady. A touch is reported only when the next touch begins, so a cycle is checked when the
+// next cycle has ended.
 bool CycledSwitch::is_steady(const CycleTimes& times, const CycleTolerances& tolerances, const Progress& progress) const {
   CycleRecorder recorder(model_.contact_gap(), options_, times);
   Trajectory so_far;
@@ -172,9 +172,9 @@ RateScan scan_rates(const CycledSwitch& cycled, const ScanOptions& options, cons
   double lowest = rate_of(times.rest_on, times.rest_off);
   const double highest = rate_of(times.least_on, times.least_off);
   if (!(lowest > 0)) return scan;
-  // At the lowest rate a remaining vibration may still affect the next landing.
+  // At the lowest rate a remaining vibration may still affect the next closing.
   for (int k = 0; k < most_slower && !progress.stopped() && !is_steady_at(lowest); ++k) lowest /= slower;
-  bool is_below = true;  // true up to the first rate that is not steady
+  bool is_below = true;  // true for rates below the first rate that is not steady
   for (double rate = lowest; rate <= highest && !progress.stopped(); rate *= 1 + options.step) {
     const bool is_steady = is_steady_at(rate);
     progress.tell("rates", std::log(rate / lowest) / std::log(highest / lowest));

@@ -17,11 +17,11 @@ namespace {
 
 constexpr double no_derivative = Metrics::unset;
 constexpr double usual_tolerance = 1e-8;
-constexpr double largest_disagreement = 0.05;  // largest relative difference to the derivatives of a looser run
+constexpr double largest_disagreement = 0.05;  // permitted relative change with the tolerance
 constexpr double no_change =
     1e-5;  // a derivative counts as 0 if its error, times the standard deviation, is below this share of the figure
 
-// Returns the scene without jitter, which is random for every edge and so has no derivatives.
+// Returns the scene without jitter. Jitter is random for every edge and so has no derivatives.
 PreparedScene without_jitter(const PreparedScene& scene) {
   PreparedScene own = scene;
   std::erase_if(own.scene.spread.variables, [](const SpreadVariable& v) { return v.is_drawn_per_edge; });
@@ -29,7 +29,7 @@ PreparedScene without_jitter(const PreparedScene& scene) {
   return own;
 }
 
-// Returns the changes of switch and drives by the varied quantities near the nominal device, for quantities with derivatives.
+// Returns the changes of switch and drives by the varied quantities at the nominal device, for quantities with derivatives.
 DeviceChanges changes_near(NearbyDevices& near, const Switch& model, std::vector<Derivatives::Variable*>& variables,
                            const Progress& progress) {
   std::vector<std::string> why_none(variables.size());
@@ -40,7 +40,7 @@ DeviceChanges changes_near(NearbyDevices& near, const Switch& model, std::vector
   return changes;
 }
 
-// Returns the change of a figure by a standard deviation of each quantity; 0 if the figure has no derivative by it.
+// Returns the change of a figure by a standard deviation of each quantity; 0 without a derivative by that quantity.
 Eigen::VectorXd changes_of(const std::vector<double>& by_variable, const std::vector<Derivatives::Variable>& variables) {
   Eigen::VectorXd changes(static_cast<Eigen::Index>(variables.size()));
   for (std::size_t k = 0; k < variables.size(); ++k)
@@ -54,14 +54,14 @@ std::string why_no_derivative(const Figure& figure, double value, const CostSlop
   return std::string(slopes.why_none[figure]);
 }
 
-// The closing of the nominal device, with its derivatives.
+// The closing of the nominal device, with the derivatives of its figures.
 struct NominalClosing {
   DeviceOutcome outcome;
   CostSlopes slopes;
-  Eigen::MatrixXd gradient = {};  // a row for each of derived_figures; empty if the device does not close
+  Eigen::MatrixXd gradient = {};  // derivatives, one row for each of derived_figures; empty if the device does not close
 };
 
-// Changes of the switch and of its signals, from which derivatives of figures follow.
+// Changes of the switch and of its signals by the variables, from which derivatives of figures follow.
 struct Changes {
   SwitchSlopes* of_switch = nullptr;  // null if the switch does not change
   const SignalSlopes& of_signals;
@@ -111,7 +111,8 @@ std::vector<Derivatives::Variable> variables_of(const DeviceSpread& spread) {
   return all;
 }
 
-// Computes the derivatives of the figures under these signals. `places` are the indices of the changes among the variables.
+// Computes the derivatives of the figures under these signals. `places` are the indices of the changes `by` among the
+// variables.
 void derive(Derivatives& found, const PreparedScene& nominal, const std::vector<Signal>& signals, const Changes& by,
             const std::vector<std::size_t>& places, const Eigen::MatrixXd& correlation, const DerivativeOptions& options,
             const Progress& progress) {

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t chunk = 128;  // devices of one task: enough to fill a lane, few enough to check the Progress often
 
-// Records the figures of a lane.
+// Records the figures of the closings in a SIMD lane.
 class LaneFigures final : public LandingObserver {
  public:
   explicit LaneFigures(const MetricsOptions& options) : figures_(options) {}
@@ -195,7 +195,7 @@ double PullInMeter::closing_time() const {
   return quantities_.closing_time ? time_of(nominal_->model, closing_step * pull_in_) : Metrics::unset;
 }
 
-// Interpolates linearly between two steps of the nominal device, and extrapolates beyond the first and the last.
+// Interpolates linearly between the two nearest steps of the nominal device, and extrapolates beyond the first and the last.
 DeviceUnits PullInMeter::units_by_time(double time) const {
   if (!std::isfinite(time)) return {.volts = Metrics::unset, .time = 1};
   const auto above = std::ranges::upper_bound(told_, time, {}, &ToldVolts::time);
@@ -210,7 +210,7 @@ double PullInMeter::piezo_unit(const Switch& model) { return std::abs(model.basi
 double PullInMeter::frequency() const { return nominal_->model.basis().angular_frequencies()[0] / (2 * pi); }
 
 double PullInMeter::pull_in(const Switch& model, double precision) const {
-  constexpr double looser = 10;  // tolerance of the integrator over the precision; measurements are less precise
+  constexpr double looser = 10;  // tolerance of the integrator over `precision_`; measurements are less precise
   const std::vector<double> bias = bias_of(nominal_->scene, electrode_);
   const StaticPullIn statically = static_pull_in(model, electrode_, bias);
   return dynamic_pull_in(model, electrode_, statically, bias, {}, looser * precision, precision).voltage;
@@ -226,7 +226,7 @@ DeviceUnits PullInMeter::exact(const Switch& model) const {
 }
 
 DeviceUnits PullInMeter::measured(const DeviceUnits& exact, const Calibration& calibration, std::uint64_t seed, std::uint64_t k) {
-  constexpr double least_volts = 0.1;  // floor for a measured voltage: an instrument reads none below 0
+  constexpr double least_volts = 0.1;  // lower bound of a measured voltage: the measurement error must not make it negative
   const auto reading = [&](double error, Stream stream, std::uint64_t counter) {
     return std::max(least_volts, 1 + error * random_normal(seed, stream, counter));
   };
@@ -267,7 +267,7 @@ std::vector<DeviceUnits> reference_units(const PreparedScene& nominal, const Mea
   return units;
 }
 
-// Coordinates in which equal relative errors of voltages and of time are equal distances.
+// Returns coordinates in which equal relative errors of voltages and of time are equal distances.
 SpacePoint logarithms(const DeviceUnits& units) { return {std::log(units.volts), std::log(units.time), std::log(units.piezo)}; }
 DeviceUnits units_at(const SpacePoint& point) {
   return {.volts = std::exp(point[0]), .time = std::exp(point[1]), .piezo = std::exp(point[2])};
@@ -313,7 +313,7 @@ MeasuredUnits MeasuredUnits::without_errors() const {
 
 std::vector<MeasuredUnits> measured_units(const PreparedScene& nominal, std::span<const Calibration> calibrations, int jobs,
                                           const Progress& progress) {
-  // Voltages from a closing time differ from those from Vdp.
+  // Voltages from a measured closing time differ from those from a measured Vdp.
   std::map<bool, std::vector<DeviceUnits>> references;  // key: true if a closing time gives the voltages
   for (const bool by_time : {false, true}) {
     std::size_t size = 0;
@@ -331,7 +331,7 @@ std::vector<MeasuredUnits> measured_units(const PreparedScene& nominal, std::spa
 }
 
 DeviceUnits deviation_of_units(const PreparedScene& nominal, bool need_pull_in, int jobs, const Progress& progress) {
-  constexpr std::size_t devices = 128;  // gives the deviations within 6 %
+  constexpr std::size_t devices = 128;  // number of devices; gives the standard deviations within 6 %
   DeviceUnits squares{.volts = 0, .time = 0, .piezo = 0};
   double known = 0;
   for (const DeviceUnits& one : reference_units(nominal, {.pull_in = need_pull_in}, devices, jobs, progress)) {
@@ -404,7 +404,7 @@ std::vector<DeviceOutcome> close_devices(std::span<const DeviceClosing> closings
 
 namespace {
 
-// A device that is at rest at the end of the window has not settled if its hold levels do not keep it closed.
+// Marks a device at rest at the end of the window as not settled if its hold levels do not keep it closed.
 void judge_hold(DeviceOutcome& outcome, const Hold& hold) {
   Metrics& m = outcome.metrics;
   if (outcome.closed()) m.resistance = hold.resistance;
@@ -518,7 +518,7 @@ std::vector<std::vector<DeviceOutcome>> close_all(const Ensemble& ensemble, cons
   };
   const std::size_t chunks = (ensemble.size() + chunk - 1) / chunk;
   std::size_t complete = std::min<std::size_t>(ensemble.size(), chunk * run_tasks(chunks, run.jobs, task, progress.stop));
-  // After a stop, some chunks hold devices whose closing was not begun, or not ended.
+  // After an interruption, some chunks contain devices whose closing has not begun or has not ended.
   const auto missing = [](const DeviceOutcome& o) {
     return o.failure.empty() && (o.metrics.status == Status::not_run || o.metrics.status == Status::interrupted);
   };

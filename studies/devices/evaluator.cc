@@ -43,7 +43,7 @@ std::optional<std::pair<std::string, std::string>> waveform_key(const std::strin
   return std::pair(path.substr(before.size(), dot - before.size()), path.substr(dot + 1));
 }
 
-// Returns the parameter of a waveform; null if its family has none of that name. Calls with_names for a message.
+// Returns the parameter of a waveform with this name; null if the waveform family has none. Calls with_names for a message.
 double* waveform_parameter(Waveform& waveform, const std::string& name, std::size_t element, std::vector<std::string_view>& names,
                            ParameterKind& kind) {
   return std::visit(
@@ -79,7 +79,7 @@ std::string unit_of_parameter(ParameterKind kind, const std::string& drive) {
   return "";
 }
 
-// Returns the quantity that the scene has at a key; none if it has no quantity there.
+// Returns the quantity that the scene has at a key; none if the key is missing or is not a quantity.
 std::optional<Quantity> written_quantity(const SceneFile& file, const std::string& path, std::size_t element) {
   std::optional<std::string> text = file.written(path);
   if (!text) return std::nullopt;
@@ -98,7 +98,7 @@ std::optional<Quantity> written_quantity(const SceneFile& file, const std::strin
 
 std::string spread_entry(const std::string& key) { return fmt::format("spread.\"{}\"", key); }
 
-// Returns a scene in which these keys vary, each by its own value: rounding makes a factor inexact.
+// Returns a scene in which these keys vary, each by its own value: a factor would be inexact because of rounding.
 SceneFile scene_that_varies(SceneFile file, const std::vector<std::string>& keys) {
   file.erase("spread");
   file.erase("calibration");
@@ -116,8 +116,8 @@ SceneFile scene_that_varies(SceneFile file, const std::vector<std::string>& keys
 }  // namespace
 
 struct Evaluator::Row {
-  SampledDevice own;                      // device of the row, unless that is the nominal one
-  const SampledDevice* device = nullptr;  // device to close
+  SampledDevice own;                      // device of the row, unless it is the nominal device
+  const SampledDevice* device = nullptr;  // device to close: `own` or the nominal device
   std::vector<Signal> signals;            // signals of the row, if they differ from those of the scene
   std::string refusal = {};
   double duration = 0;
@@ -158,7 +158,7 @@ Evaluator::Evaluator(const SceneFile& file, std::vector<std::string> keys, std::
   drives_ = std::make_unique<DeviceDrives>(*nominal_);
 }
 
-// Finds the columns of the device, and prepares the scene.
+// Finds the columns of the device, and prepares the scene with them in [spread].
 void Evaluator::vary_device(const SceneFile& file, const Progress& progress) {
   if (options_.volts == VoltsOf::each) {
     SceneFile scene = file;
@@ -229,7 +229,7 @@ std::vector<Waveform> Evaluator::waveforms_of(std::span<const double> values) co
   return all;
 }
 
-// Returns the reason why a driver cannot give the waveforms of a row; empty if it can.
+// Returns the reason why a driver cannot apply the waveforms of a row; empty if it can.
 std::string Evaluator::violation_of(const std::vector<Waveform>& own) const {
   for (const WaveformKey& key : of_waveforms_) {
     const std::optional<DriverLimits>& limits = nominal_->drives[key.drive].limits;
@@ -364,7 +364,7 @@ void Evaluator::evaluate(std::span<const double> rows, std::span<double> figures
 
 namespace {
 
-// The units in which the voltages of drives are written. Voltages in Vdp scale with the device.
+// The units in which the voltages of drives are written in the scene. Voltages in Vdp scale with the device.
 struct WrittenVolts {
   bool in_volts = false, in_pull_in = false, in_other_units = false;
 };
@@ -397,7 +397,7 @@ WrittenVolts written_volts(const SceneFile& file, const PreparedScene& there) {
   return found;
 }
 
-// Returns the derivatives of a figure by the variables; throws if it has none.
+// Returns the derivatives of a figure by the variables; throws InvalidInput if the figure has none.
 const FigureDerivatives& derived(const Derivatives& found, const Figure& figure) {
   require(found.why_none.empty(), [&] { return "jacobian: no derivatives here: " + found.why_none; });
   const auto of = std::find_if(found.figures.begin(), found.figures.end(),
@@ -415,9 +415,9 @@ void require_derived(const Derivatives::Variable& variable) {
 
 }  // namespace
 
-// The scene of a row, in volts, with what its derivatives by the columns need.
+// The scene of a row, in volts, with the data that its derivatives by the columns need.
 struct Evaluator::Place {
-  PreparedScene scene;                 ///< its [spread] has the columns of the device
+  PreparedScene scene;                 ///< scene whose [spread] has the columns of the device
   std::vector<std::size_t> of_device;  ///< index of the column for each variable of that [spread]
   std::vector<WaveformKey> of_waveforms;
   MeasuredUnits known;  ///< units by which the voltages scale with the device
@@ -466,7 +466,7 @@ Evaluator::Place Evaluator::place_of(std::span<const double> row, const Progress
   return with_columns(std::move(there), keys_of_row(in_volts, row), std::move(known));
 }
 
-// Returns the columns that are parameters of waveforms, with the factors from the units in which they are written.
+// Returns the columns that are parameters of waveforms, with the factors that convert from the units of these columns.
 std::vector<Evaluator::WaveformKey> Evaluator::keys_of_row(const PreparedScene& in_volts, std::span<const double> row) const {
   std::vector<WaveformKey> all;
   std::vector<Waveform> waveforms = in_volts.waveforms();
@@ -493,7 +493,7 @@ std::vector<Evaluator::WaveformKey> Evaluator::keys_of_row(const PreparedScene& 
   return all;
 }
 
-// Computes the derivatives of figures by parameters of waveforms.
+// Computes the derivatives of figures by the parameters of waveforms among the columns.
 void Evaluator::derive_by_waveforms(const Place& place, std::span<const double> row, Eigen::MatrixXd& all,
                                     const Progress& progress) const {
   const std::vector<Waveform> here = place.scene.waveforms();

@@ -16,10 +16,10 @@ namespace {
 
 bool is_held(const ClosedRange& device, double level) { return device.release <= level && !(device.pulled_through < level); }
 
-// Starting point for the collapse voltage of a device: a level a little below the collapse voltage of the nominal one.
+// Starting point for the collapse voltage of a device: a level a little below the collapse voltage of the nominal device.
 struct Nominal {
   double level = std::numeric_limits<double>::quiet_NaN();  // [V]
-  std::optional<ClosedEquilibrium> closed;                  // closed equilibrium at that level
+  std::optional<ClosedEquilibrium> closed;                  // closed equilibrium at this level
 };
 
 Nominal nominal_of(const Switch& model, std::size_t electrode, std::vector<double> volts) {
@@ -33,7 +33,7 @@ Nominal nominal_of(const Switch& model, std::size_t electrode, std::vector<doubl
 }
 
 ClosedRange range_of_device(const Switch& model, std::size_t electrode, std::vector<double> volts, const Nominal& nominal) {
-  constexpr double precision = 1e-4;  // relative precision that reports show
+  constexpr double precision = 1e-4;  // relative precision, which suffices for the digits of reports
   ClosedRange range{.release = release_voltage(model, electrode, volts)};
   if (!std::isfinite(range.release)) return range;
   volts[electrode] = nominal.closed ? std::max(nominal.level, range.release) : range.release;
@@ -50,8 +50,8 @@ HoldWindow hold_window(std::span<const ClosedRange> devices) {
     const auto lost = std::ranges::count_if(devices, [&](const ClosedRange& one) { return !is_held(one, level); });
     return static_cast<double>(lost) <= most_lost;
   };
-  // The range of levels that hold enough devices begins at the release voltage of a device, and ends at the collapse voltage of
-  // one.
+  // The range of levels that hold enough devices begins at the release voltage of one device, and ends at the collapse voltage
+  // of another device.
   HoldWindow window;
   double beyond_all = 0;
   for (const ClosedRange& one : devices) {
@@ -65,7 +65,7 @@ HoldWindow hold_window(std::span<const ClosedRange> devices) {
 }
 
 HoldWindows hold_windows(const PreparedScene& nominal, const RobustnessOptions& options, const Progress& progress) {
-  constexpr std::size_t together = 8;  // devices of one task
+  constexpr std::size_t together = 8;  // number of devices of one task
   HoldWindows found;
   const std::vector<Electrode>& electrodes = nominal.scene.device.electrodes;
   if (!nominal.model.has_contact()) return found;

@@ -20,11 +20,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double tolerance_of_readings = 1e-9;  // tolerance of the closings whose differences give derivatives
+constexpr double tolerance_of_readings = 1e-9;  // tolerance of the integrator in closings for finite differences
 
 VectorXd single(double value) { return VectorXd::Constant(1, value); }
 
-// Records the edges of the contact's state, in their order.
+// Records the edges of the contact's state, in order of time.
 class EdgeRecorder final : public ClosingObserver {
  public:
   explicit EdgeRecorder(double gap) : finder_(gap) {}

@@ -12,7 +12,7 @@
 namespace softland {
 namespace {
 
-// Returns the size of a large change of a variable [SI unit, or factor].
+// Returns the scale of a variable, from which the step of differences follows [SI unit, or factor].
 double size_of(const SpreadVariable& variable, double value) {
   double size = variable.is_added ? std::numeric_limits<double>::infinity() : std::abs(value);
   for (const VariedKey& key : variable.keys) {
@@ -27,7 +27,7 @@ NearbyDevices::NearbyDevices(const PreparedScene& nominal, const EnsembleDrive& 
   drive_ = &drive;
   known_ = drive.known.without_errors();
   const Calibration& calibration = known_.calibration();
-  constexpr double precision = 1e-11;  // relative precision of pull-in voltages whose differences give derivatives
+  constexpr double precision = 1e-11;  // relative precision of pull-in voltages for finite differences
   if (!calibration.is_empty()) meter_.emplace(nominal, MeasuredQuantities::of(calibration), precision);
 }
 
@@ -49,11 +49,11 @@ bool NearbyDevices::changes_switch(std::size_t i) const {
   return std::any_of(keys.begin(), keys.end(), [](const VariedKey& key) { return !key.drive; });
 }
 
-// Returns the two devices beside the current one. Throws InvalidInput if one of them cannot be described.
+// Returns the two devices one step beside the current device. Throws InvalidInput if one of these devices cannot be described.
 SwitchSlopes::Neighbours NearbyDevices::neighbours(std::size_t i) {
   Switch above = device_beside(i, 1), below = device_beside(i, -1);
   SwitchOptions finer = nominal_.quadrature;
-  // Both devices need the same quadrature points: another point would look like a change of the device.
+  // Both neighbours need the same number of quadrature points: a further point would look like a change of the device.
   while (above.quadrature().points() != below.quadrature().points()) {
     constexpr double little = 1.01;
     finer.points_per_length *= little;
@@ -83,14 +83,14 @@ std::vector<Signal> NearbyDevices::signals_of(std::span<const double> values) {
   return drives_.differ(units) ? drives_.signals(drive_->waveforms, units, own) : nominal_.applied(drive_->waveforms);
 }
 
-// True if a quantity changes the drives of a device.
+// True if varied quantity i changes the drives of a device.
 bool NearbyDevices::changes_signals(std::size_t i) const {
   const std::vector<VariedKey>& keys = variables()[i].keys;
   return meter_ || std::any_of(keys.begin(), keys.end(), [](const VariedKey& key) { return key.drive.has_value(); });
 }
 
-// True if both sides have the same pieces. A step of a waveform that appears, disappears or begins the clock is not a small
-// change.
+// True if the signals at a smaller and at a larger value have the same pieces. A step of a waveform that appears, disappears or
+// begins the clock is not a small change.
 bool NearbyDevices::keeps_pieces(std::size_t i) {
   const auto pieces = [&](double side) {
     std::vector<std::size_t> counts;

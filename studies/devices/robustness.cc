@@ -63,7 +63,8 @@ void summarise(DriveRobustness& drive) {
   drive.worst.resize(static_cast<std::size_t>(kept));
 }
 
-// Returns the gap of the contact at `instants` instants from 0 to `end`. After the end of the closing it keeps the last value.
+// Returns the gap of the contact at `instants` instants from 0 to `end`. After the end of the closing the last value is
+// repeated.
 std::vector<double> sampled_gap(const Trajectory& closing, std::size_t instants, double end) {
   const std::vector<TrajectoryPoint>& knots = closing.points;
   if (knots.empty()) return {};
@@ -99,8 +100,8 @@ std::vector<Waveform> waveforms_of(const PreparedScene& nominal, const NamedDriv
   return nominal.in_drive_order(drive.waveforms);
 }
 
-// Widens the limits of a driver so that the signal of a device, whose units or errors may be larger than nominal, is within
-// them.
+// Widens the limits of a driver for the signal of a device whose units or errors are larger than nominal, so that the signal is
+// within the limits.
 void allow(SceneFile& file, const std::string& driver, const Signal& signal, const DriverLimits& limits) {
   if (violation(signal, limits).empty()) return;
   if (signal.maximum() > limits.max_voltage) file.assign(driver + ".max_voltage", signal.maximum());
@@ -109,7 +110,7 @@ void allow(SceneFile& file, const std::string& driver, const Signal& signal, con
   if (std::isfinite(signal.peak_slew())) {
     file.assign(driver + ".max_slew", signal.peak_slew());
   } else {
-    file.erase(driver + ".max_slew");  // an offset is applied at once
+    file.erase(driver + ".max_slew");  // an offset of the source is applied at once, with an infinite slew rate
   }
 }
 
@@ -131,8 +132,8 @@ constexpr std::array all_measurements{
     Measurement{measured_pull_in, &Calibration::pull_in_error}, Measurement{"closing time", &Calibration::time_error},
     Measurement{measured_frequency, &Calibration::frequency_error}, Measurement{measured_piezo, &Calibration::piezo_error}};
 
-// Returns the drive with every calibration of a device, without errors: from no measurements to all of them. With all of them
-// devices are sorted into classes first, then have their own units.
+// Returns the drive with each calibration of interest: without measurements, with each measurement alone, and with all
+// measurements, without error. With all measurements devices are sorted into classes first, then have their own units.
 std::vector<NamedDrive> by_knowledge(const NamedDrive& drive) {
   std::vector<NamedDrive> all;
   const auto add = [&](const std::string& name, const Calibration& calibration) {
@@ -155,7 +156,7 @@ std::vector<NamedDrive> by_knowledge(const NamedDrive& drive) {
   };
   for (std::size_t i = 0; i < measured.size() && measured.size() > 1; ++i)
     add(std::string(measured[i].name), exactly(std::span(measured).subspan(i, 1)));
-  if (measured.size() > 2 && drive.calibration.piezo_error) {  // the value of the piezo's measurement beside the others
+  if (measured.size() > 2 && drive.calibration.piezo_error) {  // all measurements but that of the piezo
     const auto others = std::span(measured).first(measured.size() - 1);
     add(named(others), exactly(others));
   }
@@ -195,9 +196,9 @@ Robustness robustness(const PreparedScene& nominal, const std::vector<NamedDrive
   Robustness result{.duration = run.duration, .tolerance = run.tolerance};
   const Actuator driven = has_pulling_electrode(nominal.scene.device) ? Actuator::both : Actuator::pzt;
   NamedDrive plain{.name = "plain step", .waveforms = plain_step(nominal, driven)};
-  plain.waveforms.merge(nominal.drives.waveforms());  // drives that the plain step leaves out
+  plain.waveforms.merge(nominal.drives.waveforms());  // add the drives that the plain step does not name
   std::vector<NamedDrive> all;
-  const auto is_judged = [&](const NamedDrive& drive) {  // the scene's own drive may be the plain step
+  const auto is_judged = [&](const NamedDrive& drive) {  // true if `drive` repeats one of `all`
     const std::vector<Signal> own = nominal.commanded(waveforms_of(nominal, drive));
     return drive.calibration.is_empty() && std::any_of(all.begin(), all.end(), [&](const NamedDrive& other) {
              return other.calibration.is_empty() && same_drives(own, nominal.commanded(waveforms_of(nominal, other)));
@@ -343,7 +344,7 @@ SceneFile scene_of_values(const Ensemble& ensemble, const DriveRobustness& drive
       units = drive.known.of(meter.exact(*sampled.model), seed, device);
       if (!units.are_known()) units = {};
     }
-    file.erase("calibration");  // the waveforms are scaled already
+    file.erase("calibration");  // the waveforms in the file are already scaled by the calibration
   }
   const DeviceDrives drives(nominal);
   const std::vector<DeviceDrives::Written> own =

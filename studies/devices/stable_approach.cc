@@ -14,14 +14,14 @@
 namespace softland {
 namespace {
 
-// Levels of the holder before contact, over its hold level, in increasing order.
+// Levels of the electrode that holds the closed switch, before contact, over its hold level, in increasing order.
 constexpr std::array low_levels{0.0, 0.12, 0.24, 0.36};
-// Distance from the touching voltage to the limit of the driver that suffices, in standard deviations of the touching voltage.
+// Sufficient distance from the touching voltage to the limit of the driver, in standard deviations of the touching voltage.
 constexpr double enough_deviations = 2.5;
-// Coordinates of the unit cube that lie one standard deviation of a normal number below and above the middle.
+// Coordinates of the unit cube that are one standard deviation of a normal number below and above the median.
 constexpr double one_below = 0.15865525393145707, one_above = 1 - one_below;
 
-// Returns the commanded voltage at which the contact point of a device touches.
+// Returns the commanded voltage at which the contact point of a device reaches the contact plane.
 std::optional<double> touching_voltage(const PreparedScene& nominal, const SampledDevice& device,
                                        const StableApproach& approach) {
   if (!device.model) return std::nullopt;
@@ -49,7 +49,8 @@ class Finder {
     if (!nominal.scene.spread.empty()) ensemble_.emplace(nominal, 1);
   }
 
-  // Returns the approach by this drive; none if the nominal design has no path within the limits.
+  // Returns the approach by this drive; none if the nominal design has no stable path to contact within the limits of the
+  // driver.
   [[nodiscard]] std::optional<StableApproach> along(const std::string& drive, const std::string& holder, double low) const {
     const Drive& carries = nominal_.drives.at(drive);
     if (!carries.limits) return std::nullopt;
@@ -67,8 +68,7 @@ class Finder {
   }
 
  private:
-  // Returns the standard deviation of the touching voltage, by differences over one standard deviation of each varying
-  // quantity.
+  // Returns the standard deviation of the touching voltage, by differences over one standard deviation of each varied quantity.
   [[nodiscard]] double deviation(const StableApproach& found) const {
     if (!ensemble_) return 0;
     const DeviceSpread& spread = nominal_.scene.spread;
@@ -82,7 +82,8 @@ class Finder {
         return touching_voltage(nominal_, builder.device(std::move(u)), found);
       };
       const std::optional<double> above = at(one_above), below = at(one_below);
-      // A device to one side may have no path: its distance is then taken from the other side, or else from the limit.
+      // If the device to one side has no stable path to contact, use the difference to the other side, or else to the driver's
+      // limit.
       const double slope = above && below ? (*above - *below) / 2
                            : above        ? *above - found.reaches
                            : below        ? found.reaches - *below
@@ -96,7 +97,7 @@ class Finder {
   std::optional<Ensemble> ensemble_;
 };
 
-// Returns the distance of the limit from the touching voltage, in standard deviations.
+// Returns the distance from the touching voltage to the limit of the driver, in standard deviations.
 double room(const StableApproach& found) { return std::abs(found.limit - found.reaches) / std::max(found.deviation, 1e-300); }
 
 }  // namespace
@@ -107,7 +108,7 @@ double StableApproach::touch_places() const {
 }
 
 double shortest_rise(const PreparedScene& nominal) {
-  constexpr double periods = 1.5;  // a ramp of one period, and half a period between the two impulses
+  constexpr double periods = 1.5;  // duration in periods: a ramp of one period, and half a period between the two impulses
   return periods * 2 * pi / nominal.model.basis().angular_frequencies()[0];
 }
 
@@ -151,7 +152,7 @@ double touching_voltage(const PreparedScene& nominal, const StableApproach& appr
 
 double share_with_path(const PreparedScene& nominal, const StableApproach& approach, std::uint64_t devices, std::uint64_t seed,
                        int jobs, const Progress& progress) {
-  constexpr std::size_t together = 16;  // devices of one task
+  constexpr std::size_t together = 16;  // number of devices of one task
   const Ensemble ensemble(nominal, devices, seed);
   std::vector<char> has(devices, 0);
   run_tasks((devices + together - 1) / together, jobs,
