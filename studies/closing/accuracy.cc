@@ -16,8 +16,8 @@ constexpr double enough_seconds = 0.03;     // least total time of the timed run
 constexpr double reference_tighter = 1e-4;  // tolerance of the reference over the tightest tolerance of the study
 constexpr double reference_looser =
     100;  // ratio of the tolerances of the second reference and the first, and of successive references
-constexpr double reference_growth = 2.5;  // time ratio of successive references, for a fifth-order method
-constexpr double told_apart = 9.9;        // least resolved error over the tolerance of the reference: 10, less rounding
+constexpr double reference_growth = 2.5;  // ratio of the computing times of successive references, for a fifth-order method
+constexpr double told_apart = 9.9;        // smallest resolved error over the tolerance of the reference: 10, less rounding
 constexpr CloudOptions cloud_options{.runs = 8};
 
 bool touched(const Metrics& m) { return std::isfinite(m.initial_contact_time); }
@@ -92,7 +92,7 @@ class Study {
             .stop = options_.stop};
   }
 
-  // Repeats a setting until its time is well known; stops a run after `most_seconds`.
+  // Repeats a setting until its computing time is well known; stops a run after `most_seconds`.
   void measure(const Switch& model, AccuracyRow& row, int runs, double most_seconds) {
     if (stopped()) {
       row.missing = "interrupted";
@@ -130,14 +130,14 @@ class Study {
     row.errors = relative_errors(row.figures, found_.reference.figures, prepared_.scene.metrics);
   }
 
-  // Returns the figures of a run. A run without a contact law ends at first touch.
+  // Returns the figures of a run. A run without a contact law ends at first contact.
   [[nodiscard]] Metrics figures(const Trajectory& t) const {
     Metrics m = metrics(t, prepared_.scene.metrics);
     if (!prepared_.model.has_contact()) m.major_bounce_height = m.peak_contact_force = Metrics::unset;
     return m;
   }
 
-  // Measures a setting if there is time left.
+  // Measures a setting if the time limit of the study permits.
   void try_out(const Switch& model, AccuracyRow& row) {
     if (seconds_since(start_) < options_.all_seconds) {
       measure(model, row, options_.runs, options_.most_seconds);
@@ -168,7 +168,7 @@ class Study {
     }
   }
 
-  // Measures an integrator at every tolerance without a restart at the contact.
+  // Measures an integrator at every tolerance without restarts at make and break of contact.
   void go_through(const Switch& model, Integrator integrator) {
     if (!found_.why_always_restarted.empty()) return;
     AccuracyRow row = setting(integrator, own_points_);
@@ -180,7 +180,7 @@ class Study {
     return points ? Switch(prepared_.scene.device, {.points_per_length = *points}) : prepared_.model;
   }
 
-  // Tightens the reference to the planned tolerance, or until rounding or the time limit stops it.
+  // Tightens the reference run to the planned tolerance, or until rounding or the time limit prevents that.
   void tighten_reference(const Switch& fine, std::optional<double> points, double& seconds_left) {
     const double planned = reference_tighter * options_.tolerances.back();
     int steps = 0;
@@ -193,7 +193,7 @@ class Study {
       AccuracyRow next = setting(own_integrator_, points, planned * std::pow(reference_looser, steps));
       const double start = options_.clock();
       constexpr double first_share =
-          1.0 / 3;  // share of the time for the first reference: the rest serves one with fewer quadrature points
+          1.0 / 3;  // share of the time for the first reference; the rest is for a reference with fewer quadrature points
       measure(fine, next, 1, found ? seconds_left : first_share * seconds_left);
       const double seconds = seconds_since(start);
       seconds_left = std::max(0.0, seconds_left - seconds);
@@ -278,7 +278,7 @@ class Study {
     }
   }
 
-  // True if a row is within an accuracy, and so are the following rows of the same setting, which have tighter tolerances.
+  // True if the errors of a row, and of the following rows of the same setting with tighter tolerances, are within an accuracy.
   [[nodiscard]] bool within(std::size_t index, double accuracy) const {
     const AccuracyRow& first = found_.rows[index];
     if (!first.missing.empty()) return false;
@@ -293,9 +293,9 @@ class Study {
   const PreparedScene& prepared_;
   const AccuracyOptions& options_;
   std::vector<Signal> signals_;
-  std::optional<double> own_points_;  // none for a plate
+  std::optional<double> own_points_;  // quadrature points per length that simulate() uses; none for a rigid plate
   std::vector<double> other_points_;
-  double tightest_ = 0;  // tightest tolerance that the reference can judge
+  double tightest_ = 0;  // tightest tolerance whose errors the reference can resolve
   int own_modes_ = 0;
   Integrator own_integrator_ = Integrator::automatic;
   std::vector<int> other_modes_;

@@ -21,20 +21,20 @@ namespace softland {
 namespace {
 
 constexpr double run_tolerance = 1e-6;  // tolerance of the integrator: errors far below auto_modes_tolerance
-constexpr double least_share = 0.01;    // share of the scale of a closing, below which a figure counts as zero
+constexpr double least_share = 0.01;    // share of the scale of a closing below which a figure counts as zero
 
 struct Judged {
   double value, scale;
 };
 
-// The figures of a closing with one number of modes.
+// The figures of a closing that are compared between numbers of modes.
 struct Judgement {
   std::vector<Judged> figures;
   PreparedScene scene;
 };
 
-// Finds pull-in voltages only as precisely as the comparison needs: a dynamic pull-in voltage takes as long as tens of
-// closings.
+// Finds pull-in voltages only as precisely as the comparison of modes needs: computing a dynamic pull-in voltage takes as long
+// as tens of closings.
 ElectrodePullIn pull_in_to_be_judged(const Switch& model, std::size_t electrode, Bias bias, const Progress& progress) {
   constexpr double precision = 1e-5;
   ElectrodePullIn found{.statically = static_pull_in(model, electrode, bias)};
@@ -75,7 +75,7 @@ Judgement judged(const SceneFile& file, int modes, const Progress& progress) {
   return {.figures = std::move(list), .scene = p};
 }
 
-// Returns the largest relative change of any figure; it is 1 for a figure that exists in one of the closings only.
+// Returns the largest relative change of any figure; 1 for a figure that exists in one of the two closings only.
 double change(const std::vector<Judged>& from, const std::vector<Judged>& to) {
   double most = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {
@@ -85,7 +85,7 @@ double change(const std::vector<Judged>& from, const std::vector<Judged>& to) {
   return most;
 }
 
-// Returns the largest relative change of a static voltage of an electrode with twice and four times as many modes.
+// Returns the largest relative change of the static voltages of the electrodes with twice and four times as many modes.
 double statics_moved(const Scene& scene, int modes) {
   const Switch own = resolved_switch(scene.device, scene.simulate.accuracy, modes).model;
   const ModeLadder ladder(scene, own);
@@ -99,7 +99,7 @@ double statics_moved(const Scene& scene, int modes) {
   return most;
 }
 
-// True if more modes give the same stability of the closed state under the hold levels as those of the scene.
+// True if the stability of the closed state under the hold levels is the same with more modes as with those of the scene.
 bool agrees_on_stability(const PreparedScene& p) {
   const ModeLadder ladder(p);
   const auto closed = closed_equilibria(ladder, hold_levels(p.signals()));
@@ -131,8 +131,8 @@ AutoModes choose_modes(const SceneFile& file, const Progress& progress) {
   };
   AutoModes found;
   for (int modes = 1; modes + further <= most_modes; ++modes) {
-    // Statics are cheap: skip the closings of a number of modes whose static voltages already change, except for the last
-    // number.
+    // Statics are cheap: skip the closings with a number of modes for which static voltages still change, except for the last
+    // number of modes.
     found = {.modes = modes, .moved = statics_moved(scene, modes)};
     if (!found.settled() && modes + further < most_modes) continue;
     const Judgement& own = with(modes);

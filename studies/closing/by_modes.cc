@@ -16,11 +16,11 @@ namespace {
 constexpr double found_to = 1e-5;  // relative precision of a voltage with more modes
 
 // Returns the limit of values as the number of modes grows. Values at three successively doubled numbers of modes are
-// extrapolated as a geometric series (Aitken). The last value is the limit if it hardly differs from the one before, or if it
-// has the largest number of modes and changed little.
+// extrapolated as a geometric series (Aitken). The last value is the limit if it hardly differs from the previous value, or if
+// it has the largest number of modes and changed little.
 double extrapolated(const std::map<int, double>& values) {
   constexpr double rounding = 3 * found_to, fastest = 0.5,
-                   left = 0.02;  // limits of the relative changes of the last value, and of their ratio
+                   left = 0.02;  // upper limits of the relative changes of the last value, and of the ratio of changes
   if (values.size() < 2) return std::nan("");
   const auto last = std::prev(values.end()), before = std::prev(last);
   const double change = last->second - before->second, size = std::abs(last->second);
@@ -32,11 +32,11 @@ double extrapolated(const std::map<int, double>& values) {
   return last->first == most_static_modes && std::abs(change) <= left * size ? last->second : std::nan("");
 }
 
-// Rounds to ten digits: with many modes the last digits are rounding errors, which depend on how a program is linked.
+// Rounds to ten digits: with many modes further digits are rounding errors, which depend on how a program is linked.
 double to_ten_digits(double value) { return std::isfinite(value) ? std::stod(fmt::format("{:.9e}", value)) : value; }
 
-// Finds one value by the number of modes: calls find(switch) for each switch of the ladder, and for the finest one if the last
-// value still changes much.
+// Computes a value by the number of modes: calls find(switch) for each switch of the ladder, and for the switch with the most
+// modes if the last value still changes much.
 template <class Find>
 ByModes value_by_modes(const ModeLadder& ladder, Find&& find) {
   constexpr double much = 5e-3;  // relative change between the last two values

@@ -14,15 +14,15 @@
 namespace softland {
 namespace {
 
-constexpr double shared = 0.01;  // common error of both runs over the tolerance, relative to the figure
-constexpr double parted = 0.1;   // relative difference of a rebound's height from which on two runs have diverged
+constexpr double shared = 0.01;  // common error of both runs, relative to the figure, over the tolerance
+constexpr double parted = 0.1;   // relative difference of a rebound's height above which two runs have diverged
 
-// True if the last digits of the drives change a figure visibly, or make it come or go, in the closing or in the better run.
+// True if the last digits of the drives change a figure visibly, or decide its existence, in the closing or in the better run.
 bool ill_conditioned(const Figure& figure, const std::vector<Metrics>& cloud, const Metrics& own, const Metrics& better,
                      const MetricsOptions& options) {
   std::vector<double> values;
   for (const Metrics& m : cloud) values.push_back(figure.counted(m, options));
-  // A loose tolerance moves the values of these two runs by its error, which is no sign of ill-conditioning: only their
+  // A loose tolerance changes the values of `own` and `better` by its error, which is no sign of ill-conditioning: only their
   // existence counts.
   const bool own_has = std::isfinite(figure.value(own)), better_has = std::isfinite(figure.value(better));
   const auto have = std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); }) + own_has + better_has;
@@ -30,8 +30,8 @@ bool ill_conditioned(const Figure& figure, const std::vector<Metrics>& cloud, co
   return have < static_cast<std::ptrdiff_t>(cloud.size() + 2) || ill_conditioned(spread(std::move(values)));
 }
 
-// Computes the figures of the closing with each pull-in voltage that serves as a unit of its drives increased, and decreased,
-// by its error. The error is a multiple of the change with a finer quadrature, plus the width of the bracket of the voltage.
+// Returns the figures of the closing after an increase, and a decrease, by its error of each pull-in voltage that is a unit of
+// the drives. The error is a multiple of the change with a finer quadrature, plus the width of the bracket of the voltage.
 std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switch& fine, const SwitchOptions& quadrature,
                                       const ClosingOptions& options, const MetricsOptions& figures, const Progress& progress) {
   const Scene& written = prepared.effects ? prepared.effects->described : prepared.scene;
@@ -41,7 +41,7 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
     const auto at = std::find_if(electrodes.begin(), electrodes.end(), [&](const Electrode& e) { return e.name == name; });
     const auto k = static_cast<std::size_t>(at - electrodes.begin());
     const auto known = prepared.pull_in.find(name);
-    if (known == prepared.pull_in.end()) continue;  // this pull-in voltage is a unit of limits only
+    if (known == prepared.pull_in.end()) continue;  // a pull-in voltage without an entry is a unit of limits only
     const Switch model(written.device, quadrature);
     const std::vector<double> bias = bias_of(written, k);
     const StaticPullIn statically = static_pull_in(model, k, bias);
@@ -57,9 +57,9 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
       PreparedScene moved = prepared;
       try {
         moved.drives = written.drives(units).of(prepared.drive_names());
-        for (std::size_t i = 0; i < moved.drives.size(); ++i)  // the sources charge the same switch
+        for (std::size_t i = 0; i < moved.drives.size(); ++i)  // the sources charge the same switch as in `prepared`
           moved.drives[i].source.load = prepared.drives[i].source.load;
-      } catch (const InvalidInput&) {  // unknown error: a drive is at a limit of its driver, or no better voltage exists
+      } catch (const InvalidInput&) {  // no figures: a drive is at a limit of its driver, or no better pull-in voltage exists
         found.emplace_back();
         continue;
       }
@@ -79,7 +79,7 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
   return found;
 }
 
-// The rebounds of one run, with the impact velocity of the touch before each.
+// The rebounds of one run, with the impact velocity before each rebound.
 struct ReboundSequence {
   std::vector<Rebound> rebounds;
   std::vector<double> impacts;  // [m/s]
@@ -110,7 +110,7 @@ std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, 
                           .impact_velocity = first.impacts[k],
                           .at_threshold = at_threshold};
   };
-  // The gentlest touch is taken for the one that tiny changes add or remove.
+  // The touch with the smallest impact velocity is assumed to be the one that tiny changes add or remove.
   const auto gentlest = [&](std::size_t count) {
     const auto found = std::min_element(first.impacts.begin(), first.impacts.begin() + static_cast<std::ptrdiff_t>(count));
     return named(static_cast<std::size_t>(found - first.impacts.begin()), false);
@@ -142,7 +142,7 @@ Closing certify(const PreparedScene& prepared, const Progress& progress, int job
     return c;
   }
   const std::vector<Signal> signals = prepared.signals();
-  // The better of the run and its judge has the tighter tolerance.
+  // The more accurate of the run and its judge has the tighter tolerance.
   const bool judge_is_better = c.judge->tolerance < c.tolerance;
   const SwitchOptions& quadrature = judge_is_better ? c.judge->quadrature : c.quadrature;
   const Switch fine(prepared.scene.device, quadrature);
@@ -179,7 +179,7 @@ Closing certify(const PreparedScene& prepared, const Progress& progress, int job
     const double own = figure.value(c.metrics), other = figure.value(better);
     double error = error_safety * std::abs(own - other) + shared * c.tolerance * std::abs(own);
     const double unmoved = judge_is_better ? other : own;
-    for (std::size_t i = 0; i + 1 < moved.size(); i += 2) {  // a pull-in voltage increased and decreased
+    for (std::size_t i = 0; i + 1 < moved.size(); i += 2) {  // figures with a pull-in voltage increased, then decreased
       error += std::fmax(std::abs(figure.value(moved[i]) - unmoved), std::abs(figure.value(moved[i + 1]) - unmoved));
     }
     if (ill_conditioned(figure, runs, c.metrics, better, prepared.scene.metrics)) {

@@ -74,7 +74,7 @@ std::string unstable_rest(const Switch& model, const std::vector<Signal>& signal
 
 namespace {
 
-// Returns "9.97e10 rad^2/s^2 with 5 modes, -6.9e10 with 10, none with 20".
+// Returns values by number of modes as text: "9.97e10 rad^2/s^2 with 5 modes, -6.9e10 with 10, none with 20".
 std::string by_modes_prose(const ByModes& found, std::string_view unit, int digits) {
   std::string words;
   for (const auto& [modes, value] : found.values)

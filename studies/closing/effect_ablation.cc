@@ -16,7 +16,7 @@
 namespace softland {
 namespace {
 
-// Returns the force on the first mode at rest, with 1 V on one electrode.
+// Returns the force on the first mode of the beam at rest, with 1 V on one electrode.
 double force_at_rest(const Device& described, std::size_t electrode) {
   const Switch model(described);
   Switch::Workspace work = model.workspace();
@@ -36,7 +36,7 @@ BoundedClosing closing(const PreparedScene& p, const Progress& progress, const C
   return bounded_closing(p, p.model, bound, progress, "closings without each effect", done, share);
 }
 
-// Returns the effect that shifts the rest position of the contact point by the difference between these two devices.
+// Returns the effect whose magnitude is the shift of the contact point's rest position between these two devices.
 OmissibleEffect rest_effect(const std::string& effect, const Device& d, const Device& without,
                             std::optional<SceneValue> instead) {
   const double rise = d.contact_gap() - without.contact_gap();
@@ -65,7 +65,7 @@ void add_omissible_rest_shape(const Device& d, std::vector<OmissibleEffect>& lis
   }
 }
 
-// Adds parts of the structure: compliant anchors are replaced by clamps, and sections with holes by solid ones.
+// Adds the parts of the structure that can be omitted: compliant anchors become clamps, sections with holes become solid.
 void add_omissible_parts(const Device& d, std::vector<OmissibleEffect>& list) {
   const Beam& beam = part_of<Beam>(d.structure);
   const auto add_anchor = [&](const char* key, std::optional<Anchor> Beam::*end) {
@@ -163,7 +163,7 @@ void add_omissible_fringing(const PreparedScene& prepared, std::vector<Omissible
   }
 }
 
-// Adds the dielectrics. A face on which the beam lands is kept; only its roughness can be left out.
+// Adds the dielectrics that can be omitted. A face onto which the beam closes stays; only its roughness can be omitted.
 void add_omissible_dielectrics(const PreparedScene& prepared, std::vector<OmissibleEffect>& list) {
   const Device& d = prepared.scene.device;
   for (const Electrode& e : d.electrodes) {
@@ -278,7 +278,7 @@ PreparedScene copy_without(const PreparedScene& prepared, const std::vector<Omis
     const bool inside = std::any_of(effects.begin(), effects.end(),
                                     [&](const OmissibleEffect& other) { return e.effect.starts_with(other.effect + "."); });
     if (inside) continue;
-    file.erase(fmt::format("spread.\"{}\"", e.effect));  // a spread of a removed key has nothing to vary
+    file.erase(fmt::format("spread.\"{}\"", e.effect));  // the [spread] of a removed key has nothing to vary
     if (e.instead) {
       file.assign(e.effect, *e.instead);
     } else {
@@ -288,14 +288,15 @@ PreparedScene copy_without(const PreparedScene& prepared, const std::vector<Omis
   const auto drops_contact = [&](const OmissibleEffect& e) {
     return std::ranges::any_of(prepared.scene.device.contacts, [&](const Contact& c) { return e.effect == "contact." + c.name; });
   };
-  // A contact that is left alone makes the connection.
+  // If one contact remains, it makes the connection.
   const auto left =
       prepared.scene.device.contacts.size() - static_cast<std::size_t>(std::ranges::count_if(effects, drops_contact));
   if (left < 2) file.erase("metrics.closed");
   PreparedScene p = prepare(file);
   p.scene.warnings = prepared.scene.warnings;
   p.pull_in = prepared.pull_in;
-  p.drives = prepared.drives.of(p.drive_names());  // the sources charge the electrodes of the switch with all effects
+  p.drives =
+      prepared.drives.of(p.drive_names());  // the sources charge the electrodes of the switch with all effects, as in `prepared`
   p.duration = prepared.duration;
   p.held_from = prepared.held_from;
   p.tolerance = prepared.tolerance;

@@ -87,7 +87,7 @@ Effects compare_effects(const PreparedScene& scene, const Progress& progress) {
     }
     laws.emplace_back(gas);
   });
-  // The scene's own closing comes first: its cost bounds that of the others.
+  // The scene's own closing comes first: its cost bounds the cost of the other closings.
   const double share = 1.0 / static_cast<double>(laws.size());
   LawClosing of_scene = closing_with(prepared, own, {}, progress, 0, share);
   if (progress.stopped()) throw Interrupted();

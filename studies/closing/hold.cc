@@ -30,7 +30,7 @@ Device with_first_contact(Device device, std::size_t c) {
   return device;
 }
 
-// Returns the conductance of a contact at rest under a contact force [S]; NaN if it is not known.
+// Returns the conductance of a contact at rest under a contact force [S]; NaN if the conductance is not known.
 double conductance_at(const Switch& model, const Eigen::VectorXd& q, double force, std::size_t c = 0) {
   const ContactResistance contact = contact_resistance(model.device(), c);
   if (!contact.is_known()) return Metrics::unset;
@@ -42,7 +42,7 @@ Hold hold_of_connection(const Switch& model, const std::vector<double>& levels, 
   const bool needs_all = model.device().connection == Connection::all;
   std::optional<Eigen::VectorXd> rest;
   if (keeps_closed(model, hold.closed)) rest = hold.closed->q;
-  // A contact other than the first one may hold the beam.
+  // Search an equilibrium on a contact other than the first contact.
   for (std::size_t c = 1; c < model.contacts() && !rest && !needs_all; ++c) {
     if (!model.device().contacts[c].connects) continue;
     const Switch other(with_first_contact(model.device(), c));

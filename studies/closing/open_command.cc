@@ -12,9 +12,9 @@ namespace {
 
 constexpr int most_samples = 4000;  // largest number of samples of a curved piece
 constexpr int halvings = 40;
-constexpr double tail = 40;  // time constants after which a decay is over
+constexpr double tail = 40;  // number of time constants after which a decay has ended
 
-enum class OfJump { before, after };  // side of a jump
+enum class OfJump { before, after };  // side of a jump of a signal
 
 struct Instant {
   double time;  // [s]
@@ -27,15 +27,15 @@ std::vector<double> levels_at(const std::vector<Signal>& signals, const Instant&
   return levels;
 }
 
-// Returns the number of parts into which a piece is divided, so short that no term of it turns twice in one part; 1 for a
-// straight piece.
+// Returns the number of parts into which a piece of a signal is divided, so short that no term of the piece turns twice in one
+// part; 1 for a straight piece.
 int parts_of(const Signal& signal, double begin, double end) {
   const double step = signal.resolving_step(begin);
   return std::isfinite(step) ? std::clamp(static_cast<int>(std::ceil((end - begin) / step)), 1, most_samples) : 1;
 }
 
-// Returns the instants to check, in order: both sides of every breakpoint, and samples between the breakpoints of curved
-// pieces.
+// Returns the instants to check, in order of time: both sides of every breakpoint, and samples between the breakpoints of
+// curved pieces.
 std::vector<Instant> instants(const std::vector<Signal>& signals) {
   std::vector<double> stops;
   double end = 0;
@@ -65,7 +65,7 @@ bool pulls(const Switch& model, std::size_t drive) {
   return model.drive_kind(drive) == DriveKind::electrode && pulls_in(model.device(), drive);
 }
 
-// Decides whether a closed switch is held at the levels of its drives.
+// Decides whether the levels of the drives keep a closed switch closed.
 class Holding {
  public:
   Holding(const Switch& model, const std::vector<Signal>& signals)
@@ -75,13 +75,13 @@ class Holding {
     std::vector<double> levels = levels_at(signals_, instant);
     if (is_weaker(levels, last_) || is_weaker(levels, lost_)) return false;
     if (hold_under(model_, levels).is_held) return true;
-    lost_ = std::move(levels);  // the next levels are likely to be no higher
+    lost_ = std::move(levels);  // the levels at the next instants are probably no higher
     return false;
   }
 
  private:
-  // True if no electrode that pulls towards the contact pulls more at `levels` than at `than`, and all other drives have equal
-  // levels.
+  // True if every electrode that pulls towards the contact pulls no more at `levels` than at `than`, and all other drives have
+  // equal levels.
   [[nodiscard]] bool is_weaker(const std::vector<double>& levels, const std::vector<double>& than) const {
     for (std::size_t k = 0; k < levels.size(); ++k) {
       if (levels[k] == than[k]) continue;
@@ -95,8 +95,8 @@ class Holding {
   std::vector<double> last_, lost_;
 };
 
-// Returns the beginning of the fall that brings an electrode to its level just before `time`, or the jump if it jumps at
-// `time`; `time` if it does not fall.
+// Returns the beginning of the fall that brings an electrode to its level just before `time`. Returns `time` if the signal
+// jumps at this time or does not fall.
 double begin_of_fall(const Switch& model, std::size_t electrode, const Signal& signal, double time) {
   if (signal.voltage_before(time) != signal.voltage(time)) return time;
   const std::vector<SignalPiece>& pieces = signal.pieces();
@@ -116,7 +116,7 @@ double begin_of_fall(const Switch& model, std::size_t electrode, const Signal& s
   }
 }
 
-// Returns the time at which the switch stops being held [s].
+// Returns the time from which on the drives no longer keep the switch closed [s].
 std::optional<double> loses_hold(const Switch& model, const std::vector<Signal>& signals, StartState start) {
   Holding holding(model, signals);
   const std::vector<Instant> all = instants(signals);

@@ -13,7 +13,7 @@ Step step_to(const PreparedScene& given, const std::string& drive, double level)
   return step_from(own, own.value_before(), level);
 }
 
-// Returns a step to the hold level, or, if the drives command the switch to open, to the level just before that command.
+// Returns a step to the hold level, or to the level just before the command to open if the drives have one.
 Step step_of(const PreparedScene& given, const std::string& drive) {
   const Drive& own = given.drives.at(drive);
   const bool opens = std::isfinite(given.held_from) && own.waveform;
@@ -40,7 +40,7 @@ DriveWaveforms plain_step(const PreparedScene& prepared, Actuator actuator) {
     DriveWaveforms others = plain;
     others.merge(prepared.drives.waveforms());
     others.erase(piezo);
-    // A piezo without any other drive has to close the switch alone.
+    // A piezo must close the switch if all other drives are at 0 V.
     const bool alone = std::ranges::all_of(others, [](const auto& one) { return signal(one.second).is_zero(); });
     plain[piezo] = alone ? step_of(prepared, piezo) : step_to(prepared, piezo, 0);
   }

@@ -149,7 +149,7 @@ double tolerance_for(double accuracy, bool stiff) { return std::clamp(accuracy /
 
 namespace {
 
-constexpr double longest_window = 1e3;  // [s], as the longest simulate.duration
+constexpr double longest_window = 1e3;  // [s], equal to the longest simulate.duration
 
 /// Returns the number of periods of a waveform's sine in the window.
 double periods_of(const Waveform& waveform, double window) {
@@ -162,9 +162,9 @@ double periods_of(const Waveform& waveform, double window) {
   return 0;
 }
 
-/// Returns the default window [s] of a scene that closes. It shows the closing under steps to the hold levels, which gas may
-/// slow down, and the time after it. A damped switch creeps just above pull-in, so the search for the touch ends after ten such
-/// windows, or a thousand if the levels leave no open equilibrium.
+/// Returns the default window [s] of a scene that closes. The window contains the closing under steps to the hold levels, which
+/// gas may slow down, and a time after it. A damped switch creeps just above pull-in, so the search for first contact ends
+/// after ten such windows, or a thousand if the levels leave no open equilibrium.
 double default_window(const Switch& model, const std::vector<Signal>& signals) {
   constexpr double periods = 6, closings = 4, loose = 1e-4;
   constexpr long most_steps = 100'000;
@@ -178,8 +178,8 @@ double default_window(const Switch& model, const std::vector<Signal>& signals) {
   return closing.touches.empty() ? usual : std::max(usual, closings * closing.touches.front().begin);
 }
 
-/// Returns the default window [s] of a scene that opens a closed switch from `begin` on. It shows how the switch comes to rest
-/// in its open state, within ten times six periods of the first mode.
+/// Returns the default window [s] of a scene that opens a closed switch from `begin` on. The window contains the time until the
+/// switch is at rest in its open state, at most ten times six periods of the first mode.
 double default_window_of_opening(const Switch& model, const std::vector<Signal>& signals, StartState start, double begin) {
   constexpr double periods = 6, longest = 10, loose = 1e-4, settled = 0.02, margin = 2;
   constexpr long most_steps = 100'000;
@@ -227,7 +227,7 @@ void check_open_at(const PreparedScene& p) {
     file.refuse("simulate.open_at", fmt::format("must lie in the window, which ends at {}", engineering(p.duration, "s")));
 }
 
-/// Refuses windows that are too long, and waveforms with too many periods, to be computed.
+/// Throws InvalidInput for a window that is too long, and for waveforms with too many periods.
 void check_window(const PreparedScene& p) {
   const SceneFile& file = p.scene.file;
   if (!(p.duration <= longest_window)) {
@@ -248,7 +248,7 @@ void check_window(const PreparedScene& p) {
   }
 }
 
-/// Sets the load of every source: the capacitance of its electrode on the open switch.
+/// Sets the load of every source: the capacitance of the source's electrode on the open switch.
 void load_sources(PreparedScene& p) {
   const Switch& model = p.model;
   std::vector<double> open(static_cast<std::size_t>(model.modes()), 0.0);
@@ -259,7 +259,7 @@ void load_sources(PreparedScene& p) {
   }
 }
 
-/// Refuses a dielectric face that is so soft that the field pulls the beam through it.
+/// Throws InvalidInput for a dielectric face that is so soft that the electric field pulls the beam through it.
 void check_landing(const PreparedScene& p) {
   const Landing* landing = p.scene.device.landing();
   if (landing == nullptr || landing->is_wall()) return;
@@ -287,14 +287,14 @@ void check_landing(const PreparedScene& p) {
   }
 }
 
-/// Writes the value with three digits, rounded towards 0.
+/// Returns the value as text with three digits, rounded towards 0.
 std::string rounded_down(double value, std::string_view unit) {
   const double digit = std::pow(10, std::floor(std::log10(value)) - 2);
   constexpr double rounding = 1e-12;
   return engineering(std::floor(value / digit * (1 + rounding)) * digit, unit, 3);
 }
 
-/// Refuses sources that take more samples than a run may have.
+/// Throws InvalidInput for sources that take more samples than a run may have.
 void check_sources(const PreparedScene& p) {
   constexpr double most_samples = 1e5;
   for (const Drive& drive : p.drives) {
@@ -320,7 +320,7 @@ std::vector<double> bias_of(const Scene& scene, std::size_t drive) {
 
 namespace {
 
-// Returns the levels of the other drives that are not 0: ", under piezo at 0.3 V".
+// Returns the levels of the other drives that are not at 0 V, as text: ", under piezo at 0.3 V".
 std::string under_bias(const PreparedScene& p, std::size_t electrode) {
   const std::vector<double> bias = bias_of(p.scene, electrode);
   const std::vector<std::string> names = p.drive_names();
@@ -346,8 +346,9 @@ ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, Bi
 
 namespace {
 
-// Takes the pull-in voltages of limits with the other drives at 0 V, if the switch has no open state under their levels. A
-// limit belongs to the source, whatever the other drives do. A waveform in these units has no voltage in that case.
+// Computes the pull-in voltages of limits with the other drives at 0 V, if the switch has no open state under the levels of
+// these drives. A limit belongs to the source, at any level of the other drives. A waveform in units of these pull-in voltages
+// has no voltage in this case.
 bool take_limits_at_rest(PreparedScene& p, std::size_t electrode, const PullInFinder& find_pull_in, const Progress& progress) {
   const std::vector<std::string> names = p.drive_names();
   if (std::ranges::find(p.scene.limits_in_pull_in, names[electrode]) == p.scene.limits_in_pull_in.end()) return false;

@@ -9,8 +9,8 @@
 namespace softland {
 namespace {
 
-// Returns the modal forces of every drive at unit strength, then those of the gas on the moving beam, each over the frequency
-// of its mode.
+// Returns the modal forces of every drive at unit strength, then those of the gas on the moving beam. Each modal force is
+// divided by the frequency of its mode.
 Eigen::MatrixXd loads_at(const Switch& model, const Eigen::VectorXd& q) {
   const Eigen::Index n = model.modes(), drives = static_cast<Eigen::Index>(model.drives());
   Switch::Workspace work = model.workspace();
@@ -27,8 +27,8 @@ Eigen::MatrixXd loads_at(const Switch& model, const Eigen::VectorXd& q) {
   return model.basis().angular_frequencies().cwiseInverse().asDiagonal() * loads;
 }
 
-// Returns the states of the beam at touch: held at the contact plane by each drive that can do so, else by a force at the
-// contact.
+// Returns the states of the beam at first contact: held at the contact plane by each drive that can do so, else by a force at
+// the contact.
 std::vector<Eigen::VectorXd> at_touch(const Switch& model) {
   const double plane = model.contact_gap();
   std::vector<Eigen::VectorXd> states;
@@ -45,7 +45,8 @@ std::vector<Eigen::VectorXd> at_touch(const Switch& model) {
 }  // namespace
 
 SwitchOptions quadrature_for(double accuracy, int modes) {
-  constexpr double points_per_digit = 4, fewest = 8;  // two more per mode: each mode has half a wave more than the one before
+  constexpr double points_per_digit = 4,
+                   fewest = 8;  // each further mode needs two points: it has half a wave more than the previous mode
   return {.points_per_length = std::max({fewest, points_per_digit * -std::log10(accuracy), 2.0 * modes + 4})};
 }
 
@@ -63,8 +64,8 @@ double load_difference(const Switch& one, const Switch& other, const Eigen::Vect
 
 ResolvedSwitch resolved_switch(const Device& device, double accuracy, std::optional<int> modes) {
   constexpr double growth = 1.25, most_growth = 16;
-  constexpr double helps = 0.5;    // error after a refinement over the error before, below which it helped
-  constexpr int most_in_vain = 4;  // refinements in a row without help, after which the loads are taken as not smooth
+  constexpr double helps = 0.5;    // error after a refinement over the error before; below this ratio the refinement helped
+  constexpr int most_in_vain = 4;  // number of refinements in a row without help after which the loads count as not smooth
   const auto with_modes = [&](SwitchOptions q) {
     q.modes = modes;
     return q;
@@ -86,7 +87,7 @@ ResolvedSwitch resolved_switch(const Device& device, double accuracy, std::optio
     ResolvedSwitch next = best;
     for (int vain = 0; next.error > accuracy && vain < most_in_vain && next.quadrature.points_per_length < most_points;) {
       SwitchOptions q = next.quadrature;
-      ++q.points_per_panel;  // short panels cost little
+      ++q.points_per_panel;  // a short panel needs few further points
       ResolvedSwitch more = switch_with(q);
       if (more.model.quadrature().points() > next.model.quadrature().points()) set_error(more);
       if (!(more.error < helps * next.error) || more.model.quadrature().points() == next.model.quadrature().points()) {
@@ -104,7 +105,7 @@ ResolvedSwitch resolved_switch(const Device& device, double accuracy, std::optio
 }
 
 Switch switch_like(const Device& device, const Switch& nominal, const SwitchOptions& quadrature, double accuracy) {
-  constexpr double nearer = 0.95;  // touch distance over the nominal one, below which the points are checked again
+  constexpr double nearer = 0.95;  // gap at contact over that of the nominal switch, below which the points are checked again
   const auto gap_at_touch = [](const Device& d) { return 1 - d.gap.contact / d.gap.electrode; };
   Switch own(device, quadrature, &nominal);
   if (gap_at_touch(own.device()) >= nearer * gap_at_touch(nominal.device())) return own;

@@ -8,7 +8,7 @@
 namespace softland {
 namespace {
 
-// The conductance of one contact at increasing times.
+// The conductance of one contact as a function of time, at increasing times.
 class ContactCourse {
  public:
   ContactCourse(const Device& device, std::size_t contact, double gap, const std::vector<TrajectoryPoint>& points)

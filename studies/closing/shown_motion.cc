@@ -14,8 +14,8 @@ namespace softland {
 namespace {
 
 constexpr int places_along = 60;
-constexpr std::size_t most_told = 200;   // largest number of touches, and of rebounds, whose instants are kept in any case
-constexpr double line_tolerance = 2e-5;  // error of linear interpolation that is allowed for each mode, over the contact gap
+constexpr std::size_t most_told = 200;   // largest number of touches, and of rebounds, whose instants the animation must contain
+constexpr double line_tolerance = 2e-5;  // permitted error of linear interpolation for each mode, over the contact gap
 
 // Records the modal coordinates at increasing times.
 class MotionSampler final : public ClosingObserver {
@@ -29,7 +29,8 @@ class MotionSampler final : public ClosingObserver {
       keep(times_[next_] <= begin.time ? begin.state : times_[next_] == end.time ? end.state : between(begin, end));
     last_ = end.state;
   }
-  /// Returns the modal coordinates, ordered by time, then by mode [m kg^(1/2)]. Times after the last step get its last state.
+  /// Returns the modal coordinates, ordered by time, then by mode [m kg^(1/2)]. Times after the last step get the state at its
+  /// end.
   [[nodiscard]] std::vector<double> take() {
     for (; next_ < times_.size() && !last_.empty(); ++next_) keep(last_);
     return std::move(all_);
@@ -59,8 +60,8 @@ class MotionSampler final : public ClosingObserver {
   std::vector<double> all_, last_, cubic_;
 };
 
-// Returns instants that the animation must contain: begin and end of touches (of the longest ones if there are many), and
-// begin, end and summit of the highest rebounds.
+// Returns instants that the animation must contain: begin and end of touches (of the longest touches if there are many), and
+// begin, end and largest separation of the highest rebounds.
 std::vector<double> told_instants(const Closing& closing) {
   const Trajectory& run = closing.trajectory;
   std::vector<Touch> touches = run.touches;
@@ -86,7 +87,7 @@ std::vector<double> sorted(std::vector<double> times) {
   return times;
 }
 
-// The errors of linear interpolation between two rows of a table with a number of columns.
+// The errors of linear interpolation between two rows of a table, by column.
 class LineError {
  public:
   LineError(const std::vector<double>& times, const std::vector<double>& table, std::size_t columns)
@@ -117,8 +118,8 @@ class LineError {
   std::size_t columns_;
 };
 
-// Adds rows to the kept ones (at least two), each time the row that linear interpolation misses by the most, up to a number of
-// rows.
+// Adds rows to the retained rows (at least two), each time the row at which linear interpolation has the largest error, until
+// there are `most` rows.
 std::vector<std::size_t> with_worst(std::vector<std::size_t> kept, const LineError& lines, double tolerance, std::size_t most) {
   std::priority_queue<LineError::Stretch> stretches;
   for (std::size_t k = 1; k < kept.size(); ++k) stretches.push(lines.between(kept[k - 1], kept[k]));

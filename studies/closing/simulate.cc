@@ -18,18 +18,18 @@
 namespace softland {
 namespace {
 
-// Returns the difference of two runs of one closing, plus their common rounding. The errors of t_p, t_b and N_B are left to
-// certify().
+// Returns the difference of two runs of one closing, plus their common rounding. certify() estimates the errors of t_p, t_b and
+// N_B instead.
 FigureValues difference(const Metrics& a, const Metrics& b, double tolerance, double contact_gap) {
   constexpr double shared = 0.01;              // common error over the tolerance, relative to a figure
-  constexpr double lowest_separation = 1e-12;  // over the contact gap: metrics() ignores lower rebounds
+  constexpr double lowest_separation = 1e-12;  // over the contact gap; metrics() ignores rebounds below this separation
   FigureValues d;
   for (const Figure& figure : all_figures) {
     if (!figure.is_told_by_two_runs()) continue;
     const double own = figure.value(a);
     d[figure] = std::max(std::abs(own - figure.value(b)), shared * tolerance * std::abs(own));
   }
-  // A rebound that neither run has makes no error of the duration.
+  // A duration that is 0 because neither run has a rebound has no error.
   if (a.first_rebound_time == 0 && b.first_rebound_time == 0) d[&Metrics::first_rebound_time] = Metrics::unset;
   double& height = d[&Metrics::major_bounce_height];
   height = std::max(height, lowest_separation * contact_gap);
@@ -48,8 +48,8 @@ struct EvaluatedRun {
   SwitchOptions quadrature;
 };
 
-// Returns the time at which two runs diverge: their first rebound above a height whose heights differ by a tenth. Infinite if
-// they do not diverge.
+// Returns the time at which two runs diverge: the first rebound above a height whose heights differ by a tenth. Infinite if the
+// runs do not diverge.
 double parting_time(const EvaluatedRun& a, const EvaluatedRun& b, double lowest) {
   constexpr double parted = 0.1;
   const std::vector<Rebound>&one = a.rebounds, &two = b.rebounds;
@@ -63,7 +63,7 @@ double parting_time(const EvaluatedRun& a, const EvaluatedRun& b, double lowest)
   return std::numeric_limits<double>::infinity();
 }
 
-// True if the largest part after the runs diverge might be the largest of all parts in another run. Two runs are only two
+// True if one of the parts after the runs diverge might be the largest of all parts in another run. Two runs are only two
 // samples of a chaotic closing.
 template <class Part, class Size>
 bool chance_decides(const std::vector<Part>& parts, double parting, Size&& size) {
@@ -109,7 +109,8 @@ void forget_what_is_chaotic(FigureValues& errors, const EvaluatedRun& best, cons
   }
 }
 
-// Returns the largest relative difference of t_i, v_i, B_H and the peak force, for which the scene requests an accuracy.
+// Returns the largest relative difference of t_i, v_i, B_H and the peak force, the figures for which the scene requests an
+// accuracy.
 double error(const EvaluatedRun& run, const EvaluatedRun& other, const PreparedScene& prepared) {
   FigureValues least;
   least[&Metrics::major_bounce_height] = prepared.scene.metrics.significant_rebound;
@@ -123,19 +124,21 @@ double error(const EvaluatedRun& run, const EvaluatedRun& other, const PreparedS
 }
 
 constexpr double tighter_by = 100;
-constexpr double loosest_tolerance = 0.1;     // largest tolerance of simulate_closing
-constexpr double least_tolerance = 0.99e-13;  // errors below it are rounding; just below 1e-13, which quotients may miss
-// A fifth-order method needs 2.5 times the steps. A run that needs this many times the steps is stopped.
+constexpr double loosest_tolerance = 0.1;  // largest tolerance of simulate_closing
+constexpr double least_tolerance =
+    0.99e-13;  // smaller errors are rounding; just below 1e-13, so that a quotient that is rounded down is allowed
+// A fifth-order method needs 2.5 times the steps for a hundredth of the tolerance. A run that needs `most_growth` times the
+// steps is stopped.
 constexpr long most_growth = 10, least_steps = 100;
-constexpr double helps = 1.0 / 3;  // error of a tighter run over the error before, below which it helped
-constexpr int most_in_vain = 2;    // tighter runs in a row without help
+constexpr double helps = 1.0 / 3;  // error of a tighter run over the previous error; below this ratio tightening helped
+constexpr int most_in_vain = 2;    // number of tighter runs in a row without help after which tightening ends
 
 bool can_tighten(const EvaluatedRun& r) { return r.tolerance / tighter_by >= least_tolerance; }
 
 bool is_back_stop(const Switch& model, std::size_t contact) { return model.device().contacts[contact].side == Side::far; }
 
-// Sets the figures of an opening on command that need the switch: the impacts on its back stops, and whether it ends open and
-// at rest for at least a period of the first mode.
+// Sets the figures of an opening on command that need the switch: the impacts on its back stops, and whether the switch ends
+// open and at rest for at least a period of the first mode.
 void set_commanded_opening(Metrics& m, const Trajectory& run, const Switch& model) {
   if (!m.asked.opening) return;
   for (std::size_t c = 0; c < run.contacts.size(); ++c) {
@@ -149,18 +152,18 @@ void set_commanded_opening(Metrics& m, const Trajectory& run, const Switch& mode
   if (m.status == Status::done && !rests && !run.began_closed) m.status = Status::not_settled;
 }
 
-// Runs the closing of a scene at different tolerances and reports each run to the watch.
+// Simulates the closing of a scene at different tolerances and reports the progress of each run.
 class ClosingRuns {
  public:
   ClosingRuns(const PreparedScene& prepared, const Progress& progress)
       : prepared_(prepared), progress_(progress), signals_(prepared.signals()), command_(open_command(prepared, signals_)) {}
 
   [[nodiscard]] const std::vector<Signal>& signals() const { return signals_; }
-  /// Returns the command to open, if it comes in the window.
+  /// Returns the command to open, if its time is in the window.
   [[nodiscard]] std::optional<OpenCommand> command() const {
     return command_ && command_->time < prepared_.duration ? command_ : std::nullopt;
   }
-  /// Returns the signals of the closing, constant from the command to open on.
+  /// Returns the signals of the closing, which are constant from the command to open on.
   [[nodiscard]] const std::vector<Signal>& held() const {
     return command_ && prepared_.start() == StartState::open ? command_->held : signals_;
   }
@@ -221,13 +224,14 @@ class ClosingRuns {
     return r;
   }
 
-  // The command to open counts only after the first touch.
+  // The command to open counts only after first contact.
   [[nodiscard]] bool is_before_touch(const EvaluatedRun& r, const OpenCommand& command) const {
     return prepared_.start() == StartState::open && came_to_its_end(r.trajectory) &&
            !(r.metrics.initial_contact_time < command.time);
   }
 
-  // Records the connection, and each contact if there are several. Contacts that strike a back stop are recorded to the end.
+  // Returns a recorder of the connection, and of each contact if there are several. Contacts on a back stop are recorded to the
+  // end.
   [[nodiscard]] CourseRecorder recorder_of(const Switch& model, const std::optional<OpenCommand>& command) const {
     const MetricsOptions& plain = prepared_.scene.metrics;
     const MetricsOptions options = with_load(with_opening(plain, model, signals_, command), model, prepared_.start(), held());
@@ -251,16 +255,16 @@ class ClosingRuns {
   bool was_interrupted_ = false;
 };
 
-// A run, its judge, and the largest relative difference of t_i, v_i, B_H and the peak force.
+// A run, its more accurate judge, and the largest relative difference of t_i, v_i, B_H and the peak force between the two.
 struct JudgedRun {
   EvaluatedRun own, judge;
   double error;
-  const char* why;  // reason why the error is no smaller
+  const char* why;  // reason why the error cannot be reduced further
 };
 
-// Finds the judge of a run. If runs may be tightened, the judge takes the place of the run and gets a judge of its own, until
-// the error is within the requested accuracy or tightening no longer helps. In the latter case the tightest run is delivered,
-// and a looser run judges it. If rounding forbids a tighter integrator, only the quadrature is refined.
+// Returns a run with its judge. If runs may be tightened, the judge replaces the run and gets a judge of its own, until the
+// error is within the requested accuracy or tightening no longer helps. In the latter case the tightest run is returned, and a
+// looser run is its judge. If rounding forbids a tighter integrator, only the quadrature is refined.
 JudgedRun with_judge(EvaluatedRun own, ClosingRuns& runs, const PreparedScene& prepared, bool may_tighten) {
   const double accuracy = prepared.scene.simulate.accuracy;
   EvaluatedRun judge = runs.judge_of(own);
@@ -278,10 +282,10 @@ JudgedRun with_judge(EvaluatedRun own, ClosingRuns& runs, const PreparedScene& p
     own = std::move(judge);
     judge = std::move(next);
   }
-  constexpr double enough = 0.2;  // ratio of the tolerances: nearer ones show no integration error
+  constexpr double enough = 0.2;  // ratio of the tolerances; above it two runs show no integration error
   if (judge_is_tighter() && e > accuracy && may_tighten) std::swap(own, judge);
   const double ratio = judge.tolerance / own.tolerance;
-  if (came_to_its_end(judge.trajectory) && ratio > enough && ratio < 1 / enough) {  // the judge differs in the quadrature alone
+  if (came_to_its_end(judge.trajectory) && ratio > enough && ratio < 1 / enough) {  // only the quadrature of the judge differs
     if (ratio <= 1) own = std::move(judge);
     judge = runs.looser_than(own);
     e = error(own, judge, prepared);
@@ -290,7 +294,7 @@ JudgedRun with_judge(EvaluatedRun own, ClosingRuns& runs, const PreparedScene& p
   return {.own = std::move(own), .judge = std::move(judge), .error = e, .why = why};
 }
 
-// Writes one digit, or as many digits as distinguish `above` from the smaller `bound`.
+// Returns `above` as text with as many digits as distinguish it from the smaller `bound`.
 std::string in_telling_digits(double above, double bound) {
   constexpr int most_digits = 12;
   const std::string other = engineering(bound, "");
@@ -299,7 +303,7 @@ std::string in_telling_digits(double above, double bound) {
   return text;
 }
 
-// Adds the errors and the warnings that follow from the judge.
+// Adds the errors and warnings that follow from the comparison with the judge.
 void add_errors(Closing& c, const JudgedRun& run, const PreparedScene& prepared, bool may_tighten) {
   const EvaluatedRun &own = run.own, &judge = run.judge;
   const bool is_tighter = judge.tolerance < own.tolerance;
@@ -328,8 +332,8 @@ void add_errors(Closing& c, const JudgedRun& run, const PreparedScene& prepared,
   }
 }
 
-// Repeats the statics of a run that began closed with more modes. The run fails if the closed state in which it began, or the
-// open one in which it ends, is not stable with them.
+// Repeats the statics of a run that began closed, with more modes. The run fails if the closed state in which it began, or the
+// open state in which it ends, is not stable with more modes.
 void judge_opening_with_more_modes(Closing& c, const PreparedScene& prepared, const std::vector<Signal>& signals) {
   const ModeLadder ladder(prepared);
   if (!ladder.exists()) return;
@@ -348,7 +352,7 @@ void judge_opening_with_more_modes(Closing& c, const PreparedScene& prepared, co
   }
 }
 
-// Warns about a run that began closed, or had no state to begin in.
+// Adds warnings about a run that began closed, or whose start state does not exist.
 void warn_of_start(Closing& c, const PreparedScene& prepared) {
   const Trajectory& t = c.trajectory;
   if (c.metrics.status == Status::collapsed_at_rest) {
@@ -372,8 +376,8 @@ void warn_of_start(Closing& c, const PreparedScene& prepared) {
   }
 }
 
-// Repeats the statics of a closing with more modes. A switch that the scene's modes hold has not settled if it is released with
-// twice or four times as many modes.
+// Repeats the statics of a closing with more modes. A switch that stays closed with the scene's modes has not settled if it
+// opens with twice or four times as many modes.
 void judge_with_more_modes(Closing& c, const PreparedScene& prepared, const std::vector<Signal>& signals) {
   Metrics& m = c.metrics;
   if (m.status == Status::open) {
@@ -395,7 +399,7 @@ void judge_with_more_modes(Closing& c, const PreparedScene& prepared, const std:
     m.*figure = c.errors[figure] = Metrics::unset;
 }
 
-// Marks an interrupted closing, whose errors and warnings are not known.
+// Marks a closing as interrupted; its errors and warnings are not known.
 void say_interrupted(Closing& c) {
   const bool complete = c.trajectory.status != Status::interrupted;
   c.metrics.status = Status::interrupted;

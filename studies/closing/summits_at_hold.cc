@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view touch_at_hold = "summits touch under the hold levels", too_few = ": fewer than one";
 
-// Returns the share of the summits that touch in a contact with interference d.
+// Returns the share of the summits that touch when a rough contact has the interference d.
 template <class Law>
 double touching_share(const Law& law, double d) {
   if constexpr (requires { law.deviation; }) {
