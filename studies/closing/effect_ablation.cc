@@ -295,8 +295,7 @@ PreparedScene copy_without(const PreparedScene& prepared, const std::vector<Omis
   PreparedScene p = prepare(file);
   p.scene.warnings = prepared.scene.warnings;
   p.pull_in = prepared.pull_in;
-  p.drives =
-      prepared.drives.of(p.drive_names());  // the sources charge the electrodes of the switch with all effects, as in `prepared`
+  p.drives = prepared.drives.of(p.drive_names());  // the sources charge the same electrodes as in `prepared`
   p.duration = prepared.duration;
   p.held_from = prepared.held_from;
   p.tolerance = prepared.tolerance;

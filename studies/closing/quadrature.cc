@@ -45,8 +45,7 @@ std::vector<Eigen::VectorXd> at_touch(const Switch& model) {
 }  // namespace
 
 SwitchOptions quadrature_for(double accuracy, int modes) {
-  constexpr double points_per_digit = 4,
-                   fewest = 8;  // each further mode needs two points: it has half a wave more than the previous mode
+  constexpr double points_per_digit = 4, fewest = 8;  // two points more for each mode, which adds half a wave
   return {.points_per_length = std::max({fewest, points_per_digit * -std::log10(accuracy), 2.0 * modes + 4})};
 }
 

@@ -14,7 +14,7 @@ namespace softland {
 namespace {
 
 constexpr int places_along = 60;
-constexpr std::size_t most_told = 200;   // largest number of touches, and of rebounds, whose instants the animation must contain
+constexpr std::size_t most_told = 200;   // largest number of touches, and of rebounds, whose instants are recorded
 constexpr double line_tolerance = 2e-5;  // permitted error of linear interpolation for each mode, over the contact gap
 
 // Records the modal coordinates at increasing times.

@@ -124,9 +124,8 @@ double error(const EvaluatedRun& run, const EvaluatedRun& other, const PreparedS
 }
 
 constexpr double tighter_by = 100;
-constexpr double loosest_tolerance = 0.1;  // largest tolerance of simulate_closing
-constexpr double least_tolerance =
-    0.99e-13;  // smaller errors are rounding; just below 1e-13, so that a quotient that is rounded down is allowed
+constexpr double loosest_tolerance = 0.1;     // largest tolerance of simulate_closing
+constexpr double least_tolerance = 0.99e-13;  // smaller errors are rounding; below 1e-13, since quotients are rounded
 // A fifth-order method needs 2.5 times the steps for a hundredth of the tolerance. A run that needs `most_growth` times the
 // steps is stopped.
 constexpr long most_growth = 10, least_steps = 100;

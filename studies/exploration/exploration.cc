@@ -27,7 +27,7 @@ namespace softland {
 namespace {
 
 constexpr std::uint64_t default_devices =
-    500;  // default devices of a robustness study; the verb's 2000 serve one drive, not a map
+    500;  // default number of devices of a robustness study at a point; the verb's 2000 are for a single scene
 constexpr std::array shown_quantiles{0.5, 0.95};
 constexpr std::array step_figures{figure_of(&Metrics::permanent_contact_time), figure_of(&Metrics::bounce_count),
                                   figure_of(&Metrics::major_bounce_height), figure_of(&Metrics::impact_velocity)};
@@ -60,7 +60,7 @@ SearchRequest request_of(const std::map<std::string, std::string>& given) {
   return request;
 }
 
-/// Fills in the defaults of the options of a search.
+/// Adds the defaults of the options of a search.
 void complete_search(std::map<std::string, std::string>& given, const SceneFile& scene, const auto& checked) {
   const SearchRequest request = completed(request_of(given), scene);
   given.try_emplace("target", request.target);
@@ -86,8 +86,8 @@ void complete_search(std::map<std::string, std::string>& given, const SceneFile&
   });
 }
 
-/// Returns the drives whose pull-in voltage is a figure: the electrodes that pull in, or the dispersion force if there are
-/// none.
+/// Returns the drives whose pull-in voltage is a figure: the electrodes that pull in, or the dispersion force if there are no
+/// such electrodes.
 std::vector<std::size_t> pulling_drives(const Device& device) {
   std::vector<std::size_t> drives;
   for (std::size_t k = 0; k < device.electrodes.size(); ++k) {
@@ -97,7 +97,7 @@ std::vector<std::size_t> pulling_drives(const Device& device) {
   return drives;
 }
 
-/// Returns the drives as straight lines: exact for steps and pulses, within a thousandth of the range of voltages for sines.
+/// Returns the drives as straight lines: exact for steps and pulses, within a thousandth of the voltage range for sines.
 std::map<std::string, std::vector<std::pair<double, double>>> lines_of(const PreparedScene& p) {
   std::map<std::string, std::vector<std::pair<double, double>>> all;
   const std::vector<std::string> names = p.drive_names();
@@ -111,7 +111,7 @@ std::map<std::string, std::vector<std::pair<double, double>>> lines_of(const Pre
 
 double finite(double value) { return std::isfinite(value) ? value : Metrics::unset; }
 
-/// Removes the file name from a message: the scene of a point is in no file of the user.
+/// Removes the file name from a message, since the scene of a point is not in a file of the user.
 std::string without_file(std::string_view message) {
   constexpr std::string_view file = "scene: ";
   if (message.starts_with(file)) message.remove_prefix(file.size());
@@ -154,7 +154,7 @@ std::vector<PointFigure> robustness_figures(const AskedFigures& asked) {
 
 namespace {
 
-// Splits "touch.least_time_s" into "touch.least_time" and the unit s.
+// Splits "touch.least_time_s" into the figure "touch.least_time" and its unit s.
 PointFigure figure_of_key(const std::string& key) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 13> suffixes{{{"_rad_s", "rad/s"},
                                                                                     {"_m_s", "m/s"},
@@ -169,7 +169,7 @@ PointFigure figure_of_key(const std::string& key) {
                                                                                     {"_J", "J"},
                                                                                     {"_F", "F"},
                                                                                     {"_W", "W"}}};
-  // The unit may precede an index of a list, or the name of an electrode: "natural_frequencies_rad_s.1".
+  // The unit may be before an index of a list, or before the name of an electrode: "natural_frequencies_rad_s.1".
   for (std::size_t end = key.size(); end != std::string::npos && end > 0; end = key.rfind('.', end - 1)) {
     const std::string_view head = std::string_view(key).substr(0, end);
     for (const auto& [suffix, unit] : suffixes) {
@@ -340,7 +340,7 @@ PointRow Exploration::row(const SceneFile& scene, int jobs, const Progress& prog
   } catch (const std::exception& error) {
     row = {.status = std::string(internal_fault), .reason = error.what(), .figures = {}};
   }
-  progress.throw_if_stopped();  // an interrupted point adds no row
+  progress.throw_if_stopped();  // an interrupted point gives no row
   row.figures.resize(figures_.size(), Metrics::unset);
   return row;
 }
@@ -389,7 +389,7 @@ PointRow Exploration::pulled_in(const SceneFile& scene, const Progress& progress
     const ElectrodePullIn found = known != p.pull_in.end() ? known->second : electrode_pull_in(p.model, k, bias, progress);
     const Status status = found.statically.status == Status::done ? found.dynamically.status : found.statically.status;
     if (status != Status::done) row.status = to_string(status);
-    const double offset = is_electrode ? 0 : 1;  // the drive of a dispersion force is its factor less one
+    const double offset = is_electrode ? 0 : 1;  // the commanded value of a dispersion force is its factor less one
     row.figures.push_back(finite(offset + found.statically.voltage));
     row.figures.push_back(finite(offset + found.dynamically.voltage));
     if (!is_electrode) continue;
@@ -399,7 +399,7 @@ PointRow Exploration::pulled_in(const SceneFile& scene, const Progress& progress
   return row;
 }
 
-// Returns the numbers of a record as a row. A number that this record lacks, but that of the plan's scene has, stays unset.
+// Returns the numbers of a record as a row. A number that only the record of the plan's own scene has stays unset.
 PointRow Exploration::recorded(const SceneFile& scene, int jobs, const Progress& progress) {
   const OtherStudy::Record record = other_->record(scene, plan_.options(), plan_.seed(), jobs, progress);
   PointRow row{.status = record.status, .reason = {}, .figures = std::vector<double>(figures_.size(), Metrics::unset)};
@@ -430,11 +430,11 @@ PointRow Exploration::on_devices(const SceneFile& scene, int jobs, const Progres
 
 PointRow Exploration::optimized(const SceneFile& scene, int jobs, const Progress& progress) {
   OptimizeOptions search = planned(request_of(plan_.options()), scene, {}).options;
-  search.begins_with_half = false;  // all rows of a plan have the same budget
+  search.begins_with_half = false;  // all rows of a plan have the same budget, so a search does not begin with half of it
   search.seed = plan_.seed();
   search.jobs = jobs;
   search.stop = progress.stop;
-  // Stop here: a stopped search would still verify results that no row keeps.
+  // Stop here: an interrupted search would otherwise verify results that are not stored.
   search.on_preparation = [&progress](std::string_view, double) { progress.throw_if_stopped(); };
   const OptimizeResult found = optimize(scene, search);
   if (found.search.termination == Termination::interrupted) throw Interrupted();

@@ -78,7 +78,7 @@ void ExplorationRunner::take(std::int64_t k) {
     try {
       row = stored_row(k, content, std::move(values), exploration_.row(scene, inner_jobs_, progress_));
     } catch (const Interrupted&) {
-      return;  // the loop ends by itself
+      return;  // the loop over the points ends by itself
     }
   }
   timed([&] { return store_.add(*std::move(row)), 0; });

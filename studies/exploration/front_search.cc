@@ -15,10 +15,10 @@
 namespace softland {
 namespace {
 
-// Population for any number of points, so that a longer search begins with the points of a shorter one.
+// Number of points of a generation, for any total number, so that a longer search begins with the points of a shorter one.
 constexpr std::size_t population = 60;
 
-// Constraint violations of points whose closing is not done, and of impossible ones. NSGA-II prefers the smaller violation.
+// Constraint violations of points with an incomplete closing, and of impossible points. NSGA-II prefers the smaller violation.
 constexpr double not_done = 1, impossible = 2;
 
 class FrontSearch {
@@ -102,7 +102,7 @@ class FrontSearch {
   const FrontOptions& options_;
   Progress progress_;
   std::mutex mutex_;
-  std::map<std::vector<double>, StoredRow> fresh_;  // rows by position in the box, until their number is known
+  std::map<std::vector<double>, StoredRow> fresh_;  // rows by position in the search box, until their number is known
   FrontFound found_;
 };
 

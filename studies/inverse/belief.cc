@@ -20,7 +20,7 @@ using Eigen::VectorXd;
 
 constexpr std::size_t sampled_devices = 160;
 
-// Returns the time in (touch, touch + span) for which the contact is open, in openings of at least `least` [s].
+// Returns the time in (touch, touch + span) for which the contact is open, from openings that last at least `least` [s].
 double open_time(double touch, std::span<const ContactOpening> openings, double span, double least) {
   double sum = 0;
   for (const ContactOpening& o : openings) {
@@ -29,7 +29,8 @@ double open_time(double touch, std::span<const ContactOpening> openings, double 
   return sum;
 }
 
-// Robust term as in Student's distribution: a record that the model cannot describe has little weight.
+// Returns a robust term of the log likelihood, as in Student's distribution: a record that the model cannot describe has little
+// weight.
 double gentle(double q) { return -1.2 * std::log1p(q * q / 3); }
 
 }  // namespace
@@ -133,7 +134,7 @@ std::vector<VectorXd> Belief::resampled(std::size_t count, Draws& draws) const {
 
 namespace {
 
-// Residuals of touch times, and their derivatives by z.
+// Residuals of the first contact times, and their derivatives by z.
 struct LinearTouches {
   VectorXd residuals;
   MatrixXd slopes;
@@ -148,18 +149,18 @@ class BeliefUpdate {
     find_mode(last);
     return sampled();
   }
-  /// Fixes the ratio of contact to electrode gap at that of the scene from now on.
+  /// Fixes the ratio of contact to electrode gap at that of the scene in all later searches.
   void pin_gap_ratio() { pins_ratio_ = true; }
-  /// Returns |z|^2 + sum of r^2 of the best device that a search from `start` finds.
+  /// Returns |z|^2 + sum of r^2 at the end of the search from `start`.
   [[nodiscard]] double misfit_from(const VectorXd& start) const {
     return misfits(std::vector<VectorXd>{fitted(start).first}).front();
   }
   [[nodiscard]] double misfit_of(const VectorXd& z) const { return misfits(std::vector<VectorXd>{z}).front(); }
-  /// Returns the least misfit found. The search ends when it is at most `enough`.
+  /// Returns the least misfit of all searches. They end when the misfit is at most `enough`.
   [[nodiscard]] double least_misfit(const Belief& belief, double enough);
 
  private:
-  // Returns the closings of every point under every shot, ordered by point.
+  // Returns the closings of every point in every shot, ordered by point.
   [[nodiscard]] std::vector<PredictedClosing> close(std::span<const VectorXd> points) const {
     const std::vector<Particle> devices = scene_.devices(points, progress_);
     std::vector<PredictedShot> all;
@@ -168,7 +169,7 @@ class BeliefUpdate {
     }
     return scene_.close(all, progress_);
   }
-  // Returns the log posteriors. A point that occurs several times is simulated once.
+  // Returns the log posterior of every point. A point that occurs several times is simulated once.
   [[nodiscard]] std::vector<double> log_posteriors(std::span<const VectorXd> points) const {
     std::vector<VectorXd> distinct;
     std::vector<std::size_t> places;
@@ -191,7 +192,7 @@ class BeliefUpdate {
   [[nodiscard]] LinearTouches linear_touches(const VectorXd& z) const;
   [[nodiscard]] std::pair<VectorXd, MatrixXd> fitted(VectorXd z) const;
   [[nodiscard]] std::vector<double> misfits(std::span<const VectorXd> points) const;
-  // Residual of a fixed ratio of the gaps: a thousandth of the ratio's standard deviation gives a residual of 1.
+  // Returns the residual of a fixed gap ratio: a thousandth of the ratio's standard deviation gives a residual of 1.
   [[nodiscard]] double ratio_residual(const VectorXd& z) const {
     constexpr double stiff = 1000;
     return pins_ratio_ ? stiff * scene_.gap_ratio_coordinate(z).value_or(0) : 0;
@@ -214,7 +215,8 @@ class BeliefUpdate {
   double best_ = -std::numeric_limits<double>::infinity();
 };
 
-// Returns the residuals at z, those beyond 4 compressed, and their slopes by differences. All devices close together.
+// Returns the residuals at z, those beyond 4 compressed, and their derivatives by finite differences. The closings of all
+// points are simulated together.
 LinearTouches BeliefUpdate::linear_touches(const VectorXd& z) const {
   constexpr double apart = 0.01, steepest = 3000;
   const auto touches = static_cast<Eigen::Index>(shots_.size()), m = touches + (pins_ratio_ ? 1 : 0), n = scene_.size();
@@ -225,7 +227,7 @@ LinearTouches BeliefUpdate::linear_touches(const VectorXd& z) const {
   std::vector<VectorXd> points{z};
   for (Eigen::Index k = 0; k < n; ++k) points.push_back(z + apart * VectorXd::Unit(n, k));
   const std::vector<PredictedClosing> closings = close(points);
-  MatrixXd residuals(m, n + 1);  // a column for each point
+  MatrixXd residuals(m, n + 1);  // residuals, one column per point
   for (Eigen::Index k = 0; k <= n; ++k) {
     for (Eigen::Index i = 0; i < touches; ++i)
       residuals(i, k) = compressed(likelihood_.touch_residual(closings[static_cast<std::size_t>(k * touches + i)],
@@ -237,8 +239,8 @@ LinearTouches BeliefUpdate::linear_touches(const VectorXd& z) const {
   return {.residuals = own, .slopes = slopes.cwiseMax(-steepest).cwiseMin(steepest)};
 }
 
-// Minimises the squares of the residuals of touch times and of z by Levenberg and Marquardt. Returns the minimum, and the
-// curvature there: the inverse covariance of a normal distribution.
+// Minimises the squares of the residuals of first contact times and of z by Levenberg and Marquardt. Returns the minimum, and
+// the curvature at the minimum: the inverse covariance of a normal distribution.
 std::pair<VectorXd, MatrixXd> BeliefUpdate::fitted(VectorXd z) const {
   constexpr double longest = 1.5, enough = 0.02, hopeless = 1e4;
   constexpr int most_rounds = 14;
@@ -268,7 +270,7 @@ std::pair<VectorXd, MatrixXd> BeliefUpdate::fitted(VectorXd z) const {
   return {best, curvature};
 }
 
-// Searches from the `most` likeliest of these starts, until an end is as likely as `enough`.
+// Searches from the `most` likeliest of these starts, until the end of a search is as likely as `enough`.
 void BeliefUpdate::climb_from(const std::vector<VectorXd>& starts, std::size_t most, double enough) {
   const std::vector<double> before = log_posteriors(starts);
   std::vector<std::size_t> order(starts.size());
@@ -276,7 +278,7 @@ void BeliefUpdate::climb_from(const std::vector<VectorXd>& starts, std::size_t m
   std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return before[a] > before[b]; });
   for (std::size_t q = 0; q < std::min(most, order.size()); ++q) {
     const VectorXd& start = starts[order[q]];
-    if (q > 0 && start == starts[order[q - 1]]) continue;  // the same start has the same end
+    if (q > 0 && start == starts[order[q - 1]]) continue;  // equal starts have the same end
     auto [z, curvature] = fitted(start);
     double value = log_posteriors(std::span(&z, 1)).front();
     if (value < before[order[q]]) z = start, value = before[order[q]];
@@ -296,7 +298,7 @@ void BeliefUpdate::find_mode(const Belief& last) {
   if (best_ < -12 - 4 * shots) climb_from(fresh(many, 1.6), 6, -12 - 4 * shots);
 }
 
-// Returns |z|^2 + sum of r^2 of every point.
+// Returns |z|^2 + sum of r^2 of every point z.
 std::vector<double> BeliefUpdate::misfits(std::span<const VectorXd> points) const {
   const std::vector<PredictedClosing> closings = close(points);
   std::vector<double> all;
@@ -333,13 +335,14 @@ double BeliefUpdate::least_misfit(const Belief& belief, double enough) {
     starts = std::move(ranked);
   };
   rank();
-  // A contact that stays open has no derivative by z. The least misfit then lies between such a device and the nominal one.
+  // A contact that stays open has no derivative by z. The least misfit is then between a device with such a contact and the
+  // nominal device.
   for (std::size_t q = 0, count = starts.size(); q < count; ++q) {
     for (const double share : nearer) starts.push_back(own(share * starts[q]));
   }
   rank();
   for (std::size_t q = 0; q < starts.size() && least > enough; ++q) {
-    if (q > 0 && starts[q] == starts[q - 1]) continue;  // the same start has the same end
+    if (q > 0 && starts[q] == starts[q - 1]) continue;  // equal starts have the same end
     least = std::min(least, misfit_from(starts[q]));
   }
   return least;
@@ -381,7 +384,7 @@ Belief BeliefUpdate::sampled() {
 
 TouchMisfit touch_misfit(const TuningModel& scene, std::span<const LearnedShot> shots, const Belief& belief, Draws& draws,
                          const Progress& progress) {
-  constexpr double one_in_a_thousand = 3.0902;  // standard deviations of the normal distribution
+  constexpr double one_in_a_thousand = 3.0902;  // 0.999 quantile of the standard normal distribution
   const auto stayed_open = [](const LearnedShot& shot) { return !first_touch(shot.record).has_value(); };
   std::vector<LearnedShot> counted(shots.begin(), shots.end());
   if (std::ranges::count_if(counted, stayed_open) == 1) std::erase_if(counted, stayed_open);

@@ -12,7 +12,7 @@
 namespace softland {
 namespace {
 
-// Evaluates all residuals at one x together. Ceres asks for them one by one, so that each may have its own loss.
+// Evaluates all residuals at x at once. Ceres requests the residuals one by one, so that each may have its own loss.
 class Evaluations final : public ceres::EvaluationCallback {
  public:
   Evaluations(const LeastSquares& problem, const std::vector<double>& x, const Progress& progress)
@@ -84,7 +84,7 @@ std::unique_ptr<ceres::LossFunction> loss_function(Loss loss) {
   return nullptr;
 }
 
-// Silences the log of Ceres; its summary has the same content.
+// Silences the log of Ceres; the summary that Ceres returns has the same content.
 void silence_log() {
   static std::once_flag once;
   std::call_once(once, [] { FLAGS_minloglevel = google::GLOG_FATAL; });

@@ -15,7 +15,7 @@ using Eigen::VectorXd;
 
 // Inverts a symmetric matrix that is positive except for rounding. Directions without information get very large variances.
 MatrixXd inverse(const MatrixXd& matrix) {
-  constexpr double least = 1e-13;  // smallest eigenvalue, over the largest
+  constexpr double least = 1e-13;  // smallest eigenvalue that is used, over the largest eigenvalue
   const SymmetricEigen eigen = symmetric_eigen(matrix);
   const double largest = eigen.values[eigen.values.size() - 1];
   const VectorXd inverses = eigen.values.unaryExpr([&](double v) { return 1 / std::max(v, std::max(least * largest, 1e-300)); });

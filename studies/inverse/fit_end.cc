@@ -71,7 +71,8 @@ void EndOfFit::add_residuals(const VectorXd& values) {
   }
 }
 
-// Weak directions of the mean of the devices: a direction that is weak on one is weak on all, each in a mixture of its own.
+// Returns the weak directions of the mean device: a direction that is weak on one device is weak on all devices, with different
+// components.
 std::vector<WeakDirection> EndOfFit::weak_of_a_device() const {
   const auto n = static_cast<Index>(problem_.parameters.size());
   const std::vector<std::size_t>& first = problem_.of_device.front();
@@ -99,7 +100,7 @@ void EndOfFit::add_unknowns() {
     FittedUnknown one{.name = variable.name,
                       .device = p.device ? problem_.devices[*p.device].name : "",
                       .unit = variable.is_factor ? "" : variable.keys.front().unit};
-    // A factor of one key is shown as the value of that key.
+    // A factor of a single key is shown as the value of that key.
     const bool as_value = variable.is_factor && variable.keys.size() == 1;
     const double unit = as_value ? variable.keys.front().nominal : 1;
     if (as_value) one.unit = variable.keys.front().unit;

@@ -22,7 +22,7 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// Returns the entry of the spread that has this key; else the name itself.
+// Returns the entry of [spread] that has the key `name`; else `name` itself.
 std::string entry_of(const DeviceSpread& spread, const std::string& name) {
   for (const SpreadVariable& v : spread.variables) {
     if (v.name == name) return v.name;
@@ -33,8 +33,8 @@ std::string entry_of(const DeviceSpread& spread, const std::string& name) {
   return name;
 }
 
-// Returns the scene in volts, with a spread of the unknowns alone. Unknowns without an entry get one, which does not act as a
-// prior.
+// Returns the scene in volts, whose [spread] has the unknowns alone. Unknowns without an entry in [spread] get an entry, which
+// does not act as a prior.
 PreparedScene with_unknowns(const PreparedScene& given, std::vector<std::string>& unknowns,
                             std::vector<std::string>& without_prior) {
   const DeviceSpread& spread = given.scene.spread;
@@ -96,7 +96,7 @@ void add_parameters(FitProblem& problem, const std::vector<std::string>& shared,
   }
 }
 
-// Unknowns of one device, or the shared ones, are correlated as the spread says.
+// Adds the prior, in which the unknowns of one device, or the shared unknowns, have the correlations of [spread].
 void add_prior(FitProblem& problem) {
   const auto n = static_cast<Index>(problem.parameters.size());
   problem.prior = problem.prior_root = MatrixXd::Zero(n, n);

@@ -20,15 +20,16 @@ namespace {
 
 constexpr double square(double x) { return x * x; }
 
-// Returns the possible places of the module: beside the installed program, in the build tree, in the install prefix.
+// Returns the possible paths of the shared library with Ceres: beside the installed program, in the build tree, in the install
+// prefix.
 std::vector<std::filesystem::path> module_places() {
   std::error_code fault;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", fault);
   return {program.parent_path() / SOFTLAND_CERES_FROM_PROGRAM, SOFTLAND_CERES_BUILT, SOFTLAND_CERES_INSTALLED};
 }
 
-// Loads the module. Its dependencies (glog, SuiteSparse, a BLAS) are kept apart: a program that does not fit never loads them,
-// and no other library uses their symbols.
+// Loads the shared library with Ceres. Its dependencies (glog, SuiteSparse, a BLAS) stay separate: a program without a fit
+// never loads them, and no other library uses their symbols.
 CeresSolve* load_module() {
   std::string faults;
   for (const std::filesystem::path& place : module_places()) {

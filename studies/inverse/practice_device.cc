@@ -19,7 +19,7 @@
 namespace softland {
 namespace {
 
-// Throws if the switch has no contact: a laboratory could not record its closing.
+// Throws InvalidInput if the switch has no contact: a laboratory could not record the closing.
 void require_contact(const PreparedScene& nominal) {
   require(nominal.scene.device.has_contact(), [&] {
     return fmt::format("{}: needs a [contact] section: a laboratory records the state of the contact", nominal.scene.file.name());
@@ -76,7 +76,7 @@ PreparedScene with_model(const PreparedScene& nominal, const PracticeModel& mode
   return own;
 }
 
-// Returns the first device of this seed that can be described.
+// Returns the first random device of this seed that can be described.
 SampledDevice drawn(const PreparedScene& own, std::uint64_t seed) {
   constexpr std::uint64_t most = 100;
   const Ensemble ensemble(own, 1);
@@ -136,11 +136,11 @@ std::vector<ContactEdge> PracticeDevice::seen_edges(const std::vector<ContactClo
                  opens = touch.end + options_.laboratory.edge_error * random_normal(of_shot, Stream::practice_edges, drawn++);
     const bool stays_open = seen.empty() || closes - seen.back().time > std::max(0.0, options_.laboratory.unseen);
     if (!stays_open) {
-      seen.pop_back();  // close the gap in the record
+      seen.pop_back();  // removes the opening, which is too short to be recorded
     } else if (!(opens <= closes)) {
       seen.push_back({.time = closes, .closed = true});
     } else {
-      continue;  // a touch too short to be recorded
+      continue;  // omits a contact that is too short to be recorded
     }
     if (std::isnan(opens)) break;
     seen.push_back({.time = std::max(opens, seen.back().time), .closed = false});

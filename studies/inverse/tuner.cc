@@ -37,9 +37,9 @@ void check(const TunerOptions& options) {
 namespace {
 
 constexpr std::size_t proposal_devices = 32;
-constexpr double enough_devices = 8;                  // effective devices that a belief needs to predict
-constexpr double certain = 3.5;                       // standard errors from which on the ratio of the gaps differs
-constexpr std::size_t first_ones = 4, last_ones = 8;  // numbers of records from which the belief is computed
+constexpr double enough_devices = 8;  // effective number of devices that a belief needs to predict
+constexpr double certain = 3.5;       // number of standard errors above which the gap ratio differs from the scene's
+constexpr std::size_t first_ones = 4, last_ones = 8;  // numbers of first and last records from which the belief is computed
 
 std::optional<BelievedQuantity> believed_gap_ratio(const TuningModel& scene, const Belief& belief) {
   std::vector<Eigen::VectorXd> ratios;
@@ -57,12 +57,12 @@ std::optional<BelievedQuantity> believed_gap_ratio(const TuningModel& scene, con
                           .deviation = of_ratio.deviation(0)};
 }
 
-// Returns the position of the first random number of a closing.
+// Returns the index of the first random number that is used after a number of closings.
 std::uint64_t first_draw(int closings) { return (static_cast<std::uint64_t>(closings) + 1) << 20; }
 
 }  // namespace
 
-// The members that no closing changes.
+// The members of a tuner that do not change with the closings.
 struct Tuner::Setting {
   Setting(const SceneFile& file, const TunerOptions& options, const Progress& progress)
       : scene(file, options, progress), recipes(recipes_of(scene, progress)), space(scene) {
@@ -77,16 +77,16 @@ struct Tuner::Setting {
 struct Tuner::State {
   struct Fired {
     LearnedShot shot;
-    std::vector<double> x;  // variables of its shape
+    std::vector<double> x;  // variables of the waveform's shape
     TunerShot as_proposed;
-    int waveform = 0;  // number of the first shot with this waveform
+    int waveform = 0;  // number of the first shot with the same waveform
   };
-  // A controller by which the voltages of a repeated shot follow its touch time.
+  // A controller that corrects the voltages of a repeated shot by its first contact time.
   struct TouchController {
-    std::vector<Waveform> waveforms;  // waveforms at s = 1
-    int waveform = 0;                 // number of the first shot with this waveform
+    std::vector<Waveform> waveforms;  // waveforms for the voltage factor s = 1
+    int waveform = 0;                 // number of the first shot with the same waveform
     double slope = Metrics::unset, most = 1, s = 1;
-    std::vector<double> touches;  // first touches, whose mean is the reference [s]
+    std::vector<double> touches;  // first contact times, whose mean is the reference [s]
     [[nodiscard]] std::vector<Waveform> controlled_waveforms() const {
       std::vector<Waveform> own = waveforms;
       for (Waveform& waveform : own) waveform = scaled(std::move(waveform), s, 1);
@@ -104,17 +104,17 @@ struct Tuner::State {
     std::vector<Fired> fired;
     int closings = 0, in_a_row = 0;
     std::size_t forgotten = 0;  // number of first records that are no longer used
-    double hold = 1;            // hold level over the nominal one
+    double hold = 1;            // hold level over the nominal hold level
     Belief belief;
     std::optional<TouchController> controller;
     std::vector<double> x;  // variables of the next shot
     TunerShot next, kept;
     int next_waveform = 0;          // number of the first shot with the next waveform; 0 for a new waveform
-    std::vector<double> surprises;  // errors of predicted touch times, in standard deviations
-    int unexpected_bounces = 0;     // number of closings that bounced although hardly a device of the belief did
-    int unexplained_bounces = 0;    // long bounces in the used records that the best device does not have
+    std::vector<double> surprises;  // errors of predicted first contact times, in standard deviations
+    int unexpected_bounces = 0;     // number of closings that bounced although hardly any device of the belief did
+    int unexplained_bounces = 0;    // long bounces in the used records that the best device of the belief does not have
     std::optional<BelievedQuantity> gap_ratio =
-        {};                   // last value from enough devices; none if the scene's ratio explains the records
+        {};                   // last gap ratio from enough devices; none if the scene's ratio explains the records
     TouchMisfit misfit = {};  // misfit of the records that were used last
   };
 
@@ -165,7 +165,7 @@ struct Tuner::State {
 
 namespace {
 
-// Returns the difference between recorded and predicted first touch, in standard deviations.
+// Returns the difference between recorded and predicted time of first contact, in standard deviations.
 double surprise(const PredictedRecord& predicted, const ContactRecord& record, double effective_devices) {
   constexpr double both_sides = 1.96;
   const std::optional<double> seen = first_touch(record);
@@ -174,9 +174,10 @@ double surprise(const PredictedRecord& predicted, const ContactRecord& record, d
   return both_sides * (*seen - predicted.touch_median) / (edge - predicted.touch_median);
 }
 
-// True if the contact opened for longer than errors of the model explain: a mode that the model lacks opens it by a nanometre.
+// True if the contact opened for so long that an error of the model cannot be the reason. A mode that the model lacks causes
+// short openings, of a nanometre.
 bool has_long_bounce(const TuningModel& scene, const ContactRecord& record) {
-  constexpr double share = 0.04;  // least duration, over the closing time of the plain step
+  constexpr double share = 0.04;  // least duration of a long opening, over the closing time of the plain step
   if (record.edges.empty()) return bounce_count(record).value_or(0) > 0;
   const double least = scene.options().laboratory.unseen + share * scene.scales().closing_time;
   return std::ranges::any_of(openings(record), [&](const ContactOpening& one) { return one.end - one.begin >= least; });
@@ -200,7 +201,8 @@ int unexplained_bounces(const TuningModel& scene, std::span<const LearnedShot> s
   return count;
 }
 
-// True if the ratio differs by several standard errors, and by at least one standard deviation of the prior.
+// True if the gap ratio differs from the scene's by several standard errors, and by at least one standard deviation of the
+// prior.
 bool is_off(const std::optional<BelievedQuantity>& ratio) {
   return ratio && std::abs(ratio->mean - 1) >= std::max(certain * ratio->deviation, ratio->prior_deviation);
 }
@@ -230,7 +232,7 @@ Tuner::State::Knowledge Tuner::State::updated(Knowledge known, const ContactReco
     return known;
   }
   if (known.controller)
-    known.forgotten = known.fired.size() - std::min(known.fired.size(), last_ones);  // drop records from before the drift
+    known.forgotten = known.fired.size() - std::min(known.fired.size(), last_ones);  // drop records from before a drift
   known.controller.reset();
   propose_next(known, progress);
   return known;
@@ -238,7 +240,7 @@ Tuner::State::Knowledge Tuner::State::updated(Knowledge known, const ContactReco
 
 void Tuner::State::propose_next(Knowledge& known, const Progress& progress) const {
   constexpr double calm = 0.05;
-  constexpr int hold_is_fixed = 2;  // closings
+  constexpr int hold_is_fixed = 2;  // number of closings
   Draws draws(scene.options().seed, first_draw(known.closings));
   std::vector<LearnedShot> shots;
   for (std::size_t k = known.forgotten; k < known.fired.size(); ++k) {
@@ -271,7 +273,7 @@ void Tuner::State::propose_next(Knowledge& known, const Progress& progress) cons
   if (known.in_a_row >= 2 && proposal.cost.landing < calm) repeat(known, forecast);
 }
 
-// Keeps the best waveform among those that did not bounce in their last shot, unless the next waveform is clearly better.
+// Updates the best shot among those that did not bounce when last applied, unless the next waveform is clearly better.
 void Tuner::State::keep_best(Knowledge& known, const OutcomeForecast& forecast, double expected) const {
   constexpr double clearly = 0.15;
   known.kept = known.next;
@@ -305,7 +307,7 @@ void Tuner::State::repeat(Knowledge& known, const OutcomeForecast& forecast) con
 
 void Tuner::State::fire_kept_again() {
   const auto fired = std::ranges::find(now.fired, now.kept.number, [](const Fired& one) { return one.as_proposed.number; });
-  if (fired == now.fired.end() || now.controller) return;  // the repeated waveform is the one kept
+  if (fired == now.fired.end() || now.controller) return;  // the repeated waveform is already that of `kept`
   now.x = fired->x;
   now.next_waveform = fired->waveform;
   const int number = now.next.number;
@@ -395,7 +397,8 @@ BeliefSummary Tuner::belief() const {
 
 namespace {
 
-// Returns "The device does not match the model: its contact gap is 4.8 % wider ...". The ratio is constant over [spread].
+// Returns "The device does not match the model: its contact gap is 4.8 % wider ...". All devices of [spread] have one gap
+// ratio.
 std::string gap_ratio_prose(const BelievedQuantity& ratio) {
   constexpr double percent = 100;
   const double change = percent * (ratio.mean - 1);

@@ -24,13 +24,13 @@
 namespace softland {
 namespace {
 
-constexpr double belief_accuracy = 1e-4;  // accuracy of closings
+constexpr double belief_accuracy = 1e-4;  // relative accuracy of simulated closings
 constexpr double viscosity_deviation = 0.05, contact_deviation = 0.1;
 // Error of the model in time, over the closing time of the plain step.
 constexpr double delay_share = 0.003;
 
-// Simulated times over the closing time of the plain step: after the first touch, without a touch, and after the last
-// breakpoint.
+// Simulated times over the closing time of the plain step: after first contact, without contact, and after the last breakpoint
+// of the waveforms.
 constexpr double after_touch = 1.8, longest_wait = 7.4, tail = 0.75;
 
 bool varies(const DeviceSpread& spread, const std::string& path) {
@@ -56,7 +56,7 @@ std::vector<std::string> shaped_drives_of(const PreparedScene& prepared, Actuato
   return names;
 }
 
-// Returns the keys with this name of the contacts that make the connection; contact.KEY if there is one contact.
+// Returns the keys `key` of the contacts that make the connection; contact.KEY if there is one contact.
 std::vector<std::string> contact_keys(const SceneFile& file, const Device& device, std::string_view key) {
   std::vector<std::string> keys;
   for (const Contact& contact : device.contacts) {
@@ -72,10 +72,10 @@ std::vector<std::string> contact_gaps(const PreparedScene& prepared) {
   return contact_keys(prepared.scene.file, prepared.scene.device, "gap");
 }
 
-// Returns the name of the quantity for these contact gaps.
+// Returns the name of the quantity that varies these contact gaps.
 std::string gap_name(const std::vector<std::string>& gaps) { return gaps.size() == 1 ? gaps.front() : "contact gaps"; }
 
-// Returns the scene in volts, with every default written out, and with the further quantities that the belief varies.
+// Returns the scene in volts, with every default written out, and with the further quantities that a belief varies.
 SceneFile with_nuisances(const PreparedScene& prepared, const TunerOptions& options) {
   SceneFile file = prepared.resolved();
   const DeviceSpread& spread = prepared.scene.spread;
@@ -99,7 +99,7 @@ SceneFile with_nuisances(const PreparedScene& prepared, const TunerOptions& opti
   return file;
 }
 
-// Records the landing of one lane.
+// Records the closing of one SIMD lane.
 class LaneClosing final : public LandingObserver {
  public:
   void touch(const Touch& touch) override {
@@ -113,7 +113,7 @@ class LaneClosing final : public LandingObserver {
   PredictedClosing closing = {};
 };
 
-// Records the landing of a closing that runs alone, and its capacitance if an instrument records it.
+// Records a closing that is simulated alone, and its capacitance if an instrument records it.
 class SingleClosing final : public ClosingObserver {
  public:
   SingleClosing(const Switch& model, double threshold, double speed_per_rate)
@@ -153,14 +153,14 @@ class SingleClosing final : public ClosingObserver {
     return own;
   }
   ReboundFinder finder_;
-  double speed_per_rate_;  // [m/F]
+  double speed_per_rate_;  // impact velocity over the rate of the capacitance [m/F]
   std::optional<CapacitanceEdges> edges_;
 };
 
 }  // namespace
 
-// Takes the contact gaps out of the factor that they share with other gaps. They then vary together with the other gaps, but
-// with a further deviation of their own, as correlated normal factors.
+// Removes the contact gaps from the variable that they share with other gaps. The contact gaps then vary together with the
+// other gaps, but with a further deviation of their own, as correlated normal factors.
 void TuningModel::loosen_contact_gap(DeviceSpread& spread, const std::vector<std::string>& gaps) {
   for (std::size_t i = 0; i < spread.variables.size(); ++i) {
     SpreadVariable& shared = spread.variables[i];
@@ -221,7 +221,7 @@ TuningModel::TuningModel(const SceneFile& file, const TunerOptions& options, con
   drives_ = std::make_unique<const DeviceDrives>(nominal_);
   const std::vector<Signal> signals = nominal_.applied(nominal_.waveforms(plain_step(nominal_, options.actuator)));
   const double longest = periods_to_close * 2 * std::numbers::pi / nominal_.model.basis().angular_frequencies()[0];
-  // The connection of several contacts may close later than its first contact.
+  // The connection of several contacts may close later than the first of its contacts.
   const double after_contact = nominal_.model.contacts() > 1 ? longest : 0;
   const Trajectory closing = simulate_closing(
       nominal_.model, signals,
@@ -238,7 +238,7 @@ TuningModel::TuningModel(const SceneFile& file, const TunerOptions& options, con
     step_stays_from_ = std::isfinite(step.permanent_contact_time) ? step.permanent_contact_time : scales_.closing_time;
   }
   if (options.touch) scales_.latest_touch = beside_step(*options.touch, scales_.closing_time).limit;
-  constexpr double coarsest = 0.1;  // largest error of an edge, over the closing time
+  constexpr double coarsest = 0.1;  // largest error of an edge, over the closing time of the plain step
   require(options.laboratory.edge_error < coarsest * scales_.closing_time, [&] {
     return fmt::format("the error of edges, {}, must be below a tenth of the closing time of the plain step, {}",
                        engineering(options.laboratory.edge_error, "s", 3), engineering(scales_.closing_time, "s", 3));
@@ -269,7 +269,7 @@ NormalBelief TuningModel::in_spread(const NormalBelief& belief) const {
 }
 
 std::vector<double> TuningModel::values(const Eigen::VectorXd& point) const {
-  constexpr double furthest = 8;  // largest coordinate, in standard deviations
+  constexpr double furthest = 8;  // bound of the coordinates, in standard deviations
   const Eigen::VectorXd z = spread_point(point);
   std::vector<double> u(static_cast<std::size_t>(size() - 1));
   for (std::size_t k = 0; k < u.size(); ++k)
@@ -399,7 +399,7 @@ void TuningModel::find_units(const Progress& progress) {
   const PreparedScene& p = nominal_;
   volts_slope_ = time_slope_ = pulled_through_slope_ = Eigen::VectorXd::Zero(size());
   if (options_.actuator != Actuator::pzt && has_pulling_electrode(p.scene.device)) electrode_ = searched_drive(p.scene.device);
-  constexpr double apart = 0.5;  // step of the differences, in standard deviations
+  constexpr double apart = 0.5;  // step of the finite differences, in standard deviations
   std::vector<double> levels = hold_levels(p.signals()), bias;
   if (electrode_) bias = bias_of(p.scene, *electrode_);
   struct Found {
@@ -443,7 +443,7 @@ TuningModel::Units TuningModel::units(const Eigen::VectorXd& z) const {
 }
 
 double TuningModel::safe_level(const NormalBelief& belief) const {
-  constexpr double one_in_a_thousand = 3.0902;  // standard deviations
+  constexpr double one_in_a_thousand = 3.0902;  // 0.999 quantile of the standard normal distribution
   const NormalBelief own = in_spread(belief);
   const double deviation = std::sqrt(std::max(0.0, pulled_through_slope_.dot(own.covariance * pulled_through_slope_)));
   return pulled_through_ * std::exp(pulled_through_slope_.dot(own.mean) - one_in_a_thousand * deviation);

@@ -13,7 +13,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// The measurement y = J z + n of one device.
+// The measurement y = J z + n of one tuned device.
 struct LinearMeasurement {
   MatrixXd rows;
   VectorXd values;
@@ -27,7 +27,8 @@ void check(const NormalBelief& belief, Index size) {
 }
 
 LinearMeasurement measurement_of(const TunedBelief& tuned) {
-  // Largest variance of a measured direction, over that of the prior: a belief from samples scatters around 1.
+  // Largest variance of a measured direction, over that of the prior: the variance of samples without information scatters
+  // around 1.
   constexpr double measured_share = 0.5;
   const Index n = tuned.prior.mean.size();
   const MatrixXd inverse = whitening_of(tuned.prior.covariance);
@@ -60,7 +61,7 @@ WaferBelief believed_of_wafer(std::span<const TunedBelief> tuned, Index size) {
     all.push_back(measurement_of(one));
     count += all.back().values.size();
   }
-  MatrixXd rows(count, size), own = MatrixXd::Zero(count, count);  // `own` has J J^T of each device
+  MatrixXd rows(count, size), own = MatrixXd::Zero(count, count);  // J of all measurements; `own` has J J^T of each device
   VectorXd values(count);
   Index begin = 0;
   for (const LinearMeasurement& one : all) {
@@ -71,7 +72,7 @@ WaferBelief believed_of_wafer(std::span<const TunedBelief> tuned, Index size) {
     begin += m;
   }
   constexpr int steps = 40;
-  constexpr double least_apart = 0.03;  // least standard deviation within a wafer, over that of all devices
+  constexpr double least_apart = 0.03;  // smallest standard deviation within a wafer, over that of all devices
   const MatrixXd identity = MatrixXd::Identity(count, count), shared = rows * rows.transpose();
   std::vector<double> shares, logarithms;
   std::vector<NormalBelief> nexts;
