@@ -100,8 +100,8 @@ double cost(const Aim& aim, const Metrics& m, const CostScale& scale, const Metr
   const double h = shares.of(&Metrics::major_bounce_height);
   const double p = m.major_bounce_height / (m.major_bounce_height + 10 * options.significant_rebound);
   const double v = shares.of(&Metrics::largest_impact_velocity);
-  // The landing excess is unknown when a drive does not come to rest within the run. The cost then consists of the other
-  // figures.
+  // The energy above the closed equilibrium (landing_excess) is unknown when a drive does not come to rest within the run. The
+  // cost then consists of the other figures.
   const double k = std::isnan(m.landing_excess) ? 0 : shares.of(&Metrics::landing_excess);
   const double s = m.separated / scale.score_window;
   const double t = shares.of(&Metrics::initial_contact_time);

@@ -48,13 +48,13 @@ struct Metrics {
   static constexpr double unset = std::numeric_limits<double>::quiet_NaN();
 
   Status status = Status::not_run;
-  double initial_contact_time = unset;     ///< t_i [s]
-  double permanent_contact_time = unset;   ///< t_p [s]; NaN when not settled
-  double bounce_time = unset;              ///< t_b = t_p - t_i [s]
+  double initial_contact_time = unset;     ///< t_i, time of first contact [s]
+  double permanent_contact_time = unset;   ///< t_p, time from which the contact stays closed [s]; NaN when not settled
+  double bounce_time = unset;              ///< t_b = t_p - t_i, duration of bouncing [s]
   int bounce_count = 0;                    ///< N_B, number of significant rebounds; meaningless without contact
   double major_bounce_height = unset;      ///< B_H, height of the highest rebound [m]; 0 when there is no rebound
   double first_rebound_time = unset;       ///< duration of the first significant rebound [s]; 0 without a rebound
-  double impact_velocity = unset;          ///< v_i [m/s]
+  double impact_velocity = unset;          ///< v_i, impact velocity of the first touch [m/s]
   double peak_contact_force = unset;       ///< largest contact force of the run [N]
   double impact_energy = unset;            ///< sum over touches of the largest stored contact energy [J]
   double hold_force = unset;               ///< contact force in the equilibrium under the hold levels [N]
@@ -74,10 +74,10 @@ struct Metrics {
   AskedFigures asked = {};      ///< MetricsOptions::asked
   // The following figures are known when the drives command the switch to open: see OpeningOnCommand.
   double open_command = unset;           ///< time of the command to open [s]
-  double opening_time = unset;           ///< time from the command to the last break of the contact [s]
+  double opening_time = unset;           ///< time from the command to open to the last break of the contact [s]
   int release_bounces = 0;               ///< bounces on opening; meaningless if the run ends closed
   double release_bounce_height = unset;  ///< highest separation on opening that ends in a touch [m]; 0 without a bounce
-  double release_settling_time = unset;  ///< time from the command to rest in the open state [s]
+  double release_settling_time = unset;  ///< time from the command to open to rest in the open state [s]
   double overshoot_open = unset;         ///< largest excursion beyond the open position, away from the contact [m]
   double least_gap_open = unset;         ///< smallest separation after the opening [m]
   double closed_time = unset;            ///< time in contact from the first touch to the last break [s]
@@ -94,7 +94,7 @@ struct Metrics {
   double peak_slew = unset;                ///< largest |dV/dt| of any drive [V/s]; infinite for a jump of the voltage
   double largest_impact_velocity = unset;  ///< largest impact velocity of all touches, not only of the first [m/s]
   // The following figures enter costs; results do not show them.
-  double closest = unset;    ///< smallest separation before the first touch [m]; known also for a run that never touches
+  double closest = unset;    ///< smallest separation before the first touch [m]; known also without contact
   double separated = unset;  ///< time above the first-touch plane after the first touch [s]
   /// End of the last significant rebound; end of the run when the last rebound has not ended; t_i without one [s].
   double last_rebound_end = unset;

@@ -39,7 +39,7 @@ double to_ten_digits(double value) { return std::isfinite(value) ? std::stod(fmt
 // modes if the last value still changes much.
 template <class Find>
 ByModes value_by_modes(const ModeLadder& ladder, Find&& find) {
-  constexpr double much = 5e-3;  // relative change between the last two values
+  constexpr double much = 5e-3;  // relative change of the last value from which on the finest switch is used
   std::map<int, double> values;
   double change = 0, last = std::nan("");
   const auto add = [&](const Switch& model) {

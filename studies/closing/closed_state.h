@@ -20,7 +20,7 @@ struct ClosedState {
   double contact_force = std::numeric_limits<double>::quiet_NaN();        ///< contact force of the equilibrium [N]
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();  ///< ClosedEquilibrium::smallest_eigenvalue [rad^2/s^2]
   /// Collapse voltage of each electrode that pulls towards the contact [V]: above this voltage the beam of the closed switch
-  /// collapses onto the electrode. NaN if it is above ten times the hold level.
+  /// collapses onto the electrode. NaN for a voltage above ten times the hold level.
   std::map<std::string, double> pulled_through;
   /// The smallest eigenvalue and the collapse voltages with more modes (by_modes.h); none if more modes are impossible.
   std::optional<ByModes> by_modes;

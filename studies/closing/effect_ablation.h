@@ -72,8 +72,8 @@ struct EffectAblation {
   std::optional<double> end = {};  ///< time at which the bound ended the closing [s]; none if it ran to the end of the window
 };
 
-/// Returns all described effects that the scene could omit, in the order of its sections. Drives with a waveform do not count
-/// as effects.
+/// Returns all described effects that the scene could omit, in the order of the scene's sections. Drives with a waveform do not
+/// count as effects.
 [[nodiscard]] std::vector<OmissibleEffect> omissible_effects(const PreparedScene& prepared);
 
 /// Returns the scene without these effects. The waveforms keep their voltages.

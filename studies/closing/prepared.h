@@ -86,9 +86,9 @@ struct PreparedScene {
   [[nodiscard]] Signal commanded_samples(std::size_t k, const Signal& commanded) const;
   /// Returns the limits of the driver of drive k; no limits if the scene has none.
   [[nodiscard]] DriverLimits limits(std::size_t k) const { return drives[k].limits.value_or(DriverLimits{}); }
-  /// Returns the pull-in voltages of the electrodes as units of voltages.
+  /// Returns the pull-in voltages of the electrodes, which are the units Vsp and Vdp [V].
   [[nodiscard]] std::map<std::string, PullInVoltages> voltage_units() const;
-  /// Returns the scene with all of its open values computed.
+  /// Returns the scene with every default written out and all voltages in volts.
   [[nodiscard]] SceneFile resolved() const { return softland::resolved(scene, voltage_units()); }
 };
 

@@ -16,7 +16,7 @@ void keep_state(const Switch& model, const double* q, std::vector<double>& state
 [[nodiscard]] double right_hand_side_seconds(const Switch& model, const std::vector<double>& volts,
                                              const std::vector<double>& states, int repeats = 9);
 
-/// Returns the same median time, over the first states of a closing, with flight and contact in the proportion of the closing.
+/// Returns the median time of a call of Switch::accelerations [s] over the first states of a closing, in flight and in contact.
 [[nodiscard]] double right_hand_side_seconds(const Switch& model, const std::vector<Signal>& signals, double duration,
                                              int repeats = 9);
 

@@ -122,7 +122,7 @@ struct CycledDrive {
 
 struct Cycling {
   CyclingOptions options;
-  double rate = std::numeric_limits<double>::quiet_NaN();  ///< rate of the reported cycles [Hz]; NaN without them
+  double rate = std::numeric_limits<double>::quiet_NaN();  ///< rate of the reported cycles [Hz]; NaN without reported cycles
   std::vector<CycledDrive> drives;                         ///< results of the plain waveforms, then of the given ones
   bool interrupted = false;
 };

@@ -60,7 +60,7 @@ class Ensemble {
   const PreparedScene* nominal_;
   std::uint64_t size_;
   std::function<void(std::uint64_t, std::span<double>)> point_;
-  SceneFile resolved_;       // scene of the nominal device, with computed values in place of open ones
+  SceneFile resolved_;       // scene of the nominal device, with every default written out
   bool reads_anew_ = false;  // true if a varied key may change other members of the scene
 };
 
@@ -153,7 +153,7 @@ class PullInMeter {
   const PreparedScene* nominal_;
   MeasuredQuantities quantities_;
   double precision_;
-  std::vector<ToldVolts> told_ = {};  // closing times of the nominal device over the step, in increasing order
+  std::vector<ToldVolts> told_ = {};  // closing times of the nominal device under several steps, in increasing order
   std::size_t electrode_ = 0;
   double pull_in_ = Metrics::unset;
 };

@@ -28,9 +28,9 @@ struct EstimatedQuantile {
 
 struct FigureStatistics {
   double mean = Metrics::unset, standard_deviation = Metrics::unset,
-         skewness = Metrics::unset;                                           ///< over the devices that have the figure
+         skewness = Metrics::unset;                                           ///< moments over the devices that have the figure
   std::size_t devices = 0;                                                    ///< number of devices that have the figure
-  std::array<EstimatedQuantile, robustness_quantiles.size()> quantiles = {};  ///< quantiles over all devices
+  std::array<EstimatedQuantile, robustness_quantiles.size()> quantiles = {};  ///< quantiles of the figure over all devices
 };
 
 /// A share of all devices, such as the share of devices that close.

@@ -71,7 +71,7 @@ struct Belief {
   std::vector<double> weights;          ///< weights of the devices; their sum is 1
   NormalBelief moments;                 ///< mean and covariance of z
   Eigen::VectorXd mode;                 ///< z with the largest posterior
-  double effective_devices = 0;         ///< 1 / (sum of the squared weights), by the weights of the likelihood itself
+  double effective_devices = 0;         ///< 1 / (sum of the squared weights), with weights from the likelihood
   double log_posterior = 0;             ///< log posterior of the mode, without its constant
 
   /// Returns the prior, the belief without records: samples of the standard normal distribution.

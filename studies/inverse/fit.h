@@ -73,7 +73,7 @@ struct NextMeasurement {
   std::string name;  ///< name, such as "closing time at 22 V"
   Measurable what = Measurable::pull_in;
   std::optional<double> level;  ///< [V]
-  double error = 0;             ///< assumed error [SI unit]
+  double error = 0;             ///< assumed standard deviation of the measurement error [SI unit]
   double reduction = 0;         ///< relative decrease of the root mean square of all standard errors
 };
 

@@ -62,7 +62,7 @@ struct IdentificationOptions {
 
 struct IdentificationStudy {
   std::vector<MeasurableFigure> figures;
-  std::vector<DeviceUnits> best;        ///< best factors by device; NaN if the device closes with no factors that were found
+  std::vector<DeviceUnits> best;        ///< best factors by device; NaN if the device closes with none
   std::vector<Prediction> references;   ///< results with no figures, own units, all figures, best factors
   std::vector<Prediction> predictions;  ///< results of single figures and pairs, the best first; those without closings last
   std::size_t devices = 0;

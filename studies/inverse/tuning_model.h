@@ -153,7 +153,7 @@ class TuningModel {
   [[nodiscard]] std::optional<double> gap_ratio_coordinate(const Eigen::VectorXd& z) const;
   /// Returns the nearest point to z with the gap ratio of the scene; z if the scene has no gap ratio.
   [[nodiscard]] Eigen::VectorXd with_gap_ratio_of_scene(const Eigen::VectorXd& z) const;
-  /// Standard deviation of the gap ratio in a belief. For devices of [spread] the gap ratio is constant.
+  /// Standard deviation of the ratio of contact to electrode gap in a belief. For devices of [spread] this ratio is constant.
   static constexpr double gap_ratio_deviation = 0.03;
   [[nodiscard]] std::vector<Particle> devices(std::span<const Eigen::VectorXd> points, const Progress& progress = {}) const;
   /// Returns the applied voltages of a shot.
