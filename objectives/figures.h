@@ -25,8 +25,7 @@ enum class Conditioning {
   first_touch,   ///< the motion until first contact: the difference between two runs estimates the error
   high_rebound,  ///< one rebound: the difference estimates the error, unless the runs differ qualitatively before that rebound
   every_touch,   ///< all touches: the difference estimates the error when both runs have the same touches
-  last_rebound,  ///< the end of a sequence of rebounds, chaotic past the first large one: only an ensemble of runs gives the
-                 ///< range
+  last_rebound,  ///< the end of a sequence of rebounds, which is chaotic: only an ensemble of runs gives the range
   open,          ///< the motion of a switch that stays open: the difference between two runs estimates the error
   rest,          ///< the equilibrium under the hold levels, whose only error is that of the quadrature
   drives         ///< the drives alone: the figure has no error

@@ -14,7 +14,7 @@ namespace softland {
 
 enum class SweepState {
   open,
-  closed,  ///< closed on the contact
+  closed,  ///< the beam rests on the contact
   none     ///< no stable equilibrium: the beam has collapsed onto the electrode, or the switch has no contact
 };
 

@@ -46,13 +46,13 @@ struct BoxDevice {
   DeviceOutcome outcome = {};
 };
 struct FigureRange {
-  std::string_view key;     ///< key of device_figures
+  std::string_view key;     ///< key of the figure, one of device_figures
   BoxDevice least, most;    ///< devices with the least and the largest figure; `least` is empty if none closes
   Interval of_sample = {};  ///< range of the figure over the sampled devices in the box
 };
 
 struct FigureChaos {
-  std::string_view key;               ///< key of device_figures
+  std::string_view key;               ///< key of the figure, one of device_figures
   std::size_t fitted = 0;             ///< number of devices to which the polynomials are fitted
   std::size_t unseen = 0;             ///< number of devices on which the polynomials are tested
   int degree = 0;                     ///< degree of the polynomials

@@ -38,7 +38,7 @@ namespace {
 
 constexpr std::size_t proposal_devices = 32;
 constexpr double enough_devices = 8;  // effective number of devices that a belief needs to predict
-constexpr double certain = 3.5;       // number of standard errors above which the gap ratio differs from the scene's
+constexpr double certain = 3.5;       // number of standard errors from which on the gaps have another ratio than in the scene
 constexpr std::size_t first_ones = 4, last_ones = 8;  // numbers of first and last records from which the belief is computed
 
 std::optional<BelievedQuantity> believed_gap_ratio(const TuningModel& scene, const Belief& belief) {
@@ -79,12 +79,12 @@ struct Tuner::State {
     LearnedShot shot;
     std::vector<double> x;  // variables of the waveform's shape
     TunerShot as_proposed;
-    int waveform = 0;  // number of the first shot with the same waveform
+    int waveform = 0;  // number of the first shot that had this waveform
   };
   // A controller that corrects the voltages of a repeated shot by its first contact time.
   struct TouchController {
     std::vector<Waveform> waveforms;  // waveforms for the voltage factor s = 1
-    int waveform = 0;                 // number of the first shot with the same waveform
+    int waveform = 0;                 // number of the first shot that had this waveform
     double slope = Metrics::unset, most = 1, s = 1;
     std::vector<double> touches;  // first contact times, whose mean is the reference [s]
     [[nodiscard]] std::vector<Waveform> controlled_waveforms() const {
@@ -240,7 +240,7 @@ Tuner::State::Knowledge Tuner::State::updated(Knowledge known, const ContactReco
 
 void Tuner::State::propose_next(Knowledge& known, const Progress& progress) const {
   constexpr double calm = 0.05;
-  constexpr int hold_is_fixed = 2;  // number of closings
+  constexpr int hold_is_fixed = 2;  // number of closings after which the hold level is fixed
   Draws draws(scene.options().seed, first_draw(known.closings));
   std::vector<LearnedShot> shots;
   for (std::size_t k = known.forgotten; k < known.fired.size(); ++k) {

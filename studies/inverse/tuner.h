@@ -92,7 +92,7 @@ struct PredictedRecord {
   double touches = 0;         ///< share of the devices that reach contact
   double touch_median = 0;    ///< median time of first contact [s]; NaN if no device reaches contact
   double touch_low = 0;       ///< 2.5th percentile of first contact, from a normal distribution with measurement errors [s]
-  double touch_high = 0;      ///< 97.5th percentile of first contact, from the same distribution [s]
+  double touch_high = 0;      ///< 97.5th percentile of first contact, computed as touch_low [s]
   double bounces = 0;         ///< share of the devices with an opening that is long enough to be recorded
   double rebound_median = 0;  ///< median of the highest rebound [m]
   double rebound_high = 0;    ///< 95th percentile of the highest rebound [m]
