@@ -244,7 +244,7 @@ inline constexpr auto hard_figures =
 struct CostScale {
   Metrics step;                 ///< figures of the plain step
   double score_window = 0;      ///< time after first contact over which the cost is computed [s]
-  double contact_gap = 0;       ///< [m]
+  double contact_gap = 0;       ///< distance from the rest position to the contact plane [m]
   double free_touch = 0;        ///< T_free, largest first contact time without penalty, over that of the plain step
   bool judges_hardness = true;  ///< false when hard closings are not penalised: see excess_over_step()
 };

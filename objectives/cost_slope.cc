@@ -229,14 +229,14 @@ class SlopeFinder {
   const LinearizedClosing& motion_;
   const MetricsOptions& options_;
   const VectorXd& shape_;
-  double plane_;  // [m]
+  double plane_;  // position of the contact plane [m]
   VectorXd zero_;
   Switch::Workspace work_;
   CostSlopes slopes_;
   long touches_ = 0;
   bool touching_ = false, measured_ = false;
-  double first_speed_ = 0, fastest_ = 0;                      // [m/s]
-  double closest_ = std::numeric_limits<double>::infinity();  // [m]
+  double first_speed_ = 0, fastest_ = 0;                      // speed of the first touch, and largest of all touches [m/s]
+  double closest_ = std::numeric_limits<double>::infinity();  // smallest separation before the first touch [m]
   double depth_ = 0, force_ = 0, largest_force_ = 0;          // depth [m] and force [N] of the current touch; largest force [N]
   double height_ = 0, highest_ = 0;                           // height of the current rebound and of the highest rebound [m]
   FigureSlope energy_slope_, force_slope_, height_slope_;

@@ -11,12 +11,12 @@ namespace softland {
 
 /// Times at which cycles begin, and at which the switch is commanded to open in each cycle.
 struct CycleTimes {
-  double period = 0;   ///< [s]
+  double period = 0;   ///< duration of a cycle [s]
   double on_time = 0;  ///< time from the start of a cycle to its command to open [s]
   std::size_t cycles = 1;
 
-  [[nodiscard]] double begin(std::size_t cycle) const { return static_cast<double>(cycle) * period; }  ///< [s]
-  [[nodiscard]] double command(std::size_t cycle) const { return begin(cycle) + on_time; }             ///< [s]
+  [[nodiscard]] double begin(std::size_t cycle) const { return static_cast<double>(cycle) * period; }  ///< start of a cycle [s]
+  [[nodiscard]] double command(std::size_t cycle) const { return begin(cycle) + on_time; }             ///< command to open [s]
 };
 
 /// The figures of one cycle of closing and opening.
@@ -49,12 +49,12 @@ class CycleRecorder final : public ClosingObserver {
  private:
   struct Cycle {
     MetricsObserver metrics;
-    double source_work = Metrics::unset;  // [J]
+    double source_work = Metrics::unset;  // energy from the sources in the cycle [J]
     bool began_open = false;
-    double swing = 0, on_time = 0;  // [m], [s]
+    double swing = 0, on_time = 0;  // members of CycleFigures [m], [s]
   };
 
-  // Returns the time for which the switch has been closed in this cycle until `until` [s]; it must be closed at that time.
+  // Returns the time for which the switch has been closed in this cycle before `until` [s]; the switch must still be closed then.
   [[nodiscard]] double closed_in(std::size_t cycle, double until) const;
 
   double contact_gap_, open_position_;  // [m]

@@ -165,7 +165,7 @@ class MetricsObserver final : public ClosingObserver {
   LandingFigures figures_;
   ReboundFinder rebounds_;
   TransferredCharge charge_;
-  double contact_gap_, closest_;  // [m]
+  double contact_gap_, closest_;  // contact gap, and smallest separation before the first touch [m]
   TrajectoryPoint last_{.time = Metrics::unset};
   double make_charge_ = Metrics::unset;            // charge during closing, complete once the opening has begun [C]
   std::optional<CommandedOpening> opening_;        // opening on command; empty before the command

@@ -88,10 +88,10 @@ class CommandedOpening {
 
  private:
   OpeningCommand command_;
-  double contact_gap_, significant_;  // [m]
+  double contact_gap_, significant_;  // contact gap, and significant height of a bounce [m]
   BandFollower band_;
   double nearest_ = std::numeric_limits<double>::quiet_NaN();  // smallest position after the turn back [m]
-  double highest_ = 0, separated_ = 0;                         // [m], [s]
+  double highest_ = 0, separated_ = 0;                         // highest bounce [m], and total time of separations [s]
   int bounces_ = 0;
 };
 

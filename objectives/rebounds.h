@@ -121,7 +121,7 @@ class ReboundFinder {
            std::all_of(differences.begin(), differences.end(), [](double d) { return d <= 0; });
   }
 
-  double gap_;  // [m]
+  double gap_;  // contact gap [m]
   bool usable_, began_ = false, touched_ = false;
   TrajectoryPoint last_;
   Node node_;

@@ -82,7 +82,7 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
 // The rebounds of one run, with the impact velocity before each rebound.
 struct ReboundSequence {
   std::vector<Rebound> rebounds;
-  std::vector<double> impacts;  // [m/s]
+  std::vector<double> impacts;  // impact velocity of the touch before each rebound [m/s]
 };
 
 ReboundSequence rebound_sequence(const Trajectory& run) {

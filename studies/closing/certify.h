@@ -22,7 +22,7 @@ namespace softland {
 struct GrazingRebound {
   int number = 0;              ///< number of the rebound among all rebounds of the first run, counted from 1
   double time = 0;             ///< beginning of the rebound [s]
-  double height = 0;           ///< [m]
+  double height = 0;           ///< height of the rebound in the first run [m]
   double impact_velocity = 0;  ///< impact velocity of the touch before the rebound [m/s]
   bool at_threshold = false;   ///< true if the rebound is significant in some runs only; false if the touch before it has the
                                ///< smallest impact velocity so far

@@ -80,7 +80,7 @@ class CycledSwitch {
 
 struct RateScan {
   struct Rate {
-    double rate = 0;  ///< [Hz]
+    double rate = 0;  ///< number of cycles per second [Hz]
     bool is_steady = false;
   };
   std::vector<Rate> rates;  ///< simulated rates, in increasing order

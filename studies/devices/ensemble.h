@@ -142,7 +142,7 @@ class PullInMeter {
                                             std::uint64_t k);
 
  private:
-  [[nodiscard]] double pull_in(const Switch& model, double precision) const;  // [V]
+  [[nodiscard]] double pull_in(const Switch& model, double precision) const;  // pull-in voltage [V]
   void learn_times();
   [[nodiscard]] double time_of(const Switch& model, double step) const;
 

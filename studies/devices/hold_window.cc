@@ -18,7 +18,7 @@ bool is_held(const ClosedRange& device, double level) { return device.release <=
 
 // Starting point for the collapse voltage of a device: a level a little below the collapse voltage of the nominal device.
 struct Nominal {
-  double level = std::numeric_limits<double>::quiet_NaN();  // [V]
+  double level = std::numeric_limits<double>::quiet_NaN();  // level of the electrode [V]
   std::optional<ClosedEquilibrium> closed;                  // closed equilibrium at this level
 };
 

@@ -104,7 +104,7 @@ struct DeviceCourse {
 
 /// The gaps of the contacts of several devices at common instants, evenly spaced from 0 to `end`.
 struct GapCourses {
-  double end = 0;                              ///< [s]
+  double end = 0;                              ///< last instant [s]
   std::vector<std::vector<double>> gaps = {};  ///< gaps by device, then by instant [m]; below 0 in contact
 };
 

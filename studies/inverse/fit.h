@@ -56,7 +56,7 @@ struct FitResidual {
   std::string device;
   Measurable what = Measurable::pull_in;
   std::string drive;
-  std::optional<double> level, time;                      ///< [V], [s]
+  std::optional<double> level, time;                      ///< level of the measurement [V], and time of a row of a trace [s]
   double measured = 0, error = 0, before = 0, after = 0;  ///< before: reading in the given scene; after: in the fitted scene
   [[nodiscard]] double normalized() const { return (after - measured) / error; }
   [[nodiscard]] double normalized_before() const { return (before - measured) / error; }
@@ -72,7 +72,7 @@ struct FittedTrace {
 struct NextMeasurement {
   std::string name;  ///< name, such as "closing time at 22 V"
   Measurable what = Measurable::pull_in;
-  std::optional<double> level;  ///< [V]
+  std::optional<double> level;  ///< voltage of the measurement [V]
   double error = 0;             ///< assumed standard deviation of the measurement error [SI unit]
   double reduction = 0;         ///< relative decrease of the root mean square of all standard errors
 };
@@ -81,7 +81,7 @@ struct NextMeasurement {
 struct FittedPopulation {
   std::vector<std::size_t> variables;  ///< indices of the variables in the scene's [spread]
   std::vector<std::string> names;
-  std::vector<double> mean, deviation;  ///< [unit of the value]
+  std::vector<double> mean, deviation;  ///< by variable [unit of the value]
   Eigen::MatrixXd correlation;
 };
 

@@ -4,7 +4,7 @@
 //   best factors   (s_V, s_t) of device k minimise  s_k + (ln s_V)^2 + (ln s_t)^2,   s_k its score for `bounce` (robust_cost.h)
 //                  under V(t) = s_V V_0(t / s_t), the recipe V_0 being the scene's own drive; searched by Nelder and Mead's
 //                  simplex from the device's own units (its Vdp, its period). If the recipe drives a piezo, its voltages have
-//                  a factor s_p of their own, from the device's own unit of it: what a volt deflects over the contact gap.
+//                  a factor s_p of their own, from the device's own unit: the deflection by a volt over the contact gap.
 //   predicted      ln s = a + sum_i b_i ln x_i, the figures of the device being x_i. Least squares over one half of the devices
 //   factors        give a and b_i for the other half, and vice versa.
 //

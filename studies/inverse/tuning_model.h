@@ -48,7 +48,7 @@ struct TuningScales {
   double latest_touch = std::numeric_limits<double>::infinity();  ///< requested limit for the time of first contact [s]
   /// Permanent contact time of the plain step on the nominal device [s]; NaN unless the approach is quasi-static.
   double permanent_contact = std::numeric_limits<double>::quiet_NaN();
-  [[nodiscard]] double speed() const { return gap / closing_time; }  ///< [m/s]
+  [[nodiscard]] double speed() const { return gap / closing_time; }  ///< unit of velocities [m/s]
 };
 
 /// A simulated device of the belief about a device.
@@ -70,9 +70,8 @@ struct SeenClosing {
 
 /// A simulated closing of a device of a belief, without errors of measurement.
 struct PredictedClosing {
-  bool followed = false;  ///< true if simulated to the end of its window
-  double touch =
-      std::numeric_limits<double>::quiet_NaN();  ///< time of first contact after the drives begin [s]; NaN without contact
+  bool followed = false;                                      ///< true if simulated to the end of its window
+  double touch = std::numeric_limits<double>::quiet_NaN();    ///< first contact after the drives begin [s]; NaN without contact
   double speed = std::numeric_limits<double>::quiet_NaN();    ///< impact velocity of the first touch [m/s]
   double fastest = std::numeric_limits<double>::quiet_NaN();  ///< largest impact velocity of all touches [m/s]
   double highest = 0;                                         ///< highest rebound [m]
