@@ -245,7 +245,7 @@ struct CostScale {
   Metrics step;                 ///< figures of the plain step
   double score_window = 0;      ///< time after first contact over which the cost is computed [s]
   double contact_gap = 0;       ///< distance from the rest position to the contact plane [m]
-  double free_touch = 0;        ///< T_free, largest first contact time without penalty, over that of the plain step
+  double free_touch = 0;        ///< T_free, largest first contact time that costs little, over that of the plain step
   bool judges_hardness = true;  ///< false when hard closings are not penalised: see excess_over_step()
 };
 /// Returns the cost of a closing; infinite for a run that could not be simulated to its end.

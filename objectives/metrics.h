@@ -123,7 +123,7 @@ class LandingFigures {
     bool sound = true;  ///< true when every knot was finite, and the knots were in order of time
     bool touched = false;
     bool above = false;  ///< true when the last rebound, already passed to rebound(), had not ended at the end of the run
-    double first_touch = Metrics::unset, impact_velocity = Metrics::unset;  ///< of the first touch [s], [m/s]
+    double first_touch = Metrics::unset, impact_velocity = Metrics::unset;  ///< both of the first touch [s], [m/s]
     double last_time = 0;                                                   ///< time of the last knot [s]
     double closest = Metrics::unset;                                        ///< smallest separation before the first touch [m]
   };

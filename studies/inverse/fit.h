@@ -81,7 +81,7 @@ struct NextMeasurement {
 struct FittedPopulation {
   std::vector<std::size_t> variables;  ///< indices of the variables in the scene's [spread]
   std::vector<std::string> names;
-  std::vector<double> mean, deviation;  ///< by variable [unit of the value]
+  std::vector<double> mean, deviation;  ///< moments of each variable [unit of the variable]
   Eigen::MatrixXd correlation;
 };
 
