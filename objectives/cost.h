@@ -180,7 +180,7 @@ class Aim {
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
   [[nodiscard]] bool is_sum() const { return parts_.size() > 1; }
   /// Returns true when a search for this aim first minimises the cost of `bounce` and then another cost. A single target
-  /// decides by TargetRow::has_own_cost; the answer for a sum is always true.
+  /// decides by TargetRow::has_own_cost, a single own objective by lands_first(); the answer for a sum is always true.
   [[nodiscard]] bool has_own_cost() const;
   [[nodiscard]] bool is_about(Target target) const;
   /// Returns true when a part is an own objective.
