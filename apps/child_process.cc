@@ -29,14 +29,14 @@ void require_done(int error, const char* what) {
   if (error != 0) throw std::system_error(error, std::generic_category(), what);
 }
 
-// The ends are closed in every other child process.
+// Creates a pipe whose ends are closed in every child process, except where a child gets one as its standard stream.
 std::array<int, 2> new_pipe() {
   std::array<int, 2> ends{};
   require_done(::pipe2(ends.data(), O_CLOEXEC) == 0 ? 0 : errno, "a pipe to a command");
   return ends;
 }
 
-// Signals act on the command as on one started from a terminal, even those that this program ignores.
+// Attributes of a command: signals act as on a command started from a terminal, even signals that this program ignores.
 class SpawnAttributes {
  public:
   SpawnAttributes() {

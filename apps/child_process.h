@@ -12,18 +12,19 @@
 
 namespace softland::apps {
 
-/// Runs a command by the shell, in a process group of its own, with pipes for its standard input and output. The destructor
-/// closes the input of the command. If the command then does not end, its group receives SIGTERM, and later SIGKILL.
+/// Runs a command in the shell, in its own process group, with pipes for its standard input and output. The destructor closes
+/// the input of the command. A command that does not end then gets SIGTERM, and later SIGKILL, as does its group.
 class ChildProcess {
  public:
-  /// Starts the command. A line longer than `longest_line` [byte] is cut. Throws std::system_error if no process can be started.
+  /// Starts the command. A longer line of output than `longest_line` [byte] is cut. Throws std::system_error if no process
+  /// starts.
   ChildProcess(const std::string& command, std::size_t longest_line);
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   enum class Delivery { yes, closed, late };
-  /// Writes to the standard input of the command. Returns `closed` if the pipe has no reader, and `late` if the command did not
+  /// Writes to the standard input of the command. Returns `closed` if the command has closed the pipe, and `late` if it did not
   /// read the text within `patience`. Throws Interrupted after a signal to stop.
   [[nodiscard]] Delivery tell(std::string_view text, std::chrono::milliseconds patience);
   /// Reads the next line from the standard output of the command, as LineReader::next() does.
@@ -33,7 +34,7 @@ class ChildProcess {
 
  private:
   struct Pipes {
-    int in, out;  // our ends of the pipes to the standard input and output of the command
+    int in, out;  // this program's ends of the pipes to the standard input and output of the command
   };
   [[nodiscard]] static Pipes start(const std::string& command, pid_t& child);
   [[nodiscard]] bool has_ended(std::chrono::milliseconds patience);

@@ -1,4 +1,4 @@
-// A failure gives the reason why a run did not succeed, as an exit status and as a message.
+// A failure has the reason why a run did not succeed, as exit status and message.
 #pragma once
 
 #include <exception>
@@ -11,8 +11,8 @@ struct Failure {
   std::string message;
 };
 
-/// Returns exit status and message for an exception that ends the program. An unexpected exception is an internal error, and
-/// its message asks the user to report it.
+/// Returns exit status and message for an exception that ends the program. An exception of an unexpected type is an internal
+/// error; the message then asks the user to report the error.
 [[nodiscard]] Failure failure_of(const std::exception_ptr& exception);
 
 }  // namespace softland::apps

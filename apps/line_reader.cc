@@ -33,7 +33,7 @@ bool LineReader::fill() {
   if (size < 0) return errno == EINTR || errno == EAGAIN;
   if (size == 0) return false;
   read_.append(block.data(), static_cast<std::size_t>(size));
-  // Keep one byte more than the longest permitted line, which marks the line as too long.
+  // Keep one byte more than the longest permitted line: the extra byte marks the line as too long.
   if (read_.size() > longest_ && read_.find('\n', searched_) == std::string::npos) read_.resize(longest_ + 1);
   return true;
 }

@@ -10,8 +10,8 @@ namespace softland::apps {
 
 class LineReader {
  public:
-  /// Reads from a descriptor, which stays open. A line of more than `longest` bytes is cut after one more byte, so that its
-  /// length shows that it is too long; the rest of the line is skipped.
+  /// Reads from a descriptor, which stays open. A line of more than `longest` bytes is cut to `longest` + 1 bytes, which marks
+  /// the line as too long; the rest of the line is skipped.
   explicit LineReader(int descriptor, std::size_t longest);
 
   enum class End { line, closed, late };
@@ -30,7 +30,7 @@ class LineReader {
   int descriptor_;
   std::size_t longest_;
   std::string read_;
-  std::size_t searched_ = 0;  // length of the first part of read_, which is known to have no line feed
+  std::size_t searched_ = 0;  // length of the beginning of read_ that is known to have no line feed
   bool ended_ = false;
 };
 

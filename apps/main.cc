@@ -52,8 +52,8 @@ void describe(CLI::App& app) {
       "far are written).");
 }
 
-// Parses the words of the command line into the options of `app`. Returns false after printing the help or the version, since
-// there is no verb to run then.
+// Parses the words of the command line into the options of `app`. Returns false if the words ask for the help or the version,
+// which is then printed: there is no verb to run.
 bool parse(CLI::App& app, std::vector<std::string> words, const std::vector<std::string>& names) {
   if (!words.empty() && !words.front().starts_with("-") && std::ranges::find(names, words.front()) == names.end())
     throw InvalidInput("unknown verb '" + words.front() + "' (see softland --help)");
@@ -104,7 +104,7 @@ int run(int argc, char** argv) {
   } catch (const OutputInterrupted&) {
     throw;
   } catch (const Interrupted&) {
-    // There are no results yet; the JSON has the status "interrupted" alone.
+    // There are no results yet: the JSON has only the status "interrupted".
     if (!common.json.empty())
       print_json_or(common, {{"status", "interrupted"}, {"version", version}, {"command", common.command}}, "");
     throw;

@@ -16,7 +16,7 @@ void Verb::more(const char* name, std::vector<std::string>& values, const std::s
 void Verb::option(const char* name, std::string& value, const char* word, const std::string& about) {
   options_.add_option(name, value, about)->type_name(word)->check([](const std::string& text) -> std::string {
     if (text.empty()) return "must not be empty";
-    // CLI11 takes any next word as the value: refuse an option.
+    // CLI11 takes any next word as the value of an option: refuse the name of another option.
     return text.starts_with("--") ? "a value is missing: " + text + " is an option" : "";
   });
 }

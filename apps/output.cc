@@ -19,7 +19,7 @@ namespace softland::apps {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// Checks that --json names neither standard output by its path nor a file of this run in the folder of --out.
+// Refuses a file of --json that is standard output under a path, or the name of unfinished results in --out.
 void check_json_place(const std::string& file, const fs::path& folder) {
   if (!folder.empty()) {
     const fs::path inside =

@@ -1,4 +1,4 @@
-// An overview of a store: the number of rows by status, and the extremes of every figure.
+// An overview of a database file of a study: the number of points by status, and the extremes of every figure.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ struct Overview {
     std::int64_t least_at = 0, most_at = 0;
   };
   std::map<std::string, std::int64_t> by_status;
-  std::map<std::string, std::string> first_reasons;  // first reason of failure, by status
+  std::map<std::string, std::string> first_reasons;  // first message of failure, by status
   std::vector<Extent> extents;                       // smallest and largest value, by column
   bool has_figures = false;
 };

@@ -1,5 +1,5 @@
-// A pace estimates the remaining time of a computation. The first class below is for an exploration, which computes some of its
-// points and copies others from rows of earlier plans in almost no time.
+// Estimates the remaining time of a computation. Pace is for an exploration, which computes some of its points and copies other
+// points from earlier results in almost no time.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,11 @@ namespace softland::apps {
 struct Pace {
   std::int64_t remaining = 0;  ///< points that are neither computed nor copied yet
   std::int64_t computed = 0, reused = 0;
-  std::int64_t earlier = 0;  ///< rows of earlier plans, an upper bound of the points that can still be copied
+  std::int64_t earlier = 0;  ///< number of earlier results, an upper bound of the points that can still be copied
   double seconds = 0;        ///< time since the first computed point began [s]
 
-  /// Returns the estimated number of points still to compute. The estimate assumes that the share of copied points stays as it
-  /// is, and that no more are copied than earlier rows are left. NaN before the first point is done.
+  /// Returns the estimated number of points still to compute, if the share of copied points stays as it is, and at most
+  /// `earlier` points are copied. NaN before the first point is done.
   [[nodiscard]] double to_compute() const;
   /// Returns the remaining time [s]; NaN before the first point is computed.
   [[nodiscard]] double seconds_left() const;
@@ -24,10 +24,11 @@ struct Pace {
 /// The progress of a computation that consists of several stages in sequence.
 class WorkPace {
  public:
-  /// Notes that the share `part`, 0 to 1, of stage `what` is done at `elapsed` [s] after the start. A new name begins a new
+  /// Records that the share `part`, 0 to 1, of stage `what` is done at `elapsed` [s] after the start. Another name begins a new
   /// stage.
   void note(std::string_view what, double part, double elapsed);
-  /// Returns "closing: 43 %, 12 s, about 16 s left". The remaining time is that of the current stage, and appears when known.
+  /// Returns "closing: 43 %, 12 s, about 16 s left". The remaining time is that of the current stage; it is omitted until it
+  /// can be estimated.
   [[nodiscard]] std::string words(double elapsed) const;
 
  private:

@@ -1,5 +1,5 @@
-// Shows the progress of a verb on standard error: on a terminal a bar that is rewritten in place, elsewhere a line after five
-// seconds and then every ten seconds.
+// Shows the progress of a verb on standard error: a terminal shows a bar that is rewritten in place; any other output gets a
+// line after five seconds and then every ten seconds.
 #pragma once
 
 #include <chrono>
@@ -19,11 +19,11 @@ class Bar {
  public:
   explicit Bar(bool quiet);
 
-  /// A state of the computation: the done share, 0 to 1, and a text.
+  /// A function that returns the state of the computation: the done share, 0 to 1, and a text.
   using State = std::function<std::pair<double, std::string>(double elapsed)>;
-  /// Calls `state` and prints its result if an update is due.
+  /// Prints the result of `state` if an update is due.
   void show(const State& state);
-  /// Ends the display; the last state of the bar stays on the screen.
+  /// Ends the display; the last state of the bar remains on the screen.
   void close(const State& state);
 
  private:
@@ -47,7 +47,7 @@ class ShownWork {
   [[nodiscard]] const Progress& progress() const { return progress_; }
 
  private:
-  std::mutex mutex_;  // guards the members below: several threads may report
+  std::mutex mutex_;  // guards the members below, as several threads may report progress
   Bar bar_;
   bool shown_ = false;
   MonotoneProgress monotone_;
@@ -58,7 +58,7 @@ class ShownWork {
 /// The progress of a search.
 class SearchProgress {
  public:
-  /// `counted` names the unit of the budget, such as "evaluations"; `of` is the text in front of the progress.
+  /// `counted` is the unit of the budget, such as "evaluations"; `of` is the text in front of the progress.
   SearchProgress(bool quiet, const OptimizeOptions& options, std::string counted, std::string of = {});
 
   void show(const OptimizeProgress& progress);

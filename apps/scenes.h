@@ -1,4 +1,4 @@
-// Loads scenes from files, from results, and from the scenes shipped with the program.
+// Loads scenes from scene files, from results, and from the scenes shipped with the program.
 #pragma once
 
 #include <filesystem>
@@ -10,18 +10,18 @@
 
 namespace softland::apps {
 
-/// Returns the scene file with the changes of --set.
+/// Returns the scene of the file that the command line names, with the changes of --set.
 [[nodiscard]] SceneFile load_scene(const Common& common);
 
-/// Returns the scene of a result: a folder of --out, a result.json, or a scene file. In a folder, the first existing one of
-/// result.json, best.toml and release.toml is read; an unfinished search has only its best.toml.
+/// Returns the scene of a result: a folder of --out, a result.json, or a scene file. From a folder, the first existing one of
+/// result.json, best.toml and release.toml is read; an unfinished search has only best.toml.
 [[nodiscard]] SceneFile scene_of_result(const std::string& result);
 
-/// Returns the scene of a result, as above, with the changes of --set.
+/// Returns the scene of a scene file or of a result (scene_of_result()), with the changes of --set.
 [[nodiscard]] SceneFile load_scene_or_result(const Common& common);
 
-/// Returns the path of the shipped scene: installed with the program, in the tree it was built from, or in an unpacked tree
-/// around it.
+/// Returns the path of a shipped scene: among the installed files, in the source tree of the build, or in an unpacked source
+/// tree around the program.
 [[nodiscard]] std::filesystem::path shipped_scene(const std::string& name);
 
 [[nodiscard]] nlohmann::json load_result(const std::filesystem::path& path);

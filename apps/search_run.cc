@@ -42,7 +42,7 @@ std::string families_in_words(const std::string& families) {
   return words;
 }
 
-// Returns the drives in variable names such as "knots.main.level_1_V" or "main.level_1_V", each drive once.
+// Returns the names of the drives in names of variables such as "knots.main.level_1_V" or "main.level_1_V", each drive once.
 std::vector<std::string> shaped_in(const std::vector<std::string>& variables) {
   std::vector<std::string> drives;
   for (const std::string& name : variables) {
@@ -123,7 +123,7 @@ std::string SearchRun::duration_prose(int jobs, double max_seconds) const {
   return text + ", fewer than usual, because its closings are slow to simulate";
 }
 
-// Prints the head of a table of the best waveforms so far; every better waveform adds a row.
+// Prints a row for a better waveform; before the first row, the head of the table of the best waveforms so far.
 void SearchRun::tell(const Leading& leading) {
   const auto row = [&](const std::string& name, const std::vector<DeviceOutcome>& outcomes, const std::string& after) {
     const auto figure = [](double value, std::string_view unit) {

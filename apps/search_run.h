@@ -1,4 +1,4 @@
-// Runs a search from the command line: keeps the search in a folder, can continue it there, and shows its progress.
+// Runs a search from the command line: stores the search in a folder, resumes a search from there, and shows the progress.
 #pragma once
 
 #include <chrono>
@@ -13,12 +13,13 @@
 
 namespace softland::apps {
 
-/// Returns the search that the command line describes. With --resume, the search in the folder of --out is continued; its stores
-/// are then `known`. Throws InvalidInput with option, value and rule, or with the difference if the folder holds another search.
+/// Returns the search that the command line describes. With --resume, the search in the folder of --out is continued, and
+/// `known` receives its database files. Throws InvalidInput with option, value and rule, or, if the folder holds another
+/// search, with the difference.
 [[nodiscard]] StoredSearch new_or_resumed(const Common& common, const verbs::OptimizeRequest& request,
                                           std::optional<KnownSearch>& known);
 
-/// Returns the folder of --out.
+/// Returns the folder of --out as the output of a search.
 [[nodiscard]] SearchOutput output_of(const Common& common);
 
 /// A search that stores its evaluations in a folder and shows its progress.
@@ -28,7 +29,7 @@ class SearchRun {
   SearchRun(const Common& common, StoredSearch& search, const std::optional<KnownSearch>& known, const SearchOutput& output,
             SearchPlaces* places = nullptr);
 
-  /// Reports the end of the search and closes its store; call it when the search has ended.
+  /// Reports the end of the search and closes the database file; call it when the search has ended.
   void close();
   [[nodiscard]] SearchSession& session() { return session_; }
 

@@ -1,4 +1,4 @@
-// The verbs that work on stores of studies share these functions.
+// Functions for the verbs that work on database files of studies.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace softland::apps {
 
-/// Warns if rows of a store were computed by another version of the program or on another processor: their last digits may
-/// differ.
+/// Warns if rows of a database file were computed by another version of the program or on another processor: the last digits of
+/// their numbers may differ.
 void tell_of_other_programs(const std::string& store);
 
 /// Returns a count of rows or points with all its digits.

@@ -18,7 +18,7 @@
 namespace softland::apps {
 namespace {
 
-// A failure to write notes is ignored, so that the result is still written.
+// Writes to standard error; a failure is ignored, so that the result is still written.
 void write_to_standard_error(std::string_view text) {
   while (!text.empty()) {
     const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
@@ -32,7 +32,7 @@ void write_to_standard_error(std::string_view text) {
 void open_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
-    // The lowest free number is `stream`. A read-only descriptor refuses writes.
+    // open() returns the lowest free descriptor, `stream`. A read-only descriptor refuses writes.
     (void)::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
   }
 }
@@ -45,7 +45,7 @@ void print(std::string_view text) {
     // A writable pipe takes PIPE_BUF bytes without waiting for the reader.
     pollfd output{.fd = STDOUT_FILENO, .events = POLLOUT, .revents = 0};
     if (const int ready = ::poll(&output, 1, check_interval); ready <= 0) {
-      // Only the time after the request to stop counts; a signal ends a wait early.
+      // Count only the time after the request to stop; a signal ends a call of poll() early.
       if (ready == 0 && stop_requested()) waited += check_interval;
       if (waited >= patience) throw OutputInterrupted();
       continue;

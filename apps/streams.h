@@ -1,5 +1,5 @@
-// Writes to standard output and standard error; no other file does. Control characters in titles, paths and keys are escaped, so
-// that they cannot act on a terminal.
+// Writes to standard output and standard error; all other files write through these functions. Control characters in titles,
+// paths and keys are escaped, so that they cannot act on a terminal.
 #pragma once
 
 #include <string_view>
@@ -8,14 +8,15 @@
 
 namespace softland::apps {
 
-/// Thrown when the program was asked to stop while no reader takes the output.
+/// Thrown when the program was asked to stop while it waits for a reader of its output.
 class OutputInterrupted : public Interrupted {};
 
-/// Opens a substitute for every closed standard stream, so that no other file gets its descriptor. Writing to it fails.
+/// Opens a substitute for every closed standard stream, so that no other file gets the descriptor of that stream. Writing to a
+/// substitute fails.
 void open_standard_streams();
 
-/// Writes to standard output. Throws OutputLost if not all of the text could be written, and OutputInterrupted if, after a
-/// signal to stop, no reader takes the output for about a second.
+/// Writes to standard output. Throws OutputLost if only part of the text could be written, and OutputInterrupted if, after a
+/// signal to stop, no reader takes the output for 0.6 s.
 void print(std::string_view text);
 
 /// Writes "softland: " and one line to standard error, as far as that is possible.

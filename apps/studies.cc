@@ -25,7 +25,7 @@ namespace {
 using verbs::Ending;
 using verbs::OptionRow;
 
-// Values that CLI11 sets, by the name of the option.
+// Option values that CLI11 sets, by name of the option.
 struct Given {
   std::map<std::string, std::string> texts;
   std::map<std::string, std::optional<std::string>> optional;  // values that may be empty texts
@@ -59,7 +59,7 @@ DriveWaveforms waveforms_of(const std::string& result, const PreparedScene& nomi
   return drives.waveforms();
 }
 
-// Writes the files of an outcome, lists them, and prints the commands that use them.
+// Writes the files of an outcome. Returns the list of files, and the commands that use them.
 std::string leave(ResultFolder& folder, const verbs::Outcome& outcome) {
   const bool interrupted = outcome.ending == Ending::interrupted;
   std::vector<std::string> listed;
@@ -105,7 +105,7 @@ int run_study(const verbs::Study& study, const Common& c, const verbs::Arguments
     });
   const bool takes_results = study.scene != verbs::scene_alone;
   const SceneFile file = takes_results ? load_scene_or_result(c) : load_scene(c);
-  static_cast<void>(read_scene(file));  // checks the scene; an output must not replace a table that the scene names
+  static_cast<void>(read_scene(file));  // check the scene here: an output must not replace a table that the scene names
   std::optional<ResultFolder> folder = reserve_outputs(c, study.files);
   std::optional<ShownWork> work(std::in_place, c.quiet, c.stop);
   const Progress& progress = work->progress();

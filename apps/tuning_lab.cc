@@ -110,7 +110,7 @@ class HandLab final : public TuningLab {
   }
 
  private:
-  // Returns true for a file name of a shot, such as "shot-12.csv" or "shot-12-main.arb".
+  // Returns true if `name` is the file of a shot, such as "shot-12.csv" or "shot-12-main.arb".
   [[nodiscard]] static bool is_shot(std::string_view name, const std::vector<std::string>& endings) {
     constexpr std::string_view before = "shot-";
     if (!name.starts_with(before)) return false;

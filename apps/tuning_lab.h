@@ -1,5 +1,5 @@
-// A laboratory fires the shots of a tuning, each a closing of the real device: a command that controls instruments, or a person
-// with an oscilloscope.
+// A laboratory closes the real device once for every shot of a tuning, under the voltages of that shot. The laboratory is a
+// command that controls instruments, or a person with an oscilloscope.
 #pragma once
 
 #include <chrono>
@@ -18,8 +18,8 @@ namespace softland::apps {
 class TuningLab {
  public:
   virtual ~TuningLab() = default;
-  /// Fires a shot, whose signals are `sent`, and returns its record; none if the user wants no more shots. Throws InvalidInput
-  /// if no record comes, and Interrupted after a signal to stop.
+  /// Applies the voltages of a shot, whose signals are `sent`, and returns the record; none if the user wants no more shots.
+  /// Throws InvalidInput if there is no record, and Interrupted after a signal to stop.
   [[nodiscard]] virtual std::optional<ContactRecord> fire(const CommandedShot& shot, const SentSignals& sent) = 0;
   /// Ends the session; no shot follows.
   virtual void finish() {}
@@ -30,25 +30,25 @@ class TuningLab {
   TuningLab& operator=(const TuningLab&) = default;
 };
 
-/// Makes a laboratory of a shell command, which reads and writes the lines of reports/tuning_lines.h. `patience` is the longest
-/// wait for a line.
+/// Makes a laboratory from a shell command, which exchanges the lines of reports/tuning_lines.h with this program. `patience`
+/// is the longest wait for a line.
 [[nodiscard]] std::unique_ptr<TuningLab> command_lab(const std::string& command, std::chrono::milliseconds patience);
 
 struct HandLabRequest {
   std::filesystem::path folder;
-  bool goes_on = false;  ///< true: an earlier tuning in `folder` is continued, and its files of shots are kept
+  bool goes_on = false;  ///< true: an earlier tuning in `folder` is continued, and the files of its shots stay
   std::string format = "csv";
-  std::optional<ContactTraceKeys> contact = {};  ///< keys for reading records of the contact's voltage, where there are any
+  std::optional<ContactTraceKeys> contact = {};  ///< keys for reading recorded voltages of the contact, if there are records
 };
-/// Makes a laboratory of a person. The voltages of each shot are written to FOLDER/shot-N.csv, or to files of another format
-/// of `export` (scene_export.h). Standard error asks for the observation until the answer on standard input is valid. Keeps a
-/// reference to the scene.
+/// Makes a laboratory of a person. The voltages of each shot are written to FOLDER/shot-N.csv, or to files of another format of
+/// the verb `export` (scene_export.h). The program asks for the observation on standard error until it reads a valid answer.
+/// Keeps a reference to the scene.
 [[nodiscard]] std::unique_ptr<TuningLab> hand_lab(HandLabRequest request, const PreparedScene& scene);
 
 /// Reads the times at which a contact closes and opens from a CSV file: a header time_s,closed and a row for each edge, with 1
 /// where the contact closes and 0 where it opens. Throws InvalidInput with file, line and rule.
 [[nodiscard]] ContactRecord read_edges_file(const std::string& file);
-/// Reads the same from a voltage across the contact that an instrument recorded.
+/// Reads the times at which a contact closes and opens from a recorded voltage across the contact. Throws as read_edges_file().
 [[nodiscard]] ContactRecord read_contact_trace(const std::string& file, const ContactTraceKeys& keys);
 
 }  // namespace softland::apps

@@ -25,7 +25,7 @@ Points drawable(const Points& points) {
 double Axis::transformed(double value) const { return scale == AxisScale::linear ? value : std::log10(value); }
 
 double Axis::pixel(double value) const {
-  constexpr double farthest = 1e7;  // any paper ends before this [px]
+  constexpr double farthest = 1e7;  // limit beyond any paper [px]
   const double part = part_between(transformed(low), transformed(high), transformed(value));
   return std::clamp(pixel_low + part * (pixel_high - pixel_low), -farthest, farthest);
 }
@@ -40,7 +40,7 @@ double part_between(double low, double high, double value) {
 
 namespace {
 
-/// Returns ticks at steps of 1, 2 or 5 of a decade.
+/// Returns ticks at multiples of 1, 2 or 5 times a power of ten.
 std::vector<double> linear_ticks(double low, double high, int wanted) {
   const double raw = std::isfinite(high - low) ? (high - low) / wanted : high / wanted - low / wanted;
   const double decade = std::pow(10, std::floor(std::log10(raw)));
@@ -52,7 +52,7 @@ std::vector<double> linear_ticks(double low, double high, int wanted) {
     }
   }
   const double first = std::ceil(low / step - 1e-9);
-  constexpr double countable = 4503599627370496;  // limit below which numbers have a fractional part
+  constexpr double countable = 4503599627370496;  // doubles from this size on are whole numbers
   if (!(step > 0 && std::abs(first) < countable)) return low < high ? std::vector{low, high} : std::vector{low};
   std::vector<double> out;
   for (int k = 0; k <= 10 * wanted; ++k) {
@@ -75,7 +75,7 @@ std::vector<double> ticks(const Axis& axis, int wanted) {
   const int every = std::max(1, (last - first + 7) / 8);
   for (int exponent = first; exponent <= last; exponent += every) out.push_back(std::pow(10, exponent));
   if (out.size() > 2) return out;
-  out.clear();  // few decades need ticks inside the decades as well
+  out.clear();  // a range of few powers of ten also has ticks at 2 and 5 times a power
   for (int exponent = first - 1; exponent <= last; ++exponent) {
     for (const double part : {1.0, 2.0, 5.0}) {
       const double tick = part * std::pow(10, exponent);

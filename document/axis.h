@@ -1,4 +1,4 @@
-// The axis of a picture maps data to pixels and chooses the round numbers to write beside it.
+// An axis of a chart maps data to pixels and chooses the round numbers that are written beside it.
 #pragma once
 
 #include <vector>
@@ -10,10 +10,10 @@ namespace softland::internal {
 inline constexpr const char* ink = "#1b1f24";    // colour of text and of the main curves
 inline constexpr const char* muted = "#5f6b76";  // colour of ticks and frames
 
-/// Returns a number that a chart can draw: NaN beyond 1e100 and 0 within 1e-100 of 0. No quantity of a switch is that large or
-/// small, but a damaged file may hold such a number, and the picture would overflow.
+/// Returns `value` if a chart can draw it, NaN if it is beyond 1e100, and 0 if it is within 1e-100 of 0. Only a damaged file
+/// holds values that large or small; they would overflow the coordinates.
 [[nodiscard]] double drawable(double value);
-/// Returns the points whose coordinates can be drawn.
+/// Returns the points whose two coordinates drawable(double) can draw.
 [[nodiscard]] Points drawable(const Points& points);
 
 /// Maps data to pixels along one axis.
@@ -26,12 +26,12 @@ struct Axis {
   [[nodiscard]] double pixel(double value) const;
 };
 
-/// Returns the position of `value` between `low`, 0, and `high`, 1, for all finite numbers: `high - low` may exceed the largest
-/// of them. The position is in the middle where both ends are equal.
+/// Returns the position of `value` on a scale with 0 at `low` and 1 at `high`; 0.5 if `low` equals `high`. The numbers are
+/// finite, but `high - low` may overflow.
 [[nodiscard]] double part_between(double low, double high, double value);
 
-/// Returns about `wanted` round numbers between the ends of the axis, or its decades. Returns the ends themselves if they
-/// are too close for round numbers between them, and nothing if they are not finite and ascending.
+/// Returns about `wanted` round numbers between the ends of the axis; for a logarithmic axis, powers of ten. Returns the ends
+/// themselves if they are too close for round numbers between them, and nothing if they are not finite and ascending.
 [[nodiscard]] std::vector<double> ticks(const Axis& axis, int wanted);
 
 }  // namespace softland::internal

@@ -1,4 +1,5 @@
-// A chart is a description that is drawn twice: as static SVG here (print, no JavaScript, README) and by uPlot in the page.
+// A chart is a description that is drawn twice: as static SVG by this program (for print and README), and by uPlot in a web
+// page.
 #pragma once
 
 #include <array>
@@ -16,13 +17,13 @@ using Points = std::vector<std::array<double, 2>>;
 
 namespace softland::internal {
 
-/// The columns have equal length; the first key of a chart's x axis is one of them.
+/// Columns by name, all of equal length; Chart::x_column and Series::column name them.
 using CurveTable = std::map<std::string, std::vector<double>>;
 using CurveTables = std::map<std::string, CurveTable>;
 
-/// The role says whose data a curve shows, and so chooses its pen. The roles `third`, `fourth`, `fifth` and `measured` (dots)
-/// are for other pictures than those of results. The role `limit` shows the limit of a source. The roles `device` and
-/// `device_before` are thin: one of many devices under the winner, and under the plain step.
+/// The role of a curve chooses its colour and line style. The roles `third`, `fourth` and `fifth` are further curves;
+/// `measured` shows measurements as dots. The role `limit` shows a voltage limit of a source. The roles `device` and
+/// `device_before` (thin lines) show one of many devices under the found waveform, and under the plain step.
 enum class Role { best, baseline, evaluations, third, fourth, fifth, measured, limit, device, device_before };
 enum class AxisScale { linear, logarithmic };
 
@@ -33,7 +34,7 @@ struct Series {
   Role role = Role::best;
 };
 
-/// A band fills the area between two columns.
+/// Fills the area between the columns `low` and `high` of a table.
 struct Band {
   std::string table, low, high;
   Role role = Role::best;
@@ -57,19 +58,19 @@ struct Chart {
   std::string y_label;
   std::string y_unit;
   AxisScale scale = AxisScale::linear;          ///< scale of y
-  AxisScale x_scale = AxisScale::linear;        ///< scale of x; logarithmic: the curves join dots
-  std::array<double, 2> x_home{0, 1};           ///< range shown before any zoom
-  std::array<double, 2> x_whole{0, 1};          ///< whole range of the data
-  std::optional<std::array<double, 2>> y_home;  ///< range of y before any zoom; not set: from the data in view
+  AxisScale x_scale = AxisScale::linear;        ///< scale of x; logarithmic: a curve has a dot at every point
+  std::array<double, 2> x_home{0, 1};           ///< range of x shown before any zoom
+  std::array<double, 2> x_whole{0, 1};          ///< range of x of all data
+  std::optional<std::array<double, 2>> y_home;  ///< range of y before any zoom; not set: the range of the data in view
   bool zero_line = false;
   std::string zero_label;
-  bool zero_label_left = false;  ///< true where the curves leave room on the left
+  bool zero_label_left = false;  ///< true: the zero label stands at the left end of the line
   std::string group;             ///< charts of one group share cursor and zoom; empty: alone
   int height = 300;              ///< height of the chart [px]
   std::vector<Series> series;
   std::vector<Mark> marks;
   std::vector<Band> bands = {};  ///< drawn below the curves, on static pictures alone
-  /// Each series is a bar, one below the other: full where its value is 1, pale where it is between, nothing where it is 0.
+  /// true: each series is a horizontal bar, one below the other: solid where its value is 1, pale where it is between 0 and 1.
   bool is_of_bars = false;
 };
 inline constexpr int bar_height = 24;  ///< the height of one bar [px]
@@ -79,14 +80,14 @@ struct Picture {
   std::vector<Chart> charts;
 };
 
-/// Returns a chart without series over the time until `until` [s].
+/// Returns a chart without series whose x axis is the time from 0 to `until` [s].
 [[nodiscard]] Chart chart_over_time(const std::string& id, const std::string& title, const std::string& y_label,
                                     const std::string& y_unit, double until, int height);
 
 /// Draws the chart as SVG elements on a canvas `width` wide, its top left corner at (0, `top`); text and lines carry their own
 /// colours.
 [[nodiscard]] std::string chart_svg(const CurveTables& tables, const Chart& chart, double width, double top);
-/// Returns the height of the chart on that canvas [px], title and axes included.
+/// Returns the height of the elements of chart_svg() [px], title and axes included.
 [[nodiscard]] double chart_svg_height(const Chart& chart);
 
 }  // namespace softland::internal

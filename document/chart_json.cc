@@ -1,4 +1,4 @@
-// The charts as data for the page's script.
+// Writes charts as JSON for the script of a page.
 #include "document/chart_json.h"
 
 #include <fmt/format.h>
@@ -40,7 +40,7 @@ const char* role_name(Role role) {
 
 const char* scale_name(AxisScale scale) { return scale == AxisScale::linear ? "linear" : "log"; }
 
-// Returns the rows of a column, packed unless its values span many decades: these are numbers of six digits.
+// Returns these rows of a column, packed; as numbers of six digits if the axis is logarithmic.
 json rows_json(const std::vector<double>& column, const std::vector<std::size_t>& rows, bool logarithmic) {
   std::vector<double> kept;
   double largest = 0;
@@ -75,7 +75,7 @@ json packed(const std::vector<double>& column, double unit) {
 
 json chart_json(const Picture& picture, std::size_t rows) {
   json tables = json::object();
-  std::set<std::string> logarithmic;  // tables of charts whose axes are both logarithmic
+  std::set<std::string> logarithmic;  // tables of charts whose two axes are both logarithmic
   for (const Chart& chart : picture.charts) {
     if (chart.x_scale == AxisScale::linear) continue;
     for (const Series& one : chart.series) logarithmic.insert(one.table);

@@ -1,4 +1,4 @@
-// Charts for the script of a page: curves as small whole numbers.
+// Charts as JSON for the script of a web page; the values of curves become small whole numbers.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace softland::internal {
 /// available and adds nothing.
 [[nodiscard]] nlohmann::json packed(const std::vector<double>& column, double unit);
 /// Returns curve tables and charts for the page's script. Columns are thinned to at most `rows` rows per table and stored as
-/// integer steps of a unit fine enough to be invisible (one part in ten million of the largest value).
+/// integer steps of a unit. The unit, one part in ten million of the largest value, is too small to see.
 [[nodiscard]] nlohmann::json chart_json(const Picture& picture, std::size_t rows);
 
 }  // namespace softland::internal

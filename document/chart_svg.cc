@@ -13,8 +13,8 @@
 namespace softland::internal {
 namespace {
 
-// The palette is that of Okabe and Ito, which colour-blind readers tell apart; the dashes carry the same distinction without
-// colour.
+// The colours are the palette of Okabe and Ito, which colour-blind readers can tell apart; dashes make the same distinction
+// without colour.
 constexpr const char* grid = "#e4e7ea";
 
 constexpr double left = 78;
@@ -56,10 +56,11 @@ Stroke stroke(Role role) {
 
 bool is_one_of_many(Role role) { return role == Role::device || role == Role::device_before; }
 
-/// Tells whether a role's points are dots that no line joins.
+/// Returns true if the points of a curve are dots that no line joins.
 bool dots(Role role) { return role == Role::evaluations || role == Role::measured; }
 
-/// Returns the rows of a table in view plus one on either side, thinned to first, lowest, highest and last per pixel column.
+/// Returns the points of a curve in the visible x range, plus one on either side. Per column of pixels, the first, lowest,
+/// highest and last point are kept.
 std::vector<std::array<double, 2>> visible(const Axis& x, const Axis& y, const std::vector<double>& xs,
                                            const std::vector<double>& ys) {
   std::vector<std::array<double, 2>> out;
@@ -109,7 +110,7 @@ std::array<double, 2> range_in_view(const CurveTables& tables, const Chart& char
   highest = std::max(highest, 0.0);
   const double margin = highest > lowest ? 0.06 * (highest - lowest) : 1.0;
   const double words =
-      chart.zero_label.empty() ? 0 : 0.1 * (highest - lowest) * 240 / chart.height;  // room for the words below the line
+      chart.zero_label.empty() ? 0 : 0.1 * (highest - lowest) * 240 / chart.height;  // height of the zero label below the line
   return {lowest - (lowest < 0 || chart.zero_line ? std::max(margin, words) : 0), highest + margin};
 }
 
@@ -124,7 +125,7 @@ std::string label(double x, double y, const char* anchor, const char* colour, do
                      anchor, colour, size, extra, escaped(words));
 }
 
-/// Writes a number with a true minus sign and no negative zero; numbers beyond four digits as powers of ten.
+/// Writes a number with a true minus sign and without negative zero; powers of ten from 1e4 on, and up to 1e-4, as in 10⁵.
 std::string tick_text(double value) {
   const double exponent = std::log10(std::abs(value));
   if (value > 0 && std::abs(exponent) > 3.5 && std::abs(exponent - std::round(exponent)) < 1e-9) {
@@ -137,7 +138,7 @@ std::string tick_text(double value) {
   return size == "0" ? size : with_true_minus((value < 0 ? "-" : "") + size);
 }
 
-/// This halo of the paper's colour keeps curves from running through the words.
+/// A halo in the colour of the paper keeps curves from running through labels.
 constexpr const char* halo = " paint-order=\"stroke\" stroke=\"#fff\" stroke-width=\"4\" stroke-linejoin=\"round\"";
 
 /// Returns "Time (µs)", "Gap (nm)" or "cost".
@@ -170,7 +171,7 @@ Axes axes_of(const CurveTables& tables, const Chart& chart, double width, double
 
 std::string chart_legend(const Chart& chart, double top) {
   std::string out;
-  if (chart.is_of_bars) return out;  // bars bear their names
+  if (chart.is_of_bars) return out;  // a bar has its name beside it instead
   double legend_x = left;
   for (const Series& one : chart.series) {
     if (one.label.empty()) continue;
@@ -222,7 +223,7 @@ std::string zero_line(const Chart& chart, const Axes& axes) {
   return out;
 }
 
-// Writes a curve in few bytes: whole tenths of a pixel from point to point.
+// Writes a curve as an SVG path in few bytes: steps between points in whole tenths of a pixel.
 std::string thin_curve(const std::vector<std::array<double, 2>>& points, const Stroke& pen) {
   std::string path;
   std::array<long, 2> last{};
@@ -255,12 +256,12 @@ std::string chart_curve(const CurveTable& table, const Chart& chart, const Serie
       path, pen.colour, pen.width, *pen.dash ? pen.dash : "none");
 }
 
-// A stretch of a bar that is shorter than a pixel is drawn as one of a pixel, and two that are nearer are drawn as one.
+// Draws a bar. A stretch shorter than a pixel is drawn one pixel long; stretches less than a pixel apart are drawn as one.
 std::string chart_bar(const CurveTable& table, const Chart& chart, std::size_t number, const Axes& axes) {
   const Series& one = chart.series[number];
   const std::vector<double>&xs = table.at(chart.x_column), &ys = table.at(one.column);
   constexpr double pixel = 1;
-  std::array<std::string, 2> paths;  // paths of pale and full bars
+  std::array<std::string, 2> paths;  // paths of the pale and the solid stretches
   std::array<double, 2> ends{-1, -1};
   const double middle = axes.y.pixel_high + bar_height * (static_cast<double>(number) + 0.5);
   for (std::size_t row = 1; row < xs.size(); ++row) {

@@ -20,19 +20,19 @@ namespace {
 
 constexpr std::string_view words_style = "words", missing_style = "missing", part_style = "part";
 constexpr std::size_t most_warnings = 200;  // largest number of warnings on a page
-constexpr std::size_t gap = 2;              // blanks between columns of a terminal
+constexpr std::size_t gap = 2;              // blanks between columns of a table on a terminal
 
-// Returns the head of the column at `place`; null beyond the heads.
+// Returns the heading of column `place`; null if the table has no heading there.
 const TableCell* head_of(const ReportTable& table, std::size_t place) {
   return place < table.head.size() ? &table.head[place] : nullptr;
 }
 
 bool is_of_words(const TableCell* head) { return head != nullptr && head->style == words_style; }
 
-// Escape text from names: it must not act on a terminal.
+// Returns the text of a cell with control characters escaped: text from names must not act on a terminal.
 std::string shown_text(const TableCell& cell) { return (cell.style == part_style ? "  " : "") + printable_line(cell.text); }
 
-// Calls `use(cell, place)` for every cell of a row with the column at which it begins.
+// Calls `use(cell, place)` for every cell of a row; `place` is the first column that the cell spans.
 template <class Use>
 void each_cell(const TableRow& row, Use use) {
   std::size_t place = 0;
@@ -55,7 +55,8 @@ std::vector<std::size_t> widths_of(const ReportTable& table) {
   return widths;
 }
 
-// Prints the columns from `first` to before `last`, beside that of the headings. Numbers are right-aligned, words left-aligned.
+// Returns a line with the heading of the row and the columns from `first` to before `last`. Numbers are right-aligned, words
+// left-aligned.
 std::string line_of(const TableRow& row, const ReportTable& table, const std::vector<std::size_t>& widths, std::size_t first,
                     std::size_t last) {
   std::string line;
@@ -77,7 +78,7 @@ std::string symbol_html(std::string_view symbol) {
   return fmt::format("{}<sub>{}</sub>", symbol.substr(0, at), symbol.substr(at + 1));
 }
 
-// True for the symbol of a quantity, a letter and its index: "t_i", "v_max".
+// Returns true for a symbol with a subscript, such as "t_i" or "v_max".
 bool has_index(std::string_view word) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   if (word.size() < 3 || !is_letter(word[0]) || word[1] != '_') return false;
@@ -94,7 +95,7 @@ std::string cell_html(const TableCell& cell, const TableCell* head, std::string_
   return out + fmt::format(">{}</{}>", cell.html.empty() ? words_html(cell.text) : cell.html, tag);
 }
 
-// Prints parts for a terminal, a blank line between two, none below a heading.
+// Prints the parts of a document on a terminal, with a blank line between two parts, but none below a heading.
 struct OnTerminal {
   std::size_t screen;
   std::string text = {};
@@ -202,7 +203,7 @@ std::string internal::words_html(std::string_view words) {
   std::string out;
   while (!words.empty()) {
     const std::size_t end = std::min(words.find_first_of(ends), words.size());
-    const std::size_t stop = end > 0 && words[end - 1] == '.' ? end - 1 : end;  // end of a sentence
+    const std::size_t stop = end > 0 && words[end - 1] == '.' ? end - 1 : end;  // without a full stop
     const std::string_view word = words.substr(0, stop);
     out += has_index(word) ? symbol_html(word) : escaped(word);
     out += escaped(words.substr(stop, std::min(end + 1, words.size()) - stop));

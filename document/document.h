@@ -1,4 +1,4 @@
-// The content of a report, stated once: a terminal and a page show the same sentences and tables.
+// The content of a report, from which a text for a terminal and a web page are made: both have the same sentences and tables.
 #pragma once
 
 #include <cstddef>
@@ -16,11 +16,11 @@
 
 namespace softland {
 
-/// A cell of a table, or a heading. Symbols get their indices on a page: "t_i".
+/// A cell of a table, or the heading of a column. A page shows a symbol such as "t_i" with a subscript.
 struct TableCell {
   std::string text;
-  std::string style = {};                                   ///< name of a class of the page; may be empty
-  std::size_t columns = 1;                                  ///< number of columns that it takes
+  std::string style = {};                                   ///< class in the CSS of the page; may be empty
+  std::size_t columns = 1;                                  ///< number of columns that the cell spans
   std::string html = {};                                    ///< replaces the text on a page
   TableCell(std::string words) : text(std::move(words)) {}  // NOLINT(google-explicit-constructor): a cell is its text
   TableCell(const char* words) : text(words) {}             // NOLINT(google-explicit-constructor)
@@ -50,9 +50,9 @@ struct SubHeading {
 struct ReportList {
   std::vector<std::string> lines;
 };
-/// A picture that only a page shows. It is made with the page: a terminal does not wait for pictures.
+/// A picture that only a page shows. It is drawn when the page is written: output on a terminal does not wait for pictures.
 struct Drawing {
-  std::function<std::string(const internal::Picture&)> html;  ///< makes HTML from the document's picture; not escaped
+  std::function<std::string(const internal::Picture&)> html;  ///< returns HTML, not escaped, from the result of Document::draw
 };
 [[nodiscard]] Drawing drawing_of(std::string html);
 
@@ -66,26 +66,26 @@ struct ReportSection {
   ShownIn shown = ShownIn::everywhere;
 };
 
-/// A number that stands above everything else of a page, with its name.
+/// A number with its name, at the top of a page.
 struct KeyNumber {
   std::string name, value;
-  std::string change = {};  ///< change in words; may be empty
-  std::string before = {};  ///< value of the plain step; may be empty
-  std::string style = {};   ///< style of the change, a class of the page
+  std::string change = {};  ///< change against the plain step, in words; may be empty
+  std::string before = {};  ///< value under the plain step; may be empty
+  std::string style = {};   ///< class of `change` in the CSS of the page
   bool is_words = false;    ///< true for a value without a number
 };
 
-/// The data that reproduce the contents of a page.
+/// The data from which the contents of a page can be computed again.
 struct MadeAgain {
-  std::string version, command;  ///< those of the program
-  std::string made_with;         ///< compiler and machine, one line; empty where nothing is known
-  std::string scene;             ///< resolved scene as a file; may be empty
+  std::string version, command;  ///< version of the program; command line
+  std::string made_with;         ///< compiler and machine, one line; empty if unknown
+  std::string scene;             ///< resolved scene as the text of a scene file; may be empty
   std::optional<std::uint64_t> seed = {};
   double tolerance = std::numeric_limits<double>::quiet_NaN();  ///< tolerance of the integrator
-  std::vector<std::string> reproduce = {};                      ///< command lines; empty: the one of `command`
+  std::vector<std::string> reproduce = {};                      ///< command lines that give the result again; empty: `command`
 };
 
-/// A document refers to the record it was made from, which must outlive it.
+/// Keeps a reference to the record from which the document was made; the record must outlive the document.
 struct Document {
   std::string title;  ///< title of the scene; may be empty
   std::string origin;
@@ -94,28 +94,28 @@ struct Document {
   std::vector<KeyNumber> keys;
   std::vector<ReportSection> sections;
   std::vector<std::string> warnings;
-  std::vector<std::string> page_warnings = {};  ///< warnings beside those on the page alone
+  std::vector<std::string> page_warnings = {};  ///< further warnings, for the page alone
   std::function<internal::Picture()> draw;      ///< makes the charts for the page's script; may be empty
-  MadeAgain made = {};                          ///< data that reproduce the contents
-  /// CSS and HTML of pictures that `draw` does not make.
+  MadeAgain made = {};                          ///< data for computing the contents again
+  /// CSS and HTML of the page for pictures that `draw` does not return.
   std::string style = {}, scripts = {};
 };
 
 /// Returns headline, sentences and tables for a terminal, at most `screen` columns wide where words permit it.
 [[nodiscard]] std::string terminal_text(const Document& document, std::size_t screen = 130);
-/// Returns a self-contained HTML page (< 1 MB): it makes no request; styles, script and data are inside. Without JavaScript and
-/// in print the charts are static SVG. All text is escaped.
+/// Returns a self-contained HTML page (< 1 MB): styles, script and data are inside, and the page loads nothing else. In print
+/// and without JavaScript, the charts are static SVG. All text is escaped.
 [[nodiscard]] std::string page_html(const Document& document);
 
 namespace internal {
 
-/// Prints columns that do not fit on the screen below the others, except a last one of words. Lines have no blanks at their
-/// end.
+/// Returns the table as text. Columns beyond the width `screen` are printed below the others, except a last column of words.
+/// Lines have no trailing blanks.
 [[nodiscard]] std::string table_text(const ReportTable& table, std::size_t screen = 130);
 [[nodiscard]] std::string table_html(const ReportTable& table);
 /// Draws every chart of the document with its title and caption.
 [[nodiscard]] Drawing all_charts();
-/// Returns the words escaped, with the indices of symbols below: "t_i".
+/// Returns the words as escaped HTML; a symbol such as "t_i" gets a subscript.
 [[nodiscard]] std::string words_html(std::string_view words);
 
 }  // namespace internal

@@ -1,4 +1,4 @@
-// Escaping makes text from scene files and command lines harmless inside HTML, SVG and scripts.
+// Escaping makes text from scene files and command lines safe inside HTML, SVG and scripts.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,8 +7,8 @@
 
 namespace softland::internal {
 
-/// Writes & < > " ' as entities: safe in element text and in quoted attributes of HTML and XML. Control characters, which XML
-/// forbids, become the escapes of printable().
+/// Writes & < > " ' as entities, so that the text is safe in elements and quoted attributes of HTML and XML. Control
+/// characters, which XML forbids, become the escapes of printable().
 [[nodiscard]] std::string escaped(std::string_view text);
 
 /// Returns JSON for the inside of `<script type="application/json">`: every `<` is written `\u003c`, so that neither `</script`

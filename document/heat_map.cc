@@ -19,9 +19,9 @@ namespace softland::internal {
 namespace {
 
 constexpr double map_left = 84;
-constexpr double map_right = 128;  // room for the scale of colours
+constexpr double map_right = 128;  // width of the colour scale [px]
 constexpr double map_above = 14;
-constexpr double map_below = 84;    // room for tick labels, axis label, legend of marks
+constexpr double map_below = 84;    // height of tick labels, axis label and legend of hatches [px]
 constexpr int steps_of_scale = 32;  // number of distinct colours
 
 std::vector<double> finite(const std::vector<double>& values) {
@@ -36,8 +36,8 @@ double within(double value) {
   return std::clamp(value, -largest, largest);
 }
 
-/// The lines of one level are put together from pieces that each cross one square between four cells. A piece joins two edges
-/// of its square; an edge is known by the cell it begins at, and whether it leads to the right or up.
+/// Assembles the contour lines of one level from pieces. Each piece crosses one square between four cell centres and joins two
+/// edges of the square. An edge is identified by the cell where it begins and its direction, right or up.
 class Contour {
  public:
   Contour(const std::vector<double>& values, std::size_t columns, double level)
@@ -50,7 +50,7 @@ class Contour {
 
   std::vector<ContourLine> lines() {
     std::vector<ContourLine> all;
-    // Open lines begin at an edge with one piece; all remaining lines are closed.
+    // An open line begins at an edge with one piece; all other lines are closed.
     for (const bool open : {true, false}) {
       for (auto& [edge, next] : joined_) {
         if (next.empty() || (open && next.size() != 1)) continue;
@@ -81,7 +81,7 @@ class Contour {
     }
     if (crossed.size() == 2) join(crossed[0], crossed[1]);
     if (crossed.size() != 4) return;
-    // The middle of a saddle tells which two corners are connected.
+    // At a saddle, the mean of the four corners decides which two corners are connected.
     const bool middle = std::midpoint(std::midpoint(corners[0], corners[1]), std::midpoint(corners[2], corners[3])) > level_;
     const bool turned = middle == (corners[0] > level_);
     join(crossed[0], crossed[turned ? 1 : 3]);
@@ -115,13 +115,13 @@ class Contour {
   std::map<Edge, std::vector<Edge>> joined_;
 };
 
-/// The values of one axis on the paper: each has a cell that reaches half-way to its neighbours.
+/// Maps the values of an axis to pixels: the cell of each value reaches half-way to the neighbouring values.
 class Cells {
  public:
   Cells(const HeatMapAxis& axis, double from, double to) : values_(axis.values) {
     const std::size_t n = values_.size();
     const bool positive = values_.front() > 0;
-    // Equal ratios make a logarithmic axis.
+    // The axis is logarithmic if its values have equal ratios.
     const auto log_ratio = [&](std::size_t k) { return std::log(values_[k]) - std::log(values_[0]); };
     const double ratio = n > 2 && positive ? log_ratio(n - 1) / static_cast<double>(n - 1) : 0;
     const double first = n > 2 && positive ? log_ratio(1) : 1;
@@ -144,7 +144,7 @@ class Cells {
   }
 
   [[nodiscard]] double edge(std::size_t k) const { return axis_.pixel(edges_[k]); }
-  /// Returns the pixel of a place between the centres of cells.
+  /// Returns the pixel of a position k between the centres of cells.
   [[nodiscard]] double place(double k) const {
     const auto lower = std::min(static_cast<std::size_t>(k), values_.size() - 1);
     const auto upper = std::min(lower + 1, values_.size() - 1);
@@ -164,7 +164,7 @@ std::string axis_label(const std::string& label, const std::string& unit, const 
   return escaped(label) + (unit.empty() ? "" : fmt::format(" ({}{})", prefix.symbol, escaped(unit)));
 }
 
-/// Draws rectangles of one class of cells, those that touch in a row as one.
+/// Returns SVG paths of rectangles by class of cell; neighbouring cells of one class in a row make one rectangle.
 std::map<std::size_t, std::string> rectangles(const std::vector<std::size_t>& classes, const Cells& x, const Cells& y,
                                               std::size_t columns) {
   std::map<std::size_t, std::string> paths;
@@ -182,7 +182,7 @@ std::map<std::size_t, std::string> rectangles(const std::vector<std::size_t>& cl
   return paths;
 }
 
-/// Returns a pattern that tells reasons apart without colour.
+/// Returns a hatch pattern, which distinguishes the reasons for a missing value without colour.
 std::string mark_pattern(std::size_t reason) {
   constexpr std::array shapes{"M-1 7L7 -1M-1 1L1 -1M5 7L7 5", "M-1 -1L7 7M-1 5L1 7M5 -1L7 1", "M0 3H6", "M3 0V6"};
   return fmt::format(
@@ -204,7 +204,7 @@ std::string cells(const HeatMap& map, const Cells& x, const Cells& y, const Colo
   for (const auto& [which, path] : rectangles(classes, x, y, columns)) {
     const std::string fill = which < steps_of_scale ? scale_colour((static_cast<double>(which) + 0.5) / steps_of_scale)
                                                     : fmt::format("url(#reason-{})", which - steps_of_scale);
-    // A stroke of its own colour leaves no gap between rows.
+    // A stroke in the colour of the fill closes the gap between rows.
     const std::string stroke = which < steps_of_scale ? fmt::format(" stroke=\"{}\" stroke-width=\"0.4\"", fill) : "";
     out += fmt::format("<path d=\"{}\" fill=\"{}\"{}/>\n", path, fill, stroke);
   }
@@ -219,7 +219,7 @@ std::string contours(const HeatMap& map, const Cells& x, const Cells& y, const C
   for (const double level : contour_levels(map.values, 9)) {
     if (level <= range.low || level >= range.high) continue;
     for (const ContourLine& line : contour_lines(map.values, columns, level)) {
-      constexpr std::size_t shortest = 4, labelled = 14;  // least numbers of pieces of a line, and of a labelled line
+      constexpr std::size_t shortest = 4, labelled = 14;  // least number of pieces of a drawn line, and of a labelled line
       if (line.size() < shortest) continue;
       for (std::size_t k = 0; k < line.size(); ++k)
         paths += fmt::format("{}{:.1f} {:.1f}", k == 0 ? "M" : "L", x.place(line[k][0]), y.place(line[k][1]));
@@ -331,7 +331,7 @@ std::vector<double> contour_levels(const std::vector<double>& values, int wanted
 }
 
 bool is_ragged(const std::vector<double>& values, std::size_t columns) {
-  // Two neighbours of a smooth figure differ by a small part of its range, those of noise by a third.
+  // Neighbouring values of a smooth figure differ by a small part of the range, random values by a third.
   constexpr double smooth = 0.1;
   const ColourRange range = colour_range(values);
   double sum = 0;
@@ -341,7 +341,7 @@ bool is_ragged(const std::vector<double>& values, std::size_t columns) {
     sum += std::min(1.0, std::abs(part_between(range.low, range.high, a) - part_between(range.low, range.high, b)));
     ++pairs;
   };
-  // Compare a value with the middle of its neighbours, so that a steady change along a row or a column is smooth.
+  // Compare a value with the mean of its two neighbours, so that a steady change along a row or a column counts as smooth.
   const std::size_t rows = columns == 0 ? 0 : values.size() / columns;
   for (std::size_t j = 0; j < rows; ++j) {
     for (std::size_t i = 0; i < columns; ++i) {

@@ -1,4 +1,4 @@
-// JSON has no non-finite numbers: such a figure is null in a result.
+// JSON has no non-finite numbers: a figure that is not finite becomes null.
 #pragma once
 
 #include <cmath>

@@ -9,10 +9,10 @@
 namespace softland::internal {
 namespace {
 
-/// A block shows at most this many bytes of text; the rest is cut.
+/// largest number of bytes of text in a block; the rest is cut
 constexpr std::size_t most_text = 100'000;
-/// The page has this many rows per curve: several times the pixels of a wide screen, so that zooming shows more, at about 100
-/// kB a curve.
+/// Number of rows of a curve in a page: several times the pixels of a wide screen, so that zooming shows more detail, at about
+/// 100 kB per curve.
 constexpr std::size_t rows_per_curve = 6000;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Parts of report pages.
+// Parts of the HTML pages of reports.
 #pragma once
 
 #include <map>
@@ -9,17 +9,17 @@
 
 namespace softland::internal {
 
-/// Replaces each {{name}} of the text by its part; parts are not searched again, so they may contain anything.
+/// Replaces each {{name}} in the text by the part of this name. The inserted parts are not searched for further {{name}}.
 [[nodiscard]] std::string filled(std::string_view text, const std::map<std::string, std::string, std::less<>>& parts);
 
-/// Returns the text, cut to 100 kB at a line end, with a note about it.
+/// Returns the text, cut at a line end to at most 100 kB; a note then says that it was cut.
 [[nodiscard]] std::string shortened(const std::string& words);
 
-/// Draws the chart as an <svg> element.
+/// Draws the chart as a static <svg> element.
 [[nodiscard]] std::string still_picture(const CurveTables& tables, const Chart& chart);
-/// Does the same in small, as one of many beside each other in an element of the class "multiples".
+/// Draws the chart as a small static <svg> element, one of many beside each other in an element of the class "multiples".
 [[nodiscard]] std::string small_picture(const CurveTables& tables, const Chart& chart);
-/// Returns the chart in a page, with its title, its caption and the place where the script draws it.
+/// Returns the HTML of a chart: title, caption, and the element in which the script draws the chart.
 [[nodiscard]] std::string figure_html(const CurveTables& tables, const Chart& chart);
 /// Returns the style and the scripts that draw the charts of a page.
 [[nodiscard]] std::string chart_style();

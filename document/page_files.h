@@ -1,4 +1,4 @@
-// The files of the report page, compiled in by embed.cmake.
+// The files of the report page, which embed.cmake compiles into the program.
 #pragma once
 
 #include <string_view>

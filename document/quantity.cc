@@ -23,7 +23,8 @@ constexpr const char* none = "—";
 constexpr double most_times = 1000;
 constexpr double most_percent = 10;  // ratio of a thousand per cent
 
-/// Returns the decimal exponent of the first digit of a value that is not 0; for an infinite one that of the largest number.
+/// Returns the decimal exponent of the first digit of a value that is not 0; for an infinite value, the exponent of the largest
+/// double.
 int exponent_of(double value) {
   const double size = std::min(std::abs(value), std::numeric_limits<double>::max());
   return static_cast<int>(std::floor(std::log10(size) + 1e-12));
@@ -39,14 +40,14 @@ double rounded(double value, int place) {
   return std::isfinite(near) ? near : value;
 }
 
-/// Returns the least multiple of 10^place that is not below a positive error: an error that covers the value still does.
+/// Returns the smallest multiple of 10^place that is at least `error`, so that a rounded error still covers the error.
 double rounded_up(double error, int place) {
   const double last = std::pow(10, place);
   if (last == 0) return error;  // 10^place underflows
   return std::min(std::ceil(error / last * (1 - 1e-9)) * last, std::numeric_limits<double>::max());
 }
 
-/// Returns the decimal place of the last digit of an error: of the first digit, or of the second when the first is 1.
+/// Returns the decimal place of the last shown digit of an error: its first digit, or the second if the first is 1.
 int place_of_error(double error) {
   const int exponent = exponent_of(rounded(error, exponent_of(error) - 1));
   return std::abs(error) < 1.95 * std::pow(10, exponent) ? exponent - 1 : exponent;
@@ -72,7 +73,7 @@ std::string in_prefix(double value, int place, Prefix prefix, std::string_view u
          (unit.empty() ? "" : fmt::format("{}{}{}", no_break_space, prefix.symbol, unit));
 }
 
-/// A value as it is shown: rounded, with its last place and prefix.
+/// A rounded value with the decimal place of its last digit and its prefix.
 struct Shown {
   double value = 0;
   int place = 0;
@@ -80,10 +81,10 @@ struct Shown {
 };
 
 Shown shown(double value, double error, std::string_view unit, int digits) {
-  Shown s{.value = rounded(value, last_place(value, error, unit, digits))};  // first, so that 999.96 becomes 1.00 k and not 1000
+  Shown s{.value = rounded(value, last_place(value, error, unit, digits))};  // round first: 999.96 becomes 1.00 k, not 1000
   s.place = last_place(s.value != 0 ? s.value : value, error, unit, digits);
   if (unit.empty()) return s;
-  // A value smaller than its error takes the prefix of the error.
+  // Choose the prefix by the error if the error is larger than the value.
   const double beside = error > 0 && std::isfinite(error) ? rounded_up(error, s.place) : 0;
   s.prefix = prefix_for(std::max(std::abs(s.value), beside));
   return s;
@@ -129,7 +130,7 @@ std::string quantity(double value, std::string_view unit, int digits) {
 
 namespace {
 
-/// A slew rate from 1 kV/s on is shown in volts per microsecond.
+/// Returns true for a slew rate from 1 kV/s on, which is shown in volts per microsecond.
 bool is_fast(double size, std::string_view unit) {
   constexpr double fast = 1e3;
   return unit == "V/s" && std::isfinite(size) && std::abs(size) >= fast;
@@ -150,7 +151,7 @@ std::string quantity_within(double value, double error, std::string_view unit, i
   if (!std::isfinite(value)) return none;
   if (is_fast(value, unit)) return quantity_within(per_microsecond * value, per_microsecond * error, fast_slew, digits);
   const double least = resolution(unit);
-  const bool known = !(error >= least);  // true when known better than the resolution
+  const bool known = !(error >= least);  // true unless the error is above the resolution
   if (known && value > 0 && value < least) return "< " + quantity(least, unit, 1);
   const Shown s = shown(value, error, unit, digits);
   if (unit.empty() && !(error > 0)) return plain_number(value, digits);
@@ -176,7 +177,7 @@ std::string plain_number(double value, int digits) {
   if (!std::isfinite(value)) return none;
   const double size = std::abs(value);
   if (size != 0 && (size < 1e-4 || size >= 1e6)) return scientific(value, digits);
-  const int whole_digits = size >= 1 ? exponent_of(size) + 1 : 1;  // 2500 stays 2500 however few digits are asked for
+  const int whole_digits = size >= 1 ? exponent_of(size) + 1 : 1;  // 2500 remains 2500, even if fewer digits are requested
   return with_true_minus(fmt::format("{:.{}g}", value == 0 ? 0.0 : value, std::max(digits, whole_digits)));
 }
 

@@ -1,4 +1,4 @@
-// Pictures for documents that cannot run a page.
+// Frames around charts for SVG files, which are read without a web page.
 #pragma once
 
 #include <functional>
@@ -9,12 +9,12 @@
 
 namespace softland {
 
-/// Draws the frame around any picture: a headline, smaller words below it, and the result of draw(width, top), which gives
-/// elements and their lower end.
+/// Returns an SVG document with a headline, smaller words below it, and a picture. The function draw(width, top) returns the
+/// elements of the picture and their lower end [px].
 [[nodiscard]] std::string svg_frame(const std::string& headline, const std::string& words,
                                     const std::function<std::pair<std::string, double>(double width, double top)>& draw);
 
-/// Draws the same frame around any charts: a headline, smaller words below it, and the charts row by row.
+/// Returns an SVG document with a headline, smaller words below it, and the charts row by row.
 [[nodiscard]] std::string svg_page(const std::string& headline, const std::string& words, const internal::Picture& drawn,
                                    std::size_t charts_per_row = 1);
 
