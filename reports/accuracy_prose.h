@@ -1,4 +1,4 @@
-// Words and rows that the text and the page of `softland accuracy` share.
+// Words and rows that the terminal text and the page of `softland accuracy` share.
 #pragma once
 
 #include <optional>
@@ -10,29 +10,29 @@
 
 namespace softland::internal {
 
-/// This sentence replaces the table of quadratures in a plate's report.
+/// A sentence that replaces the table of quadratures in the report on a rigid plate.
 inline constexpr const char* no_quadrature =
     "A rigid plate has the same gap everywhere: the number of quadrature points does not matter, and none was tried.";
 
 [[nodiscard]] std::string error_cell(double error);
 [[nodiscard]] std::string four_digits(double value, std::string_view unit);
 
-/// Returns "t_i, v_i and B_H": the well-conditioned figures of the reference, or the others.
+/// Returns "t_i, v_i and B_H": the symbols of the well-conditioned figures of the reference, or of the ill-conditioned figures.
 [[nodiscard]] std::string symbols(const AccuracyStudy& study, bool conditioned);
 
-/// Returns "24 points per length"; empty for a plate.
+/// Returns "24 points per length"; empty for a rigid plate.
 [[nodiscard]] std::string points_text(const AccuracyRow& row);
 [[nodiscard]] std::string setting_text(const AccuracyRow& row);
 [[nodiscard]] std::string modes_text(const AccuracyRow& row);
 [[nodiscard]] std::string restart_text(const AccuracyStudy& study);
 [[nodiscard]] std::string recommended(const AccuracyStudy& study, const Recommendation& recommendation);
-/// Returns one line per wanted accuracy.
+/// Returns one recommended setting per wanted accuracy, each as a line of text.
 [[nodiscard]] std::vector<std::string> recommendations(const AccuracyStudy& study);
 
-/// Returns the quadrature points per length of the scene; none for a plate.
+/// Returns the quadrature points per length in the scene; none for a rigid plate.
 [[nodiscard]] std::optional<double> own_points(const AccuracyStudy& study);
 
-/// Returns the rows with the integrator that simulate takes, at the tightest tolerance that ran, one per number of points.
+/// Returns one row per number of quadrature points: the row of the integrator of `simulate` at the tightest tolerance that ran.
 [[nodiscard]] std::vector<const AccuracyRow*> quadrature_rows(const AccuracyStudy& study);
 
 }  // namespace softland::internal

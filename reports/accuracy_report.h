@@ -1,4 +1,4 @@
-// The findings of `softland accuracy`: JSON with SI units in the names, a document, and a work-precision diagram.
+// The results of `softland accuracy`: JSON with SI units in the names, a document, and a work-precision diagram.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -17,11 +17,11 @@ struct AccuracyRecord {
 
 [[nodiscard]] nlohmann::json json_of(const AccuracyRecord& record);
 [[nodiscard]] AccuracyRecord read_accuracy(const nlohmann::json& from);
-/// Returns recommendations, diagrams, tables, and the ill-conditioned figures over many runs. A study without rows gives the
-/// reason why it has none.
+/// Returns a document with recommendations, diagrams, tables, and the ill-conditioned figures over many runs. A study without
+/// rows gives the reason why it has no rows.
 [[nodiscard]] Document document_of(const AccuracyRecord& record);
-/// Draws error against time, one curve per integrator; the same with and without a restart at the contact; and error against
-/// quadrature points, one curve per figure.
+/// Draws three diagrams: error against computing time with a curve per integrator; the same with and without a restart of the
+/// integrator at the contact; and error against quadrature points with a curve per figure.
 [[nodiscard]] std::string svg_of(const AccuracyRecord& record);
 
 }  // namespace softland

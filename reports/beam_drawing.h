@@ -1,4 +1,4 @@
-// A picture of a beam as built, to scale along its length.
+// Draws a beam to scale along its length.
 #pragma once
 
 #include <string>
@@ -7,8 +7,9 @@
 
 namespace softland {
 
-/// Returns a static SVG document of the beam at rest. The view from above has the same scale across the beam as along it where
-/// that fits. The view from the side enlarges heights. Both show sections, layers, holes, electrodes and contacts. Beams only.
+/// Returns a static SVG document of the beam at rest; the device must have a beam. The view from above is to scale across the
+/// beam too, if that fits. The view from the side enlarges heights. Both views show sections, layers, holes, electrodes and
+/// contacts.
 [[nodiscard]] std::string beam_drawing(const std::string& title, const Device& device);
 
 }  // namespace softland

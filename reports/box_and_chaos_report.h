@@ -1,5 +1,5 @@
-// Section of the report of `softland robustness` that compares the sampled figures with a search for worst cases and with
-// polynomial chaos (studies/devices/box_and_chaos.h).
+// The section of the report of `softland robustness` that compares the figures of the sample with a search for worst cases and
+// with polynomial chaos (studies/devices/box_and_chaos.h).
 #pragma once
 
 #include "reports/robustness_report.h"
@@ -8,9 +8,9 @@ namespace softland::internal {
 
 [[nodiscard]] RobustnessRecord::BoxAndChaosRecord record_of(const BoxAndChaos& ways, const DriveRobustness& drive,
                                                             const PreparedScene& nominal);
-/// Makes the section; the record must hold these figures.
+/// Makes the section; the record must have worst cases and polynomial chaos.
 [[nodiscard]] ReportSection box_and_chaos_section(const RobustnessRecord& record);
-/// Returns "× 1.0213" or "2.013 µm".
+/// Returns the value of a varying quantity: a factor as "× 1.0213", any other quantity as "2.013 µm".
 [[nodiscard]] std::string value_text(const RobustnessRecord::Varied& variable, double value);
 
 }  // namespace softland::internal

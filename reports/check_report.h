@@ -1,4 +1,4 @@
-// The findings of `softland check` about a scene: JSON with SI units in the names, and lines for a terminal.
+// The results of `softland check` about a scene: JSON with SI units in the names, and lines for a terminal.
 #pragma once
 
 #include <array>
@@ -17,12 +17,13 @@ struct CheckRecord {
   struct Line {
     std::string name, value;
   };
-  /// The rest shape of a structure that is not straight. A rise counts from the straight shape, away from the near electrode.
+  /// The rest shape of a structure that is not straight at rest. A rise counts from the straight shape, away from the near
+  /// electrode.
   struct Rest {
     double far_end_rise = Metrics::unset;  ///< rise of the far end [m]
     double far_end_gap = Metrics::unset;   ///< distance of the far end to the plane of the electrode [m]
-    double contact_rise = Metrics::unset;  ///< rise of the first contact's place [m]
-    double contact_gap = Metrics::unset;   ///< distance of that place to the contact's plane [m]
+    double contact_rise = Metrics::unset;  ///< rise of the structure at the first contact [m]
+    double contact_gap = Metrics::unset;   ///< distance of the structure at the first contact to the contact plane [m]
     double least_gap = Metrics::unset;     ///< smallest gap over the near electrodes [m]
   };
   Origin origin;
@@ -30,14 +31,14 @@ struct CheckRecord {
   std::string title;
   std::vector<double> frequencies;              ///< natural angular frequencies [rad/s]
   std::optional<Rest> rest_shape;               ///< rest shape; not set for a straight structure
-  std::map<std::string, PullInRecord> pull_in;  ///< voltages by electrode; a single one has no name when read from JSON
+  std::map<std::string, PullInRecord> pull_in;  ///< voltages by electrode; from JSON, the name of a single electrode is empty
   std::map<std::string, std::array<double, 2>> hold_windows;  ///< release voltage and voltage of collapse onto the electrode [V]
   double dynamic_precision = Metrics::unset;                  ///< relative precision of dynamic pull-in voltages
   std::optional<ClosedState> closed_state;
   std::optional<StablePathRecord> stable_path;
   double duration = Metrics::unset, tolerance = Metrics::unset;  ///< simulated time [s]; tolerance of the integrator
   std::vector<std::string> warnings;
-  std::vector<Line> lines;  ///< derived numbers, in words
+  std::vector<Line> lines;  ///< derived numbers, as text
 };
 
 [[nodiscard]] nlohmann::json json_of(const CheckRecord& record);

@@ -1,4 +1,4 @@
-// Captions for the record of a closing, computed from its numbers.
+// Captions for the report on a closing, computed from the numbers of its record.
 #pragma once
 
 #include <string>
@@ -9,9 +9,8 @@
 
 namespace softland::internal {
 
-/// The finding in one sentence, in two parts so that a page can weigh them differently. The part `main` is about the winner or
-/// the single run; `rest` is about the baseline (empty for a single run). main + rest is the whole sentence, with its full
-/// stop.
+/// The result in one sentence, in two parts to which a page gives different weight: `main` is about the winner or the single
+/// run, `rest` about the baseline (empty for a single run). main + rest is the complete sentence with its full stop.
 struct Headline {
   std::string main;
   std::string rest;
@@ -21,12 +20,12 @@ struct Headline {
 
 /// Returns the simulated time [s]: the last time of any curve; NaN without curves.
 [[nodiscard]] double window_end(const ClosingRecord& record);
-/// Returns the indices of the listed evaluations of a search, ascending; they may have gaps.
+/// Returns the indices of the evaluations that the record of a search lists, ascending; indices may be missing in between.
 [[nodiscard]] std::vector<double> evaluation_indices(const SearchCourse& course);
-/// Counts the evaluations up to and with the one of this index; returns the index itself where none are listed.
+/// Returns the number of listed evaluations with an index of at most `index`; `index` itself if no evaluations are listed.
 [[nodiscard]] double evaluations_until(const std::vector<double>& indices, double index);
 
-/// Each of these returns one or two sentences for below a chart.
+/// Each of the functions below returns one or two sentences as the caption of a chart.
 [[nodiscard]] std::string gap_caption(const ClosingRecord& result);
 [[nodiscard]] std::string contact_caption(const ClosingRecord& result);
 [[nodiscard]] std::string landing_caption(const ClosingRecord& result);
@@ -35,23 +34,23 @@ struct Headline {
 [[nodiscard]] std::string waveform_caption(const ClosingRecord& result, const std::string& drive);
 [[nodiscard]] std::string search_caption(const ClosingRecord& result, const SearchRecord& search);
 [[nodiscard]] std::string checks_caption(const SearchRecord& search);
-/// Names the searched waveform families, each with its least cost; empty where there was one.
+/// Names the searched waveform families, each with its least cost; empty if there was only one family.
 [[nodiscard]] std::string families_caption(const SearchRecord& search);
-/// Gives the result of a search under process variation; empty for any other search.
+/// States the result of a search under process variation; empty for any other search.
 [[nodiscard]] std::string robust_caption(const ClosingRecord& result);
-/// Compares the winner with the least time of any waveform; empty where that is not known.
+/// Compares the winner with the least closing time of any waveform; empty if that time is unknown.
 [[nodiscard]] std::string limit_prose(const ClosingRecord& result);
-/// Returns false when the winner is bounce-free but one of its confirmations under its own gas law is not.
+/// Returns false when the winner is bounce-free but bounces in a confirmation with the same gas law.
 [[nodiscard]] bool checks_agree(const ClosingRecord& result);
-/// Tells whether the winner closes bounce-free in all confirmations.
+/// Returns true if the winner closes without a bounce in all confirmations.
 [[nodiscard]] bool all_checks_land(const SearchRecord& search);
-/// Returns the worst closing: one that stays open, then the highest rebound, then the highest impact velocity. Null without
-/// checks.
+/// Returns the worst closing: a switch that stays open, then the highest rebound, then the highest impact velocity. Returns
+/// null without confirmations.
 [[nodiscard]] const ConfirmationRecord* worst_check(const std::vector<ConfirmationRecord>& checks);
-/// Returns the key of the figure that makes it the worst.
+/// Returns the key of the figure by which this confirmation is the worst.
 [[nodiscard]] std::string_view worst_figure(const ConfirmationRecord& check);
 
-/// Returns "Softland's waveform" and "plain step", or "closing" for a single run.
+/// Returns "Softland's waveform"; "closing" for a single run.
 [[nodiscard]] std::string best_label(const ClosingRecord& result);
 [[nodiscard]] std::string baseline_label();
 

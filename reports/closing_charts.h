@@ -1,4 +1,4 @@
-// Charts of the record of a closing: its curves over time, its drives and the course of its search.
+// Charts for the record of a closing: curves over time, drives, and the course of a search.
 #pragma once
 
 #include <string>
@@ -9,18 +9,19 @@
 
 namespace softland {
 
-/// Returns a static SVG document, 900 px wide: the finding in words, gap against time of baseline and winner (the whole closing
-/// and the landing enlarged) and the drive waveforms below. Parts that the result lacks are left out.
+/// Returns a static SVG document, 900 px wide: the result in words, the gap against time of baseline and winner (the whole
+/// closing, and the landing enlarged), and the drive waveforms below. Parts that the record lacks are left out.
 [[nodiscard]] std::string svg_gap_chart(const ClosingRecord& result);
-/// Returns the charts of that document.
+/// Returns the charts of svg_gap_chart().
 [[nodiscard]] internal::Picture gap_and_drives(const ClosingRecord& result);
 
 namespace internal {
 
-/// Returns all charts of a result, in the order of the page: gap, contact, landing, drives, velocity, force, resistance,
-/// search. It leaves out charts that have no data.
+/// Returns all charts of a record, in the order of the page: gap, contact, landing, drives, velocity, force, resistance,
+/// search. Charts without data are left out.
 [[nodiscard]] Picture picture(const ClosingRecord& result);
-/// Returns when a contact is closed, until `window` [s]: columns time_s and closed, for a chart of bars.
+/// Returns the columns time_s and closed for a chart of bars: 1 while the contact is closed, 0 while it is open, until `window`
+/// [s].
 [[nodiscard]] CurveTable closed_table(const std::vector<ClosedStretch>& closed, double window);
 
 }  // namespace internal

@@ -1,4 +1,4 @@
-// The findings of a closing or a search as a document to pass on.
+// The report on a closing or a search as a document.
 #pragma once
 
 #include "document/document.h"
@@ -6,8 +6,8 @@
 
 namespace softland {
 
-/// Shows the finding in words, figures before and after, zoomable charts, the search, confirmations, the resolved scene and how
-/// to reproduce it. Scene texts beyond 100 kB are cut, and the page says so.
+/// Returns a document with the result in words, figures before and after, zoomable charts, the search, confirmations, the
+/// resolved scene, and the commands that reproduce the result. Scene texts beyond 100 kB are cut, and the page says so.
 [[nodiscard]] Document closing_document(const ClosingRecord& result);
 
 }  // namespace softland

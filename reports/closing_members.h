@@ -1,4 +1,4 @@
-// The members of the record of a closing and of its parts, named as in its JSON, for writing and for reading: see
+// Lists the members of the record of a closing and of its parts, with their names in JSON, for writing and reading: see
 // reports/record.h.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace internal {
 
 inline bool every_figure(const Figure&) { return true; }
 inline bool figure_of_no_drive(const Figure& figure) { return figure.conditioning != Conditioning::drives; }
-/// Tells whether each of several contacts has this figure of its own.
+/// Returns true if each of several contacts has its own value of this figure.
 inline bool figure_of_contact(const Figure& figure) {
   if (figure.key == key_of(&Metrics::drive_energy)) return false;
   const bool is_at_rest = figure.conditioning == Conditioning::rest || figure.conditioning == Conditioning::open;
@@ -24,7 +24,7 @@ inline bool figure_of_contact(const Figure& figure) {
 }
 inline bool figure_of_number(const Figure& figure) { return !figure.is_yes_or_no(); }
 
-// JSON holds the status among the figures.
+// In JSON, the status stands among the figures.
 template <class A, class Asked>
 void figures_and_status(A& a, FigureValues& figures, std::string& status, const Asked& asked) {
   a.object("metrics", [&](auto& metrics) {
@@ -45,7 +45,7 @@ void figure_errors(A& a, FigureValues& errors) {
   a.object("errors", [&](auto& inside) { inside.figures(errors, figure_of_number); });
 }
 
-/// Tells whether the JSON of a closing holds a search too.
+/// Returns true if the JSON of a closing also has a search.
 [[nodiscard]] bool is_of_search(const nlohmann::json& record);
 [[nodiscard]] nlohmann::json rebounds_json(const std::vector<Rebound>& rebounds);
 [[nodiscard]] std::vector<Rebound> read_rebounds(const nlohmann::json& rows);
@@ -63,15 +63,15 @@ void figure_errors(A& a, FigureValues& errors) {
 [[nodiscard]] std::vector<IllConditioned> read_certified(const nlohmann::json& figures);
 [[nodiscard]] inline std::string integrator_name(Integrator integrator) { return std::string(to_string(integrator)); }
 [[nodiscard]] Integrator read_integrator(const nlohmann::json& name);
-/// Write an eigenvalue, or the voltages of electrodes and their converged values, by the number of modes. JSON is null if the
-/// structure has no more modes than the scene.
+/// These functions write an eigenvalue, or the voltages of electrodes, by the number of modes, with the converged value. JSON
+/// is null if the structure has no more modes than the scene.
 [[nodiscard]] nlohmann::json eigenvalues_json(const std::optional<ByModes>& found);
 [[nodiscard]] nlohmann::json voltages_json(const std::map<std::string, ByModes>& of_electrodes);
 [[nodiscard]] std::map<std::string, ByModes> read_voltages(const nlohmann::json& of_electrodes);
 [[nodiscard]] HoldWindows read_windows(const nlohmann::json& windows);
 /// Writes each choice with the quantiles of its row.
 [[nodiscard]] nlohmann::json choices_json(const DevicesFindings& devices);
-/// Returns the outcome of all searches together.
+/// Writes the outcome of the searches with several seeds together.
 [[nodiscard]] nlohmann::json seeds_summary(const SeedsFindings& seeds);
 
 }  // namespace internal
@@ -88,7 +88,7 @@ void members(A& a, MadeWith& made) {
   a("processor", OrNull{made.processor});
 }
 
-/// Every record of a study begins with these members.
+/// Every record of a study begins with the members of its origin.
 template <class A>
 void members(A& a, Origin& origin) {
   a("kind", origin.kind);
@@ -378,7 +378,7 @@ void members(A& a, SeedsFindings& seeds) {
   }
 }
 
-/// The members of a search stand among those of the closing that it found.
+/// The members of a search stand at the same level of the JSON as the members of the closing that the search found.
 template <class A>
 void members_of_search(A& a, SearchRecord& search, ClosingRecord& closing) {
   a("target", search.target);
@@ -427,7 +427,7 @@ void members_of_search(A& a, SearchRecord& search, ClosingRecord& closing) {
   if (a.has(!search.checks.empty())) a("evaluations_with_more_modes", internal::Count{search.evaluations_of_modes});
 }
 
-/// Members that are computed from others are written elsewhere.
+/// Members that are computed from other members are written in closing_json.cc.
 template <class A>
 void members(A& a, ClosingRecord& record) {
   members(a, record.origin);

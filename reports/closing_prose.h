@@ -1,4 +1,4 @@
-// Clauses that tell the course of a closing from the figures of one run.
+// Clauses that describe a closing from the figures of one run.
 #pragma once
 
 #include <optional>
@@ -11,17 +11,17 @@ namespace softland::internal {
 
 [[nodiscard]] bool touches(const FigureValues& figures);
 [[nodiscard]] bool settles(const FigureValues& figures);
-/// Tells whether a run touched but nothing later is known: the scene has no contact, or the run stopped.
+/// Returns true if a run touched but nothing later is known: the scene has no contact, or the run stopped.
 [[nodiscard]] bool ends_at_touch(const FigureValues& figures);
-/// True when one contact of several has touched, but those that make the connection were never closed together.
+/// Returns true if one contact of several has touched, but the contacts that make the connection were never closed together.
 [[nodiscard]] bool touches_in_part(const RunRecord& run);
-/// Tells whether a run began closed: it came to its end without a first touch.
+/// Returns true if a run began closed: the run was complete, but without a first touch.
 [[nodiscard]] bool began_closed(const RunRecord& run);
-/// True for a run that touched and settled without a significant rebound.
+/// Returns true for a run that touched and settled without a significant rebound.
 [[nodiscard]] bool is_clean(const FigureValues& figures);
-/// Returns the highest rebound [m], 0 where it is too low to be told from none.
+/// Returns the height of the highest rebound [m]; 0 if the rebound is too low to be significant.
 [[nodiscard]] double rebound_height(const FigureValues& figures);
-/// Returns a figure of a run; NaN where there is no run.
+/// Returns a figure of a run; NaN if the run has no figures.
 [[nodiscard]] double figure_of_run(const RunRecord& run, Figure::Member member);
 
 /// The subject and the object of a clause: "softland's waveform" closes "the switch"; "the plain step" closes "it".
@@ -29,10 +29,10 @@ struct Actor {
   std::string subject;
   std::string object = {};  ///< object of the clause; empty: the subject is the switch itself
 };
-/// Says how a run closes, as a clause without full stop; `window` is the simulated time [s].
+/// Describes how a run closes, as a clause without full stop; `window` is the simulated time [s].
 [[nodiscard]] std::string closing_clause(const Actor& actor, const RunRecord& run, double window);
-/// Says how a run lands and what follows, as a clause about `subject`, such as "with the plain step the switch"; empty without a
-/// run.
+/// Describes how a run touches and what follows, as a clause about `subject`, such as "with the plain step the switch"; empty
+/// if the run has no figures.
 [[nodiscard]] std::string landing_clause(const std::string& subject, const RunRecord& run);
 
 inline constexpr const char* own_subject = "softland's waveform";
@@ -42,7 +42,7 @@ inline constexpr const char* step_switch = "with the plain step the switch";
 
 /// Returns the words with a capital letter at the beginning.
 [[nodiscard]] std::string capitalised(std::string words);
-/// Returns "A; b." and leaves out an empty part; empty when both are.
+/// Returns "A; b." without an empty part; empty if both parts are empty.
 [[nodiscard]] std::string joined(const std::string& first, const std::string& second);
 
 }  // namespace softland::internal

@@ -1,4 +1,4 @@
-// The findings of `softland cycle`: JSON with SI units in the names, tables for a terminal, a page and a picture.
+// The results of `softland cycle`: JSON with SI units in the names, tables for a terminal, a page and a picture.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@
 namespace softland {
 
 struct CycleRecord {
-  /// Largest steady rates under process variation, and the share of devices that is steady at the reported rate.
+  /// Largest steady cycle rates under process variation, and the share of devices that are steady at the reported rate.
   struct Devices {
     std::uint64_t count = 0;
     double at_5 = Metrics::unset, at_50 = Metrics::unset, at_95 = Metrics::unset;  ///< percentiles [Hz]
@@ -35,16 +35,16 @@ struct CycleRecord {
   struct Drive {
     std::string name;
     double largest = Metrics::unset;                ///< largest steady rate [Hz]
-    std::vector<std::array<double, 2>> windows;     ///< ranges above it that are steady again [Hz]
-    std::vector<double> steady_rates, other_rates;  ///< rates of the scan that were steady, and the others [Hz]
+    std::vector<std::array<double, 2>> windows;     ///< ranges above `largest` in which cycles are steady again [Hz]
+    std::vector<double> steady_rates, other_rates;  ///< rates of the scan with steady cycles, and with others [Hz]
     std::optional<Devices> devices;
-    std::optional<std::string> status, message;  ///< end of the run at the rate
+    std::optional<std::string> status, message;  ///< status and message at the end of the run at the reported rate
     std::vector<Cycle> cycles;
-    std::map<std::string, Points> waveforms;  ///< one cycle, by drive: time [s] and level [V]
+    std::map<std::string, Points> waveforms;  ///< waveforms of one cycle, by drive: time [s] and level [V]
   };
-  /// The search that found the waveforms for this rate.
+  /// The search that found the waveforms for the reported rate.
   struct Search {
-    std::string target, family;  ///< target; waveform family of the closing
+    std::string target, family;  ///< target; waveform family of the closing waveform
     std::uint64_t evaluations = 0;
     double cost = Metrics::unset, plain_cost = Metrics::unset;
     std::map<std::string, double> parameters;
@@ -54,23 +54,23 @@ struct CycleRecord {
   double rate = Metrics::unset, duty = Metrics::unset;  ///< rate [Hz]; duty [1]
   std::uint64_t cycles = 0, seed = 1;
   double contact_gap = Metrics::unset;  ///< rest gap of the contact [m]
-  std::vector<Drive> drives;            ///< drives; the plain one comes first
-  std::optional<Search> search;         ///< none where the waveforms were given
+  std::vector<Drive> drives;            ///< pairs of waveforms; the plain one comes first
+  std::optional<Search> search;         ///< none if the waveforms were given
   std::vector<std::string> warnings;    ///< warnings of the scene
 
-  std::map<std::string, Course> curves;  ///< courses by drive; only files have them
+  std::map<std::string, Course> curves;  ///< gap over time by name of Drive; only files have it
 };
 [[nodiscard]] CycleRecord record_of(const PreparedScene& given, const Cycling& cycling, const std::string& command);
 [[nodiscard]] CycleRecord record_of(const CycleSearchResult& found, const CycleSearchOptions& options,
                                     const std::string& command);
-/// Returns the waveforms of a search as CSV: see csv() in waveforms/export.h.
+/// Returns the waveforms that a search found as CSV: see csv() in waveforms/export.h.
 [[nodiscard]] std::string cycle_csv(const CycleSearchResult& found);
 
 [[nodiscard]] nlohmann::json json_of(const CycleRecord& record);
 [[nodiscard]] CycleRecord read_cycles(const nlohmann::json& from);
-/// Shows sentences and tables, and charts of the courses where the record has them. The document refers to the record.
+/// Returns sentences and tables, and charts of the gap if the record has curves. The document keeps a reference to the record.
 [[nodiscard]] Document document_of(const CycleRecord& record);
-/// Draws the gap of the first cycles, when the contact is closed, and their drives; the record must have the courses.
+/// Draws gap, contact and drives over the first cycles; the record must have curves.
 [[nodiscard]] std::string svg_of(const CycleRecord& record);
 
 }  // namespace softland

@@ -1,14 +1,14 @@
-// The section on how the figures of the nominal device change with the varying quantities (studies/devices/derivatives.h): a
-// part of the report of `softland robustness`.
+// The section of the report of `softland robustness` on the derivatives of the figures of the nominal device by the varying
+// quantities (studies/devices/derivatives.h).
 #pragma once
 
 #include "reports/robustness_report.h"
 
 namespace softland::internal {
 
-/// Makes the record; `drive` is the drive that the derivatives belong to.
+/// Makes the record of the derivatives under the waveforms of `drive`.
 [[nodiscard]] RobustnessRecord::Derived record_of(const Derivatives& derivatives, const DriveRobustness& drive);
-/// Makes the section with all figures; it has no parts where nothing was asked for.
+/// Makes the section with all figures; it has no parts if no derivatives were computed.
 [[nodiscard]] ReportSection derivatives_section(const RobustnessRecord::Derived& derivatives,
                                                 const RobustnessRecord::Drive& drive);
 

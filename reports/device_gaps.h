@@ -1,4 +1,4 @@
-// The gaps of devices under the plain step and under best.toml, as pictures side by side.
+// Draws the gaps of devices under the plain step and under the waveform of best.toml, side by side.
 #pragma once
 
 #include <string>
@@ -8,15 +8,16 @@
 
 namespace softland {
 
-/// Returns a static SVG document of a search over devices: its headline, the gaps of devices, and the waveforms of the drives
-/// below.
+/// Returns a static SVG document on a search over devices: the headline, the gaps of devices over time, and the waveforms of
+/// the drives.
 [[nodiscard]] std::string svg_devices(const ClosingRecord& result);
 
 namespace internal {
 
-/// Returns two charts, with a curve for each device, the median and the band of 5 to 95 %; none where no gaps were kept.
+/// Returns two charts of the gap over time, for plain step and best.toml: a curve per device, the median, and the band from 5
+/// to 95 %. Returns none if no gaps were recorded.
 [[nodiscard]] Picture gaps_picture(const DevicesFindings& devices);
-/// Returns the same for a page.
+/// Returns the charts of gaps_picture() as HTML for a page.
 [[nodiscard]] std::string gaps_html(const DevicesFindings& devices);
 
 }  // namespace internal

@@ -1,4 +1,4 @@
-// Drawings that explain: the switch of a result from the side, and a found waveform with its parameters.
+// Drawings for explanation: the switch of a result from the side, and a found waveform with its parameters.
 #pragma once
 
 #include <string>
@@ -8,10 +8,11 @@
 namespace softland::internal {
 
 /// Draws the switch at rest as an <svg> element: anchor, beam or plate, piezo layer, electrodes, contact, and the gaps. The
-/// length is to scale, heights are exaggerated. Empty where the scene does not describe the switch. Its colours are the page's.
+/// length is to scale, heights are exaggerated. Empty if the scene does not describe the switch. The colours come from the CSS
+/// of the page.
 [[nodiscard]] std::string device_picture(const DrawnScene& scene);
 
-/// Draws the waveform of a drive from 0 to where it holds, with the searched parameters written where they act; empty for a
+/// Draws the waveform of a drive from t = 0 to the hold level. The searched parameters are written where they act; empty for a
 /// drive without searched parameters.
 [[nodiscard]] std::string parameter_drawing(const ClosingRecord& result, const std::string& drive);
 

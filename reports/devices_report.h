@@ -1,5 +1,5 @@
-// The findings of a search for devices: the headline, the table that stands before all others, and the front of closing time
-// against impact velocity; as text and as HTML.
+// The results of a search over devices: the headline, the main table, and the Pareto front of closing time against impact
+// velocity, as text and as HTML.
 #pragma once
 
 #include <string>
@@ -13,15 +13,17 @@ namespace softland {
 
 namespace internal {
 
-/// Says how the waveform for the nominal design closes it.
+/// Describes how the nominal design closes with the waveform found for it.
 [[nodiscard]] std::string drawing_prose(const DevicesFindings& devices);
-/// Says in a sentence how the waveform of best.toml closes the devices.
+/// Describes in a sentence how the devices close with the waveform of best.toml.
 [[nodiscard]] std::string devices_headline(const ClosingRecord& result);
-/// Returns the key numbers at the top of a page: shares and 95th percentiles of the devices, from plain step to winner.
+/// Returns the key numbers at the top of a page: shares and 95th percentiles of the devices, under the plain step and under the
+/// winner.
 [[nodiscard]] std::vector<KeyNumber> devices_keys(const DevicesFindings& devices);
-/// Shows the choices beside the plain step, what measuring wins, and the nominal design, for a terminal.
+/// Returns a section for a terminal: the choices of waveforms beside the plain step, the gain by per-device calibration, and
+/// the nominal design.
 [[nodiscard]] ReportSection choices_section(const DevicesFindings& devices);
-/// Shows all rows, the front and the value of measuring a device, for a page.
+/// Returns a section for a page: all rows, the Pareto front, and the value of calibrating each device.
 [[nodiscard]] ReportSection devices_section(const DevicesFindings& devices);
 
 }  // namespace internal

@@ -13,20 +13,20 @@
 
 namespace softland {
 
-/// The limits of the source of a drive; a limit that the scene does not set is NaN.
+/// The limits of the voltage source of a drive; a limit that the scene does not set is NaN.
 struct DriveLimits {
   double lowest = Metrics::unset, highest = Metrics::unset;  ///< limits of the voltage [V]
   double slew = Metrics::unset;                              ///< limit of the slew rate [V/s]
 };
 
-/// A kind of structure as seen from the side.
+/// A kind of structure for a drawing from the side.
 enum class SideOfStructure {
-  unknown,            ///< its shape is not described
+  unknown,            ///< shape unknown
   held_at_one_end,    ///< a beam
   held_at_both_ends,  ///< a beam
   on_springs,         ///< a plate
 };
-/// Finds a kind by its name in scenes.
+/// Returns the kind of a structure with this name in scenes.
 [[nodiscard]] SideOfStructure side_of_structure(std::string_view kind);
 
 /// The parts of a scene that reports show.
@@ -43,7 +43,7 @@ struct DrawnScene {
   };
   struct Contact {
     std::string name;
-    double at = Metrics::unset;   ///< distance from the clamped end [m]; NaN: at the tip, or in the middle
+    double at = Metrics::unset;   ///< distance from the clamped end [m]; NaN: at the tip, or the middle
     double gap = Metrics::unset;  ///< rest gap [m]
     bool far_side = false;
   };
@@ -65,7 +65,8 @@ struct DrawnScene {
   double significant_rebound = MetricsOptions{}.significant_rebound;  ///< least height of a significant rebound [m]
 };
 
-/// Reads the scene. Every part is optional: a part that is missing, null or of another type is not available.
+/// Reads the JSON of a resolved scene. Every part is optional: a part that is missing, null or of another type is not
+/// available.
 [[nodiscard]] DrawnScene read_drawn_scene(const nlohmann::json& scene);
 
 }  // namespace softland

@@ -1,4 +1,4 @@
-// The findings of `softland effects`: JSON with SI units in the names, and a table for a terminal.
+// The results of `softland effects`: JSON with SI units in the names, and a table for a terminal.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -15,7 +15,7 @@ struct EffectsRecord {
 };
 
 [[nodiscard]] nlohmann::json json_of(const EffectsRecord& record);
-/// Reads the record. Throws InvalidInput for anything but the JSON of such a record, as for every study.
+/// Reads the record. Throws InvalidInput for anything but the JSON of json_of().
 [[nodiscard]] EffectsRecord read_effects(const nlohmann::json& from);
 [[nodiscard]] std::string text_of(const EffectsRecord& record);
 

@@ -1,4 +1,4 @@
-// Shares and quantiles of devices with their intervals, as text.
+// Formats shares and quantiles of devices with their confidence intervals.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace softland::internal {
 
 /// Returns "3.4 % (2.7 to 4.3)".
 [[nodiscard]] std::string yield_text(const Yield& yield);
-/// Returns "26.9 mm/s (26.6 to 27.1)"; "∞" where it is infinite.
+/// Returns "26.9 mm/s (26.6 to 27.1)"; an infinite value is "∞".
 [[nodiscard]] std::string quantile_text(const EstimatedQuantile& quantile, std::string_view unit);
 
 }  // namespace softland::internal

@@ -1,4 +1,4 @@
-// Verb `accuracy`: errors of the figures against the time of a closing.
+// Verb `accuracy`: errors of the figures against the computing time of a closing.
 #include "studies/closing/accuracy.h"
 
 #include <algorithm>

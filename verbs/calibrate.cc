@@ -1,4 +1,4 @@
-// Verb `calibrate`: ranks measurable figures of a device by how well they predict its waveform.
+// Verb `calibrate`: ranks the measurable figures of a device by how well they predict the waveform that suits the device.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -52,7 +52,7 @@ void read_errors(const std::string& option, const std::string& list, Identificat
   }
 }
 
-// Reads the multiples of --steps, such as "1.1,1.25".
+// Reads the multiples of Vdp in --steps, such as "1.1,1.25".
 void read_steps(const std::string& option, const std::string& list, std::vector<double>& all) {
   std::vector<double> steps;
   for (const std::string& one : split(list, ',')) {

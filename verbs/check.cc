@@ -35,7 +35,7 @@ using internal::plain_number;
 using internal::quantity;
 using internal::scientific;
 
-// Returns the strength of the dispersion force, relative to its nominal strength, at which it closes the switch.
+// Describes the strength of the dispersion force that closes the switch, as a multiple of the strength in the scene.
 std::string dispersion_prose(const PreparedScene& p, const Progress& progress) {
   const std::size_t k = p.scene.device.electrodes.size();
   const std::vector<double> bias = bias_of(p.scene, k);
@@ -58,7 +58,7 @@ std::string dispersion_prose(const PreparedScene& p, const Progress& progress) {
                      factor(statically.voltage), step);
 }
 
-// Describes the closed state at the hold voltages, and the voltage up to which it exists.
+// Describes the closed state at the hold voltages, and the highest voltage at which a closed state exists.
 std::string closed_state_prose(const ClosedState& state) {
   std::string words =
       !state.exists ? "no equilibrium at the hold voltages"
@@ -79,7 +79,7 @@ std::string closed_state_prose(const ClosedState& state) {
   return words;
 }
 
-// Returns the capacitance of the closed state of a switch that lands on a dielectric, and its change with more modes.
+// Describes the capacitance of the closed state of a switch that closes onto a dielectric, and its change with more modes.
 std::string capacitance_prose(const PreparedScene& p) {
   const ModeLadder ladder(p);
   const ByModes found = closed_capacitance_by_modes(ladder, hold_levels(p.signals()));
@@ -98,8 +98,8 @@ std::string scene_note(const SceneFile& file, const std::string& key, std::strin
   }
 }
 
-// A switch with a compressible gas film takes a thousand times longer to simulate. The verb `check` finds the dynamic pull-in
-// voltage of such a switch to this relative precision only; the verb `pull-in` finds it to full precision.
+// Relative precision of the dynamic pull-in voltage of a switch with a compressible gas film, which takes a thousand times
+// longer to simulate. The verb `pull-in` finds this voltage to full precision.
 constexpr double film_precision = 1e-3;
 
 double precision_of(const Switch& model) { return model.film_states() > 0 ? film_precision : dynamic_pull_in_precision; }
@@ -150,7 +150,7 @@ void add_parts(CheckRecord& record, const Device& device) {
         {"anchors", fmt::format("near end {}; far end {}", end_prose(s.near_hold()), end_prose(s.far_hold()))});
 }
 
-// Adds lines on the rest shape of a structure that is not straight at rest.
+// Describes the rest shape of a structure that is not straight at rest.
 void add_rest_shape(CheckRecord& record, const Device& device) {
   constexpr int places = 200;
   const double length = device.structure.length, gap = device.gap.electrode;
@@ -227,7 +227,8 @@ Outcome run(const Setting& setting, const CheckRequest&) {
   add_rest_shape(record, p.scene.device);
   add("natural frequencies", fmt::format("{}", fmt::join(frequencies, ", ")));
   if (p.model.has_contact()) add("in-contact period", quantity(p.model.basis().in_contact_period(), "s", 4));
-  std::map<std::string, PullInVoltages> searched_to;  // a search takes its voltage limit from these where the scene has none
+  std::map<std::string, PullInVoltages>
+      searched_to;  // pull-in voltages by electrode, from which a search takes missing voltage limits
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
     const std::string& name = p.scene.device.electrodes[k].name;
     if (!pulls_in(p.scene.device, k)) {

@@ -1,4 +1,4 @@
-// Verb `cycle`: closes and opens a switch at a rate, and finds how high the rate may be.
+// Verb `cycle`: closes and opens a switch at a given rate, and finds the highest possible rate.
 #include <fmt/format.h>
 
 #include <memory>
@@ -46,8 +46,8 @@ struct CycleRequest : Usual {
   static Outcome shown_again(const nlohmann::json& json) { return shown(read_cycles(json)); }
 
   CyclingOptions options{.jobs = one_per_core()};
-  std::vector<std::string> results;  ///< further scenes or results that give the closing or the opening waveform
-  bool searches = false;             ///< true when both waveforms are searched for the rate
+  std::vector<std::string> results;  ///< further scenes or results with the closing or the opening waveform
+  bool searches = false;             ///< true: both waveforms are searched for the rate
   std::string target = "bounce", waveform = {};
   Actuator actuator = Actuator::electrostatic;
   long budget = CycleSearchOptions{}.max_evaluations;
@@ -80,8 +80,8 @@ void options(Archive& a, CycleRequest& r) {
   jobs_option(a, o.jobs);
 }
 
-// Takes the waveforms of a scene: the opening waveform if the scene begins closed, both waveforms if it opens on command, else
-// the closing waveform.
+// Takes from a scene the opening waveform if the scene begins closed, both waveforms if it opens on command, else the closing
+// waveform.
 void take(CycleWaveforms& waveforms, const PreparedScene& scene) {
   std::vector<Signal> commanded = scene.commanded(scene.waveforms());
   if (scene.start() == StartState::closed) {
@@ -121,7 +121,7 @@ Outcome searched(const Setting& setting, const CycleRequest& request) {
   return outcome;
 }
 
-// Returns true if an option is given that only a search takes.
+// Returns true if an option is given that applies only to a search.
 bool is_about_search(const CycleRequest& r) {
   const CycleRequest usual;
   return r.target != usual.target || r.actuator != usual.actuator || !r.waveform.empty() || r.budget != usual.budget;

@@ -30,7 +30,7 @@ double signed_quantity(const std::string& option, const std::string& text, const
   return is_negative ? -size : size;
 }
 
-// Reads "1 %/1000", the share by which all voltages change in that number of shots; "1 %" is the share in one shot.
+// Reads "1 %/1000", a change of all voltages by 1 % in 1000 shots; "1 %" is the change in one shot.
 void read_drift(const std::string& option, const std::string& text, double& drift) {
   const std::size_t stroke = text.find('/');
   const int shots =

@@ -1,4 +1,4 @@
-// Verb `device`: a simulated device that answers as a laboratory device does, to practise on.
+// Verb `device`: a simulated device that answers as a device in a laboratory does, for practising the verb `tune`.
 #pragma once
 
 #include "studies/inverse/practice_device.h"

@@ -1,4 +1,4 @@
-// Verb `explore`: computes many points of a design space into a store.
+// Verb `explore`: computes many points of a design space and stores the results in a database file.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace softland::verbs {
 
-/// The options of `explore`; those that are not given are empty.
+/// The options of `explore`; an option that is not given is empty.
 struct ExploreRequest {
   std::vector<std::string> vary, options;
   std::string sample, pareto, list, study, target, actuator, waveform, optimizer, shard, out;
@@ -24,7 +24,7 @@ struct ExploreRequest {
 
   /// Returns the given options that are part of a plan, by name.
   [[nodiscard]] std::map<std::string, std::string> of_plan() const;
-  /// Returns the plan of these options and a scene. Messages begin with an option in its `spelling`. Throws InvalidInput.
+  /// Returns the plan of these options and a scene. Messages name an option in its `spelling`. Throws InvalidInput.
   [[nodiscard]] PlanRequest plan(SceneFile scene, const Spelling& spelling) const;
   /// Returns the part of the points that --shard selects. Throws InvalidRequest.
   [[nodiscard]] Shard part() const;

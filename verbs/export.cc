@@ -1,4 +1,4 @@
-// Verb `export`: writes the waveforms of a result for a generator or a circuit simulator, or the states of its contact.
+// Verb `export`: writes the waveforms of a result for a generator or a circuit simulator, or the states of the contact.
 #include <fmt/format.h>
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Options about the errors of the instruments in a laboratory: the verb `device` simulates these errors, `tune` expects them.
+// Options on the errors of instruments in a laboratory: the verb `device` simulates these errors, the verb `tune` expects them.
 #pragma once
 
 #include <optional>
@@ -9,14 +9,14 @@
 
 namespace softland::verbs {
 
-/// Errors of the instruments; those that are not given have defaults, which depend on the scene.
+/// Errors of the instruments; an error that is not given has a default, which depends on the scene.
 struct ToldErrors {
   std::optional<double> edge_error = {}, unseen = {}, gain_error = {}, shot_error = {};
   std::optional<double> trigger_delay =
       {};  ///< standard deviation of the delay between drives and records; an option of `tune` only
-  std::optional<double> capacitance = {};  ///< threshold, for an instrument that measures the capacitance
+  std::optional<double> capacitance = {};  ///< threshold, for an instrument that measures the capacitance [F]
 
-  /// Returns the errors. Throws InvalidInput for a scene that cannot be read.
+  /// Returns the given errors, and the defaults of all other errors. Throws InvalidInput for a scene that cannot be read.
   [[nodiscard]] LaboratoryErrors errors(const SceneFile& file) const;
 };
 

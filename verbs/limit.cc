@@ -1,4 +1,4 @@
-// Verb `limit`: computes the least time in which any waveform can close the switch softly.
+// Verb `limit`: computes the least time in which any waveform closes the switch at a permitted impact velocity.
 #include "studies/search/limit.h"
 
 #include <memory>

@@ -16,7 +16,7 @@
 namespace softland::verbs {
 namespace {
 
-// Returns "settling, impact and energy".
+// Returns the names of the targets with a cost function of their own: "settling, impact and energy".
 std::string targets_with_own_cost() {
   std::vector<std::string_view> names;
   for (const TargetRow& row : targets) {
@@ -46,7 +46,7 @@ struct OptimizeVerb : Usual, OptimizeRequest {
   static constexpr Takes takes{.scene = false};
   static Outcome shown_again(const nlohmann::json& json) {
     if (json.contains("baseline") || !json.contains("seeds")) return closing_shown_again(json);
-    const SeedsRecord record = read_seeds(json);  // a study of several seeds was interrupted
+    const SeedsRecord record = read_seeds(json);  // the JSON of an interrupted study of several seeds
     return {.json = json_of(record), .text = text_of(record)};
   }
   static std::string remarks() {

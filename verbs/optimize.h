@@ -1,4 +1,4 @@
-// Verb `optimize`: searches a waveform for the nominal device or under process variation.
+// Verb `optimize`: searches a waveform for the nominal design, or for devices under process variation.
 #pragma once
 
 #include <string>
@@ -9,20 +9,20 @@
 
 namespace softland::verbs {
 
-/// Number of evaluations from which a search also computes the least time of any waveform (verb `limit`), which takes a second or
-/// two.
+/// A search with at least this number of evaluations also computes the least closing time of any waveform (verb `limit`), which
+/// takes a second or two.
 inline constexpr long evaluations_worth_a_limit = 1000;
 
-/// The options of `optimize`; those that are not given are empty.
+/// The options of `optimize`; an option that is not given is empty.
 struct OptimizeRequest : SearchRequest {
-  std::vector<std::string> starts;  ///< results and scenes to begin with
+  std::vector<std::string> starts;  ///< results and scenes whose waveforms the search begins with
   int jobs = one_per_core();
   std::string cycle = {};  ///< rate for which closing and opening waveforms are searched, "2 kHz"; see the verb `cycle`
-  std::string duty = {};   ///< duty of the cycle
+  std::string duty = {};   ///< duty of the cycle, the commanded share of closed time
   bool resume = false;
-  bool limit = false;  ///< true: compare the winner with the least time of any waveform, however long that takes
+  bool limit = false;  ///< true: compare the winner with the least closing time of any waveform, even if that takes minutes
 };
-/// Reads the request. Throws InvalidRequest for invalid options; those of SearchRequest are checked later (search_request.h).
+/// Reads the request. Throws InvalidRequest for invalid options; options of SearchRequest are checked later (search_request.h).
 [[nodiscard]] OptimizeRequest optimize_request(const Arguments& arguments);
 
 }  // namespace softland::verbs

@@ -14,7 +14,7 @@ std::string keyword_of(std::string_view name) {
 
 std::string spelled(std::string_view marked, const Spelling& spelling) {
   constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyz-";
-  constexpr char mark = '\x02', end_mark = '\x03';  // the marks of requested()
+  constexpr char mark = '\x02', end_mark = '\x03';  // the marks that requested() sets around a name
   std::string text;
   for (std::size_t begin = 0; begin < marked.size();) {
     const std::size_t name = std::min(marked.find(mark, begin), marked.size());
@@ -28,7 +28,7 @@ std::string spelled(std::string_view marked, const Spelling& spelling) {
 }
 
 std::string spelled(const InvalidRequest& error, const Spelling& spelling) {
-  return spelled(error.with_fields("\x02"), spelling);  // this text has no marks at the ends of names
+  return spelled(error.with_fields("\x02"), spelling);  // with_fields() puts this mark before a name, and none after the name
 }
 
 double OptionReader::quantity_of(const char* name, const std::string& text, const Wanted& wanted) const {

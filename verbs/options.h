@@ -1,6 +1,6 @@
-// The options of a verb are the members of a struct, its request. A function template `options(archive, request)` names each
-// option once, with its type and its help. The command line and Python declare and read options through archives: OptionList
-// collects the options, OptionReader reads their texts into the request.
+// The options of a verb are the members of a struct, the request of the verb. A function template `options(archive, request)`
+// names each option once, with its type and its help. The command line and Python call this template with an archive:
+// OptionList lists the options, OptionReader reads the texts of the options into the request.
 #pragma once
 
 #include <fmt/format.h>
@@ -28,10 +28,11 @@
 
 namespace softland::verbs {
 
-/// The texts that the user gave, by name of the option, in their order. A flag has one empty text.
+/// The texts that the user gave, by name of the option, in the order given. A flag has one empty text.
 using Arguments = std::map<std::string, std::vector<std::string>, std::less<>>;
 
-/// The quantity that an option accepts; `rule` completes the sentence "must be ...". Without a range and a rule it is at least 0.
+/// The quantity that an option accepts. `rule` completes the sentence "must be ...". Without a range and a rule the quantity
+/// must be at least 0.
 struct Wanted {
   Dimension dimension;
   Range range = {};
@@ -51,10 +52,10 @@ struct OptionRow {
 
   std::string name, word, about;  ///< such as "impact-velocity" and "SPEED"; `about` is the help, which begins in lower case
   Kind kind = Kind::text;
-  Door door = Door::both;     ///< interface that has the option: the program, Python or both; objects are for Python only
+  Door door = Door::both;     ///< interfaces that have the option; an object is for Python only
   bool may_be_empty = false;  ///< false: an empty text is refused before the option is read
 
-  // These members are for Python.
+  // The members from here on are for Python.
   std::string keyword = {};  ///< name in Python, "impact_velocity"
   std::string type = {};     ///< type in Python, "float | str | None"
   std::string value = {};    ///< default, "None"
@@ -63,7 +64,7 @@ struct OptionRow {
   bool is_positional = false;
 };
 
-/// The form of an option in Python; members that are not set follow from the kind of the option. An option without a default
+/// The form of an option in Python. Members that are not set follow from the kind of the option. An option without a default
 /// value is required.
 struct InPython {
   std::optional<std::string> keyword = {}, type = {}, value = {}, told = {};
@@ -72,12 +73,12 @@ struct InPython {
 
 /// Returns the Python keyword of an option: "impact_velocity" for "impact-velocity".
 [[nodiscard]] std::string keyword_of(std::string_view name);
-/// A spelling maps the name of an option to its form on the command line or in Python: "--impact-velocity", "impact_velocity".
+/// A function that returns an option as the command line or Python spells its name: "--impact-velocity", "impact_velocity".
 using Spelling = std::function<std::string(std::string_view)>;
 /// Replaces the option names that requested() has marked in a message by their spelling.
 [[nodiscard]] std::string spelled(std::string_view marked, const Spelling& spelling);
 [[nodiscard]] std::string spelled(const InvalidRequest& error, const Spelling& spelling);
-/// The type that an optional holds, or the type itself.
+/// The type T of std::optional<T>; any other type itself.
 template <class T>
 struct Held {
   using type = T;
@@ -90,9 +91,9 @@ struct Held<std::optional<T>> {
 /// An archive that lists the options of a verb.
 class OptionList {
  public:
-  /// Marks the next option as one of the program only.
+  /// Makes the next option an option of the program only.
   OptionList& program() { return next_.door = OptionRow::Door::program, *this; }
-  /// Marks the next option as one of Python only.
+  /// Makes the next option an option of Python only.
   OptionList& python() { return next_.door = OptionRow::Door::python, *this; }
   /// Sets the form of the next option in Python.
   OptionList& as(const InPython& form) { return next_.form = form, *this; }
@@ -124,11 +125,12 @@ class OptionList {
   void text(const char* name, const std::string& value, const char* word, const std::string& about) {
     add({.name = name, .word = word, .about = about}, "str", fmt::format("\"{}\"", value), "_text({})");
   }
-  /// Adds an option whose empty text is checked like any other value.
+  /// Adds an option whose value may be empty: the verb checks the value.
   void text(const char* name, const std::optional<std::string>&, const char* word, const std::string& about) {
     add({.name = name, .word = word, .about = about, .may_be_empty = true}, "str | None", "None", "_text({})");
   }
-  /// Adds an option whose text `parse` reads. Python has a list for "1.1,1.25" and a mapping for "Vdp:1 %,time:0.5 %".
+  /// Adds an option whose text the function `parse` reads. Python takes a list for "1.1,1.25" and a mapping for "Vdp:1
+  /// %,time:0.5 %".
   template <class T, class Parse>
   void parsed(const char* name, T&, const Parse&, const char* word, const std::string& about, const char* keyword,
               const char* type) {
@@ -137,7 +139,7 @@ class OptionList {
     add({.name = name, .word = word, .about = about, .keyword = keyword}, type, kind.ends_with("None") ? "None" : "()",
         is_mapping ? "_pairs({}, \":\")" : "_joined({})");
   }
-  /// Adds an option with texts "KEY=VALUE", which Python has as a mapping.
+  /// Adds an option with texts "KEY=VALUE"; Python takes a mapping.
   void assignments(const char* name, std::vector<std::string>&, const char* word, const std::string& about) {
     add({.name = name, .word = word, .about = about, .kind = OptionRow::Kind::repeated}, "Mapping[str, float | str] | None",
         "None", "_assigned({})");
@@ -152,7 +154,7 @@ class OptionList {
          .is_positional = is_positional},
         "Sequence[str]", "()", "list({})");
   }
-  /// Adds further results as arguments after the scene; in Python they are waveforms by name.
+  /// Adds further results as arguments after the scene; Python takes waveforms by name.
   void results(const char* name, std::vector<std::string>&, const std::string& about) {
     add({.name = name,
          .word = "",
@@ -188,7 +190,7 @@ class OptionList {
   [[nodiscard]] const std::vector<OptionRow>& all() const { return all_; }
 
  private:
-  /// Adds an option; {} in the Python expression `told` stands for the keyword.
+  /// Adds an option; "{}" in the Python expression `told` stands for the keyword of the option.
   void add(OptionRow row, const std::string& type, const std::string& value, const std::string& told) {
     const auto [door, form] = std::exchange(next_, {});
     row.door = door;
@@ -206,7 +208,7 @@ class OptionList {
   std::vector<OptionRow> all_;
 };
 
-/// Reads the number of an option. Throws InvalidRequest that names option, text and rule.
+/// Returns the number in the text of an option. Throws InvalidRequest with option, text and rule.
 template <class Number>
 [[nodiscard]] Number whole_number(const std::string& option, const std::string& text, const Range& range) {
   Number value = 0;
@@ -222,8 +224,8 @@ template <class Number>
   return value;
 }
 
-/// An archive that reads the given texts into the members of a request; other members keep their values. Throws InvalidRequest
-/// with option, value and rule.
+/// An archive that reads the given texts into the members of a request; all other members keep their values. Throws
+/// InvalidRequest with option, value and rule.
 class OptionReader {
  public:
   explicit OptionReader(const Arguments& arguments) : arguments_(arguments) {}
@@ -297,7 +299,7 @@ class OptionReader {
 template <class Archive, class Seed>
 void seed_option(Archive& a, Seed& seed, const std::string& same) {
   const std::string about = "random seed, a whole number from 0 on (default: 1); the same seed gives " + same;
-  if constexpr (std::is_same_v<Seed, std::optional<std::string>>)  // the request keeps the text of the seed
+  if constexpr (std::is_same_v<Seed, std::optional<std::string>>)  // the request holds the seed as text
     a.text("seed", seed, "N", about);
   else
     a.whole("seed", seed, {.least = 0}, about);

@@ -1,11 +1,11 @@
-// The verbs that an exploration may run at its points, and the numbers that it stores of them.
+// The verbs that an exploration may run at its points, and the numbers that the exploration stores of their results.
 #pragma once
 
 #include "studies/exploration/exploration.h"
 
 namespace softland::verbs {
 
-/// Returns the verbs limit, release, effects and check. The stored numbers exclude long lists, files and computing times.
+/// Returns the verbs limit, release, effects and check. Long lists, files and computing times are not stored.
 [[nodiscard]] const OtherStudies& studies_of_points();
 
 }  // namespace softland::verbs

@@ -29,7 +29,7 @@ namespace {
 
 constexpr double most_bias = 1e6;  // [V]
 
-// Returns the rule for a voltage on the command line.
+// Returns the rule that a message states about a voltage on the command line.
 std::string voltage_rule() {
   return fmt::format("must be {} from {} to {}, such as \"{}\"", describe(dimension::voltage), engineering(-most_bias, "V"),
                      engineering(most_bias, "V"), example(dimension::voltage));
@@ -59,7 +59,7 @@ void read_sweep(const std::string& option, const std::string& text, std::optiona
   asked = range;
 }
 
-// Sets --bias NAME=V, which replaces the level of the drive in the scene.
+// Sets the level of a drive to that of --bias NAME=V, in place of the level in the scene.
 void set_bias(PreparedScene& p, const std::string& assignment) {
   const auto refuse = [&](std::string_view rule) {
     throw InvalidRequest(fmt::format("{} {}: {}", requested("bias"), visible(assignment), rule));
@@ -86,7 +86,7 @@ void set_bias(PreparedScene& p, const std::string& assignment) {
   p.scene.standing[static_cast<std::size_t>(drive - names.begin())] = is_factor ? given.value - 1 : given.value;
 }
 
-// Returns a sentence with the results that are missing because the verb was asked to stop.
+// Returns a sentence with the results that are missing because the verb was interrupted.
 std::string left_out_prose(const std::vector<std::string>& left_out) {
   return wrapped(fmt::format("interrupted before these results were found: {}.", fmt::join(left_out, "; "))) + "\n";
 }
@@ -128,7 +128,7 @@ void options(Archive& a, PullInRequest& r) {
            "sweep", "str | None");
 }
 
-// Sweeps the electrode that closes the switch.
+// Sweeps the voltage of the electrode that closes the switch.
 void add_sweep(PullInsRecord& record, const PreparedScene& p, const SweepRange& range, const Progress& progress) {
   require_request(has_pulling_electrode(p.scene.device),
                   [] { return requested("sweep") + ": requires an electrode that pulls towards the contact"; });
@@ -137,7 +137,7 @@ void add_sweep(PullInsRecord& record, const PreparedScene& p, const SweepRange& 
   record.sweep = static_sweep(p.model, drive, bias_of(p.scene, drive), range, progress);
 }
 
-// Returns `done`, or the status of the first electrode that pulls and has no voltage; a single electrode gives its own.
+// Returns `done`, or the status of the first pulling electrode without a voltage. A single electrode gives its own status.
 Status status_of(const PreparedScene& p, const PullInsRecord& record) {
   if (record.electrodes.size() == 1) return record.electrodes.begin()->second.status;
   const auto& electrodes = p.scene.device.electrodes;
@@ -178,8 +178,8 @@ Outcome run(const Setting& setting, const PullInRequest& request) {
   const Progress& progress = setting.progress;
   PullInMemory remembered;
   const PullInFinder find_pull_in = remembered.finder(file);
-  // Find the voltages first, before the values that a waveform in Vdp needs: they are reported even where the search for more
-  // is stopped.
+  // Find the pull-in voltages before anything that needs them, such as a waveform in units of Vdp: they are then reported even
+  // if the rest is interrupted.
   const Scene scene = read_scene(file);
   const bool leaves_choices = scene.auto_modes || scene.simulate.automatic_effects;
   PreparedScene prepared = leaves_choices ? prepare_and_choose(file, false, progress) : prepare_statics(file);
@@ -191,7 +191,7 @@ Outcome run(const Setting& setting, const PullInRequest& request) {
   try {
     progress.throw_if_stopped();
     if (!leaves_choices) {
-      const std::vector<double> standing = prepared.scene.standing;  // voltages of all drives, with those of --bias
+      const std::vector<double> standing = prepared.scene.standing;  // voltages of all drives, including the values of --bias
       prepared = prepare(file, false, progress, find_pull_in);
       prepared.scene.standing = standing;
     }
@@ -209,7 +209,7 @@ Outcome run(const Setting& setting, const PullInRequest& request) {
     record.left_out.push_back(record.sweep.empty() ? "the sweep"
                                                    : fmt::format("the sweep beyond its first {} points", record.sweep.size()));
   record.origin = origin_of("pull-in", setting.command);
-  record.origin.scene = interrupted ? file.json() : prepared.resolved().json();  // the volts may not be known yet
+  record.origin.scene = interrupted ? file.json() : prepared.resolved().json();  // the scene in volts may not be known yet
   record.status = to_string(interrupted ? Status::interrupted : status_of(prepared, record));
   Outcome outcome = shown(record);
   outcome.ending = interrupted ? Ending::interrupted : worst_ending(prepared, record);

@@ -1,5 +1,5 @@
-// This program writes the methods of a scene in Python, one for each study: softland/_studies.py. Their parameters and
-// docstrings come from the program's own description of its options.
+// This program writes softland/_studies.py: the methods of the class of a scene in Python, one for each study. Parameters and
+// docstrings come from the description of the options in C++.
 #include <fmt/format.h>
 
 #include <cctype>
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 class Studies(Studying):
 )";
 
-// Formats a paragraph of a docstring: lines of 150 characters at most, those after the first further in.
+// Formats a paragraph of a docstring: lines have at most 150 characters; all lines after the first are indented further.
 std::string paragraph(std::string_view text) {
   constexpr std::size_t columns = 138;
   std::string line(text), lines;
@@ -66,7 +66,8 @@ std::string in_keywords(std::string words, const Study& study) {
   return words;
 }
 
-// Returns the call of a verb. A verb with Python code of its own gets the texts of the options, and objects unchanged.
+// Returns the Python call of a verb. A verb whose computation is written in Python gets the texts of the options, and Python
+// objects unchanged.
 std::string call(const Study& study, const std::string& told, const std::string& objects) {
   return study.ask && study.returns == std::string_view("Outcome")
              ? fmt::format("self._study(\"{}\", {}, progress{})", study.name, told, objects)

@@ -26,8 +26,8 @@ template <class Report>
       .json = summary_json(json_of(*result)), .text = terminal_text(closing_document(*result)), .files = files_of_report(result)};
 }
 
-/// Makes the outcome of simulate or optimize again from its JSON. The JSON of --json has no curves, which all files need, so that
-/// the outcome then has no files.
+/// Makes the outcome of `simulate` or `optimize` again from its JSON. JSON without curves, as --json writes it, gives an
+/// outcome without files, because all files need the curves.
 [[nodiscard]] inline Outcome closing_shown_again(const nlohmann::json& json) {
   require_reportable(json);
   Outcome outcome = closing_shown(std::make_shared<const ClosingRecord>(read_closing(json)));

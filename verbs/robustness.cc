@@ -26,7 +26,7 @@ namespace {
 constexpr std::size_t most_worst = 3;
 
 std::string worst_file(std::size_t i) { return fmt::format("worst-{}.toml", i + 1); }
-// Names the file with the scene of the worst device of the box.
+// Returns the name of the file with the scene of the worst device of the box.
 std::string box_file(std::string_view key) { return fmt::format("box-{}.toml", figure_of(key).symbol); }
 
 Outcome shown(const RobustnessRecord& record) {
@@ -54,13 +54,13 @@ struct RobustnessRequest : Usual {
     return all;
   }
 
-  // Diagrams need all devices, which only devices.csv holds.
+  // The diagrams need all devices, which only devices.csv has.
   static Outcome shown_again(const nlohmann::json& json) { return shown(read_robustness(json)); }
 
   RobustnessOptions options{.jobs = one_per_core(), .worth_of_measuring = true, .opens_on_command = true};
   std::vector<std::string> results;  ///< further results whose waveforms are evaluated
-  std::string calibration;           ///< measurements of every device; empty: those of the scene
-  bool box_and_chaos = false;        ///< true: extremes over a box and polynomial chaos are computed in addition to the sample
+  std::string calibration;           ///< measurements of every device; empty: the measurements in the scene
+  bool box_and_chaos = false;        ///< true: extremes over a box and polynomial chaos are computed too
 };
 
 template <class Archive>
@@ -81,7 +81,7 @@ void options(Archive& a, RobustnessRequest& r) {
   jobs_option(a, r.options.jobs);
 }
 
-// The report keeps references to the nominal design and the results.
+// The findings, and the report on them; the report keeps references to `nominal` and `found`.
 struct Judged {
   std::shared_ptr<const PreparedScene> nominal;
   Robustness found = {};

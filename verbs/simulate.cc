@@ -42,7 +42,7 @@ void options(Archive& a, SimulateVerb& r) {
   jobs_option(a, r.jobs, "number of threads of --certify (default: one per core); the result does not depend on it");
 }
 
-// Returns a note on the computing time that effects = "auto" saves by leaving out effects.
+// Returns a note on the computing time that effects = "auto" saves by omitting effects.
 std::string time_saved(const PreparedScene& chosen) {
   PreparedScene whole = chosen;
   whole.scene.device = chosen.effects->described.device;

@@ -16,7 +16,7 @@ struct SimulateRequest {
 /// Reads the request. Throws InvalidRequest.
 [[nodiscard]] SimulateRequest simulate_request(const Arguments& arguments);
 
-/// A closing and the scene that it belongs to.
+/// A closing, and the scene that was simulated.
 struct Simulated {
   std::shared_ptr<const PreparedScene> prepared;
   Closing closing;

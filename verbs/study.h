@@ -1,6 +1,6 @@
-// A study is a verb that computes something from one scene. Its options, its computation and its files are described once, for
-// the command line and for Python. Some verbs, such as the tuning on instruments or by a Python function, run differently in
-// each of the two; their description has name, options and help, but no computation.
+// A study is a verb that computes something from one scene. Options, computation and files of a study are described once, for
+// the command line and for Python. Some verbs, such as the tuning on instruments, run differently in the two: their description
+// has name, options and help, but no computation.
 #pragma once
 
 #include <functional>
@@ -21,7 +21,7 @@ namespace softland::verbs {
 
 /// The outcome of a verb; the program has an exit status for each.
 enum class Ending { done, no_success, numerical_failure, interrupted };
-/// Returns the outcome of a verb whose closing has this status.
+/// Returns the outcome of a verb whose closing ended with this status.
 [[nodiscard]] Ending ending_of(Status status);
 
 /// The results of a verb, for the command line and for Python.
@@ -34,9 +34,9 @@ struct Outcome {
   nlohmann::json json;
   std::string text;  ///< text for a terminal
   std::vector<File> files = {};
-  std::string next = {};   ///< text below the list of files; "{}" stands for the scene in their folder, for `export`
-  std::string last = {};   ///< text at the very end
-  std::string fault = {};  ///< reason why the verb is not done, printed to standard error even with --quiet
+  std::string next = {};   ///< text below the list of files; "{}" stands for the path of the scene, for a command `export`
+  std::string last = {};   ///< text at the end of the output
+  std::string fault = {};  ///< reason why the verb did not succeed, printed to standard error even with --quiet
   Ending ending = Ending::done;
 };
 
@@ -44,18 +44,19 @@ struct Outcome {
 struct Setting {
   SceneFile scene;
   std::string name;     ///< name of the scene as the user gave it
-  std::string command;  ///< command line, for provenance
+  std::string command;  ///< command line, recorded in results
   const Progress& progress;
-  /// Prepares the scene. `default_limits` adds the voltage limits of a search to drives without [driver].
+  /// Prepares the scene. With `default_limits`, drives without [driver] get the voltage limits of a search.
   std::function<std::shared_ptr<const PreparedScene>(bool default_limits)> prepared;
-  /// Loads the scene of a file, or of a result.
+  /// Loads the scene from a scene file or from a result.
   std::function<SceneFile(const std::string&)> load;
-  /// Returns the waveforms of a result for the switch of `nominal`. Throws InvalidInput if they do not fit its drives.
+  /// Returns the waveforms of a result for the switch of `nominal`. Throws InvalidInput if the waveforms do not fit the drives
+  /// of the switch.
   std::function<DriveWaveforms(const std::string& result, const PreparedScene& nominal)> waveforms_of;
-  /// Returns the scene as it is written, with its comments.
+  /// Returns the text of the scene file, with comments.
   std::function<std::string()> text;
-  /// Receives a line about the scene or the result while the verb runs; may be empty. The line marks names of options as
-  /// requested() does.
+  /// Receives a line about the scene or the result while the verb runs; may be empty. The names of options in the line are
+  /// marked by requested().
   std::function<void(const std::string&)> note = {};
 };
 
@@ -69,7 +70,7 @@ struct Study {
   const char *name, *about;
   const char *python, *returns,
       *progress;          ///< name of the method of a scene in Python, type of its result, default of its argument `progress`
-  const char* in_python;  ///< further text of its docstring
+  const char* in_python;  ///< further text of the docstring of this method
   const char *subject, *scene;  ///< word for the scene in --help, and description of the scene
   Takes takes;
   bool is_explorable;   ///< true if an exploration may run the verb at its points
@@ -80,14 +81,14 @@ struct Study {
   std::string remarks;
   std::vector<std::string> files;  ///< names of files that --out may hold
   std::vector<OptionRow> options;
-  /// Reads the given options and returns a function that runs the verb. Throws InvalidRequest. Empty if command line and Python
-  /// run the verb differently.
+  /// Reads the given options and returns a function that runs the verb. Throws InvalidRequest. Empty if the command line and
+  /// Python run the verb differently.
   std::function<std::function<Outcome(const Setting&)>(const Arguments&)> ask = {};
   /// Makes the text and the files of an outcome again from its JSON, as far as possible. Throws InvalidInput for other JSON.
-  /// Empty if the verb writes no JSON that can be read.
+  /// Empty if the verb writes no JSON that can be read again.
   std::function<Outcome(const nlohmann::json&)> shown_again = {};
 
-  /// Returns the name of an option in Python.
+  /// Returns the name in Python of an option.
   [[nodiscard]] std::string keyword(std::string_view option) const;
 };
 
@@ -96,7 +97,7 @@ inline constexpr auto varied_scene = "scene file with [spread], result folder (t
 inline constexpr auto scene_alone = "scene file (TOML)";
 inline constexpr auto usual_change = "change one key of the scene, such as --set gap.contact=\"1.8 um\"";
 
-/// Defaults of the members by which a request describes its verb.
+/// Defaults for the members of a request that describe its verb.
 struct Usual {
   static constexpr const char *returns = "Outcome", *progress = "None", *in_python = "", *subject = "SCENE",
                               *scene = scene_or_result, *leaves = nullptr, *place = nullptr, *leaving = nullptr,
@@ -115,8 +116,8 @@ template <class Request>
   return request;
 }
 
-/// Returns the description of a request: a struct with name, about, python and remarks, and a template options(archive,
-/// request). A request may also have shown_again(json).
+/// Returns the description of a verb from its request: a struct with name, about, python and remarks, and a function template
+/// options(archive, request). A request may also have shown_again(json).
 template <class Request>
 [[nodiscard]] Study described() {
   OptionList list;
@@ -149,7 +150,7 @@ template <class Request>
   return study;
 }
 
-/// Returns the description of a request that also has a function run(setting, request).
+/// Returns the description of a verb whose request also has a function run(setting, request).
 template <class Request>
 [[nodiscard]] Study study_of() {
   Study study = described<Request>();
@@ -159,7 +160,7 @@ template <class Request>
   return study;
 }
 
-// Each of these studies is defined in a file of its own.
+// Each study is defined in a file of its own.
 [[nodiscard]] Study accuracy_study();
 [[nodiscard]] Study calibrate_study();
 [[nodiscard]] Study check_study();
@@ -177,10 +178,10 @@ template <class Request>
 [[nodiscard]] Study simulate_study();
 [[nodiscard]] Study tune_study();
 
-/// Return the studies of a scene alone, and all studies, in the order of --help.
+/// Returns the studies that need only a scene, or all studies, in the order of --help.
 [[nodiscard]] const std::vector<Study>& scene_studies();
 [[nodiscard]] const std::vector<Study>& all_studies();
-/// Throws InvalidInput where no study has this name.
+/// Returns the study with this name. Throws InvalidInput if there is none.
 [[nodiscard]] const Study& study_named(std::string_view name);
 
 }  // namespace softland::verbs

@@ -1,5 +1,5 @@
-// Verb `tune`: tunes a waveform on one device, closing after closing. A command or a person fires the shots in the program, and
-// a function in Python.
+// Verb `tune`: tunes a waveform on one device, one closing after another. In the program, a command or a person closes the
+// device; in Python, a function does.
 #pragma once
 
 #include <chrono>
@@ -19,9 +19,9 @@ struct TuneRequest {
   std::string device;
   bool by_hand = false, resume = false;
   std::vector<std::string> wafer;     ///< folders of earlier tunings of devices of the same wafer
-  std::vector<std::string> contact;   ///< keys that say how to read recorded voltages of the contact
-  std::optional<std::string> format;  ///< format of the files of shots
-  Sampling sampling;                  ///< sampling of the sources
+  std::vector<std::string> contact;   ///< keys for reading recorded voltages of the contact
+  std::optional<std::string> format;  ///< format of the files with the voltages of a shot
+  Sampling sampling;                  ///< sampling of the voltage sources
   int closings = usual_closings;
   std::chrono::milliseconds patience = std::chrono::minutes(1);
   TunerOptions tuner{.jobs = one_per_core()};

@@ -1,4 +1,4 @@
-// Verb `device`: a simulated device that answers shots as a laboratory does, to practise tuning on.
+// Verb `device`: a simulated device that answers shots as a device in a laboratory does, for practising the verb `tune`.
 #include "verbs/device.h"
 
 #include <fmt/format.h>
@@ -25,7 +25,7 @@ namespace {
 
 using nlohmann::json;
 
-// Returns the answer of the device to a line, or a message about an invalid line.
+// Returns the record of the simulated device for a line with a shot, or a message if the line is invalid.
 json answer(const PracticeDevice& device, const json& line) {
   try {
     const CommandedShot shot = read_shot(line);

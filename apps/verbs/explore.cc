@@ -47,7 +47,7 @@ int status_of(const Overview& found, bool interrupted) {
   return found.has_figures ? exit_done : exit_no_success;
 }
 
-// Returns the plan: that of a scene and its options, of a plan file, or of a store that is continued.
+// Returns the plan of an exploration: from a scene and options, from a plan file, or from the database file of an earlier run.
 PlanRequest plan_request(const Common& c, const ExploreRequest& r) {
   const bool of_store = is_store(c.scene);
   if (!of_store && !is_plan(SceneFile::load(c.scene)))
@@ -65,7 +65,7 @@ PlanRequest completed_request(const Common& c, const ExploreRequest& r) {
   return request;
 }
 
-// Prints the scene of one point, as `simulate` takes it.
+// Prints the scene of one point as a scene file for the verb `simulate`.
 int print_point(const Common& c, const ExploreRequest& r) {
   const std::uint64_t k = r.point.value();
   const Plan plan(completed_request(c, r));
@@ -119,7 +119,7 @@ std::pair<double, std::string> state_of(const FrontFound& f, double elapsed) {
           fmt::format("{} of {} points, {:.0f} s", f.asked, f.points, elapsed)};
 }
 
-// Shows the progress of an exploration, and its last state at the end.
+// Shows the progress of an exploration while it runs, and the final state at the end.
 template <class State>
 class ShownProgress {
  public:
@@ -159,7 +159,7 @@ StudyStore opened(const std::string& out, const Exploration& exploration, const 
           resume ? StudyStore::Opening::resume : StudyStore::Opening::fresh};
 }
 
-// Searches a Pareto front; its points are not known before the search.
+// Searches a Pareto front; the search chooses the points one after another.
 int search_the_front(const Common& c, const ExploreRequest& r, Exploration& exploration, const std::string& out) {
   const Plan& plan = exploration.plan();
   const std::vector<ExploredAim> aims = aims_of(exploration);

@@ -1,4 +1,4 @@
-// Verb `merge`: joins the stores of the parts of a study into one store.
+// Verb `merge`: joins the database files of the parts of a study into one file.
 #include <fmt/format.h>
 
 #include <filesystem>

@@ -43,7 +43,7 @@ int frequencies_of_scene(const Common& c) {
   return exit_done;
 }
 
-/// Returns the value of a unit in SI; `unit` is the symbol alone, such as "mm".
+/// Returns the value of a unit in SI units; `unit` is a symbol without a number, such as "mm".
 std::optional<double> unit_of(const char* option, const std::string& unit, const Dimension& due) {
   if (unit.empty()) return std::nullopt;
   const double size = told_quantity(option, "1 " + unit, due);
@@ -72,7 +72,7 @@ ModeKeys keys_of(const ModesRequest& r) {
   return keys;
 }
 
-// Claims a file beside the other outputs of the run; it must not replace any of them.
+// Checks that an output file can be written and is none of the `others`, the other outputs of the run.
 void claim_file(const char* option, const std::string& file, const std::vector<std::string>& others) {
   if (file.empty()) return;
   for (const std::string& other : others) {

@@ -1,4 +1,4 @@
-// Verb `new`: prints commented scenes to start from. Each has all that `check`, `simulate`, `optimize` and `robustness` need.
+// Verb `new`: prints commented scenes to start from. Each works with the verbs `check`, `simulate`, `optimize`, `robustness`.
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace softland::apps {
 namespace {
 
 struct StarterScene {
-  std::string_view name, scene;  // name; shipped scene
+  std::string_view name, scene;  // name for the verb `new`; file of the shipped scene
 };
 constexpr std::array starter_scenes{StarterScene{"cantilever", "mem-gold.toml"},
                                     StarterScene{"cantilever-pzt", "mem-gold-pzt.toml"},

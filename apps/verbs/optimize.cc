@@ -1,4 +1,4 @@
-// Verb `optimize`: searches a waveform for the nominal design or under process variation.
+// Verb `optimize`: searches a waveform for the nominal design, or for devices under process variation.
 #include "studies/search/optimize.h"
 
 #include <fmt/format.h>
@@ -49,8 +49,8 @@ namespace fs = std::filesystem;
 using internal::percent;
 using internal::quantity;
 
-// Returns a sentence that compares the found waveform with the plain step on devices of [spread]; empty if nothing varies, or
-// after a request to stop.
+// Returns a sentence that compares the found waveform with the plain step on simulated devices of [spread]; empty if the scene
+// has no process variation, or after a request to stop.
 std::string on_devices(const Common& c, const PreparedScene& winner, int jobs, const fs::path& place) {
   if (winner.scene.spread.empty()) return {};
   constexpr std::uint64_t devices = 200;
@@ -87,19 +87,20 @@ int status_of(const FoundSearch& found) {
   return found.is_success() ? exit_done : exit_no_success;
 }
 
-// The search whose result is reported: the best one among several seeds.
+// A search whose result is reported; of several seeds, the best search.
 struct Asked {
   const Common& c;
   StoredSearch& search;
   const std::optional<KnownSearch>& known;
   const SearchOutput& output;
-  SearchPlaces* places = nullptr;           // folders shared by the searches of a study of seeds
-  std::optional<SeedsFindings> seeds = {};  // the completed searches of several seeds
-  bool limit = false;                       // true: compute the least time, even if that takes minutes
+  SearchPlaces* places = nullptr;           // folders that the searches of all seeds share
+  std::optional<SeedsFindings> seeds = {};  // completed searches, if there are several seeds
+  bool limit = false;                       // true: compute the least closing time of any waveform, even if that takes minutes
 };
 
-// Returns true if the least time (softland limit) takes a small part of the time of the search, a second or two. It takes many
-// times longer with a slew limit, and with more than four modes of a cantilever, whose frequencies span a ratio of 34.
+// Returns true if computing the least closing time (verb `limit`) takes a second or two, which is short beside the search. The
+// computation is much longer with a slew limit, and with more than four modes of a cantilever, whose frequency ratio exceeds
+// 34.
 bool takes_little(const Asked& asked, const OptimizeResult& result) {
   constexpr double widest_band = 40;  // largest ratio of the highest natural frequency to the lowest
   const Eigen::VectorXd& omega = result.best_scene->model.basis().angular_frequencies();
@@ -109,12 +110,12 @@ bool takes_little(const Asked& asked, const OptimizeResult& result) {
                               [](const Drive& one) { return one.limits && std::isfinite(one.limits->max_slew); });
 }
 
-// Computes the least time of any waveform that shapes the drives of the found waveform and has its impact velocity; none if the
-// scene does not permit that.
+// Computes the least closing time of any waveform for the drives and the impact velocity of the found waveform; none if the
+// verb `limit` does not apply to the scene.
 std::optional<TouchLimit> limit_of(const Asked& asked, const OptimizeResult& result) {
   if (!result.best || result.search.termination == Termination::interrupted) return std::nullopt;
   if (!asked.limit && !takes_little(asked, result)) return std::nullopt;
-  constexpr double softest = 1e-3;  // share of the plain step's impact velocity
+  constexpr double softest = 1e-3;  // least impact velocity, as a share of that under the plain step
   const double own = result.best->metrics.impact_velocity, step = result.baseline.metrics.impact_velocity;
   if (!std::isfinite(own)) return std::nullopt;
   const double velocity = std::isfinite(step) ? std::max(own, softest * step) : own;
@@ -132,7 +133,7 @@ std::optional<TouchLimit> limit_of(const Asked& asked, const OptimizeResult& res
   }
 }
 
-// Returns the text below the table of a result: the figures of the found waveform on devices.
+// Returns the figures of the found waveform on simulated devices, as the text below the table of a result.
 std::string words_on_devices(const Asked& asked, const SearchReport& report, const fs::path& place) {
   const FoundSearch& found = report.found;
   if (asked.search.robust && report.devices) return "\n" + terminal_text(robustness_document(*report.devices));
@@ -141,7 +142,7 @@ std::string words_on_devices(const Asked& asked, const SearchReport& report, con
   return on_devices(asked.c, *found.best().best_scene, asked.search.options.jobs, place);
 }
 
-// Lists the pages and the waveforms of a search over devices, with the number of other files.
+// Returns the names of the pages and the scenes among `files`, and the number of the other files.
 std::vector<std::string> foremost(std::vector<std::string> files) {
   const auto others = std::ranges::stable_partition(
       files, [](const std::string& name) { return name.ends_with(".html") || name.ends_with(".toml"); });
@@ -183,14 +184,14 @@ int run_search(const Asked& asked) {
   return status_of(report.found);
 }
 
-// Returns the completed searches, best first.
+// Returns the completed searches, the best one first.
 SeedsFindings ranked(const SeedStudy& study, const StoredSearch& search, double significant) {
   SeedsFindings seeds{.planned = search.seeds, .searches = study.searches()};
   if (!seeds.searches.empty()) rank(seeds, search.options.target, significant, search.robust.has_value());
   return seeds;
 }
 
-// Reports a study of several seeds that was interrupted; --resume continues it.
+// Reports an interrupted study of several seeds, which --resume continues.
 int report_interrupted(const Common& c, SearchPlaces& places, const SeedStudy& study, const SeedsFindings& seeds) {
   const fs::path stores = places.store(evaluations_file).parent_path();
   std::string left = files_written(stores, {evaluations_file, seeds_file});
@@ -214,7 +215,7 @@ std::pair<double, std::string> words_of(const SeedStudy::State& now, const Store
   return {now.part, words + fmt::format(", {:.0f} s", elapsed)};
 }
 
-// Runs the searches, shows their progress, and keeps the best scene in the folder.
+// Runs the searches of all seeds, shows their progress, and keeps the best scene so far in the folder.
 void run_shown(SeedStudy& study, const Common& c, const StoredSearch& search, SearchPlaces& places,
                const FamilyColumns& columns) {
   SearchLog log(places.folder(), columns);
@@ -249,7 +250,7 @@ int run_seeds(const Common& c, StoredSearch& search, const std::optional<KnownSe
     places.evaluations().close();
     return report_interrupted(c, places, study, seeds);
   }
-  // Repeat the best search for the report, without new simulations: all of its evaluations are stored.
+  // Repeat the best search for the report. All evaluations of the search are stored: nothing is simulated again.
   search.options.seed = seeds.searches.at(seeds.best).seed;
   return run_search(
       {.c = c, .search = search, .known = known, .output = output, .places = &places, .seeds = seeds, .limit = limit});
@@ -264,11 +265,11 @@ void tell_of_another_scene(const fs::path& folder, const SceneFile& scene) {
       print_note(
           fmt::format("{} holds results of another scene, \"{}\", which this search will replace; --out names another folder",
                       folder.string(), *held));
-  } catch (const InvalidInput&) {  // the folder holds no readable result
+  } catch (const InvalidInput&) {  // the folder has no readable result
   }
 }
 
-// Runs `softland cycle --search`, which searches the closing and the opening waveform together.
+// Runs `softland cycle --search`, which searches the closing and the opening waveform of a cycle together.
 int run_cycle_search(const Common& c, const verbs::Arguments& arguments) {
   static const verbs::Study cycle = verbs::cycle_study();
   verbs::Arguments own{{"search", {""}}};

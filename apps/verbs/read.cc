@@ -1,4 +1,4 @@
-// Verb `read`: shows the content of a file of an instrument; needs no scene.
+// Verb `read`: shows the content of a file from an instrument; it needs no scene.
 #include <memory>
 #include <string>
 

@@ -1,4 +1,4 @@
-// Verb `report`: makes text, pages and plots again from the JSON of a verb or from the store of an exploration.
+// Verb `report`: makes text, pages and plots again from the JSON of a verb, or from the database file of an exploration.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -35,10 +35,10 @@ namespace {
 struct ReportRequest {
   std::string result;
   std::string pareto;  ///< figures of the Pareto front of an exploration
-  std::string map;     ///< figure of the map of an exploration, and the two variables on its axes
+  std::string map;     ///< figure of the map of an exploration, and the two variables on the axes of the map
 };
 
-// Returns the column that an option names.
+// Returns the column with this name, a variable or a figure.
 std::size_t column_named(const ExplorationReport& report, const std::string& name, bool is_variable) {
   std::string there;
   for (std::size_t c = 0; c < report.columns.size(); ++c) {
@@ -53,7 +53,7 @@ std::size_t column_named(const ExplorationReport& report, const std::string& nam
 
 std::string folder_of(const std::filesystem::path& file) { return file.has_parent_path() ? file.parent_path().string() : "."; }
 
-// Draws the map of a figure over two variables that --map asks for: FIGURE or FIGURE:ACROSS:UP.
+// Draws the map of a figure over two variables for --map=FIGURE or --map=FIGURE:ACROSS:UP.
 std::string map_of(const ExplorationReport& report, const std::string& words) {
   std::vector<std::string> parts{""};
   for (const char letter : words) {
@@ -72,7 +72,7 @@ std::string map_of(const ExplorationReport& report, const std::string& words) {
   return exploration_map_svg(report, axes[0], axes[1], figure);
 }
 
-// `record` is the JSON that named the store; empty where the user named the store itself.
+// Reports an exploration. `record` is the JSON file that named the database file; empty if the user named the database file.
 int report_exploration(const Common& given, const ReportRequest& request, const std::filesystem::path& record = {}) {
   const std::filesystem::path path = request.result;
   const StudyReader store(path);
@@ -116,7 +116,7 @@ std::filesystem::path record_in(const std::filesystem::path& folder) {
   throw InvalidInput(fmt::format("{}: must hold one of {}; name the folder of --out", folder.string(), fmt::join(names, ", ")));
 }
 
-// Writes the files of an outcome to --out, and prints its text.
+// Writes the files of an outcome, except JSON, to --out, and prints the text of the outcome.
 int leave(Common c, const std::filesystem::path& record, std::vector<verbs::Outcome::File> all, const std::string& text) {
   std::erase_if(all, [](const auto& file) { return file.name.ends_with(".json"); });
   std::vector<std::string> files;
@@ -130,7 +130,7 @@ int leave(Common c, const std::filesystem::path& record, std::vector<verbs::Outc
   return exit_done;
 }
 
-// Returns the store that the JSON of an exploration names, as seen from the JSON's folder or from the current one.
+// Returns the path of the database file in the JSON of an exploration, as seen from the folder of the JSON or the current one.
 std::string store_of(const nlohmann::json& j, const std::filesystem::path& record) {
   const std::filesystem::path named = internal::JsonReader::read<std::string>(internal::JsonReader(j).at("store"));
   for (const std::filesystem::path& place : {record.parent_path() / named, named}) {
@@ -140,7 +140,7 @@ std::string store_of(const nlohmann::json& j, const std::filesystem::path& recor
                                  shortened(printable_line(named.string()))));
 }
 
-// Returns the figures of the Pareto front in the JSON, in the form of --pareto.
+// Returns the figures of the Pareto front in the JSON, in the form of the option --pareto.
 std::string aims_of(const nlohmann::json& j) {
   std::string aims;
   for (const nlohmann::json& one : internal::JsonReader(internal::JsonReader(j).at("pareto")).at("aims")) {

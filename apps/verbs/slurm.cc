@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t most_tasks = 100'000;  // more than any cluster allows for one array
+constexpr std::uint64_t most_tasks = 100'000;  // larger than the limit of any cluster for one array of jobs
 
 struct SlurmRequest {
   std::string plan;
@@ -42,7 +42,7 @@ Plan plan_of(const std::string& file) {
   return Plan(request);
 }
 
-// Returns the beginning of the script, which depends on the study; the rest of the script does not.
+// Returns the first part of the job script; only this part depends on the study.
 std::string head(const Common& c, const Plan& plan, std::uint64_t tasks, std::uint64_t processors, const fs::path& out) {
   const std::string digest = content_key(plan.text()).hexadecimal();
   const fs::path parts = out.parent_path() / (out.stem().string() + "-parts");

@@ -1,4 +1,4 @@
-// Verb `table`: prints the rows of a store as CSV or as an aligned table.
+// Verb `table`: prints the rows of the database file of a study as CSV or as an aligned table.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -32,13 +32,13 @@ struct TableRequest {
   bool csv = false;
 };
 
-/// A column of the table, with the key that selects it and the text of its cells.
+/// A column of the printed table, with the key by which --select names the column and the function that writes a cell.
 struct Column {
   std::string key, unit;
   std::function<std::string(const StoredRow&)> csv, shown;
 };
 
-// Quotes text that a reader of CSV (RFC 4180) would otherwise change.
+// Quotes a text that a reader of CSV (RFC 4180) would otherwise split or change.
 std::string csv_cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -53,7 +53,7 @@ Column text_column(const char* key, const std::function<std::string(const Stored
           .shown = [text](const StoredRow& row) { return printable_line(text(row)); }};
 }
 
-// Writes a number as the shortest text that reads back to the same bits; a missing number is empty.
+// Returns a column of numbers: a number is the shortest text that reads back to the same bits, a missing number is empty.
 Column number_column(const StoredColumn& column, std::size_t place) {
   return {
       .key = column.key,
@@ -67,7 +67,7 @@ Column number_column(const StoredColumn& column, std::size_t place) {
           }};
 }
 
-// Returns all columns of a store, in the order in which the verb prints them.
+// Returns all columns of a database file, in the order in which the verb prints them.
 std::vector<Column> columns_of(const StoredPlan& plan) {
   std::vector<Column> all{text_column("point", [](const StoredRow& row) { return std::to_string(row.point); })};
   for (std::size_t i = 0; i < plan.columns.size(); ++i) all.push_back(number_column(plan.columns[i], i));
@@ -79,7 +79,7 @@ std::vector<Column> columns_of(const StoredPlan& plan) {
 std::vector<Column> selected(const StoredPlan& plan, const std::string& select) {
   std::vector<Column> all = columns_of(plan);
   if (select.empty()) return all;
-  // The columns below are printed only if --select names them.
+  // The columns `content` and `extra` are printed only if --select names them.
   all.push_back(text_column("content", [](const StoredRow& row) { return row.content.hexadecimal(); }));
   all.push_back(text_column("extra", [](const StoredRow& row) { return row.extra; }));
   std::vector<Column> chosen;
@@ -101,7 +101,7 @@ std::vector<Column> selected(const StoredPlan& plan, const std::string& select) 
 
 using Sink = std::function<void(std::string_view)>;
 
-// Writes the same bytes to a file and to a terminal, where control characters could act: they are escaped in both.
+// Writes the table as CSV. Control characters, which could act on a terminal, are escaped in files as well.
 void write_csv(const StudyReader& store, const TableRequest& request, const std::vector<Column>& columns,
                const Progress& progress, const Sink& sink) {
   constexpr std::size_t most = 1 << 16;
@@ -125,7 +125,7 @@ void print_table(const StudyReader& store, const TableRequest& request, const st
     widths.push_back(std::max<std::size_t>(column.key.size(), 12) + 1);
     header += internal::right_aligned(column.key, widths.back());
   }
-  // Check the expression before the first row is written.
+  // Reading the rows also checks the expression that selects rows: nothing is printed before that check.
   std::string text = header + "\n";
   store.read(
       [&](const StoredRow& row) {

@@ -1,4 +1,4 @@
-// Verb `tune`: tunes a waveform on a real device, closing after closing.
+// Verb `tune`: tunes a waveform on a real device, one closing after another.
 #include "verbs/tune.h"
 
 #include <fmt/format.h>
@@ -39,8 +39,8 @@ constexpr const char* log_file = "closings.jsonl";
 
 using verbs::TuneRequest;
 
-// Writes the options about the sources into [driver] of the scene. Refuses, before any search, a file format that cannot hold
-// the shots.
+// Writes the options about voltage sources into [driver] of the scene. Refuses a file format that cannot hold the shots before
+// any search begins.
 void set_sources(SceneFile& file, const TuneRequest& request, Actuator actuator) {
   const PreparedScene drawn = prepare_and_choose(file, true);
   std::vector<std::string> shaped;
@@ -60,17 +60,17 @@ void set_sources(SceneFile& file, const TuneRequest& request, Actuator actuator)
   require_shots(request.format.value_or("csv"), prepare_and_choose(file, true), shaped);
 }
 
-/// A tuning and its files.
+/// A tuning and the files that it writes.
 class Tuning {
  public:
   Tuning(const Common& common, const SceneFile& file, const TuneRequest& request);
 
-  /// Reads the closings that were recorded before.
+  /// Reads the closings in the log of an earlier run of this tuning.
   void learn_log();
   /// Fires shots until enough closings in a row are bounce-free, the largest number of closings is reached, or the laboratory
   /// stops.
   TuningEnd run(TuningLab& lab, int closings);
-  /// Writes the files for the current state of the tuning.
+  /// Writes the result files for the current state of the tuning.
   void write(TuningEnd end);
   [[nodiscard]] TuningReport report(TuningEnd end) const { return session_.report(end, common_.command); }
   [[nodiscard]] const ResultFolder& folder() const { return *folder_; }

@@ -1,5 +1,5 @@
-// Verbs whose action is specific to the command line: those of verbs/study.h that have no computation there, and the verbs of
-// the program alone, in the order of --help. Each of these has a file in this folder with its options and its action.
+// Verbs whose action belongs to the command line: verbs of verbs/study.h without a computation there, and verbs that only the
+// program has, in the order of --help. Each has a file in this folder, with options and action.
 #pragma once
 
 #include <array>
@@ -40,7 +40,7 @@ struct VerbRow {
   void (*add)(Verb& verb);  ///< declares the options and the action of the verb
 };
 
-/// Verbs of the program alone; --help lists them after those of verbs/study.h.
+/// Verbs that only the program has; --help lists them after the verbs of verbs/study.h.
 inline constexpr std::array other_verbs{
     VerbRow{"modes", "compute natural frequencies, or convert modes of another program into a table for a scene", add_modes},
     VerbRow{"table", "print the rows of a store as a table or as CSV", add_table},
