@@ -24,7 +24,7 @@ namespace softland {
 [[nodiscard]] std::vector<std::string> renamed_pins(const std::vector<std::string>& drives);
 
 /// Returns the reason why this switch has no circuit model: "a dielectric on an electrode and several contacts". The text lists
-/// all parts with a memory, states or tables of their own, and pulling contacts; it is empty if there is a model.
+/// all parts that a circuit model cannot describe; it is empty if there is a model.
 [[nodiscard]] std::string why_no_circuit(const Switch& model);
 
 /// Returns `.subckt softland_switch` with the drives, their ground g, the contact s and d, and outputs y [um], vel [m/s], force

@@ -9,8 +9,8 @@
 
 namespace softland::internal {
 
-/// The result in one sentence, in two parts to which a page gives different weight: `main` is about the winner or the single
-/// run, `rest` about the baseline (empty for a single run). main + rest is the complete sentence with its full stop.
+/// The result in one sentence, in two parts of different weight on a page. The part `main` is about the winner or the single
+/// run; `rest` is about the baseline (empty for a single run). main + rest is the complete sentence with its full stop.
 struct Headline {
   std::string main;
   std::string rest;

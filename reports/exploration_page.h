@@ -1,4 +1,4 @@
-// The parts of a page on an exploration, computed from its points.
+// The parts of a page on an exploration, computed from the points of the exploration.
 #pragma once
 
 #include <array>
@@ -12,47 +12,47 @@
 
 namespace softland::internal {
 
-/// Returns the columns that vary, or the figures.
+/// Returns the columns of the varying variables, or of the figures.
 [[nodiscard]] std::vector<std::size_t> columns_of(const ExplorationReport& report, bool variables);
 
-/// A grid of points on all combinations of the values of their variables; some may not be computed.
+/// A grid of points: all combinations of the values of several variables; some points may not be computed.
 struct ExploredGrid {
   static constexpr std::size_t nothing = static_cast<std::size_t>(-1);
 
   std::vector<std::size_t> variables;       ///< columns that take more than one value
   std::vector<std::vector<double>> values;  ///< values of each variable, ascending
-  std::vector<std::size_t> points;          ///< index of the point in the report at each combination, the last variable fastest
-  /// Returns the index of the point's value in the values of every variable.
+  std::vector<std::size_t> points;          ///< index in the report of the point at each combination, the last variable fastest
+  /// Returns the position of a point in the grid: an index into the values of each variable.
   [[nodiscard]] std::vector<std::size_t> place(const ExploredPoint& point) const;
 };
-/// Returns none where the points are not a grid: fewer than half of the combinations of at least two variables, or a
-/// combination twice.
+/// Returns the grid of the points; none if the points are no grid: fewer than half of the combinations of at least two
+/// variables, or a combination that occurs twice.
 [[nodiscard]] std::optional<ExploredGrid> grid_of(const ExplorationReport& report);
 
-/// Makes the map of a figure; the other variables of the grid stand at the middle one of their values.
+/// Makes the map of a figure over two variables; each other variable of the grid has the middle one of its values.
 [[nodiscard]] HeatMap heat_map_of(const ExplorationReport& report, const ExploredGrid& grid, std::size_t x, std::size_t y,
                                   std::size_t figure);
 
 /// The distribution of a figure over all points at one value of a variable, or in an interval of its values.
 struct EffectBin {
-  double at = 0;  ///< value, or the middle one of the points there
+  double at = 0;  ///< value of the variable, or the middle one of the points in the interval
   std::size_t points = 0;
   std::array<double, 5> quantiles{};  ///< 5, 25, 50, 75, 95 % quantiles of the figure; NaN without points
 };
-/// Returns bins at the values of the variable where these are few, else in intervals of equally many points. Points without the
-/// figure are left out.
+/// Returns one bin per value of the variable if the values are few, otherwise intervals with equally many points. Points
+/// without the figure are left out.
 [[nodiscard]] std::vector<EffectBin> effect_of(const ExplorationReport& report, std::size_t variable, std::size_t figure);
 
-/// Returns a value of a column in words, with a suitable prefix where its unit takes one.
+/// Returns a value of a column as text, with an SI prefix if its unit has prefixes.
 [[nodiscard]] std::string explored_text(const ExploredColumn& column, double value, int digits = 4);
 
-/// Returns the figure to show first: the impact velocity, or the first that is known and not everywhere the same.
+/// Returns the figure to show first: the impact velocity, or else the first figure with two different values.
 [[nodiscard]] std::size_t leading_figure(const ExplorationReport& report);
 
-/// Columns and points for the script, thinned to what fits.
+/// Columns and points for the script of a page, thinned to the size limit of the page.
 struct ExplorationData {
   nlohmann::json json;
-  std::string thinning;  ///< rule of the thinning, in words; empty: all points are there
+  std::string thinning;  ///< rule of the thinning, in words; empty: no point was left out
 };
 [[nodiscard]] ExplorationData exploration_data(const ExplorationReport& report, const std::optional<ExploredGrid>& grid,
                                                const ExploredFront& front);

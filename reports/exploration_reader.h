@@ -1,4 +1,4 @@
-// The store of an exploration as its reports want it.
+// Reads the database file of an exploration for its reports.
 #pragma once
 
 #include <string>
@@ -8,12 +8,13 @@
 
 namespace softland {
 
-/// Reads all rows of the store, with the waveforms that it holds. `pareto` names the figures of the front, as --pareto does;
-/// empty: those that the plan itself minimises, if it does. Throws InvalidInput as explored_aims() and StudyReader do.
+/// Reads all rows of the database file, with the stored waveforms. `pareto` names the figures of the Pareto front, as the
+/// option --pareto does; empty: the figures that the plan minimises, if any. Throws InvalidInput as explored_aims() and
+/// StudyReader do.
 [[nodiscard]] ExplorationReport read_exploration(const StudyReader& store, const std::string& pareto);
 
-/// Adds the waveforms of the points on the front that the store does not hold, from their scenes. A point whose scene cannot be
-/// prepared stays without.
+/// Adds waveforms that the database file lacks to the points on the Pareto front, by preparing their scenes. A point whose
+/// scene cannot be prepared gets no waveform.
 void add_front_waveforms(ExplorationReport& report, const StudyReader& store, const Progress& progress);
 
 }  // namespace softland

@@ -1,4 +1,4 @@
-// The findings of a fit: JSON with SI units, and a document.
+// The results of a fit: JSON with SI units, and a document.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -28,13 +28,13 @@ struct FitRecord {
   std::string title;
   std::vector<FittedUnknown> unknowns;
   Matrix correlation;
-  std::vector<std::vector<std::string>> indistinguishable;  ///< unknowns that the data cannot tell apart
+  std::vector<std::vector<std::string>> indistinguishable;  ///< groups of unknowns that the data cannot tell apart
   std::vector<NextMeasurement> next;
   std::size_t minima = 0, starts = 0, converged = 0;
   std::vector<FitResidual> residuals;
   std::vector<FittedTrace> traces;
-  double chi_squared = Metrics::unset, chi_squared_before = Metrics::unset;  ///< NaN where nothing was found
-  /// Sentences on the residuals as a whole, data that do not agree, indistinguishable unknowns, minima.
+  double chi_squared = Metrics::unset, chi_squared_before = Metrics::unset;  ///< NaN if the fit failed
+  /// Sentences on the residuals as a whole, data that contradict each other, indistinguishable unknowns, and minima.
   std::vector<std::string> words;
   bool spread_assumed = false;
   Loss loss = Loss::huber;
@@ -48,7 +48,8 @@ struct FitRecord {
 
 [[nodiscard]] nlohmann::json json_of(const FitRecord& record);
 [[nodiscard]] FitRecord read_fit(const nlohmann::json& from);
-/// Shows values and their intervals, unknowns that the data cannot tell apart and data that would, residuals.
+/// Returns a document with fitted values and their intervals, unknowns that the data cannot tell apart, further data that could
+/// tell them apart, and residuals.
 [[nodiscard]] Document document_of(const FitRecord& record);
 
 }  // namespace softland

@@ -1,5 +1,5 @@
-// A formula is a number that is not known yet: laws of the model that are evaluated with it leave their formula, in the syntax
-// that ngspice, LTspice and Verilog-A share.
+// A symbolic number. Laws of the model that are evaluated with the type Formula give their formula as text, in the syntax that
+// ngspice, LTspice and Verilog-A share.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@ namespace softland {
 class Formula {
  public:
   Formula(double constant) : constant_(true), value_(constant) {}  // NOLINT(google-explicit-constructor): as a number does
-  /// Makes an operand: a name, a call, or something in parentheses.
+  /// Makes an operand from a text: a name, a call, or an expression in parentheses.
   static Formula named(std::string operand);
 
-  /// Returns the text, in parentheses where it is more than an operand.
+  /// Returns the formula as text, in parentheses unless it is a single operand.
   [[nodiscard]] std::string text() const;
 
   friend Formula operator+(const Formula& a, const Formula& b);
@@ -34,16 +34,17 @@ class Formula {
 [[nodiscard]] Formula log(const Formula& x);
 [[nodiscard]] Formula abs(const Formula& x);
 [[nodiscard]] Formula pow(const Formula& x, double exponent);
-/// Returns the larger of both.
+/// Returns the formula of the larger of two numbers.
 [[nodiscard]] Formula max(const Formula& a, const Formula& b);
 
-/// A relation of which it is not known yet whether it holds.
+/// A comparison of formulas, whose truth depends on the values of the operands.
 struct FormulaCondition {
   std::string text;
 };
 [[nodiscard]] FormulaCondition operator<(const Formula& a, const Formula& b);
 [[nodiscard]] FormulaCondition operator>(const Formula& a, const Formula& b);
-/// Implements the function of base/select.h: `to` becomes one or the other.
+/// Implements the function of base/select.h: `to` becomes a formula that is `from` where the condition holds, and `to`
+/// elsewhere.
 void assign_where(const FormulaCondition& condition, Formula& to, const Formula& from);
 
 }  // namespace softland

@@ -1,4 +1,4 @@
-// The findings of `softland limit`: JSON with SI units in the names, a table for a terminal, and a picture.
+// The results of `softland limit`: JSON with SI units in the names, a table for a terminal, and a picture.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -15,8 +15,8 @@ namespace softland {
 struct LimitRecord {
   struct QuasiStatic {
     std::string drive;
-    /// The range in which 90 % of the devices touch [m]; the time from which the force of the plain step is steady [s]; the
-    /// speed [m/s].
+    /// The width of the range of positions where 90 % of the devices touch [m]; the time from which the force under the plain
+    /// step is steady [s]; the impact velocity [m/s].
     double touch_places = Metrics::unset, steady = Metrics::unset, speed = Metrics::unset;
   };
   struct Check {
@@ -29,7 +29,7 @@ struct LimitRecord {
     double catch_delay = Metrics::unset, catch_time = Metrics::unset;  ///< [s]
     bool bounce_free = false;
     Metrics metrics;
-    std::vector<Check> checks;  ///< confirmations by a tighter integrator and a richer beam
+    std::vector<Check> checks;  ///< confirmations with a tighter integrator and a beam with more modes
     nlohmann::json scene;
   };
   Origin origin;
@@ -37,24 +37,24 @@ struct LimitRecord {
   Actuator actuator = Actuator::electrostatic;
   double impact_velocity = Metrics::unset;  ///< permitted impact velocity [m/s]
   int modes = 0;
-  bool has_start = false;  ///< true when a waveform was given to start with
+  bool has_start = false;  ///< true when the user gave a waveform to start with
   Metrics step;
   LeastTime touch, rest;
   std::optional<QuasiStatic> quasi_static;
   ClosedState closed_state;
-  std::string hold_warning;           ///< the warning about the hold levels; empty without such a warning
+  std::string hold_warning;           ///< warning about the hold levels; may be empty
   std::vector<std::string> warnings;  ///< warnings of the scene, of its hold levels, and of few summits that carry the force
   std::optional<Landing> landing;
   std::vector<LeastTime> over_velocity, over_peak;
-  std::optional<ClosingRecord> landed;  ///< run of the landing; only files have it
+  std::optional<ClosingRecord> landed;  ///< run of the landing; only files have the run
 };
 [[nodiscard]] LimitRecord record_of(const Limit& limit, const std::string& command);
 
 [[nodiscard]] nlohmann::json json_of(const LimitRecord& record);
 [[nodiscard]] LimitRecord read_limit(const nlohmann::json& from);
 [[nodiscard]] std::string text_of(const LimitRecord& record);
-/// Draws the gap and the waveforms of the landing, and the least time against the peak voltage and against the permitted impact
-/// velocity, as far as they were found.
+/// Draws gap and waveforms of the landing, and the least time against peak voltage and against permitted impact velocity, as
+/// far as they were computed.
 [[nodiscard]] std::string svg_of(const LimitRecord& record);
 
 }  // namespace softland

@@ -1,6 +1,6 @@
-// The record of program and machine holds all that can change the last digits of a result: the same scene, seed and program
-// give the same bits on the same kind of processor. Another compiler, other options or another instruction set round
-// differently; so do the functions of the C library, which chooses among its versions by the processor it runs on.
+// The record of program and machine has everything that can change the last digits of a result. The same scene, seed and
+// program give the same bits on the same kind of processor. Another compiler, other options or another instruction set round
+// differently; so do functions of the C library, which chooses their version by the processor.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,14 +12,14 @@ struct MadeWith {
   std::string program, compiler, options, instruction_set, vectors, c_library, processor;
 };
 
-/// Describes this program on this machine, and the vector instructions that close ensembles
-/// (model/ensemble/ensemble_closings.h); empty where the machine does not tell.
+/// Describes this program, this machine, and the vector instructions that simulate ensembles
+/// (model/ensemble/ensemble_closings.h); unknown members are empty.
 [[nodiscard]] const MadeWith& made_with();
-/// Returns {"program": ..., "compiler": ...}; null for unknown members.
+/// Returns {"program": ..., "compiler": ...}; an unknown member is null.
 [[nodiscard]] nlohmann::json made_with_json(const MadeWith& all = made_with());
 
 namespace internal {
-/// Returns one line; empty where nothing is known.
+/// Returns program and machine on one line; empty if nothing is known.
 [[nodiscard]] std::string made_with_text(const MadeWith& all);
 }  // namespace internal
 

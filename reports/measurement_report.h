@@ -1,4 +1,4 @@
-// The findings of `softland calibrate`: JSON with SI units in the names, and a table for a terminal.
+// The results of `softland calibrate`: JSON with SI units in the names, and a table for a terminal.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,10 +13,10 @@ namespace softland {
 struct MeasurementsRecord {
   struct Figure {
     std::string name, unit;
-    double nominal = Metrics::unset;    ///< value of the nominal device [unit]
-    double variation = Metrics::unset;  ///< standard deviation over the devices that have it, over their mean
-    double error = 0;                   ///< relative error of its measurement
-    std::size_t devices = 0;            ///< number of devices that have it
+    double nominal = Metrics::unset;    ///< value of the figure on the nominal device [unit]
+    double variation = Metrics::unset;  ///< standard deviation over the mean, over the devices with this figure
+    double error = 0;                   ///< relative error of a measurement of the figure
+    std::size_t devices = 0;            ///< number of devices with this figure
   };
   struct Row {
     Prediction found;
@@ -34,7 +34,7 @@ struct MeasurementsRecord {
 
 [[nodiscard]] nlohmann::json json_of(const MeasurementsRecord& record);
 [[nodiscard]] MeasurementsRecord read_measurements(const nlohmann::json& from);
-/// Leaves out pairs that close devices no better than the better one of their figures, and all rows beyond `most`.
+/// Returns a table of at most `most` rows, without pairs of figures that predict no better than the better one of the two.
 [[nodiscard]] std::string text_of(const MeasurementsRecord& record, std::size_t most = 24);
 
 }  // namespace softland

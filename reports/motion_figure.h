@@ -1,4 +1,4 @@
-// The moving part of a switch in a closing, as a figure of a page that its script moves.
+// The moving part of a switch during a closing, as a figure that the script of a page animates.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace softland::internal {
 
-/// Shows the switch from the side with its contacts at a time that the reader sets, plays, or reads in the charts; in print and
-/// without a script it shows the shapes at a few instants. Empty where the motion is not known. Its colours are the page's.
+/// Draws the switch from the side with its contacts at a time that the reader chooses or plays; in print and without a script,
+/// the figure shows the shapes at a few instants. Empty if the motion is unknown. The colours come from the CSS of the page.
 [[nodiscard]] std::string motion_figure(const ClosingRecord& result);
 
 }  // namespace softland::internal

@@ -11,30 +11,30 @@
 
 namespace softland {
 
-/// Every record of a study begins with these members; `scene` is null where it has none.
+/// The origin of the record of a study; `scene` is null if the study has no scene.
 struct Origin {
-  std::string kind;  ///< name of the verb, by which `report` knows the record
+  std::string kind;  ///< name of the verb, by which the verb `report` recognises the record
   std::string version, command;
   MadeWith made_with;
   nlohmann::json scene = {};    ///< resolved scene, quantities as text
-  std::string scene_toml = {};  ///< the same as a file; empty where no page shows it
+  std::string scene_toml = {};  ///< resolved scene as the text of a scene file; empty if no page shows it
 };
 [[nodiscard]] Origin origin_of(const char* kind, const std::string& command);
 [[nodiscard]] Origin origin_of(const char* kind, const PreparedScene& scene, const std::string& command);
-/// Makes the origin with the text of the scene.
+/// Makes the origin with the text of the scene in scene_toml.
 [[nodiscard]] Origin whole_origin_of(const char* kind, const PreparedScene& scene, const std::string& command);
-/// Returns what a document says of a record with this origin, but for seed and tolerance.
+/// Returns the data of a document for computing the result again: those of the origin, seed and tolerance.
 [[nodiscard]] MadeAgain made_again(const Origin& origin, std::optional<std::uint64_t> seed = {},
                                    double tolerance = std::numeric_limits<double>::quiet_NaN());
-/// Returns the title of the scene; empty where it has none.
+/// Returns the title of the scene; empty if the scene has none.
 [[nodiscard]] std::string title_of(const Origin& origin);
 
-/// Returns the record with version, made_with and command.
+/// Returns the record with the members version, made_with and command.
 [[nodiscard]] nlohmann::json with_origin(nlohmann::json record, const std::string& command);
-/// Does the same and adds the resolved scene.
+/// Returns the record with the members version, made_with, command and the resolved scene.
 [[nodiscard]] nlohmann::json with_origin(nlohmann::json record, const PreparedScene& scene, const std::string& command);
 
-/// Describes the writer of a store: this program on this machine, for this command.
+/// Describes the writer of a database file: this program on this machine, run with this command.
 [[nodiscard]] StoredOrigin stored_origin(const std::string& command);
 
 }  // namespace softland

@@ -1,4 +1,5 @@
-// The members of pull-in voltages and of the stable path, which `pull-in` and `check` write: see reports/record.h.
+// Lists the members of pull-in voltages and of the stable path, which the verbs `pull-in` and `check` write: see
+// reports/record.h.
 #pragma once
 
 #include <cmath>
@@ -13,7 +14,7 @@ namespace softland {
 
 namespace internal {
 
-/// JSON is null where there are no values at all.
+/// Writes the voltages by number of modes; JSON is null if there are none.
 [[nodiscard]] nlohmann::json voltages_by_modes_json(const std::optional<VoltagesByModes>& found);
 [[nodiscard]] std::optional<VoltagesByModes> read_voltages_by_modes(const nlohmann::json& from);
 

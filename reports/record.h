@@ -1,8 +1,8 @@
-// One list of members makes a record and its JSON. `members(archive, record)`, a function template beside the record's type,
-// names every member once; a JsonWriter and a JsonReader both go through it, as archives do in Drake's Serialize.
+// One list of members serves to write and to read a record as JSON. `members(archive, record)`, a function template beside the
+// type of the record, names every member once. JsonWriter and JsonReader are archives, as in Drake's Serialize.
 //
-// A non-finite number is null in JSON. A reader takes the members that are present. A number that is missing or null becomes
-// NaN. Any other member that is missing or of another type stays as it is in the record.
+// A non-finite number is null in JSON. JsonReader reads the members that are present. A number that is missing or null becomes
+// NaN. Any other member that is missing or of another type keeps its value in the record.
 #pragma once
 
 #include <array>
@@ -27,18 +27,18 @@ namespace softland::internal {
 
 using nlohmann::json;
 
-/// A number of things is whole in JSON.
+/// A count in a double, which JSON has as a whole number.
 struct Count {
   double& value;
 };
-/// A null in JSON means infinite, for a number or for each value of a map.
+/// A number, or a map of numbers, of which null in JSON means infinite.
 template <class T>
 struct OrInfinite {
   T& value;
 };
 template <class T>
 OrInfinite(T&) -> OrInfinite<T>;
-/// JSON has null where the member is not set or an empty text; without OrNull a member that is not set is left out.
+/// A member that is null in JSON if it is not set or an empty text; without OrNull, JSON lacks a member that is not set.
 template <class T>
 struct OrNull {
   T& value;
@@ -49,7 +49,7 @@ OrNull(T&) -> OrNull<T>;
 struct Stopped {
   bool& interrupted;
 };
-/// A choice is written by the name that its table has for it.
+/// A choice, which JSON has by its name in the table `rows`.
 template <class Rows>
 struct Chosen {
   decltype(Rows::value_type::value)& value;
@@ -60,13 +60,14 @@ Chosen(T&, const Rows&) -> Chosen<Rows>;
 
 template <class Record>
 [[nodiscard]] json record_json(const Record& record);
-/// Throws InvalidInput, which names the first difference, unless its record is written as the same JSON that was read.
+/// Throws InvalidInput with the first difference, unless the JSON that was `written` from a record equals the JSON that was
+/// `read`.
 void require_same(const json& written, const json& read);
 
 class JsonWriter {
  public:
   static constexpr bool reads = false;
-  /// Tells whether a member is present that is written only `where`.
+  /// Returns true if the writer writes a member that exists only if `where` holds.
   [[nodiscard]] static bool has(bool where) { return where; }
 
   template <class T>
@@ -79,24 +80,24 @@ class JsonWriter {
   }
   /// Writes two numbers as a list.
   void pair(std::string_view key, double low, double high) { json_[std::string(key)] = {json_number(low), json_number(high)}; }
-  /// Writes a value with its own conversion to JSON.
+  /// Writes a value with a conversion to JSON of its own.
   template <class T, class Write, class Read>
   void custom(std::string_view key, const T& value, const Write& write, const Read&) {
     json_[std::string(key)] = write(value);
   }
-  /// Writes a value that is computed from members.
+  /// Writes a value that is computed from other members; a reader skips it.
   template <class T>
   void derived(std::string_view key, const T& value) {
     (*this)(key, value);
   }
-  /// Writes the members that `inside(archive)` names, in an object of their own.
+  /// Writes an object with the members that `inside(archive)` names.
   template <class Inside>
   void object(std::string_view key, const Inside& inside) {
     JsonWriter own;
     inside(own);
     json_[std::string(key)].update(own.json_);
   }
-  /// Writes those figures that are asked for.
+  /// Writes the figures for which `asked` returns true.
   template <class Asked>
   void figures(const FigureValues& values, const Asked& asked) {
     for (const Figure& figure : all_figures) {
@@ -199,16 +200,16 @@ class JsonReader {
       take(figure, at(figure.key), values[figure]);
     }
   }
-  /// Reads the value of a type that has members(), as far as the JSON has it.
+  /// Returns a value of a type with members(), from the JSON members that are present.
   template <class T>
   [[nodiscard]] static T read(const json& from) {
     T value = blank<T>();
     take(from, value);
     return value;
   }
-  /// Returns the whole JSON that is read.
+  /// Returns the JSON that this reader reads.
   [[nodiscard]] const json& whole() const { return *json_; }
-  /// Returns a null value for a missing key.
+  /// Returns the value of a key; null if the key is missing.
   [[nodiscard]] const json& at(std::string_view key) const {
     static const json nothing;
     if (!json_->is_object()) return nothing;
@@ -269,7 +270,7 @@ class JsonReader {
     if (from.is_null() || (std::is_class_v<T> && !from.is_object() && !std::is_same_v<T, std::string>)) return;
     value = read<T>(from);
   }
-  // A list of numbers keeps its length: an entry that is not a number becomes NaN.
+  // Reads a list of numbers with its length: an entry that is not a number becomes NaN.
   template <class T>
   static void take(const json& from, std::vector<T>& all) {
     if (!from.is_array()) return;
@@ -282,7 +283,7 @@ class JsonReader {
       if (one.is_string() && one != "") all.push_back(one.get<std::string>());
     }
   }
-  // A list of numbers, points among them, is taken whole or not at all.
+  // A point is a list of two entries; other entries in a list of points are skipped.
   static bool is_point(const json& from) { return from.is_array() && from.size() == 2; }
   static std::array<double, 2> point(const json& from) {
     std::array<double, 2> both{Metrics::unset, Metrics::unset};
@@ -324,11 +325,11 @@ class JsonReader {
 template <class Record>
 json record_json(const Record& record) {
   JsonWriter archive;
-  members(archive, const_cast<Record&>(record));  // a writer does not change it
+  members(archive, const_cast<Record&>(record));  // a writer does not change the record
   return std::move(archive).take();
 }
 
-/// Returns the record of this JSON. Throws InvalidInput where any part is missing, unknown or not as it would be written.
+/// Returns the record in this JSON. Throws InvalidInput if any part is missing, unknown or not as it would be written.
 template <class Record>
 [[nodiscard]] Record whole_record(const json& from) {
   Record record = JsonReader::read<Record>(from);

@@ -1,4 +1,4 @@
-// Records of studies as the text of files.
+// Writes and reads the records of studies as the text of files.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,13 +7,13 @@
 
 namespace softland {
 
-/// Returns JSON on one line, or with `indent` blanks per level; bytes that are not UTF-8 (a path may hold some) become U+FFFD.
+/// Returns JSON on one line, or with `indent` blanks per level. Bytes that are not UTF-8, as in some paths, become U+FFFD.
 [[nodiscard]] std::string json_text(const nlohmann::json& data, int indent = -1);
 
-/// Returns the record of a study as --json gives it.
+/// Returns the record of a study as the option --json writes it.
 [[nodiscard]] nlohmann::json without_curves(nlohmann::json record);
 
-/// Parses the content of a file: a JSON object that states its kind; everything else in it may be missing or of another type.
+/// Parses the content of a file: a JSON object that states its kind; all other members may be missing or of another type.
 /// `name` stands for the file in messages. Throws InvalidInput for anything else.
 [[nodiscard]] nlohmann::json parse_record(std::string_view content, const std::string& name);
 /// Throws InvalidInput unless this version of softland made the record.

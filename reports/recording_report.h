@@ -1,4 +1,4 @@
-// The content of an instrument's file, for people and programs.
+// Describes the content of a file from an instrument, as JSON, text and picture.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,14 +10,13 @@ namespace softland {
 
 /// Returns
 /// {"format","time":{"first_s","last_s","interval_s","repeated"},"channels":[{"name","unit","samples","first","last","minimum",
-/// "maximum"}],"left_out":[],"notes":[]}; null where there are no times.
+/// "maximum"}],"left_out":[],"notes":[]}; a time that the file lacks is null.
 [[nodiscard]] nlohmann::json recording_json(const Recording& recording);
 
 /// Returns a line about the file, and a table of its channels.
 [[nodiscard]] std::string recording_text(const Recording& recording);
 
-/// Returns a static SVG document with every channel against time. For long recordings the extremes of every short span are
-/// drawn.
+/// Returns a static SVG document with every channel against time. A long recording is drawn by the extremes of short intervals.
 [[nodiscard]] std::string recording_svg(const Recording& recording);
 
 }  // namespace softland

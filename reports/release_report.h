@@ -1,5 +1,4 @@
-// The findings of `softland release`: JSON with SI units in the names, a table for a terminal, the drives as CSV, and a
-// picture.
+// The results of `softland release`: JSON with SI units in the names, a table for a terminal, the drives as CSV, and a picture.
 #pragma once
 
 #include <map>
@@ -19,12 +18,12 @@ struct ReleaseRecord {
     OpeningFigures figures;
     std::string message;
     double drives_end = Metrics::unset;       ///< time from which all drives stay at 0 V [s]
-    std::map<std::string, Points> waveforms;  ///< waveforms by drive, from their hold levels on: time [s] and level [V]
+    std::map<std::string, Points> waveforms;  ///< waveforms by drive, beginning at the hold levels: time [s] and level [V]
   };
   struct Gap {
     std::vector<double> time, gap;  ///< time [s] and gap [m]
   };
-  /// The openings of the devices, and the spread in words.
+  /// The openings of simulated devices, and the process variation in words.
   struct Devices {
     std::uint64_t count = 0;
     bool spread_assumed = false;
@@ -46,7 +45,7 @@ struct ReleaseRecord {
   long evaluations = 0;
   std::uint64_t seed = 1;
   std::string termination;
-  std::vector<std::string> warnings;  ///< warnings of the scene, and of a contact force at hold that few summits carry
+  std::vector<std::string> warnings;  ///< warnings of the scene, and on a contact force that few asperities carry
   std::map<std::string, Gap> gaps;    ///< "plain" and "best"; only files have them
 };
 [[nodiscard]] ReleaseRecord record_of(const OpeningResult& release, const std::string& command);
@@ -54,9 +53,9 @@ struct ReleaseRecord {
 [[nodiscard]] nlohmann::json json_of(const ReleaseRecord& record);
 [[nodiscard]] ReleaseRecord read_release(const nlohmann::json& from);
 [[nodiscard]] std::string text_of(const ReleaseRecord& record);
-/// Draws the gap of the plain opening and of the best, and the drives; the record must have the gaps.
+/// Draws the gap in the plain opening and in the best opening, and the drives; the record must have the gaps.
 [[nodiscard]] std::string svg_of(const ReleaseRecord& record);
-/// Returns the drives of the best opening, or of the plain one without a best, from the hold levels on: a header
+/// Returns the drives of the best opening, or else of the plain opening, beginning at the hold levels: a header
 /// `time_s,<drive>,...` [s, V], straight lines between the rows; rows of the same time are a jump.
 [[nodiscard]] std::string release_csv(const OpeningResult& release);
 

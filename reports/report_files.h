@@ -1,4 +1,4 @@
-// The files of reports: their names, and the text of each.
+// The files of reports: names and texts.
 #pragma once
 
 #include <array>
@@ -18,17 +18,17 @@ struct ReportFile {
   std::function<std::string(const Report&)> text;
 };
 
-/// Lists report.html, gap.svg, result.json, and trajectory.csv where there is a trajectory.
+/// Lists report.html, gap.svg, result.json, and trajectory.csv if the record has a trajectory.
 [[nodiscard]] std::vector<ReportFile<ClosingRecord>> files_of(const ClosingRecord& result);
 
-/// These files hold a judgement of drives on devices, by `robustness` or at the end of a search for devices.
+/// Names of the files on drives evaluated with simulated devices, by `robustness` or at the end of a search over devices.
 inline constexpr std::array robustness_files{"robustness.html", "robustness.json", "devices.csv"};
 [[nodiscard]] std::vector<ReportFile<RobustnessReport>> files_of(const RobustnessReport& report);
 
-/// A search for devices writes these files besides.
+/// Names of further files of a search over devices.
 inline constexpr std::array for_devices_files{"drawing.toml", "drawing.csv", "calibrated.toml", "calibrated.csv", "fast.toml",
                                               "fast.csv",     "soft.toml",   "soft.csv",        "devices.svg"};
-/// Lists the files of the result, the waveforms found, as scenes and as commanded voltages, and the files of the devices.
+/// Lists the files of the result, the waveforms found (as scenes and as commanded voltages), and the files on the devices.
 [[nodiscard]] std::vector<ReportFile<SearchReport>> files_of(const SearchReport& report);
 
 }  // namespace softland

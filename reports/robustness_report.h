@@ -1,4 +1,4 @@
-// The findings of `softland robustness`: JSON with SI units in the names, one line per device as CSV, and a document.
+// The results of `softland robustness`: JSON with SI units in the names, one line per device as CSV, and a document.
 #pragma once
 
 #include <cstddef>
@@ -21,29 +21,29 @@
 
 namespace softland {
 
-/// The input of a report; `sensitivity`, `derivatives` and `courses` are of the last drive and may be left out.
+/// The input of a report. `sensitivity`, `derivatives` and `courses` belong to the last drive, and may be empty.
 struct RobustnessReport {
   const PreparedScene& nominal;
   const Robustness& found;
   RobustnessOptions options;
   std::string command;          ///< command line
-  bool spread_assumed = false;  ///< true when the scene gives no process variation
+  bool spread_assumed = false;  ///< true when the scene gives no process variation, and the usual one is assumed
   Sensitivity sensitivity = {};
   Derivatives derivatives = {};
   std::vector<DeviceCourse> courses = {};
-  std::optional<BoxAndChaos> box_and_chaos = {};  ///< worst cases and polynomial chaos, also of the last drive
-  HoldWindows windows = {};                       ///< windows of hold levels, whatever the drive
-  std::string unheld = {};                        ///< reason why the last drive does not hold the nominal device, hold_warning()
-  bool interrupted = found.interrupted;           ///< true when the study, or the work on the details, was interrupted
+  std::optional<BoxAndChaos> box_and_chaos = {};  ///< worst cases and polynomial chaos, for the last drive
+  HoldWindows windows = {};                       ///< ranges of hold voltages
+  std::string unheld = {};                        ///< hold_warning() for the last drive
+  bool interrupted = found.interrupted;           ///< true when the study or add_details() was interrupted
 };
 
-/// Adds the details of the last drive beside its figures, with `other_ways_too` at the cost of further searches; it adds
-/// nothing where the work was interrupted.
+/// Adds sensitivity, derivatives, hold voltages and courses for the last drive; with `other_ways_too` also worst cases and
+/// polynomial chaos, which take further searches. Adds nothing after an interruption.
 void add_details(RobustnessReport& report, bool other_ways_too, const Progress& progress);
 
-/// JSON, text and tables are made from this record.
+/// The record from which JSON, text and tables are made.
 struct RobustnessRecord {
-  /// A quantity that varies.
+  /// A quantity that varies from device to device.
   struct Varied {
     std::string name;
     std::vector<std::string> keys;
@@ -83,14 +83,14 @@ struct RobustnessRecord {
     };
     struct Slope {
       double derivative = Metrics::unset;
-      double relative = Metrics::unset;  ///< per cent of the figure for one per cent of the quantity; NaN where one of them is 0
+      double relative = Metrics::unset;  ///< relative change of figure over that of quantity; NaN if one of them is 0
       double step = Metrics::unset;      ///< change of the figure for one standard deviation
     };
     struct Of {
       std::string_view key;
       double nominal = Metrics::unset, deviation = Metrics::unset, error = Metrics::unset;
       std::map<std::string, Slope> by;
-      bool agrees = false;  ///< true where the devices spread as much, as far as that is known
+      bool agrees = false;  ///< true if the sample varies as much as the derivatives predict, or if that is unknown
       std::string why_none;
     };
     std::string drive, why_none;
@@ -136,21 +136,22 @@ struct RobustnessRecord {
 [[nodiscard]] RobustnessRecord record_of(const RobustnessReport& report);
 [[nodiscard]] nlohmann::json json_of(const RobustnessRecord& record);
 [[nodiscard]] RobustnessRecord read_robustness(const nlohmann::json& from);
-/// Shows all but the diagrams: the text for a terminal, and the worst devices.
+/// Returns the report without diagrams: the text for a terminal, and the worst devices.
 [[nodiscard]] Document document_of(const RobustnessRecord& record);
 
-/// Writes a line per device: its number, the varying quantities, and for every drive its status and figures. A quantity is in
-/// its SI unit or a factor; jitter is the time drawn for the first edge. A figure that a device does not have is empty.
+/// Returns CSV with a line per device: its number, the varying quantities, and status and figures under every drive. A quantity
+/// is in SI units or a factor; jitter is the time of the first edge. A figure that a device does not have is empty.
 [[nodiscard]] std::string robustness_csv(const RobustnessReport& report);
 
-/// Shows statistics, cumulative distributions and histograms, the closings of typical devices, every figure against every
-/// quantity. It also shows the value of measurements, the sources of the variation, derivatives at the nominal design, worst
-/// cases, polynomial chaos, the worst devices, and failures.
+/// Returns a document with statistics, cumulative distributions and histograms, the closings of typical devices, and every
+/// figure against every quantity. The document also has the value of measurements, the sources of the variation, derivatives at
+/// the nominal design, worst cases, polynomial chaos, the worst devices, and failures.
 [[nodiscard]] Document robustness_document(const RobustnessReport& report);
 
 namespace internal {
 
-/// Returns [lower, upper] by electrode [V]; null where no level holds as many devices, and for an end that does not exist.
+/// Returns [lower, upper] by electrode [V]. The pair is null if no level holds as many devices closed; an end that does not
+/// exist is null.
 [[nodiscard]] nlohmann::json windows_json(const HoldWindows& windows);
 
 }  // namespace internal

@@ -17,46 +17,46 @@
 
 namespace softland {
 
-/// A time in which a contact is closed.
+/// A time span in which a contact is closed.
 struct ClosedStretch {
   double begin = 0;                                       ///< begin [s]
   double end = std::numeric_limits<double>::quiet_NaN();  ///< end [s]; NaN: the contact is closed at the end of the window
-  std::uint64_t touches = 1;  ///< number of touches; more than one: the openings between them are left out
+  std::uint64_t touches = 1;  ///< number of touches; openings between several touches are not recorded
 };
 
-/// The motion of a run at the contact point. A column that is not as long as `time` is damaged, or missing.
+/// The motion of a run at the contact point. A column whose length differs from that of `time` is damaged or missing.
 struct CurveRecord {
   std::vector<double> time;      ///< [s]
   std::vector<double> gap;       ///< distance to the contact plane [m]
   std::vector<double> velocity;  ///< towards the contact [m/s]
   std::vector<double> force;     ///< contact force on the beam [N]
-  /// Resistance of the connection, NaN while it is open [Ohm]; empty where the contacts have no resistivity.
+  /// Resistance of the connection, NaN while the connection is open [Ohm]; empty if the contacts have no resistivity.
   std::vector<double> resistance = {};
   std::vector<Rebound> rebounds;
-  std::optional<std::vector<ClosedStretch>> closed = {};  ///< times in which the contact, or the connection of several, is closed
-  std::map<std::string, std::vector<ClosedStretch>> closed_contacts = {};  ///< the same for each of several contacts, by name
-  std::optional<ShownMotion> motion = {};  ///< motion of all places; none where the run did not come to its end
+  std::optional<std::vector<ClosedStretch>> closed = {};  ///< times with closed contact, or connection of several
+  std::map<std::string, std::vector<ClosedStretch>> closed_contacts = {};  ///< times with closed contact, by its name
+  std::optional<ShownMotion> motion = {};  ///< motion of the whole structure; none if the run stopped early
 };
 
-/// The record is that of the winner or the single run, or of the baseline.
+/// A run with the waveforms of the winner, of the baseline, or of a single run.
 struct RunRecord {
   std::string status;
-  std::optional<FigureValues> figures;  ///< none: the run is not there
+  std::optional<FigureValues> figures;  ///< none: there was no such run
   FigureValues errors;
   CurveRecord curve;
-  std::map<std::string, Points> waveforms;  ///< time [s] and level [V] by drive; the dispersion force has its factor
+  std::map<std::string, Points> waveforms;  ///< time [s] and level [V] by drive; for the dispersion force, its factor
   double cost = Metrics::unset;
-  double collapse_time = Metrics::unset;  ///< time at which the beam met the electrode [s]
+  double collapse_time = Metrics::unset;  ///< time at which the beam touched the electrode [s]
 };
 
-/// One of several contacts in the winner or the single run.
+/// Figures of one of several contacts, for the winner or the single run.
 struct ContactFigures {
-  double gap = Metrics::unset;  ///< rest distance of its place to its plane [m]
+  double gap = Metrics::unset;  ///< rest distance from the contact's position to its contact plane [m]
   FigureValues figures;
 };
 
-/// A result holds at most this many rows of a curve, rebounds, evaluations of a search and times in which a contact is closed:
-/// its file stays readable (base/read_file.h) however long a run is.
+/// Largest numbers of rows of a curve, of rebounds, of evaluations of a search and of times with a closed contact in a result:
+/// its file stays readable (base/read_file.h) for a run of any length.
 inline constexpr std::size_t most_curve_rows = 20'000, most_rebounds = 20'000, most_evaluations = 100'000,
                              most_closed_stretches = 1000;
 

@@ -1,4 +1,4 @@
-// The log keeps the findings of a search current on disk while it runs.
+// A log that writes the results of a search to files while the search runs.
 #pragma once
 
 #include <chrono>
@@ -14,21 +14,21 @@
 
 namespace softland {
 
-/// The log writes best.toml and evaluations.csv among the unfinished results of a folder. Several threads may call it.
+/// Writes best.toml and evaluations.csv to the unfinished results of a folder. Several threads may call the member functions.
 class SearchLog {
  public:
-  /// `columns` are those of evaluations.csv. Writes the file with its header, so that a folder that is not writable ends the
-  /// run before its first evaluation.
+  /// Writes evaluations.csv with these columns and no rows, so that a run with a folder that cannot be written ends before its
+  /// first evaluation.
   SearchLog(ResultFolder& folder, FamilyColumns columns);
 
-  /// Notes an evaluation for evaluations.csv.
+  /// Records an evaluation for evaluations.csv.
   void evaluated(const Evaluation& evaluation);
-  /// Notes a better scene; best.toml and evaluations.csv are rewritten whole, at most once a second.
+  /// Records a better scene. best.toml and evaluations.csv are then written completely, but at most once a second.
   void improved(const SceneFile& best);
-  /// Writes all pending notes.
+  /// Writes all evaluations and scenes that are not yet on the disk.
   void flush();
 
-  /// Call it after the last note only.
+  /// Returns the evaluations by index; call it only after the last call of evaluated().
   [[nodiscard]] const std::map<long, Evaluation>& evaluations() const { return evaluations_; }
 
  private:
@@ -37,7 +37,7 @@ class SearchLog {
   ResultFolder& folder_;
   FamilyColumns columns_;
   std::mutex mutex_;                        // guards the members below
-  std::map<long, Evaluation> evaluations_;  // kept by index: this order does not depend on the number of jobs
+  std::map<long, Evaluation> evaluations_;  // by index: this order is the same for any number of threads
   std::string best_;
   bool pending_ = false;
   std::chrono::steady_clock::time_point written_{};

@@ -1,4 +1,4 @@
-// A search as reports show it, whatever its kind.
+// A search of any kind, with the data that reports show.
 #pragma once
 
 #include <filesystem>
@@ -13,22 +13,23 @@
 
 namespace softland {
 
-/// `result` and `devices` refer to `found`, which stays where it is.
+/// A search with its records. `result` and `devices` keep references to `found`: a SearchReport must not be moved.
 struct SearchReport {
   explicit SearchReport(FoundSearch search) : found(std::move(search)) {}
   SearchReport(const SearchReport&) = delete;
   SearchReport& operator=(const SearchReport&) = delete;
 
   FoundSearch found;
-  std::optional<RobustnessReport> devices = {};  ///< report on devices; none where none were judged
+  std::optional<RobustnessReport> devices = {};  ///< report on simulated devices; none if no devices were simulated
   ClosingRecord result = {};
 };
 
-/// Adds the report on the devices that were judged. It is further work for a search by one measure, and `progress` follows it;
-/// an interruption marks the search as interrupted.
+/// Adds the report on devices. For a search with one target this takes further simulations, which `progress` watches; an
+/// interruption marks the search as interrupted.
 void add_devices(SearchReport& report, const PlannedSearch& search, const std::string& command, const Progress& progress);
 
-/// Adds the result. `folder` is the final place of the search's files, for the command that says how a device is measured.
+/// Adds the record of the result. `folder` is the final folder of the files, for the command line that suggests how to use the
+/// measurements of a device.
 void add_result(SearchReport& report, const PlannedSearch& search, const std::filesystem::path& folder,
                 const std::string& command);
 

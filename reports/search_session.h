@@ -1,5 +1,5 @@
-// A session runs a search from its first evaluation to its files: it has the folder, the log, and the store of evaluations,
-// from which the search can be resumed.
+// A session runs a search from its first evaluation to its files. It owns the folder, the log, and the database file of the
+// evaluations, from which the search can be resumed.
 //
 //   SearchSession session(search, known, output);
 //   search.options.on_start = [&](const auto& columns) { session.begin(columns); };
@@ -26,56 +26,57 @@
 
 namespace softland {
 
-/// This store lies in the folder of searches from several seeds.
+/// Name of the database file in the folder of a search with several seeds.
 inline constexpr const char* seeds_file = "seeds.sqlite";
 
-/// The destination of the findings of a search.
+/// The output of a search.
 struct SearchOutput {
   std::filesystem::path folder;
   std::string command;
-  /// Takes the folder for these files, of which some are those of an earlier run: see ResultFolder.
+  /// Claims the folder for `files`, of which `kept` are files of an earlier run: see ResultFolder.
   std::function<ResultFolder(const std::vector<std::string>& files, const std::vector<std::string>& kept)> claim;
 };
 
 class SearchPlaces {
  public:
-  /// Takes the folder and opens the store of evaluations, for a search of these parameters.
+  /// Claims the folder and opens the database file of evaluations for a search with these parameters.
   SearchPlaces(const SearchOutput& output, const StoredSearch& search, const std::optional<KnownSearch>& known,
                const FamilyColumns& columns);
 
   [[nodiscard]] ResultFolder& folder() { return folder_; }
   [[nodiscard]] EvaluationStore& evaluations() { return evaluations_; }
-  /// Returns the path of another store of the search.
+  /// Returns the path of another database file of the search.
   [[nodiscard]] std::filesystem::path store(const std::string& name);
-  /// Tells whether the stores are, or will be, among results that are put here.
+  /// Returns true if the database files are, or will be, in the folder `place`.
   [[nodiscard]] bool stores_go_to(const std::filesystem::path& place) const { return !kept_ || place == folder_.path(); }
 
  private:
-  std::optional<std::filesystem::path> kept_;  // set when the stores of the folder itself are continued
+  std::optional<std::filesystem::path> kept_;  // set when the search continues the database files in the folder itself
   ResultFolder folder_;
   EvaluationStore evaluations_;
 };
 
 class SearchSession {
  public:
-  /// Keeps references to search, known and output, and to `places`, those of a study that it is part of; null: it takes its own
-  /// when it begins.
+  /// Keeps references to `search`, `known`, `output` and `places`. `places` are the folders of a study of several seeds; null:
+  /// the session claims its own folder in begin().
   SearchSession(StoredSearch& search, const std::optional<KnownSearch>& known, const SearchOutput& output,
                 SearchPlaces* places = nullptr);
 
-  /// Call it when the parameters are known: opens folder, store and log, and gives the search its memory. Throws what these
-  /// throw.
+  /// Opens folder, database file and log, and gives the search the evaluations in the database file; call it when the
+  /// parameters are known. Throws as the opened objects do.
   void begin(const FamilyColumns& columns);
-  /// Throws the error that kept the store from keeping an evaluation.
+  /// Adds an evaluation to the log. Throws the error if the database file could not be written.
   void evaluated(const Evaluation& evaluation);
   void improved(const SceneFile& best) { log_->improved(best); }
-  /// Call it when the search has ended: closes the store.
+  /// Closes the database file; call it when the search has ended.
   void close();
-  /// Returns the final place of the files.
+  /// Returns the final folder of the files.
   [[nodiscard]] std::filesystem::path destination(const SearchReport& report) const;
-  /// Adds the costs of the evaluations, and the command lines that make the result again.
+  /// Adds the costs of all evaluations, and the command lines that reproduce the result.
   void add_log(SearchRecord& search, const SearchReport& report) const;
-  /// Writes the files, puts them where they belong, and names them with those that were kept on the way.
+  /// Writes the files, moves them to their final folder, and returns their names, with the names of files written during the
+  /// search.
   std::vector<std::string> leave(const SearchReport& report);
 
  private:

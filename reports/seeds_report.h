@@ -1,4 +1,4 @@
-// Several searches that differ in their seeds alone, side by side: their spread says how far one search can be relied on.
+// Reports several searches that differ only in their seeds, side by side: their scatter shows how reliable one search is.
 #pragma once
 
 #include <cstddef>
@@ -13,13 +13,13 @@
 
 namespace softland {
 
-/// Orders the searches and sets the best one. On the nominal device a confirmed search goes first, then one that meets the
-/// goal, then one that settles. Each group is sorted by the target's own figure, then by cost; a rebound below `significant`
-/// [m] counts as one, and a sum of targets is sorted by cost alone. Under process variation a search that fulfils its
-/// conditions goes first, sorted by cost. Among equals the first seed wins.
+/// Sets SeedsFindings::best. On the nominal device, a confirmed search is better than one that meets the goal, and that is
+/// better than one that settles. Further criteria are the figure of the target, then the cost; a rebound below `significant`
+/// [m] counts as `significant`, and for a sum of targets only the cost counts. Under process variation, a search that fulfils
+/// its conditions is better, then the lower cost. The lower seed wins a tie.
 void rank(SeedsFindings& seeds, const Aim& target, double significant, bool over_devices);
 
-/// The record that an interrupted study of several seeds leaves.
+/// The record of an interrupted study of several seeds.
 struct SeedsRecord {
   Origin origin;
   SeedsFindings seeds;
@@ -30,9 +30,9 @@ struct SeedsRecord {
 
 namespace internal {
 
-/// Summarises the outcome of the searches together, in sentences.
+/// Summarises the results of all searches in sentences.
 [[nodiscard]] std::string seeds_caption(const SeedsFindings& seeds);
-/// Makes the caption and a table.
+/// Returns a section with the caption and a table.
 [[nodiscard]] ReportSection seeds_section(const SeedsFindings& seeds);
 
 }  // namespace internal

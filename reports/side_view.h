@@ -1,5 +1,5 @@
-// A switch from the side, as parts of an SVG element: the supports of the moving part, and electrodes. Its colours are the
-// page's.
+// Draws parts of a switch from the side as SVG: supports of the moving part, and electrodes. The colours come from the CSS of
+// the page.
 #pragma once
 
 #include <array>
@@ -13,16 +13,16 @@ namespace softland::internal {
 [[nodiscard]] std::string drawn_line(double x1, double y1, double x2, double y2, const char* what);
 [[nodiscard]] std::string drawn_words(double x, double y, const char* anchor, const std::string& text);
 
-/// Returns begin and end of a span as shares of the length; the whole length where none is given.
+/// Returns begin and end of a span as shares of the length; 0 and 1 if no span is given.
 [[nodiscard]] std::array<double, 2> shares_of(const DrawnScene::Span& span, double length);
 
-/// The places in a view of a straight switch [px].
+/// Coordinates of the parts in a view of a switch from the side [px].
 struct SideView {
   static constexpr double left = 60, thick = 14, electrode = 10, layer = 7;
   bool plate, both_ends;
   double length, top, right = 440, gap = 60, bottom = top + thick, floor = bottom + gap;
   double far = 0.75 * gap;  ///< distance from the upper face to the far side
-  double per_metre = 0;     ///< heights to scale [px/m]; 0: the far side is at `far`, whatever its gaps are
+  double per_metre = 0;     ///< scale of heights [px/m]; 0: heights are not to scale, and the far side is at `far`
 
   [[nodiscard]] double x_at(double share) const { return left + share * (right - left); }
 };

@@ -1,4 +1,4 @@
-// The members of several studies' findings, named as in their JSON: see reports/record.h.
+// Lists the members of the records of several studies, with their names in JSON: see reports/record.h.
 #pragma once
 
 #include <string>

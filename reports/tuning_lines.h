@@ -1,14 +1,14 @@
-// A tuning and a device exchange lines: one JSON object each, in SI units.
+// The lines of text that a tuning and a device exchange: one JSON object each, in SI units.
 //
 //   to the device     {"shot":1,"hold_s":2e-4,"drives":{"main":{"time_s":[0,1e-6],"V":[0,17.5]}}}      {"done":true}
 //   from the device   {"shot":1,"edges_s":[[3.6e-5,1],[3.8e-5,0],[4.1e-5,1]]}
 //                     {"shot":1,"closing_time_s":3.6e-5,"bounce_count":1}
 //                     {"shot":1,"error":"no trigger"}
 //
-// Voltages are linear between rows, two rows of the same time are a jump, and the last one is held, and recorded, for hold_s
-// after the last row of any drive. An edge is a time since the drives began, and 1 where the contact closes there, 0 where it
-// opens. No edge, or a closing time that is null, says that the contact stayed open. Beside edges or closing time a device may
-// report a loudness, any number that rises with the impact.
+// Voltages are linear between rows, and two rows of the same time are a jump. The last voltage is held, and the contact
+// recorded, for hold_s after the last row of any drive. An edge is a time since the start of the waveforms, and 1 if the
+// contact closes then, 0 if it opens. An empty list of edges, or a closing time that is null, means that the contact stayed
+// open. A device may also report a loudness, any number that rises with the impact.
 #pragma once
 
 #include <limits>
@@ -26,47 +26,48 @@
 
 namespace softland {
 
-/// A shot as it is sent to a device.
+/// A shot, the voltages for one closing, as it is sent to a device.
 struct CommandedShot {
   int number = 0;                                 ///< number, counted from 1
-  double hold_time = 0;                           ///< time for which the last levels are held and recorded [s]
+  double hold_time = 0;                           ///< time for which the last levels are held and the contact recorded [s]
   std::map<std::string, Table> drives;            ///< waveforms by drive, in volts at the switch
-  std::map<std::string, double> amplifiers = {};  ///< drives that have one: volts at the switch per volt of the source
+  std::map<std::string, double> amplifiers = {};  ///< volts at the switch per volt of the source, for drives with an amplifier
 
   /// Returns the time of the last row of any drive [s].
   [[nodiscard]] double last_row() const;
-  /// Returns the time for which the closing is recorded, from t = 0 on [s].
+  /// Returns the time from t = 0 for which the contact is recorded [s].
   [[nodiscard]] double duration() const { return last_row() + hold_time; }
-  /// Returns the waveforms in the order of the drives of a device; a factor of the dispersion force, which is not a voltage,
-  /// stays that of its scene. Throws InvalidInput for a drive that the device does not have.
+  /// Returns the waveforms in the order of the drives of a device. The factor of the dispersion force, which is not a voltage,
+  /// is that of the scene. Throws InvalidInput for a drive that the device does not have.
   [[nodiscard]] std::vector<Waveform> waveforms(const PreparedScene& nominal) const;
 };
 
-/// Returns the signals at the switch in rows: straight pieces exactly, curves within 1e-4 of their peak.
+/// Returns the signals as rows of time and voltage: exact for straight pieces, within 1e-4 of the peak for curves.
 [[nodiscard]] CommandedShot commanded_shot(int number, double hold_time, const SentSignals& sent);
 
 /// The longest line that is read [byte].
 inline constexpr std::size_t longest_line = std::size_t{16} << 20;
 
-/// Reads one line as a JSON object. Throws InvalidInput with the rule, as all of these do: "must be a JSON object: ...".
+/// Reads one line as a JSON object. This function and those below throw InvalidInput with the rule: "must be a JSON object:
+/// ...".
 [[nodiscard]] nlohmann::json read_line(std::string_view line);
-/// Tells whether this line says that there are no more shots.
+/// Returns true if this line says that no more shots follow.
 [[nodiscard]] bool is_end(const nlohmann::json& line);
-/// Returns the number of a shot: a whole number from 1 on.
+/// Returns the number of a shot, a whole number from 1 on.
 [[nodiscard]] int shot_number(const nlohmann::json& line);
-/// Reads a shot. Messages begin with the key at fault: "drives.main.V: must be a list of numbers".
+/// Reads a shot. Messages begin with the invalid key: "drives.main.V: must be a list of numbers".
 [[nodiscard]] CommandedShot read_shot(const nlohmann::json& line);
-/// Reads the record of shot number `shot`, which lasts `duration` [s].
+/// Reads the record of shot number `shot`, whose recording lasts `duration` [s].
 [[nodiscard]] ContactRecord read_record(const nlohmann::json& line, int shot,
                                         double duration = std::numeric_limits<double>::infinity());
 
 [[nodiscard]] nlohmann::json shot_json(const CommandedShot& shot);
 [[nodiscard]] nlohmann::json record_json(int shot, const ContactRecord& record);
 [[nodiscard]] nlohmann::json end_json();
-/// Returns the recipes for the log of a tuning: {"recipes":[{"x":[...],"volts":1,"time":1,"cost":0.8}]}, to the last bit.
+/// Returns candidate waveforms for the log of a tuning, with all bits: {"recipes":[{"x":[...],"volts":1,"time":1,"cost":0.8}]}.
 [[nodiscard]] nlohmann::json recipes_json(const std::vector<CandidateWaveform>& recipes);
 [[nodiscard]] std::vector<CandidateWaveform> read_recipes(const nlohmann::json& line);
-/// Returns the line with its line feed; bytes that are not UTF-8 become U+FFFD.
+/// Returns the JSON as a line with line feed; bytes that are not UTF-8 become U+FFFD.
 [[nodiscard]] std::string line_text(const nlohmann::json& line);
 
 }  // namespace softland

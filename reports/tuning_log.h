@@ -1,5 +1,5 @@
-// The log keeps the closings of a tuning on disk: each is written before the next is fired, so that a power cut loses only the
-// current one.
+// The log writes the closings of a tuning to the disk: each closing is written before the next shot, so that a power cut loses
+// only the current closing.
 #pragma once
 
 #include <filesystem>
@@ -10,11 +10,11 @@
 
 namespace softland {
 
-/// This key of a file holds the values that tell apart tunings which cannot continue each other.
+/// Key of a file whose values distinguish tunings that cannot continue each other.
 inline constexpr const char* origin_key = "tuning";
 
-/// closings.jsonl has a line on the tuned device, one with the recipes that its proposals begin from, then one for each shot
-/// with its record.
+/// The log file closings.jsonl: a line on the tuned device, a line with the candidate waveforms from which the tuning begins,
+/// then a line for each shot with its record.
 class TuningLog {
  public:
   struct Closing {
@@ -23,24 +23,24 @@ class TuningLog {
     std::size_t line = 0;  ///< line in the file, counted from 1
   };
 
-  /// Continues the file, or begins it anew: an existing one then gets another name, closings-1.jsonl. The keys and values of
-  /// `origin` tell apart tunings that cannot continue each other. Throws InvalidInput with file, line and rule where the file
-  /// holds something else, or is of another origin; OutputLost where it cannot be written.
+  /// Continues the file, or begins a new one and renames the existing file to closings-1.jsonl. The keys and values of `origin`
+  /// distinguish tunings that cannot continue each other. Throws InvalidInput with file, line and rule if the file is no such
+  /// log or has another origin, and OutputLost if the file cannot be written.
   TuningLog(std::filesystem::path file, const nlohmann::json& origin, bool resume);
   ~TuningLog();
   TuningLog(const TuningLog&) = delete;
   TuningLog& operator=(const TuningLog&) = delete;
 
-  /// Returns the closings that the file held when it was opened.
+  /// Returns the closings that the file had when it was opened.
   [[nodiscard]] const std::vector<Closing>& closings() const { return closings_; }
-  /// Returns the recipes of the file; empty where it ended before they were found.
+  /// Returns the candidate waveforms in the file; empty if the file ends before them.
   [[nodiscard]] const std::vector<CandidateWaveform>& recipes() const { return recipes_; }
-  /// Returns the new name of an earlier file that was not continued; empty where there was none.
+  /// Returns the new name of an earlier file that was not continued; empty if there was no earlier file.
   [[nodiscard]] const std::filesystem::path& moved_to() const { return kept_aside_; }
-  /// Both throw OutputLost where the line is not on the disk.
+  /// The functions append() throw OutputLost if the line could not be written to the disk.
   void append(const std::vector<CandidateWaveform>& recipes);
   void append(const CommandedShot& shot, const ContactRecord& record);
-  /// Returns "OUT/closings.jsonl:4".
+  /// Returns the file and line of a closing: "OUT/closings.jsonl:4".
   [[nodiscard]] std::string place(const Closing& closing) const;
 
  private:

@@ -1,4 +1,4 @@
-// The knowledge and the proposals of a tuning: JSON with SI units in the names, a line for a log, and a document.
+// The state of a tuning as a report: JSON with SI units in the names, a line for a log, and a document.
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@
 
 namespace softland {
 
-/// The state of a tuning.
+/// The state or the end of a tuning.
 enum class TuningEnd { under_way, done, closings_used, stopped, interrupted, failed };
 inline constexpr auto tuning_ends = std::to_array<Named<TuningEnd>>({{TuningEnd::under_way, "under_way"},
                                                                      {TuningEnd::done, "done"},
@@ -24,15 +24,15 @@ inline constexpr auto tuning_ends = std::to_array<Named<TuningEnd>>({{TuningEnd:
                                                                      {TuningEnd::failed, "failed"}});
 static_assert(is_complete<tuning_ends>());
 
-/// A closing that was recorded.
+/// A recorded closing.
 struct TunedClosing {
   TunerShot shot;
   ContactRecord record;
 };
 
-/// The record of a tuning as it stands now.
+/// The record of a tuning at its current state.
 struct TuningReport {
-  /// A shot by the voltages of its drives: a factor of the dispersion force is not a voltage.
+  /// The voltages of a shot, by drive; the factor of the dispersion force is not a voltage.
   struct Shot {
     int number = 0;
     std::map<std::string, Points> waveforms = {};  ///< commanded voltages by drive: time [s] and voltage [V]
@@ -44,28 +44,29 @@ struct TuningReport {
     ContactRecord record;
   };
   Origin origin;
-  std::vector<Closing> closings = {};  ///< all closings in their order, also those that failed
+  std::vector<Closing> closings = {};  ///< all closings in their order, also those without a record
   Shot next, kept;
   BeliefSummary belief = {};
   std::optional<std::string> broken_assumption = {};
-  double step_closing_time = 0;  ///< first touch of the plain step on the nominal device [s]
+  double step_closing_time = 0;  ///< time of first touch under the plain step on the nominal device [s]
   Approach approach = Approach::fast;
-  double step_permanent_contact = Metrics::unset;  ///< set where the approach is quasi-static [s]
+  double step_permanent_contact = Metrics::unset;  ///< set if the approach to the contact is quasi-static [s]
   int bounce_free_in_a_row = 0;
   bool spread_assumed = false;
   std::uint64_t seed = 1;
   double tolerance = Metrics::unset;  ///< tolerance of the integrator
   TuningEnd end = TuningEnd::under_way;
-  nlohmann::json setting = {};  ///< tells apart tunings that cannot go on with each other
+  nlohmann::json setting = {};  ///< values that distinguish tunings which cannot continue each other
 
-  /// Tells whether the shot of this number was recorded without a bounce.
+  /// Returns true if the shot with this number was recorded without a bounce.
   [[nodiscard]] bool was_bounce_free(int shot) const;
-  /// Tells whether any shot was.
+  /// Returns true if any shot was recorded without a bounce.
   [[nodiscard]] bool ever_bounce_free() const;
-  /// Tells whether the last closing was of the waveform kept, and without a bounce.
+  /// Returns true if the last closing was with the waveform `kept`, and without a bounce.
   [[nodiscard]] bool lands() const;
 };
-/// A tuning that has ended keeps the waveform of its last closing where that did not bounce.
+/// Returns the waveform that a tuning in this state keeps: after its end, the waveform of the last closing if that was
+/// bounce-free.
 [[nodiscard]] TunerShot kept_shot(const Tuner& tuner, const std::vector<TunedClosing>& closings, TuningEnd end);
 [[nodiscard]] TuningReport::Shot shot_of(const PreparedScene& scene, const TunerShot& shot);
 [[nodiscard]] TuningReport tuning_report(const Tuner& tuner, const std::vector<TunedClosing>& closings,
@@ -74,12 +75,13 @@ struct TuningReport {
 [[nodiscard]] nlohmann::json json_of(const TuningReport& report);
 [[nodiscard]] TuningReport read_tuning(const nlohmann::json& from);
 [[nodiscard]] nlohmann::json belief_json(const TunedBelief& belief);
-/// Reads the belief about the device from the JSON of a tuning. Throws InvalidInput with the rule: "holds no belief ...".
+/// Reads the belief about the device, mean and deviation of its quantities, from the JSON of a tuning. Throws InvalidInput with
+/// the rule: "holds no belief ...".
 [[nodiscard]] TunedBelief tuned_belief(const nlohmann::json& written);
-/// Returns one line on the last closing and the expectation for the next.
+/// Returns one line on the last closing and the prediction for the next closing.
 [[nodiscard]] std::string closing_prose(const TuningReport& report);
-/// Shows the knowledge of the device, every closing's record under the predicted one, and the voltages that are kept and
-/// proposed.
+/// Returns a document with the knowledge of the device, the record of every closing under the predicted record, and the
+/// voltages of the kept and the proposed waveform.
 [[nodiscard]] Document tuning_document(const TuningReport& report);
 
 }  // namespace softland

@@ -181,7 +181,7 @@ template <class Request>
 /// Returns the studies that need only a scene, or all studies, in the order of --help.
 [[nodiscard]] const std::vector<Study>& scene_studies();
 [[nodiscard]] const std::vector<Study>& all_studies();
-/// Returns the study with this name. Throws InvalidInput if there is none.
+/// Returns the study with this name. Throws InvalidInput for an unknown name.
 [[nodiscard]] const Study& study_named(std::string_view name);
 
 }  // namespace softland::verbs
