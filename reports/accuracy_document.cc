@@ -72,7 +72,7 @@ void keep(Picture& drawn, Chart chart) {
   drawn.charts.push_back(std::move(chart));
 }
 
-// Returns error against time, of an integrator at every tolerance.
+// Returns error against computing time for an integrator, one point per tolerance.
 Points work_precision(const AccuracyStudy& study, const std::vector<AccuracyRow>& rows, Integrator integrator) {
   Points points;
   for (const AccuracyRow& row : rows) {
@@ -105,7 +105,7 @@ Picture picture(const AccuracyStudy& study) {
   }
   keep(drawn, std::move(work));
 
-  // The curves compare the integrator that simulate takes with the one that loses its history at every restart.
+  // The curves compare the integrator of `simulate` with the integrator that loses its history at every restart.
   Chart contact = logarithmic_chart(
       "contact", "With and without a restart at make and break of contact: largest relative error of " + figures, time, "s", 260);
   contact.caption = restart_text(study);
@@ -276,14 +276,14 @@ std::vector<KeyNumber> reference_keys(const AccuracyStudy& study) {
   return keys;
 }
 
-// Returns the accuracy that the scene asks for.
+// Returns the accuracy that the scene requests.
 double asked_accuracy(const Origin& origin) {
   const auto simulate = origin.scene.find("simulate");
   const bool is_written = simulate != origin.scene.end() && simulate->is_object() && simulate->contains("accuracy");
   return is_written && (*simulate)["accuracy"].is_number() ? (*simulate)["accuracy"].get<double>() : SimulateOptions{}.accuracy;
 }
 
-// Compares the accuracy of the scene with the nearest one of the study.
+// Compares the accuracy that the scene requests with the nearest accuracy of the study.
 std::pair<std::string, std::string> headline(const AccuracyRecord& record) {
   const AccuracyStudy& study = record.found;
   const std::string figures = symbols(study, true);

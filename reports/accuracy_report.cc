@@ -43,7 +43,7 @@ void members(A& a, AccuracyRow& row) {
 
 namespace {
 
-// The reference has no error except its own uncertainty.
+// The error of the reference is only its own uncertainty.
 json reference_json(const AccuracyStudy& study) {
   json reference = internal::record_json(study.reference);
   reference["resolution"] = reference["relative_errors"];
@@ -78,7 +78,7 @@ std::vector<Recommendation> read_recommendations(const json& from, const std::ve
   return all;
 }
 
-// Set a figure that a row lacks, and the reference has, infinitely far off; JSON has no such number.
+// Gives a figure that the reference has and a row lacks an infinite error, which JSON cannot express.
 void set_missing(std::vector<AccuracyRow>& rows, const Metrics& reference) {
   for (AccuracyRow& row : rows) {
     for (std::size_t i = 0; i < row.errors.size(); ++i) {

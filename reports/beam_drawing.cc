@@ -44,7 +44,7 @@ class BeamSketch {
   BeamSketch(const Device& device, double width)
       : d_(device), s_(device.structure), sections_(local_sections(s_)), scale_(width / s_.length) {}
 
-  // Returns the elements of the view from above, whose middle line lies at `middle`, and their lower end.
+  // Returns the elements of the view from above, beginning at the height `top`, and their lower end.
   std::pair<std::string, double> from_above(double top) const {
     double widest = 0;
     for (const LocalSection& one : sections_) widest = std::max({widest, one.width, one.end_width});
@@ -95,7 +95,7 @@ class BeamSketch {
       band(one.begin, one.end, corners, y, [&](double) { return std::pair{0.0, one.thickness}; });
       out += polygon(corners, filled(of_beam, 0.8));
     }
-    // Layers lie on each other from the face outwards; those of the near face are flush with it below.
+    // Layers are stacked outwards from the face of the beam.
     double lifted = 0;
     for (const LayerPart& layer : part_of<Beam>(s_).layers) {
       const double begin = layer.begin.on(s_.length), end = layer.end.on(s_.length);
@@ -119,14 +119,14 @@ class BeamSketch {
     for (const Electrode& e : d_.electrodes) {
       for (const Stretch& pad : e.pads(s_.length)) {
         if (e.side == Side::far) continue;
-        const double metal = e.dielectric ? std::max(least, e.dielectric->thickness * up) : 0;  // depth below the face
+        const double metal = e.dielectric ? std::max(least, e.dielectric->thickness * up) : 0;  // depth [px]
         out += rectangle(x(pad.begin), ground + metal, x(pad.end), ground + metal + 8, filled(of_electrode));
         if (e.dielectric) out += rectangle(x(pad.begin), ground, x(pad.end), ground + metal, filled(of_dielectric));
         deepest = std::max(deepest, metal);
       }
     }
     for (std::size_t c = 0; c < d_.contacts.size(); ++c) {
-      if (d_.contacts[c].along_face) continue;  // the dielectric is its contact
+      if (d_.contacts[c].along_face) continue;  // the face of the dielectric is the contact
       const double at = x(d_.contact_position(c)), half = 3;
       if (d_.contacts[c].side == Side::far)
         out += rectangle(at - half, y(stop_plane(c)) - 8, at + half, y(stop_plane(c)), filled(of_stop));
@@ -141,9 +141,9 @@ class BeamSketch {
   static constexpr int places = 100;
 
   [[nodiscard]] double x(double place) const { return place * scale_; }
-  /// Returns the height of a back stop above the electrode [m].
+  /// Returns the height above the electrode of the plane of contact c, a stop on the far side [m].
   [[nodiscard]] double stop_plane(std::size_t c) const { return height(d_.contact_position(c), true) + d_.contact_gap(c); }
-  /// Draws contacts; equal ones stand side by side across the beam. A face has no dots: it is that of an electrode.
+  /// Draws contacts as dots; equal contacts stand side by side across the beam. A contact along a face has no dots.
   [[nodiscard]] std::string dots(std::size_t c, double across, double middle) const {
     const Contact& contact = d_.contacts[c];
     if (contact.along_face) return {};
@@ -156,11 +156,11 @@ class BeamSketch {
                          filled(contact.side == Side::far ? of_stop : of_contact));
     return out;
   }
-  // Returns the height of the upper or lower face above the electrode, without layers [m].
+  // Returns the height of the upper or lower face of the beam above the electrode, without layers [m].
   [[nodiscard]] double height(double at, bool upper) const {
     return d_.gap.electrode + d_.rest_offset(at) + (upper ? section_at(s_, at).thickness : 0);
   }
-  // Adds the corners around the area between two heights over the lower face, from place to place.
+  // Adds the corners of the area between two heights over the lower face, from position `begin` to `end`.
   template <class ToPixel, class Heights>
   void band(double begin, double end, Corners& corners, ToPixel&& y, Heights&& heights) const {
     const double inside = 1e-9 * s_.length;

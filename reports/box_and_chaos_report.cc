@@ -17,7 +17,7 @@ using DriveRecord = RobustnessRecord::Drive;
 using BoxAndChaosRecord = RobustnessRecord::BoxAndChaosRecord;
 using RangeRecord = BoxAndChaosRecord::Range;
 
-constexpr double predicted_well = 0.1;  // largest share of the variance that may be missed
+constexpr double predicted_well = 0.1;  // largest share of the variance that a good model may miss
 
 const FigureStatistics& sampled(const DriveRecord& drive, std::string_view key) { return drive.figures[figure_of(key)]; }
 
@@ -25,7 +25,7 @@ std::string figure_text(double value, std::string_view key) {
   return std::isinf(value) ? "∞" : quantity(value, figure_of(key).unit);
 }
 
-// Prefer q2 on unseen devices: the error on devices of the training set is too small.
+// Prefer q2 on devices that were not in the training set: the error on training devices is too small.
 double missed(const FigureChaos& chaos) { return 1 - (std::isfinite(chaos.q2_unseen) ? chaos.q2_unseen : chaos.q2); }
 
 // A prediction that misses all of the variance or more is no better than the mean.
@@ -68,7 +68,7 @@ std::string box_prose(const BoxAndChaosRecord& ways, std::size_t devices) {
       ways.half_width, 100 * ways.share, ways.sampled_inside, devices, 100 * ways.share, ways.closings);
 }
 
-/// Says which figures polynomial chaos describes well.
+/// Returns sentences on how well polynomial chaos describes each figure.
 std::string chaos_prose(const BoxAndChaosRecord& ways) {
   std::vector<std::string> good, bad, none;
   for (const FigureChaos& c : ways.chaos) {
@@ -101,7 +101,7 @@ std::string chaos_prose(const BoxAndChaosRecord& ways) {
   return words;
 }
 
-// Makes a record of the device with the quantities of robustness_report.h.
+// Makes the record of a device at the worst point of the box, with the varying quantities as in robustness_report.h.
 BoxAndChaosRecord::InBox in_box(const BoxDevice& device, const PreparedScene& nominal) {
   BoxAndChaosRecord::InBox record{.figure = device.figure,
                                   .values = {},

@@ -34,35 +34,35 @@ constexpr bool only_pushes =
     std::is_same_v<Law, UniformAsperityContact> || std::is_same_v<Law, LinearContact> ||
     std::is_same_v<Law, HuntCrossley<LinearContact>> || std::is_same_v<Law, HuntCrossley<UniformAsperityContact>>;
 
-// A dialect names the operands of formulas in one language.
+// A dialect writes operands of formulas in one language, SPICE or Verilog-A.
 struct Dialect {
   std::string voltage;  // "v" or "V"
-  bool has_variables;   // true where numbers other than voltages have names, instead of nodes
+  bool has_variables;   // true if the language has named numbers besides voltages of nodes
   [[nodiscard]] Formula node(const std::string& name) const { return Formula::named(fmt::format("{}({})", voltage, name)); }
   [[nodiscard]] Formula between(const std::string& name) const { return Formula::named(fmt::format("{}({},g)", voltage, name)); }
   [[nodiscard]] Formula variable(const std::string& name) const { return has_variables ? Formula::named(name) : node(name); }
 };
 
 struct Point {
-  std::string gap, velocity;  // sums of coordinates, over the contact gap, and of U
-  std::string load;           // load times its weight, on the first mode
-  std::vector<double> share;  // share of that load on every mode, over that on the first one
+  std::string gap, velocity;  // sums over the modes: of Y, in contact gaps, and of U
+  std::string load;           // load times quadrature weight, acting on the first mode
+  std::vector<double> share;  // load on every mode over the load on the first mode
 };
 
-// The parts of the switch in one language.
+// The parts of the switch as formulas in one language.
 struct Circuit {
-  std::vector<std::string> drives;                             // pins, in the order of Switch::drives() where they are connected
+  std::vector<std::string> drives;                             // pins of the drives, in the order of Switch::drives()
   double tau = 0;                                              // [s]
   double gap = 0;                                              // rest gap of the contact [m]
-  std::vector<double> stiffness, friction, start, at_contact;  // per mode: (tau omega)^2, 2 zeta tau omega, Y at rest, share of y
-  std::vector<std::vector<std::pair<std::string, double>>> pushes;  // per mode: drives that act in proportion (piezo)
+  std::vector<double> stiffness, friction, start, at_contact;  // mode: (tau omega)^2, 2 zeta tau omega, Y at rest, share of y
+  std::vector<std::vector<std::pair<std::string, double>>> pushes;  // per mode: drives with a proportional force (piezo)
   std::vector<Point> points;
-  std::vector<std::pair<std::string, std::string>> charges;           // pins, each with its formula [C]
-  std::vector<std::pair<std::string, std::vector<double>>> currents;  // pins, each with factors of U of the modes [A]
-  std::optional<std::string> contact;                                 // contact force on the first mode
+  std::vector<std::pair<std::string, std::string>> charges;           // pins, each with the formula of its charge [C]
+  std::vector<std::pair<std::string, std::vector<double>>> currents;  // pins, each with the factors of U of every mode [A]
+  std::optional<std::string> contact;                                 // contact force on the first mode; none without a contact
   double force_scale = 0;                                             // scale of the contact force [N]
-  std::string deflection, rate;                                       // y over the gap, its rate over gap / tau
-  std::vector<std::string> tension;                                   // tension on every mode; empty: no tension
+  std::string deflection, rate;                                       // y over the gap; dy/dt over gap / tau
+  std::vector<std::string> tension;                                   // tension, then its pull on every mode; may be empty
 };
 
 std::string sum_of(const Dialect& d, char letter, const Eigen::VectorXd& factors, double constant) {
@@ -146,7 +146,7 @@ class SubcircuitWriter {
       c_.charges.emplace_back(c_.drives[k], (charges[k] * d_.between(c_.drives[k])).text());
   }
 
-  // Returns the load [N/m]; adds the capacitances of this point to those of the electrodes [F].
+  // Returns the load at a quadrature point [N/m]; adds the capacitances of the point to those of the electrodes [F].
   Formula load_at(double x, const Formula& gap, const Formula& velocity, double weight, std::vector<Formula>& capacitances) {
     const Structure& s = device_.structure;
     const LocalSection local = section_at(s, x);
@@ -215,11 +215,11 @@ class SubcircuitWriter {
         model_.contact());
   }
 
-  // Finds the tension of a stretched middle line, by the law of model/stretching.h.
+  // Writes the tension of a stretched middle line by the law of model/stretching.h.
   void find_tension() {
     if (!model_.stretching()) return;
     const MidPlaneStretching& s = *model_.stretching();
-    const double q = c_.gap / unit_;  // coordinate q at Y = 1
+    const double q = c_.gap / unit_;  // modal coordinate q at Y = 1
     std::vector<Formula> pulls;
     Formula strain = 0;
     for (std::size_t i = 0; i < s.modes; ++i) {
@@ -229,7 +229,7 @@ class SubcircuitWriter {
       pulls.push_back(pull);
     }
     const double scale = s.stiffness * c_.tau * c_.tau * unit_ / c_.gap;
-    c_.tension.push_back((Formula(scale) * strain).text());  // the line's tension comes first, then its pull on every mode
+    c_.tension.push_back((Formula(scale) * strain).text());  // first the tension, then its pull on every mode
     for (const Formula& pull : pulls) c_.tension.push_back(pull.text());
   }
 
@@ -246,14 +246,15 @@ std::string title(const PreparedScene& p) {
   return fmt::format("{}: {} modes, {} quadrature points", p.scene.file.name(), p.model.modes(), p.model.quadrature().points());
 }
 
-// Lists renamed pins in lines that begin with `comment`.
+// Returns comment lines, which begin with `comment`, with the pins whose names differ from those of their drives.
 std::string renamed_in(const PreparedScene& p, std::string_view comment) {
   std::string text;
   for (const std::string& line : renamed_pins(p.drive_names())) text += fmt::format("{} {}\n", comment, line);
   return text;
 }
 
-// Reserved names of pins: pins and numbers of the model itself, the ground of SPICE, and words of Verilog-AMS 2.4 (annex B).
+// Names that pins must not have: pins and numbers of the model itself, the ground of SPICE, and words of Verilog-AMS 2.4 (annex
+// B).
 constexpr std::array reserved_names{
     // names of the model
     "g", "s", "d", "y", "vel", "force", "at", "rate", "line", "push", "rc", "roff", "softland_switch",
@@ -280,14 +281,14 @@ constexpr std::array reserved_names{
     "vectored", "wait", "wand", "weak0", "weak1", "while", "white_noise", "wire", "wor", "wreal", "xnor", "xor", "zi_nd", "zi_np",
     "zi_zd", "zi_zp"};
 
-// Tells whether a name is that of a mode or point of the model: y0, u0, h0, w0, f0 and so on.
+// Returns true for a name that the model gives to a mode or quadrature point: y0, u0, h0, w0, f0 and so on.
 bool is_numbered(const std::string& name) {
   constexpr std::string_view letters = "yuhwf";
   return name.size() > 1 && letters.find(name.front()) != std::string_view::npos &&
          name.find_first_not_of("0123456789", 1) == std::string::npos;
 }
 
-// Appends lines.
+// Appends lines to a text.
 struct Lines {
   std::string& text;
   template <class... Words>
@@ -395,7 +396,7 @@ std::string spice_model(const PreparedScene& p) {
 
 std::string spice_bench(const PreparedScene& p) {
   const Circuit c = SubcircuitWriter(p, spice).make();
-  std::map<std::string, Signal> driven;  // signals as their sources give them
+  std::map<std::string, Signal> driven;  // waveforms at the sources, by pin
   const std::vector<std::string> names = circuit_pins(p.drive_names());
   const std::vector<Signal> signals = p.signals();
   std::string sources, pins;
@@ -406,8 +407,8 @@ std::string spice_bench(const PreparedScene& p) {
     sources += fmt::format("Xdrive_{0} {0} 0 softland_{0}\n", pin);
     pins += " " + pin;
   }
-  // Choose the step of the trapezoidal rule: the first mode is right to 1e-6, the fastest one in its share. One mode alone is
-  // quick enough for a tenth of that error.
+  // Choose the step of the trapezoidal rule such that the first mode has an error of 1e-6 and the fastest mode has 40 steps per
+  // period. A single mode permits shorter steps, and a tenth of that error.
   const Eigen::VectorXd& omega = p.model.basis().angular_frequencies();
   const double step = 2 * pi / std::max(40 * omega.maxCoeff(), (omega.size() == 1 ? 8000 : 1500) * omega[0]);
   std::string text = title(p) + "\n" + renamed_in(p, "*") + subcircuit(c) + spice_pwl(driven, p.duration) + sources;

@@ -24,7 +24,7 @@ bool bounces(const RunRecord& run) { return figure_of_run(run, &Metrics::bounce_
 
 bool is_clean_run(const ConfirmationRecord& check) { return check.figures && is_clean(*check.figures); }
 
-/// Describes a drive in a run: "runs between 0 V and 30 V, with a jump"; `both` is for two runs with the same drive.
+/// Describes the waveform of a drive: "runs between 0 V and 30 V, with a jump"; `both` is for two runs with equal waveforms.
 std::string range_prose(const Points& waveform, const DriveScale& scale, bool both) {
   const DriveDemand demand = drive_demand(waveform, scale.rest);
   if (!std::isfinite(demand.lowest)) return {};
@@ -37,7 +37,7 @@ std::string range_prose(const Points& waveform, const DriveScale& scale, bool bo
                      quantity_beside(demand.highest, demand.lowest, scale.unit), slew);
 }
 
-// Ranks a closing: staying open is worst, then rebounds by their height, then impact velocity.
+// Returns a key that is larger for a worse closing: the switch stays open, else by rebound height, then by impact velocity.
 std::array<double, 3> badness(const ConfirmationRecord& check) {
   if (!check.figures || !touches(*check.figures)) return {2, 0, 0};
   return {is_clean_run(check) ? 0.0 : 1.0, is_clean_run(check) ? 0.0 : rebound_height(*check.figures),
@@ -48,7 +48,7 @@ std::string impact_velocity_of(const ConfirmationRecord& check) {
   return quantity((*check.figures)[&Metrics::impact_velocity], "m/s");
 }
 
-// Returns "it rebounds by up to 2.16 nm after an impact velocity of 32.5 mm/s".
+// Describes a bad confirmation: "it rebounds by up to 2.16 nm after an impact velocity of 32.5 mm/s".
 std::string course_of(const ConfirmationRecord& check) {
   if (!check.figures || !touches(*check.figures)) return "it does not close";
   const double height = rebound_height(*check.figures);
@@ -58,7 +58,7 @@ std::string course_of(const ConfirmationRecord& check) {
          impact_velocity_of(check);
 }
 
-// Returns "a tolerance of 1e-9 and with 6, 8 and 10 modes".
+// Returns the settings of numerical confirmations: "a tolerance of 1e-9 and with 6, 8 and 10 modes".
 std::string names_of(const std::vector<ConfirmationRecord>& numerics) {
   std::string tolerance, modes;
   for (const ConfirmationRecord& check : numerics) {
@@ -69,13 +69,13 @@ std::string names_of(const std::vector<ConfirmationRecord>& numerics) {
     } else if (check.name.starts_with("modes ")) {
       modes += (modes.empty() ? "" : &check == &numerics.back() ? " and " : ", ") + value;
     } else {
-      return "other settings";  // the file is of an earlier version
+      return "other settings";  // the file is from an earlier version
     }
   }
   return tolerance + (modes.empty() ? "" : (tolerance.empty() ? "" : " and with ") + modes + " modes");
 }
 
-// Warns of a landing that depends on the number of modes in its scene.
+// Returns a warning if the bounce-free closing depends on the number of modes.
 std::string of_modes(const ClosingRecord& result) {
   if (!result.best.figures || !is_clean(*result.best.figures)) return {};
   std::vector<ConfirmationRecord> modes;
@@ -87,7 +87,7 @@ std::string of_modes(const ClosingRecord& result) {
                      worst.name.substr(worst.name.find(' ') + 1), course_of(worst));
 }
 
-// Names the share of devices that fail whatever the waveform, in a search under process variation.
+// States the share of devices that fail under any waveform, after a search under process variation.
 std::string of_devices_that_fail(const ClosingRecord& result) {
   const std::optional<RobustFindings>& robust = result.search->robust;
   if (!robust || !(robust->failing > 0)) return {};
@@ -291,7 +291,7 @@ std::string waveform_caption(const ClosingRecord& result, const std::string& dri
 
 std::string search_caption(const ClosingRecord& result, const SearchRecord& search) {
   const std::string whole_name = search.course.value_name.empty() ? "cost" : search.course.value_name;
-  const std::string name = whole_name.substr(0, whole_name.find(','));  // "cost, on the nominal device" is too long here
+  const std::string name = whole_name.substr(0, whole_name.find(','));  // only "cost", without ", on the nominal device"
   const double own = result.best.cost;
   double first = std::numeric_limits<double>::quiet_NaN();
   double last = first;
@@ -301,7 +301,7 @@ std::string search_caption(const ClosingRecord& result, const SearchRecord& sear
     if (!std::isfinite(first)) first = value;
     if (value >= last) continue;
     last = value;
-    // The winner is not always the lowest: the next best that meets the goal is preferred.
+    // The winner may not have the lowest cost: a waveform that meets the goal is preferred.
     if (!(last < own)) found_at = index;
   }
   std::string words = capitalised(name) + " of every waveform tried (dots) and of the best so far (line)";

@@ -17,7 +17,7 @@
 namespace softland::internal {
 namespace {
 
-// A run of a record by the name of its table.
+// A run of a record: name of its table of curves, and role in charts.
 struct Drawn {
   const char* name;
   Role role;
@@ -28,8 +28,8 @@ const RunRecord& run_of(const ClosingRecord& result, const Drawn& drawn) {
   return drawn.role == Role::best ? result.best : result.baseline();
 }
 
-/// Returns the rows of a curve whose time is finite and does not run backwards; columns that are missing or of another length
-/// are left out.
+/// Returns the rows of a curve at finite times that do not decrease. Columns that are missing or whose length differs are left
+/// out.
 CurveTable curve_table(const CurveRecord& curve) {
   std::vector<std::size_t> sound;
   double latest = -std::numeric_limits<double>::infinity();
@@ -57,7 +57,7 @@ CurveTable curve_table(const CurveRecord& curve) {
   return table;
 }
 
-/// Extends a drive from where it rests before t = 0 to the end of the window, where it holds its last value.
+/// Extends the waveform of a drive by the level `rest` before t = 0 and by its last level up to the end of the window.
 Points whole_waveform(const Points& waveform, double rest, double end) {
   Points points = drawable(waveform);
   if (points.empty()) return points;
@@ -66,7 +66,7 @@ Points whole_waveform(const Points& waveform, double rest, double end) {
   return points;
 }
 
-/// Returns the last time at which a drive moves; NaN when it never does.
+/// Returns the last time at which the level of a drive changes; NaN if the level is constant.
 double last_move(const Points& points) {
   double time = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t i = 1; i < points.size(); ++i) {
@@ -99,8 +99,8 @@ std::vector<Mark> rebound_marks(const ClosingRecord& result) {
   return marks;
 }
 
-/// Returns the end of the part worth enlarging: the winner's landing, the changes of its drives, and the baseline's highest
-/// rebound.
+/// Returns the end of the time range to enlarge: it covers the winner's landing, the changes of its drives, and the baseline's
+/// highest rebound.
 double landing_end(const ClosingRecord& result, const CurveTables& tables, double window) {
   double end = std::numeric_limits<double>::quiet_NaN();
   const auto cover = [&](double time) {
@@ -128,7 +128,7 @@ double landing_end(const ClosingRecord& result, const CurveTables& tables, doubl
   return end > 0 ? std::min(window, margin * end) : window;
 }
 
-/// Returns a column of a run; empty when the run has no such column.
+/// Returns a column of a run; empty if the run lacks the column.
 const std::vector<double>& column_of(const CurveTables& tables, const char* run, const char* name) {
   static const std::vector<double> none;
   const auto table = tables.find(run);
@@ -146,8 +146,8 @@ double largest(const CurveTables& tables, const char* name) {
   return value;
 }
 
-/// Returns the gaps around the contact plane worth enlarging [m]: as deep as any contact is pressed before `end`, and above the
-/// plane the winner's rebounds or twice that depth. Not set when nothing touches.
+/// Returns the range of gaps around the contact plane to enlarge [m]: below the plane, the deepest indentation before `end`;
+/// above the plane, the winner's rebounds or twice that depth. Not set if no run touches.
 std::optional<std::array<double, 2>> plane_band(const ClosingRecord& result, const CurveTables& tables, double end) {
   double lowest = 0;
   for (const Drawn& drawn : runs) {
@@ -198,7 +198,7 @@ class TimeCharts {
     gap.height = 320;
     add_series(gap, "", "tip_gap_m");
     Chart near = gap;
-    constexpr double readable = 0.05;  // share of the gap: lower rebounds have no room for words
+    constexpr double readable = 0.05;  // least share of the gap: labels do not fit above lower rebounds
     for (Mark& mark : gap.marks) {
       if (mark.y < readable * largest(out_.tables, "tip_gap_m")) mark.text.clear();
     }
@@ -214,7 +214,7 @@ class TimeCharts {
     if (near.y_home) keep(std::move(near));
   }
 
-  /// Adds bars for the times when contacts are closed: for several contacts the connection, and each of them.
+  /// Adds bars for the times with closed contacts; for several contacts, a bar for the connection and a bar for each contact.
   void add_bars() {
     Chart bars = over_time("contact", "Contact: closed and open", contact_caption(result_));
     bars.x_home = bars.x_whole;
@@ -245,7 +245,7 @@ class TimeCharts {
     const DriveLimits limits = drive_limits(result_, drive);
     for (const auto& [name, level] :
          {std::pair{"upper limit of the driver", limits.highest}, {"lower limit of the driver", limits.lowest}}) {
-      if (!std::isfinite(drawable(level)) || drawable(level) == 0) continue;  // the axis shows 0
+      if (!std::isfinite(drawable(level)) || drawable(level) == 0) continue;  // the axis shows 0 already
       const std::string table = fmt::format("driver/{}/{}", drive, level > limits.lowest ? "most" : "least");
       add_columns(out_.tables[table], "time_s", "level", {{0, level}, {window_, level}});
       drawn.series.push_back({table, "level", name, Role::limit});
@@ -312,7 +312,7 @@ class TimeCharts {
   }
 
   const ClosingRecord& result_;
-  double window_, landing_;  // ends of the drawn parts [s]
+  double window_, landing_;  // ends of the whole and of the enlarged time range [s]
   Picture& out_;
 };
 
@@ -358,7 +358,7 @@ void add_search_chart(const ClosingRecord& result, const SearchRecord& search, P
     chart.series.push_back({"tried", "value", "each waveform tried", Role::evaluations});
   }
   if (!best.empty()) {
-    Points stairs;  // the best so far holds until a better one comes
+    Points stairs;  // the best cost so far remains until a better one is found
     for (const auto& point : best) {
       if (!stairs.empty()) stairs.push_back({point[0], stairs.back()[1]});
       stairs.push_back(point);

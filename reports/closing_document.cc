@@ -43,7 +43,7 @@ std::string verdict_class(Verdict verdict) {
   return "neutral";
 }
 
-// These figures judge a landing: they stand in the table of confirmations, and all but the first above everything else.
+// Figures that judge a landing. They are columns of the table of confirmations; all but the first are key numbers of the page.
 constexpr std::array leading_figures{figure_of(&Metrics::initial_contact_time), figure_of(&Metrics::permanent_contact_time),
                                      figure_of(&Metrics::bounce_count), figure_of(&Metrics::major_bounce_height),
                                      figure_of(&Metrics::impact_velocity)};
@@ -72,12 +72,12 @@ std::vector<KeyNumber> key_numbers(const ClosingRecord& result) {
   return keys;
 }
 
-/// Adds the demands of every drive on its source, where there are several drives.
+/// Adds rows for the demands of each drive on its source if there are several drives.
 void add_drive_rows(ReportTable& table, const ClosingRecord& result, bool pair) {
   if (result.best.waveforms.size() < 2) return;
   for (const auto& [drive, found] : result.best.waveforms) {
     const DriveScale scale = drive_scale(drive);
-    if (scale.unit.empty()) continue;  // a factor has no source
+    if (scale.unit.empty()) continue;  // a factor needs no source
     const DriveDemand own = drive_demand(found, scale.rest);
     const DriveDemand step = drive_demand(waveform(result.baseline(), drive), scale.rest);
     const auto add = [&, name = &drive](const Figure& what, const std::string& value, const std::string& before) {
@@ -93,10 +93,10 @@ void add_drive_rows(ReportTable& table, const ClosingRecord& result, bool pair) 
 }
 
 TableCell error_cell(const ClosingRecord& result, const Figure& one) {
-  constexpr double ill = 0.1;  // least ratio of error to figure of an ill-conditioned figure
+  constexpr double ill = 0.1;  // least error of an ill-conditioned figure, as a share of the figure
   const double own = figure_of_run(result.best, one.member), error = result.best.errors[one];
   const std::string cloud = cloud_text(result, one), stated = error_text(one, own, error);
-  const bool is_hidden = stated.starts_with('<');  // true when the error is below the last digit that is shown
+  const bool is_hidden = stated.starts_with('<');  // true when the error is below the last digit shown
   TableCell cell(cloud.empty() ? stated : cloud);
   if (!cloud.empty() || (!is_hidden && error > ill * std::abs(own)))
     cell.html = escaped(cell.text) + " <span class=\"note\">ill-conditioned</span>";
@@ -133,7 +133,7 @@ ReportTable figures_table(const ClosingRecord& result) {
   return table;
 }
 
-// Lists each of several contacts; the figures above are those of the connection that they make.
+// Returns a table of the figures of each of several contacts; the main table is about the connection that the contacts make.
 ReportTable contacts_table(const ClosingRecord& result) {
   constexpr std::array shown{&Metrics::initial_contact_time, &Metrics::impact_velocity, &Metrics::major_bounce_height,
                              &Metrics::peak_contact_force, &Metrics::hold_force};
@@ -173,7 +173,7 @@ ReportSection figures_section(const ClosingRecord& result) {
   return section;
 }
 
-// Charts over one time share their zoom, and their cursor with the moving switch.
+// Returns the charts over time, which share their zoom, and their cursor with the animation of the switch.
 std::string closing_charts(const ClosingRecord& result, const Picture& drawn) {
   std::string charts;
   for (const Chart& chart : drawn.charts) {
@@ -215,7 +215,7 @@ std::string drawn_switch(const ClosingRecord& result) {
 
 ReportSection checks_section(const ClosingRecord& result) {
   ReportSection section{.id = "checks", .heading = "Confirmation by re-runs", .parts = {}};
-  // The terminal leaves out the re-runs of a winner that bounces: there is nothing to confirm.
+  // A terminal does not show the confirmations of a winner that bounces: there is nothing to confirm.
   if (figure_of_run(result.best, &Metrics::bounce_count) != 0) section.shown = ShownIn::page;
   if (!result.search || result.search->checks.empty()) return section;
   ReportTable table{.head = {"Simulated with"}, .rows = {}};
@@ -243,7 +243,7 @@ std::pair<std::string, std::string_view> without_unit(const std::string& name) {
   return {name, ""};
 }
 
-/// Returns the place of a parameter in its waveform: the numbers of two parameters sort as the times from which they act.
+/// Returns a number by which parameters sort in the order of the times at which they act.
 int place_in_time(const std::string& name) {
   constexpr std::array<std::pair<std::string_view, int>, 8> stems{{{"rise_time", 0},
                                                                    {"start", 0},
@@ -254,7 +254,7 @@ int place_in_time(const std::string& name) {
                                                                    {"duration", 5},
                                                                    {"fade", 6}}};
   const std::size_t digits = name.size() - name.find_last_not_of("0123456789") - 1;
-  if (digits > 0 && digits <= 4) {  // the tenth level comes after the ninth
+  if (digits > 0 && digits <= 4) {  // level_10 follows level_9
     const int number = 10 * std::stoi(name.substr(name.size() - digits));
     return name.starts_with("level") ? number : number + 1;
   }
@@ -262,7 +262,7 @@ int place_in_time(const std::string& name) {
   return found == stems.end() ? 1000000 : found->second;
 }
 
-/// Shows the box that a parameter was searched in.
+/// Returns the bounds between which a parameter was searched.
 TableCell searched_cell(const ClosingRecord& result, const std::string& parameter, std::string_view unit) {
   const auto box = result.search->bounds.find(parameter);
   if (box == result.search->bounds.end()) return "";
@@ -277,7 +277,7 @@ TableCell searched_cell(const ClosingRecord& result, const std::string& paramete
   return cell;
 }
 
-/// Lists the parameters in the order in which they act.
+/// Returns the parameters of the waveform, in the order in which they act.
 ReportSection parameters_section(const ClosingRecord& result) {
   ReportSection section{.id = "parameters", .heading = "Parameters of the waveform", .parts = {}, .shown = ShownIn::page};
   if (!result.search || result.search->parameters.empty()) return section;
@@ -312,7 +312,7 @@ ReportSection parameters_section(const ClosingRecord& result) {
   return section;
 }
 
-/// Lists the request and the properties of the device.
+/// Returns what the user requested, and properties of the device.
 ReportSection facts(const ClosingRecord& result) {
   std::string out;
   const auto fact = [&](std::string_view name, std::string value) {
@@ -332,7 +332,7 @@ ReportSection facts(const ClosingRecord& result) {
     fact("Evaluations", std::isfinite(search.evaluations) ? whole(search.evaluations) : "");
     fact("Stopped by", search.termination);
   }
-  if (result.pull_in.size() == 1) {  // several do not fit here
+  if (result.pull_in.size() == 1) {  // only for a single electrode: the text of several is too long
     const PullInOfElectrode& voltages = result.pull_in.begin()->second;
     const std::string shift = voltages.static_by_modes ? shift_prose(*voltages.static_by_modes) : "";
     fact("Static pull-in", measured(voltages.static_pull_in, "V", 5) +
@@ -367,7 +367,7 @@ Document closing_document(const ClosingRecord& result) {
                     .warnings = result.warnings,
                     .draw = [&result] { return picture(result); },
                     .made = made_again(result.origin, {}, result.tolerance)};
-  if (result.search) {  // a search's terminal text has room for its findings alone
+  if (result.search) {  // the text of a search on a terminal shows only results of the search
     const auto few = std::stable_partition(document.warnings.begin(), document.warnings.end(),
                                            [](const std::string& one) { return !is_few_summits_warning(one); });
     document.page_warnings.assign(few, document.warnings.end());

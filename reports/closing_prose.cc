@@ -9,8 +9,8 @@
 namespace softland::internal {
 namespace {
 
-/// A figure is quoted with "about" beyond this estimated error: half a bounce, one per cent of a time. An unknown error counts
-/// as beyond after more than a few rebounds.
+/// Estimated errors, half a bounce and a relative error of a time, beyond which a figure is quoted with "about". If the error
+/// is unknown, a figure after more than a few rebounds is also quoted with "about".
 constexpr double doubtful_count = 0.5;
 constexpr double doubtful_time = 0.01;
 constexpr double few_rebounds = 5;
@@ -22,7 +22,7 @@ std::string closes(const Actor& actor, const std::string& how) {
                               : fmt::format("{} closes {} {}", actor.subject, actor.object, how);
 }
 
-/// Returns the words for the moving switch: "the switch", or "with the plain step it" for a waveform that moves it.
+/// Returns the moving switch as a subject: "the switch", or "with the plain step it" for the waveform that moves it.
 std::string moving(const Actor& actor) {
   return actor.object.empty() ? actor.subject : fmt::format("with {} {}", actor.subject, actor.object);
 }
@@ -31,13 +31,13 @@ bool doubtful(const FigureValues& figures, double error, double limit) {
   return std::isfinite(error) ? error > limit : figures[&Metrics::bounce_count] > few_rebounds;
 }
 
-/// Returns "bounces about 79 times".
+/// Describes the number of bounces: "bounces about 79 times".
 std::string bounces(const FigureValues& figures, const FigureValues& errors) {
   const bool about = doubtful(figures, errors[&Metrics::bounce_count], doubtful_count);
   return fmt::format("bounces {}{}", about ? "about " : "", times_word(figures[&Metrics::bounce_count]));
 }
 
-/// Returns the settling time, with "about" where it is doubtful.
+/// Returns the settling time; with "about" if its error is large.
 std::string settling(const FigureValues& figures, const FigureValues& errors) {
   const double settled = figures[&Metrics::permanent_contact_time];
   const double error = errors[&Metrics::permanent_contact_time];
@@ -49,7 +49,7 @@ std::string impact(const FigureValues& figures) {
   return "an impact velocity of " + quantity(figures[&Metrics::impact_velocity], "m/s");
 }
 
-/// Returns the smallest distance to the contact plane [m] of a run that never touched; NaN without its curve.
+/// Returns the smallest distance to the contact plane [m] in a run without contact; NaN without the curve of the run.
 double closest(const CurveRecord& curve) {
   double least = std::numeric_limits<double>::quiet_NaN();
   for (const double gap : curve.gap) least = std::fmin(least, gap);
@@ -96,7 +96,7 @@ std::string open_clause(const Actor& actor, const FigureValues& figures) {
                                              : ", and has not come to rest when the window ends");
 }
 
-// A run that began closed has no landing, only an opening.
+// Describes the opening in a run that began closed, which has no landing.
 std::string opening_clause(const Actor& actor, const FigureValues& figures, const std::string& end) {
   const double settling = figures[&Metrics::open_settling_time];
   if (!std::isfinite(settling))
@@ -106,7 +106,7 @@ std::string opening_clause(const Actor& actor, const FigureValues& figures, cons
                      quantity(settling, "s"), quantity(figures[&Metrics::static_deflection], "m"));
 }
 
-// Says how the run opens on command; empty where nothing commands it to.
+// Describes how the run opens on command; empty if no drive commands an opening.
 std::string opening_on_command(const FigureValues& figures) {
   const double command = figures[&Metrics::open_command], opening = figures[&Metrics::opening_time];
   if (!std::isfinite(command)) return {};

@@ -21,7 +21,7 @@
 namespace softland {
 namespace {
 
-// Set non-finite figures to not available: JSON has no such numbers.
+// Replaces non-finite figures by NaN: JSON has no such numbers.
 FigureValues finite(FigureValues values) {
   for (const Figure& figure : all_figures) {
     if (!std::isfinite(values[figure])) values[figure] = Metrics::unset;
@@ -29,7 +29,7 @@ FigureValues finite(FigureValues values) {
   return values;
 }
 
-// A long waveform keeps the points that draw the same picture.
+// Returns the points; of a long waveform, at most most_curve_rows that draw the same picture.
 Points at_most_rows(Points all) {
   if (all.size() <= most_curve_rows) return all;
   std::vector<double> levels;
@@ -39,8 +39,8 @@ Points at_most_rows(Points all) {
   return kept;
 }
 
-// Returns straight pieces that a reader can draw: exact for steps, pulses and tables of up to most_curve_rows, to a thousandth
-// of the swing for sines.
+// Returns the waveforms by drive as straight pieces: exact for steps, pulses and tables of up to most_curve_rows, within a
+// thousandth of the amplitude for sines.
 std::map<std::string, Points> waveforms(const PreparedScene& p) {
   std::map<std::string, Points> all;
   const std::vector<std::string> names = p.drive_names();
@@ -48,7 +48,7 @@ std::map<std::string, Points> waveforms(const PreparedScene& p) {
   for (std::size_t k = 0; k < names.size(); ++k) {
     const double swing = signals[k].maximum(p.duration) - signals[k].minimum(p.duration);
     const bool is_factor = names[k] == dispersion_drive;
-    if (is_factor && signals[k].is_zero()) continue;  // a nominal factor is not shown
+    if (is_factor && signals[k].is_zero()) continue;  // the nominal dispersion force is not shown
     for (const auto& [t, v] : polyline(signals[k], p.duration, 1e-3 * swing, 0))
       all[names[k]].push_back({t, is_factor ? 1 + v : v});
     all[names[k]] = at_most_rows(std::move(all[names[k]]));
@@ -75,7 +75,7 @@ RunRecord run(const PreparedScene& p, const Closing& closing, const MetricsOptio
           .collapse_time = closing.trajectory.collapse_time};
 }
 
-// Returns the figures of each of several contacts, and of the face of a dielectric where the beam lands on one, alone or not.
+// Returns the figures by contact, if there are several contacts or if the beam touches the face of a dielectric.
 std::map<std::string, ContactFigures> contacts(const Device& device, const Closing& closing) {
   std::map<std::string, ContactFigures> all;
   if (closing.contacts.empty() && device.lands_along_face())
@@ -100,7 +100,7 @@ std::map<std::string, PullInOfElectrode> pull_in(const PreparedScene& p) {
   return all;
 }
 
-// Makes the part of a record that every study has: its scene and this program.
+// Makes the part of the record that simulations and searches have in common: the scene and this program.
 ClosingRecord begun(const char* kind, const PreparedScene& p, const std::string& command) {
   for (const auto& [drive, waveform] : p.drives.waveforms()) {
     if (const Own* own = std::get_if<Own>(&waveform))
@@ -119,7 +119,7 @@ ClosingRecord begun(const char* kind, const PreparedScene& p, const std::string&
   return r;
 }
 
-// A long run keeps the rows that draw the same picture: files stay readable however long it was.
+// Reduces a long run to rows that draw the same picture, so that a file can be read after a run of any length.
 void keep_most_rows(CurveRecord& c) {
   const std::vector<std::size_t> rows = internal::downsampled({&c.gap, &c.velocity, &c.force}, most_curve_rows);
   if (rows.size() == c.time.size()) return;
@@ -130,7 +130,7 @@ void keep_most_rows(CurveRecord& c) {
   }
 }
 
-// Keeps the highest rebounds in the order of time.
+// Reduces the rebounds to the highest ones, in the order of time.
 void keep_highest(std::vector<Rebound>& all) {
   if (all.size() <= most_rebounds) return;
   std::ranges::nth_element(all, all.begin() + most_rebounds, std::ranges::greater(), &Rebound::height);
@@ -182,7 +182,7 @@ CurveRecord curve_of(const Trajectory& t, const std::vector<Rebound>& all_reboun
 std::vector<ClosedStretch> closed_stretches(const std::vector<Touch>& touches, std::size_t most) {
   std::vector<double> openings;
   for (std::size_t k = 1; k < touches.size(); ++k) openings.push_back(touches[k].begin - touches[k - 1].end);
-  double joined = -std::numeric_limits<double>::infinity();  // largest opening that joins touches [s]
+  double joined = -std::numeric_limits<double>::infinity();  // touches are joined across openings up to this one [s]
   if (touches.size() > most) {
     std::vector<double> by_length = openings;
     const auto last = by_length.begin() + static_cast<std::ptrdiff_t>(touches.size() - most - 1);
@@ -249,7 +249,7 @@ ClosingRecord record_of(const OptimizeResult& found, const OptimizeOptions& opti
   s.baseline.cost = found.baseline_cost;
   s.course.value_name = "cost";
   for (const Evaluation& e : found.search.improvements) s.course.best_so_far.push_back({static_cast<double>(e.index), e.value});
-  // Warnings of the scene come with every closing: once is enough.
+  // All closings have the warnings of the scene: take them from one closing.
   r.warnings = found.best ? found.best->warnings : found.baseline.warnings;
   if (!found.best) return r;
   r.best = run(*found.best_scene, *found.best, metrics_options);

@@ -38,7 +38,7 @@ double on_line(const ResistanceLine& points, double time) {
   return std::lerp(from, to->second, (time - a) / (to->first - a));
 }
 
-// A reader follows one channel at times that do not decrease.
+// Reads one channel at times that do not decrease.
 class StateReader {
  public:
   explicit StateReader(const StateChannel& channel) : channel_(channel) {}
@@ -62,7 +62,7 @@ class StateReader {
 // Converts seconds to whole picoseconds.
 std::int64_t picoseconds(double time) { return std::llround(1e12 * time); }
 
-// Returns "!", "\"", ..., "~", "!!": all printable characters.
+// Returns the identifier of a variable in VCD: "!", "\"", ..., "~", "!!", from all printable characters.
 std::string identifier(std::size_t number) {
   constexpr std::size_t first = 33, count = 94;
   std::string text;
@@ -70,14 +70,14 @@ std::string identifier(std::size_t number) {
   return text;
 }
 
-// A change of a variable of a dump, whose number is `place`.
+// A change of the variable number `place` in a value change dump.
 struct DumpedChange {
   std::int64_t time = 0;  // [ps]
   std::size_t place = 0;
   std::string text;
 };
 
-// Writes the changes in order of time; several changes of one variable in a picosecond leave the last one.
+// Writes the changes in order of time. Of several changes of a variable within a picosecond, only the last one is written.
 std::string text_of(std::vector<DumpedChange> changes) {
   std::ranges::stable_sort(changes, {}, [](const DumpedChange& one) { return std::pair(one.time, one.place); });
   std::string text;
@@ -104,7 +104,7 @@ void dump_state(const StateChannel& one, std::size_t place, std::vector<DumpedCh
 }
 
 void dump_resistance(const StateChannel& one, std::size_t place, std::vector<DumpedChange>& changes) {
-  constexpr double step = 0.05;  // relative step of a resistance
+  constexpr double step = 0.05;  // relative step of a resistance that is written
   const auto set = [&](double time, double resistance) {
     changes.push_back({picoseconds(time), place, fmt::format("r{:.{}g} {}\n", resistance, resistance_digits, identifier(place))});
   };
@@ -125,7 +125,7 @@ void dump_resistance(const StateChannel& one, std::size_t place, std::vector<Dum
   }
 }
 
-// Returns the state, or the resistance, as lines between points, with edges in the place of jumps.
+// Returns the state or the resistance of a channel as a piecewise linear signal, with short edges in place of jumps.
 Signal on_edges(const StateChannel& one, bool is_resistance, double end) {
   constexpr double edge = 1e-9, share = 0.25;  // edge [s]; largest half-edge over the time to the next jump
   const auto value = [&](const ClosedSpan* span, double time) {

@@ -16,25 +16,26 @@
 namespace softland::internal {
 namespace {
 
-constexpr double width = 740;  // width with the words beside the measures of a plate between its anchors [px]
+constexpr double width = 740;  // width with the labels to the right of a rigid plate [px]
 
-/// Draws a measure between two heights, with its words to the right.
+/// Draws a dimension line between two heights, with its label to the right.
 std::string height_measure(double x, double top, double bottom, const std::string& text) {
   return drawn_line(x, top, x, bottom, "measure") + drawn_line(x - 4, top, x + 4, top, "measure") +
          drawn_line(x - 4, bottom, x + 4, bottom, "measure") + drawn_words(x + 8, (top + bottom) / 2 + 4, "start", text);
 }
 
-// The parameters of a waveform that a drawing can show.
+// The parameters of a waveform that a drawing of the waveform can label.
 struct Described {
   struct Place {
     std::string name;
-    double from, to;  // times
+    double from, to;  // times [s]
   };
   std::vector<Place> spans;
-  std::vector<std::pair<std::string, double>> levels;  // name, time at which it holds
+  std::vector<std::pair<std::string, double>> levels;  // name of a level, time of its label [s]
 };
 
-/// Returns the parameters of a drive of a result, which moves until `moves`; empty where its family or its times are not known.
+/// Returns the parameters of the waveform of a drive, whose level is constant from `moves` on [s]. Empty if the waveform family
+/// has no such drawing, or its times are unknown.
 Described described_parameters(const ClosingRecord& result, const std::string& drive, double moves) {
   const auto parameter = [&](const std::string& name) {
     const auto found = result.search->parameters.find(drive + "." + name);
@@ -83,7 +84,7 @@ double plane_of(const SideView& view, const DrawnScene& scene, double gap) {
   return view.bottom + view.gap * std::min(1.0, gap / scene.electrode_gap);
 }
 
-/// Draws contacts: those that have names stand at their places, those of the far side hang above the beam; gaps beside them.
+/// Draws contacts, with their gaps: a contact with a name is drawn at its position, a contact on the far side above the beam.
 std::string drawn_contacts(const DrawnScene& scene, const SideView& view) {
   constexpr double wide = 12, foot = SideView::electrode;
   const double usual = view.plate || view.both_ends ? 0.5 : 1;
@@ -129,7 +130,7 @@ std::string device_picture(const DrawnScene& scene) {
   std::string out = drawn_beam(scene, view) + drawn_electrodes(scene, view) + drawn_contacts(scene, view);
   const double measure = both_ends || plate ? right + 64 : right + 16;
   if (scene.contacts.empty()) {
-    // The contact stands at the centre of the pad, or in the middle for a beam between two clamps and for a plate.
+    // The contact is drawn at the centre of the contact pad; in the middle of a plate, or of a beam with two clamps.
     const double pad = scene.pad_length;
     const double contact_at = plate || both_ends ? 0.5 : 1 - (pad > 0 ? std::min(1.0, pad / length) / 2 : 0);
     const double plane = plane_of(view, scene, scene.contact_gap);

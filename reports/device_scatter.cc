@@ -20,11 +20,11 @@ namespace {
 using namespace internal;
 
 constexpr std::size_t most_dots = 300;
-constexpr std::size_t groups = 16;  // number of groups of a line of medians
+constexpr std::size_t groups = 16;  // number of groups of devices, each with a median
 constexpr std::size_t fewest_of_group = 5;
-constexpr double shown_share = 0.99;  // share in view of the devices that have the figure
+constexpr double shown_share = 0.99;  // share of the devices with this figure that is in view
 
-// A varying quantity by device: a factor as its deviation in percent.
+// A varying quantity, by device; a factor is given as its deviation in percent.
 struct VariedQuantity {
   std::string name, unit;
   std::vector<double> values;
@@ -45,7 +45,7 @@ std::vector<VariedQuantity> quantities_of(const RobustnessReport& report) {
   return all;
 }
 
-// Returns medians of groups of devices that are neighbours in x; a device without the figure counts as the worst.
+// Returns the medians of groups of devices with neighbouring x. A device without the figure counts as the worst device.
 CurveTable medians(const std::vector<double>& x, const std::vector<double>& y) {
   std::vector<std::size_t> order(x.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -27,7 +27,7 @@ using namespace internal;
 
 constexpr double half = 0.5;
 
-// A column of the table shows a figure's 95th percentile over the devices, beside it the 99th.
+// A column with the 95th percentile of a figure over the devices and, with `with_99`, the 99th percentile beside it.
 struct Column {
   std::string_view key, heading, short_heading;
   bool with_99 = false;
@@ -65,7 +65,7 @@ std::string cell_of(std::string_view key, double value) {
   return quantity(value, figure_of(key).unit);
 }
 
-// Returns "2.45 (33.8) mm/s", and with two units "723 µm/s (34.0 mm/s)".
+// Returns two values, the second in parentheses: "2.45 (33.8) mm/s"; with different units "723 µm/s (34.0 mm/s)".
 std::string with_bracket(const std::string& value, const std::string& other) {
   constexpr std::string_view blank = "\u00a0";
   const std::size_t unit = value.find(blank), other_unit = other.find(blank);
@@ -75,8 +75,8 @@ std::string with_bracket(const std::string& value, const std::string& other) {
                  : fmt::format("{} ({})", value, other);
 }
 
-// Returns "2.0 / 98 / 100 %": the shares of devices that rebound by no more than each height. They are cut, so that 100 % are
-// all.
+// Returns "2.0 / 98 / 100 %": the shares of devices that rebound by at most each of the yield heights. Shares are rounded down,
+// so that 100 % means all devices.
 std::string yields_cell(const DevicesFindings::Row& row) {
   if (row.yield.empty()) return "—";
   std::string cell;
@@ -88,7 +88,7 @@ std::string yields_cell(const DevicesFindings::Row& row) {
   return cell + " %";
 }
 
-// Returns the name of a row in tables: the choice and the file that holds its waveform.
+// Returns the name of a row in tables: the choice of waveform and the file of the waveform.
 std::string shown_name(const DevicesFindings& d, const DevicesFindings::Row& row) {
   if (row.name == for_the_drawing) return "nominal design: drawing.toml";
   for (const DevicesFindings::Choice& one : d.choices) {
@@ -98,21 +98,21 @@ std::string shown_name(const DevicesFindings& d, const DevicesFindings::Row& row
   return row.name == for_the_devices ? "best.toml" : is_calibrated ? "per-device calibration: " + row.name : row.name;
 }
 
-constexpr double least_share = 0.0005;  // smaller shares of devices are left out
+constexpr double least_share = 0.0005;  // smaller shares of devices are not shown
 
-// Tells whether any of these rows has such a share that its table shows it.
+// Returns true if this share of devices is large enough in any row for a column in the table.
 bool any_of(const std::vector<DevicesFindings::Row>& rows, double DevicesFindings::Row::*share) {
   return std::ranges::any_of(rows, [&](const DevicesFindings::Row& row) { return row.*share > least_share; });
 }
 
-// A page has room for more words than a terminal.
+// Returns a heading with a longer text for a page than for a terminal.
 TableCell headed(std::string_view on_terminal, std::string_view on_page) {
   TableCell cell(on_terminal);
   cell.html = escaped(capitalised(std::string(on_page)));
   return cell;
 }
 
-// Draws the choices and the plain step: impact velocity against the time from which the contact force is steady.
+// Draws the choices of waveforms and the plain step: impact velocity against the time from which the contact force is steady.
 std::string choices_picture(const DevicesFindings& d) {
   if (d.choices.size() < 2) return {};
   CurveTables tables;
@@ -164,7 +164,7 @@ std::string choices_picture(const DevicesFindings& d) {
          "</div>\n";
 }
 
-// Draws the bounce-free share and the impact velocity over the error of Vdp.
+// Draws the bounce-free share and the impact velocity against the error of the measured pull-in voltage Vdp.
 std::string error_curve(const DevicesFindings& d) {
   if (d.by_error.size() < 2) return {};
   CurveTables tables;
@@ -248,7 +248,7 @@ std::vector<KeyNumber> internal::devices_keys(const DevicesFindings& d) {
   const DevicesFindings::Row *step = d.row(plain_step_row), *own = d.row(for_the_devices);
   if (step == nullptr || own == nullptr) return {};
   std::vector<KeyNumber> keys;
-  for (std::size_t i = 0; i < 4; ++i) {  // up to the steady force
+  for (std::size_t i = 0; i < 4; ++i) {  // the columns up to the steady force
     const std::string_view key = columns[i].key;
     keys.push_back({.name = capitalised(std::string(columns[i].heading)) + ", 95th percentile",
                     .value = cell_of(key, value_in(own->at_95, key)),
@@ -259,7 +259,7 @@ std::vector<KeyNumber> internal::devices_keys(const DevicesFindings& d) {
 
 namespace {
 
-// Lists these rows, by their names in the first column.
+// Returns a table of these rows, with the given names in the first column.
 ReportTable devices_table(const DevicesFindings& d, const std::vector<std::pair<std::string, const DevicesFindings::Row*>>& rows,
                           ShownIn where) {
   ReportTable table{.head = {"95th percentile (99th)"}, .rows = {}};
@@ -289,7 +289,7 @@ ReportTable devices_table(const DevicesFindings& d, const std::vector<std::pair<
   return table;
 }
 
-// Lists the choices beside the plain step, and the row with the best measurement.
+// Returns a table of the choices of waveforms, the plain step, and the row with the best measurement.
 ReportTable choices_table(const DevicesFindings& d) {
   std::vector<std::pair<std::string, const DevicesFindings::Row*>> rows;
   const auto add = [&](const std::string& row) {
@@ -303,7 +303,7 @@ ReportTable choices_table(const DevicesFindings& d) {
   return devices_table(d, rows, ShownIn::terminal);
 }
 
-// Lists the choices first, in their order, and the other rows after them.
+// Returns a table of all rows, first the choices of waveforms.
 ReportTable all_rows(const DevicesFindings& d) {
   std::vector<std::pair<std::string, const DevicesFindings::Row*>> rows;
   const auto add = [&](const DevicesFindings::Row* row) {
@@ -316,7 +316,7 @@ ReportTable all_rows(const DevicesFindings& d) {
   return devices_table(d, rows, ShownIn::page);
 }
 
-// Says which drive carries the switch to its contact: "The piezo carries 96.3 % of the devices to their contact ..."
+// Describes the drive that moves the switch to its contact: "The piezo carries 96.3 % of the devices to their contact ..."
 std::string path_prose(const DevicesFindings& d) {
   if (!d.stable_path) return {};
   const DevicesFindings::StablePath& path = *d.stable_path;
@@ -338,7 +338,7 @@ std::string delay_prose(const DevicesFindings& d) {
       quantity(d.step_delay, "s"));
 }
 
-// Tells how much per-device calibration would improve.
+// Describes the gain by per-device calibration.
 std::string measuring_prose(const DevicesFindings& d) {
   const DevicesFindings::Row *own = d.row(for_the_devices), *measured = d.row(d.measured);
   const bool were_judged =

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-// Returns the value at this path of keys; a null value when any of them is missing.
+// Returns the value at this path of keys; null if any key is missing.
 const json& at(const json& value, std::initializer_list<std::string_view> path) {
   static const json nothing;
   const json* here = &value;
@@ -33,7 +33,7 @@ double number(const json& value) { return value.is_number() ? value.get<double>(
 std::string text(const json& value) { return value.is_string() ? value.get<std::string>() : std::string(); }
 std::string text(const json& value, std::initializer_list<std::string_view> path) { return text(at(value, path)); }
 
-// Reads a quantity as a resolved scene writes it, "2 um", in SI units; a plain number as it is.
+// Returns a quantity of a resolved scene, such as "2 um", in SI units. A number without a unit is returned as it is.
 double quantity(const json& value) {
   if (!value.is_string()) return number(value);
   try {
@@ -49,7 +49,7 @@ std::vector<double> quantities(const json& list) {
   return all;
 }
 
-// Reads the members of an object, by name.
+// Returns the members of an object, each read by `read`, by name.
 template <class Read>
 auto members_of(const json& object, const Read& read) {
   std::map<std::string, decltype(read(object))> all;
@@ -58,7 +58,7 @@ auto members_of(const json& object, const Read& read) {
   return all;
 }
 
-// Reads a length, a percentage of a beam's length, or its tip.
+// Returns a place on a beam [m] that is given as a length, as a percentage of the length of the beam, or as its tip.
 double place_on(double length, const json& place) {
   const std::string written = text(place);
   if (written == "tip") return length;

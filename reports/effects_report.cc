@@ -21,12 +21,12 @@ namespace {
 using internal::json_number;
 using nlohmann::json;
 
-// Returns the change of a figure from the scene's own closing to another.
+// Returns the relative change of a figure from the closing of the scene to another closing.
 double change(const Figure& figure, const Metrics& metrics, const Metrics& own) {
   return relative_change(figure.value(metrics), figure.value(own));
 }
 
-// Write the values that are computed from the closings beside each of them.
+// Writes each closing with its changes from the closing of the scene.
 template <class Closing>
 json compared_json(const std::vector<Closing>& closings, const Metrics& own) {
   json all = json::array();
@@ -42,7 +42,7 @@ std::string size_of(const NamedNumber& n) {
   return std::isfinite(n.value) ? fmt::format("{} {}", n.name, internal::quantity(n.value, n.unit)) : std::string();
 }
 
-// Lists each effect of the scene, left out.
+// Returns a table with a row for each effect, for the closing without this effect.
 ReportTable omissions_table(const Effects& effects) {
   const Effect& own = effects.own("gas");
   ReportTable table{.head = {"left out", {"", "words"}}, .rows = {}};
@@ -94,7 +94,7 @@ std::string spread_of_laws(const Effects& effects) {
                    words + ".";
 }
 
-// Writes a line per closing that was not followed to the end of the window.
+// Returns a line per closing whose simulation stopped before the end of the window.
 std::vector<std::string> bounds_of(const Effects& effects) {
   std::vector<std::string> lines;
   const auto tell = [&](const std::string& closing, const Metrics& figures, const std::optional<double>& end) {
@@ -111,7 +111,7 @@ std::vector<std::string> bounds_of(const Effects& effects) {
   return lines;
 }
 
-// Writes one line per warning, with the laws it is about.
+// Returns a line per warning, with the names of the laws that give the warning.
 std::vector<std::string> warnings_of(const Effects& effects) {
   std::vector<std::pair<std::string, std::string>> warnings;  // laws and text of each warning
   for (const Effect& e : effects.list) {

@@ -33,7 +33,7 @@ ExplorationReport read_exploration(const StudyReader& store, const std::string& 
     try {
       extra.at("waveforms").get_to(report.waveforms[row.point]);
     } catch (const json::exception&) {
-      report.waveforms.erase(row.point);  // another version wrote it
+      report.waveforms.erase(row.point);  // the waveform is from another version
     }
   });
   if (!pareto.empty() || plan.is_search()) report.aims = explored_aims(report.columns, pareto.empty() ? plan.pareto() : pareto);

@@ -31,9 +31,9 @@ using internal::explored_text;
 using internal::json_number;
 using nlohmann::json;
 
-constexpr std::size_t most_front_rows = 40;  // largest number of rows in words
+constexpr std::size_t most_front_rows = 40;  // largest number of rows of the table of the front
 
-/// Returns the sign for minimisation: an aim that is to be large changes its sign.
+/// Returns the factor that makes an aim one to minimise: -1 for an aim to maximise.
 double sign_of(const ExploredAim& aim) { return aim.is_largest ? -1 : 1; }
 
 std::string aim_name(const ExplorationReport& report, const ExploredAim& aim) {
@@ -64,7 +64,7 @@ std::string with_blanks(std::string words) {
   return words;
 }
 
-/// Returns the names of the variables of a report that vary: "structure.length and gap.contact".
+/// Returns the names of the variables that take several values: "structure.length and gap.contact".
 std::string varying_names(const ExplorationReport& report) {
   std::vector<std::string> names;
   for (const std::size_t c : columns_of(report, true)) {
@@ -124,10 +124,10 @@ std::vector<KeyNumber> keys_of(const ExplorationReport& report, const ExploredFr
   return keys;
 }
 
-/// Makes a placeholder that the script fills.
+/// Returns an empty element, which the script of the page fills, and the static picture `still`.
 Drawing drawn(const std::string& still = {}) { return drawing_of("<div class=\"part\"></div>\n" + still); }
 
-/// Draws a map without a script, of as many cells as a print shows.
+/// Draws a map as static SVG; empty if the map has more than `most_cells` cells.
 std::string still_map(const ExplorationReport& report, const internal::ExploredGrid& grid) {
   constexpr std::size_t most_cells = 14'400;
   const std::size_t figure = internal::leading_figure(report);
@@ -170,7 +170,7 @@ std::string front_prose(const ExplorationReport& report, const ExploredFront& fr
   return words + ".";
 }
 
-// A page may break a key behind its dots.
+// Returns a heading in which a page may break a key after its dots.
 TableCell column_head(const std::string& name) {
   TableCell cell(name);
   for (const std::string_view part : split(name, '.'))
@@ -178,7 +178,7 @@ TableCell column_head(const std::string& name) {
   return cell;
 }
 
-// Lists as many points as fit on a screen, evenly along the front, with its knee and its ends.
+// Returns a table of points along the Pareto front, one per `stride`, with the knee and the ends of the front.
 ReportTable front_table(const ExplorationReport& report, const ExploredFront& front, std::size_t stride) {
   std::vector<std::size_t> columns;
   for (const ExploredAim& aim : report.aims) columns.push_back(aim.column);
@@ -339,8 +339,7 @@ std::vector<std::size_t> grid_variables(const ExplorationReport& report) {
 std::string exploration_map_svg(const ExplorationReport& report, std::size_t x, std::size_t y, std::size_t figure) {
   const std::optional<internal::ExploredGrid> grid = internal::grid_of(report);
   require(grid.has_value(), "a map needs points on a grid of at least two variables");
-  constexpr std::size_t most_cells =
-      40'000;  // at some 30 bytes each: more are finer than a screen, and slow down the opening of the file
+  constexpr std::size_t most_cells = 40'000;  // more cells of some 30 bytes are invisible and slow down the opening of the file
   const internal::HeatMap map = internal::thinned_map(internal::heat_map_of(report, *grid, x, y, figure), most_cells);
   return svg_frame(fmt::format("{} over {} and {}", map.label, report.columns[x].name, report.columns[y].name), report.title,
                    [&](double width, double top) {

@@ -12,13 +12,13 @@
 namespace softland::internal {
 namespace {
 
-constexpr int figure_digits = 4;  // digits of the tables, where the error does not allow fewer
+constexpr int figure_digits = 4;  // digits in tables, unless the error permits fewer
 
 }  // namespace
 
 Change change(double before, double after, bool lower_is_better, ChangeKind kind) {
   if (!std::isfinite(before) || !std::isfinite(after)) return {};
-  constexpr double visible = 0.005;  // a ratio nearer to 1 than half a per cent counts as unchanged
+  constexpr double visible = 0.005;  // a ratio within half a per cent of 1 counts as unchanged
   if (std::abs(after - before) <= visible * std::abs(before)) return {"unchanged", Verdict::same};
   const bool lower = after < before;
   const Verdict verdict = !lower_is_better ? Verdict::neutral : lower ? Verdict::better : Verdict::worse;

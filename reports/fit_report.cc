@@ -22,16 +22,16 @@ using internal::plain_number;
 using internal::quantity;
 using nlohmann::json;
 
-constexpr double unlikely = 3;  // a deviation of this many errors is unlikely
+constexpr double unlikely = 3;  // number of standard errors from which a deviation is unlikely
 
 std::string label_of(const FittedUnknown& u) { return u.device.empty() ? u.name : fmt::format("{} of {}", u.name, u.device); }
 
-// Show masses in grams.
+// Formats a value with its unit; a mass is in grams.
 std::string in_unit(double value, const std::string& unit, int digits = 3) {
   return unit == "kg" ? quantity(1e3 * value, "g", digits) : quantity(value, unit, digits);
 }
 
-// Show factors as they change the scene's values.
+// Formats a fitted value; a factor as the change of the value in the scene.
 std::string fitted_value_text(const FittedUnknown& u, double value, double error) {
   if (!std::isfinite(value)) return "—";
   if (u.unit.empty()) return internal::relative_change(value - 1);
@@ -45,7 +45,7 @@ std::string nominal_text(const FittedUnknown& u) {
 }
 
 std::string fitted_error_text(const FittedUnknown& u) {
-  constexpr double nothing = 100;  // nothing is known from an error of this many scales on
+  constexpr double nothing = 100;  // least standard error of an unknown value, in scales
   if (!(u.standard_error < nothing * u.scale)) return "not known";
   if (u.unit.empty()) return plain_number(100 * u.standard_error, 2) + "\u00a0%";
   const std::string share =
@@ -72,7 +72,7 @@ std::string what_text(const FitResidual& r) {
   return text;
 }
 
-// Returns "+1 % of a with −2.1 % of b".
+// Describes a direction in which the data determine nothing: "+1 % of a with −2.1 % of b".
 std::string direction_prose(const Fit& fit, const WeakDirection& weak) {
   std::vector<std::string> words;
   for (const std::size_t i : weak.unknowns) {
@@ -110,7 +110,7 @@ std::vector<std::string> fit_prose(const Fit& fit) {
     return all;
   }
   const auto free = static_cast<double>(freedom(fit));
-  constexpr double beyond = 4;  // limit in standard deviations of chi squared
+  constexpr double beyond = 4;  // largest excess of chi squared in standard deviations
   if (free > 0 && fit.chi_squared() > free + beyond * std::sqrt(2 * free))
     all.push_back(fmt::format(
         "The device does not match the model within the errors of the data: chi squared of {} residuals is {}, and {} is "
@@ -252,7 +252,7 @@ void add_residual_chart(const FitRecord& fit, internal::Picture& drawn) {
   drawn.charts.push_back(std::move(chart));
 }
 
-// Draws the measurements over levels or times, with the scene before and after.
+// Draws measurements against level or time, with the predictions of the scene before and after the fit.
 void add_courses(const FitRecord& fit, internal::Picture& drawn) {
   constexpr std::size_t most = 12;
   std::map<std::tuple<std::string, Measurable, bool>, std::vector<const FitResidual*>> groups;
@@ -328,7 +328,7 @@ std::vector<KeyNumber> keys_of(const FitRecord& fit) {
 
 namespace internal {
 
-/// The prior knowledge of an unknown.
+/// The prior mean and deviation of an unknown.
 struct Prior {
   double mean = Metrics::unset, deviation = Metrics::unset;
 };
@@ -478,7 +478,7 @@ Document document_of(const FitRecord& fit) {
                     .headline = fit_headline(fit),
                     .sections = {values_section(fit)},
                     .made = made_again(fit.origin, fit.seed, fit.tolerance)};
-  constexpr std::size_t most = 12;  // largest number of unknowns whose correlations can be read
+  constexpr std::size_t most = 12;  // largest number of unknowns in a readable table of correlations
   if (fit.unknowns.size() >= 2 && fit.correlation.size() == fit.unknowns.size() && fit.unknowns.size() <= most)
     document.sections.push_back({.id = "correlation",
                                  .heading = "Correlations of the errors",

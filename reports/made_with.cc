@@ -34,7 +34,7 @@ constexpr std::string_view instruction_set =
     "";
 #endif
 
-// Reads the note that the linker leaves in the program: a hash of its content. The program itself is the first object.
+// Returns the hash of the program, from a note that the linker writes. The first loaded object is the program itself.
 std::string build_id() {
   std::string id;
   dl_iterate_phdr(
@@ -42,7 +42,7 @@ std::string build_id() {
         for (int i = 0; i < object->dlpi_phnum; ++i) {
           const auto& segment = object->dlpi_phdr[i];
           if (segment.p_type != PT_NOTE) continue;
-          // NOLINTNEXTLINE(performance-no-int-to-ptr): the loader gives addresses as numbers
+          // NOLINTNEXTLINE(performance-no-int-to-ptr): the loader gives addresses as integers
           const auto* at = reinterpret_cast<const char*>(object->dlpi_addr + segment.p_vaddr);
           const char* end = at + segment.p_memsz;
           while (at + sizeof(ElfW(Nhdr)) <= end) {
@@ -73,7 +73,7 @@ std::string processor() {
       const std::size_t colon = line.find(": ");
       if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
     }
-  } catch (const InvalidInput&) {  // not every machine tells
+  } catch (const InvalidInput&) {  // some machines have no such file
   }
   return {};
 }

@@ -21,13 +21,13 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double travel = 130;  // distance from the electrode to the highest place [px]
+constexpr double travel = 130;  // distance from the electrode to the highest position of the beam [px]
 constexpr double right_end = 520, detail_left = 650,
                  detail_wide = 150;  // ends of the moving part and of the picture beside it [px]
 constexpr double figure_width = 820;
 constexpr double detail_top = 6, contact_wide = 12;
 
-// A run whose motion is known.
+// A run with a recorded motion, and its role in the figure.
 struct ShownRun {
   const char* role;
   std::string label;
@@ -42,7 +42,7 @@ bool are_numbers(const std::vector<double>& all, std::size_t count) {
 
 bool rises(const std::vector<double>& all) { return std::ranges::is_sorted(all) && all.back() > all.front(); }
 
-// A file may be damaged: check the shape of its motion.
+// Returns true if all columns of a motion have the right length; those in a damaged file may not.
 bool is_sound(const ShownMotion& m) {
   const auto all = [](const std::vector<std::vector<double>>& columns, std::size_t rows) {
     return std::ranges::all_of(columns, [&](const auto& column) { return are_numbers(column, rows); });
@@ -71,7 +71,7 @@ std::size_t place_of(const ShownMotion& m, double at) {
   return static_cast<std::size_t>(nearest - m.places.begin());
 }
 
-// Returns the height of the lower face at a place, in the row of an instant [m].
+// Returns the height of the lower face of the beam at a place and instant [m].
 double height(const ShownMotion& m, std::size_t row, std::size_t place) {
   double sum = m.rest[place];
   for (std::size_t i = 0; i < m.shapes.size(); ++i) sum -= m.amplitudes[i][row] * m.shapes[i][place];
@@ -83,7 +83,7 @@ std::size_t row_of(const ShownMotion& m, double time) {
   return next == m.time.end() ? m.time.size() - 1 : static_cast<std::size_t>(next - m.time.begin());
 }
 
-// Returns the round length of a scale bar, at most this long [m].
+// Returns the largest round length up to `most` for a scale bar [m].
 double round_length(double most) {
   const double power = std::pow(10, std::floor(std::log10(most)));
   return power * (most >= 5 * power ? 5 : most >= 2 * power ? 2 : 1);
@@ -96,7 +96,7 @@ std::string scale_bar(double x, double bottom, double per_metre, double most) {
          drawn_words(x + 8, (top + bottom) / 2 + 4, "start", given_quantity(length, "m"));
 }
 
-// The view maps places to the picture.
+// Maps places on the switch to pixels.
 class MotionView {
  public:
   MotionView(const ClosingRecord& result, const std::vector<ShownRun>& runs) : runs_(runs), motion_(runs.front().motion()) {
@@ -136,16 +136,16 @@ class MotionView {
   [[nodiscard]] double exaggeration() const { return per_metre_ * motion_.places.back() / (right_end - SideView::left); }
   [[nodiscard]] bool has_detail() const { return detail_per_metre_ > 0; }
   [[nodiscard]] double bottom() const { return view_.floor + SideView::electrode; }
-  /// Returns the line of the last words below the picture.
+  /// Returns the y coordinate of the lowest text of the picture [px].
   [[nodiscard]] double end() const {
     const auto near = std::ranges::count_if(motion_.contacts, [](const auto& c) { return !c.far_side; });
     return bottom() + 14 + (motion_.contacts.size() > 1 ? 14 * static_cast<double>(near) : 0);
   }
 
-  /// Draws the parts that stand still.
+  /// Draws the parts that do not move.
   [[nodiscard]] std::string surroundings() const {
     std::string out = drawn_supports(view_) + drawn_electrodes(scene_, view_);
-    double names = bottom() + 28;  // they stand below those of the electrodes
+    double names = bottom() + 28;  // baseline below the names of electrodes
     for (std::size_t k = 0; k < motion_.contacts.size(); ++k) {
       const ShownMotion::Contact& c = motion_.contacts[k];
       out += drawn_contact(k);
@@ -163,7 +163,7 @@ class MotionView {
     return out + drawn_words(centre, bottom() + 14, "middle", "at the contact, enlarged");
   }
 
-  /// Returns the moving part at the instant of a row, as the data of a path.
+  /// Returns the moving part at an instant as the data of an SVG path.
   [[nodiscard]] std::string shape(const ShownMotion& m, std::size_t row) const {
     std::string lower, upper;
     for (std::size_t k = 0; k < m.places.size(); ++k) {
@@ -174,7 +174,8 @@ class MotionView {
     return lower + upper + "Z";
   }
 
-  /// Draws the first contact's place in the picture beside, at the instant of a row; empty where it is beyond that.
+  /// Draws the first contact enlarged, in the picture beside the switch, at an instant; empty if the beam is outside that
+  /// picture.
   [[nodiscard]] std::string detail(const ShownMotion& m, std::size_t row, const std::string& style) const {
     if (!has_detail()) return {};
     const ShownMotion::Contact& c = m.contacts.front();
@@ -185,7 +186,7 @@ class MotionView {
                        detail_wide, style);
   }
 
-  /// Returns the numbers that the script needs beside the runs.
+  /// Returns the constants that the script needs to draw the runs.
   [[nodiscard]] json json_of() const {
     json all{{"bottom", view_.bottom}, {"perMetre", per_metre_}, {"thick", SideView::thick}, {"contacts", json::array()}};
     for (std::size_t k = 0; k < motion_.contacts.size(); ++k)
@@ -204,7 +205,8 @@ class MotionView {
 
  private:
   [[nodiscard]] double ceiling() const { return view_.top - far_ * per_metre_ - 20; }
-  // The contact of a plate is drawn in its middle: all its places move alike.
+  // Returns the x coordinate of a contact. The single contact of a plate is drawn in the middle: all places of a plate move
+  // alike.
   [[nodiscard]] double x_of(const ShownMotion::Contact& c) const {
     return view_.x_at(view_.plate && motion_.contacts.size() == 1 ? 0.5 : c.at / view_.length);
   }
@@ -217,7 +219,7 @@ class MotionView {
            drawn_rectangle(left - contact_wide / 2, top, contact_wide, std::max(0.0, end - top), "contact") + "</g>\n";
   }
 
-  // Scale the picture beside so that the highest rebound of the first contact fills it.
+  // Chooses the scale of the enlarged picture: the highest rebound at the first contact fills the picture.
   void set_detail() {
     if (motion_.contacts.empty()) return;
     double highest = 0.01 * motion_.contacts.front().gap;
@@ -238,7 +240,7 @@ class MotionView {
   double detail_plane_ = 0, detail_per_metre_ = 0;
 };
 
-// Returns the main instants of a run, with their names.
+// Returns the main instants of a run and their names.
 std::vector<std::pair<double, std::string>> told_instants(const CurveRecord& curve) {
   std::vector<std::pair<double, std::string>> all{{curve.motion->time.front(), "at the start"}};
   const bool closes = curve.closed && !curve.closed->empty();
@@ -269,7 +271,7 @@ std::string strobe(const MotionView& view, const CurveRecord& curve) {
   return "<g class=\"strobe\">\n" + shapes + names + "</g>\n";
 }
 
-// The contact is open before and after the recorded times.
+// Returns a run for the script. The contact is open before and after the recorded times.
 json run_json(const ShownRun& run, const MotionView& view) {
   constexpr double fine = 1e-6;
   const ShownMotion& m = run.motion();
@@ -288,7 +290,7 @@ json run_json(const ShownRun& run, const MotionView& view) {
           {"x", view.x_of(m)},        {"places", places}};
 }
 
-// Returns the duration of the highest rebound [s]; for a run without any a fiftieth of it.
+// Returns the duration of the highest rebound [s]; without rebounds, a fiftieth of the run.
 double slowest_stretch(const std::vector<ShownRun>& runs) {
   const Rebound* highest = nullptr;
   for (const ShownRun& run : runs) {

@@ -26,7 +26,7 @@ using nlohmann::json;
 
 namespace {
 
-// These are the JSON keys of voltages by modes.
+// JSON keys of voltages by number of modes.
 constexpr std::array by_modes_rows{std::pair("static_V", &VoltagesByModes::static_pull_in),
                                    std::pair("release_V", &VoltagesByModes::release),
                                    std::pair("pulled_through_V", &VoltagesByModes::pulled_through)};
@@ -43,7 +43,7 @@ std::string csv_cell(double value) { return std::isfinite(value) ? fmt::format("
 
 std::string_view branch_name(const SweepPoint& p) { return p.is_up ? "up" : "down"; }
 
-// Returns the columns of one branch, in rising order of the voltage.
+// Returns the points of one branch, up or down, as columns in rising order of the voltage.
 internal::CurveTable branch_of(std::vector<SweepPoint> points, bool is_up) {
   std::erase_if(points, [&](const SweepPoint& p) { return p.is_up != is_up || p.state == SweepState::none; });
   std::stable_sort(points.begin(), points.end(), [](const SweepPoint& a, const SweepPoint& b) { return a.voltage < b.voltage; });
@@ -83,7 +83,7 @@ std::string shift_clause(const std::optional<VoltagesByModes>& found, ByModes Vo
   return shift.empty() ? shift : "; more modes change it by " + shift;
 }
 
-// Tells whether the scene has contacts; the face of a dielectric with a landing is a contact, too.
+// Returns true if the scene has contacts; the face of a dielectric with a landing is also a contact.
 bool makes_contact(const json& scene) {
   const json electrodes = scene.value("electrode", json::object());
   return scene.contains("contact") || std::ranges::any_of(electrodes, [](const json& electrode) {
@@ -162,7 +162,8 @@ void members(A& a, SweepPoint& point) {
 template <class A>
 void members(A& a, PullInsRecord& record) {
   a("electrodes", record.electrodes);
-  if (!A::reads && record.electrodes.size() == 1) members(a, record.electrodes.begin()->second);  // one is the usual case
+  // In JSON, the members of a single electrode also stand at the top level.
+  if (!A::reads && record.electrodes.size() == 1) members(a, record.electrodes.begin()->second);
   std::map<std::string, PullInRecord> voltages;
   for (const auto& [name, one] : record.electrodes) voltages[name] = one.volts;
   if (record.electrodes.size() != 1) a.derived("pull_in", voltages);
@@ -189,7 +190,7 @@ ElectrodeRecord record_of(const PreparedScene& p, std::size_t k, const Electrode
                                   .deflection = s.deflection,
                                   .neutral = p.model.neutral_voltage(k) != 0 ? p.model.neutral_voltage(k) : Metrics::unset,
                                   .dynamic_kind = dynamic_kind(p, k, s.voltage, d.voltage)}};
-  const bool was_found = d.status != Status::interrupted;  // false when the user stopped the search: no more modes are computed
+  const bool was_found = d.status != Status::interrupted;  // false after an interruption: no more modes are computed
   if (const ModeLadder ladder(p); was_found && ladder.exists() && std::isfinite(s.voltage))
     found.volts.by_modes = voltages_by_modes(ladder, p.scene, k, closed.pulled_through);
   const std::vector<std::string> names = p.drive_names();

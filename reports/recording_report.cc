@@ -47,7 +47,7 @@ std::string shown(double value, const Channel& channel) {
                                   : quantity(value, "", digits) + (channel.unit.empty() ? "" : " " + channel.unit);
 }
 
-// Returns the rows without those inside a constant stretch: few rows of steps are drawn as steps.
+// Returns the rows without the interior of constant stretches, so that steps are drawn as steps.
 std::vector<std::size_t> corners(const std::vector<double>& values) {
   std::vector<std::size_t> rows;
   for (std::size_t i = 0; i < values.size(); ++i) {

@@ -60,7 +60,7 @@ ResultFolder::ResultFolder(const fs::path& folder, const std::string& called, co
 
 void ResultFolder::RemoveEmpty::operator()(const fs::path* folder) const {
   std::error_code ignored;
-  fs::remove(*folder, ignored);  // fails for a folder that holds anything
+  fs::remove(*folder, ignored);  // has no effect on a folder with files
   delete folder;
 }
 
@@ -87,11 +87,11 @@ void ResultFolder::remove_abandoned() const {
   for (int k = 1; k <= most_stages; ++k) {
     const fs::path stage = staged(folder_, k);
     if (!fs::is_directory(stage, error)) continue;
-    // Adopt only files that this kind of run leaves: a search is not given up for a simulation in the same folder.
+    // Adopt only files of this kind of run: a simulation must not discard the unfinished search in its folder.
     bool ours = true;
     for (const auto& entry : fs::directory_iterator(stage, error)) {
       std::string name = name_to_be(entry.path().filename());
-      for (const std::string_view end : companion_endings) {  // companions of a store whose writer was killed
+      for (const std::string_view end : companion_endings) {  // files beside the database file of a killed run
         if (name.ends_with(end)) name.resize(name.size() - end.size());
       }
       ours = ours && is_of(files_, name) && !was_read(entry.path());
@@ -107,7 +107,7 @@ void ResultFolder::check_lock() const {
 void ResultFolder::make_stage() {
   check_lock();
   std::error_code error;
-  // The unfinished results of a killed run may be the only ones: keep them until these are finished.
+  // The unfinished results of a killed run may be the only results: keep them until the results of this run are complete.
   for (int k = 1; stage_.empty(); ++k) {
     const fs::path stage = staged(folder_, k);
     require(k <= most_stages, fmt::format("{} and {} more hold results of runs that were killed: move or remove them",
@@ -138,13 +138,13 @@ void ResultFolder::publish(bool interrupted) {
   std::error_code error;
   for (const std::string& name : written_) {
     if (const fs::file_status old = fs::status(folder_ / name, error); fs::is_regular_file(old)) {
-      fs::permissions(stage_ / name, old.permissions(), error);  // the new file gets the access rights of the one it replaces
+      fs::permissions(stage_ / name, old.permissions(), error);  // the new file has the permissions of the replaced file
     }
     fs::rename(stage_ / name, folder_ / name, error);
     if (error)
       throw OutputLost(
           fmt::format("{}: cannot be replaced by {}: {}", (folder_ / name).string(), (stage_ / name).string(), error.message()));
-    // A store that somebody reads keeps its log until that reader has closed it.
+    // While another program reads a database file, the log of the database remains: move it too.
     const fs::path log = stage_ / (name + "-wal");
     if (fs::exists(log, error)) fs::rename(log, folder_ / (name + "-wal"), error);
   }

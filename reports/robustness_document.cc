@@ -1,4 +1,4 @@
-// Diagrams and document of `softland robustness`.
+// The document of `softland robustness` with its diagrams.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -56,7 +56,7 @@ std::string label_of(const Figure& f) {
   return fmt::format("{}{}{}", f.name, has_index ? ", " : "", has_index ? f.symbol : "");
 }
 
-// Returns Softland's pen for the last drive, that of the baseline for the plain step, others between.
+// Returns the role of drive i in charts: the last drive is `best`, the plain step `baseline`.
 internal::Role role_of(std::size_t i, std::size_t count) {
   if (i + 1 == count && i > 0) return internal::Role::best;
   if (i == 0) return internal::Role::baseline;
@@ -95,7 +95,7 @@ internal::Chart distribution_chart(const RobustnessReport& report, std::string_v
       table["x"].push_back(values[k]);
       table["y"].push_back(100 * static_cast<double>(k + 1) / all);
     }
-    // Show the range of all but a few devices of any drive.
+    // Choose the range of x so that it covers 99 % of the devices for every drive.
     most = std::max(most, values[std::min(values.size() - 1, values.size() * 99 / 100)]);
     chart.series.push_back(
         {.table = name, .column = "y", .label = shown_drive(drives[i].name), .role = role_of(i, drives.size())});
@@ -107,8 +107,8 @@ internal::Chart distribution_chart(const RobustnessReport& report, std::string_v
   return chart;
 }
 
-// Draws the number of devices by value, in bins that all drives share, over the range of the cumulative curves: two kinds of
-// closings make two peaks.
+// Draws a histogram of a figure over the devices. All drives share the bins, over the range of the cumulative curves. Two kinds
+// of closings appear as two peaks.
 internal::Chart histogram_chart(const RobustnessReport& report, std::string_view key, const internal::Chart& cumulative,
                                 internal::CurveTables& tables) {
   const Figure& f = figure_of(key);
@@ -202,7 +202,7 @@ internal::Picture picture_of(const RobustnessReport& report) {
   return drawn;
 }
 
-// Cut a name at its beginning: the end, such as the last folder of a path, says more.
+// Returns the end of a name, which says more than its beginning: the last folder of a path, for example.
 std::string end_of(const std::string& name, std::size_t columns) {
   if (internal::display_width(name) <= columns) return name;
   std::string end = name;
@@ -250,7 +250,7 @@ ReportSection statistics_section(const RobustnessRecord& found) {
                     Paragraph{.text = internal::window_prose(found.windows), .is_note = true}}};
 }
 
-// Shows the value of measurements: the last drive with more and more measured on every device.
+// Shows the value of per-device calibration: the last drive, with more and more quantities measured on every device.
 ReportSection knowledge_section(const RobustnessRecord& found) {
   ReportSection section{.id = "knowledge", .heading = "Value of per-device calibration", .parts = {}};
   if (found.by_knowledge.empty()) return section;
@@ -268,7 +268,7 @@ ReportSection knowledge_section(const RobustnessRecord& found) {
   return section;
 }
 
-// Returns "62 % (55 to 69)".
+// Returns a Sobol' index with its confidence interval: "62 % (55 to 69)".
 std::string index_text(const SobolIndex& index) {
   if (!std::isfinite(index.value)) return "—";
   const auto share = [](double value) { return 100 * internal::share_of(value) + 0.0; };
@@ -392,7 +392,7 @@ Document robustness_document(const RobustnessReport& report) {
   if (report.found.devices == 0) return document;
   document.draw = [&report] { return picture_of(report); };
   document.sections.front().parts.emplace_back(internal::all_charts());
-  constexpr std::ptrdiff_t behind_figures = 3;  // the sections on known units and figures come first
+  constexpr std::ptrdiff_t behind_figures = 3;  // number of sections before the scatter plots: those on calibration and figures
   document.sections.insert(document.sections.begin() + behind_figures, internal::device_scatter(report));
   return document;
 }

@@ -57,7 +57,7 @@ std::map<std::string, Points> waveforms_of(const PreparedScene& nominal, const D
   return all;
 }
 
-// Returns the warnings of the nominal scene, and why the last drive does not hold the nominal device.
+// Returns the warnings of the nominal scene, and the reason why the last drive does not hold the nominal device closed.
 std::vector<std::string> warnings(const RobustnessReport& report) {
   std::vector<std::string> all = report.nominal.scene.warnings;
   if (!report.unheld.empty()) all.push_back(report.unheld);
@@ -132,7 +132,7 @@ std::string about_prose(const RobustnessReport& report) {
       internal::error_prose(spread), internal::outside_prose(found));
 }
 
-// Writes parts by figure, in the order of `keys`.
+// Writes or reads the parts of a record by figure, in the order of `keys`.
 template <class A, class Part, class Keys>
 void by_figure(A& a, std::vector<Part>& parts, const Keys& keys) {
   if constexpr (A::reads) {
@@ -411,7 +411,7 @@ RobustnessRecord record_of(const RobustnessReport& report) {
 
 json json_of(const RobustnessRecord& record) { return internal::record_json(record); }
 
-// A non-finite number is null in the JSON; a device that does not close counts as infinite.
+// Null in JSON stands for any non-finite number: figures over the box become infinite, as for a device that does not close.
 RobustnessRecord read_robustness(const json& from) {
   RobustnessRecord record = internal::whole_record<RobustnessRecord>(from);
   require(!record.drives.empty(), "\"drives\" is empty");
@@ -435,7 +435,7 @@ std::string robustness_csv(const RobustnessReport& report) {
                interrupted] = report;
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   std::string text = "device";
-  // Names may hold commas and quotes.
+  // A name may have commas and quotes.
   const auto cell = [](const std::string& name) {
     std::string quoted = "\"";
     for (const char c : name) quoted += c == '"' ? "\"\"" : std::string(1, c);

@@ -33,12 +33,12 @@ namespace {
 using internal::plain_number;
 using NoteSink = std::function<void(const std::string&)>;
 
-constexpr double usual_error = 0.01;  // relative error of a measurement whose error nobody gives
+constexpr double usual_error = 0.01;  // default of the relative error of a measurement
 
-// These formats are not files of generators.
+// Formats for other programs than waveform generators.
 constexpr std::array<std::string_view, 6> other_formats{"csv", "spice-pwl", "codes", "spice-model", "spice-bench", "verilog-a"};
 
-// Returns null for a format of no generator. Throws InvalidInput for an unknown format.
+// Returns the format of a waveform generator; null for any other format. Throws InvalidInput for an unknown format.
 const GeneratorFormat* generator_format(const std::string& name) {
   if (std::ranges::find(other_formats, name) != other_formats.end()) return nullptr;
   std::vector<std::string_view> names(other_formats.begin(), other_formats.end());
@@ -56,11 +56,11 @@ struct SentRow {
 constexpr auto sent_names = std::to_array<SentRow>({{Sent::commanded, "told"}, {Sent::output, "output"}});
 static_assert(is_complete<sent_names>());
 
-// A quantity that was measured on a device.
+// A quantity measured on a device.
 struct Measured {
   std::string_view name;
   Dimension due;
-  std::string said = {};  // text in which it was given
+  std::string said = {};  // text in which the user gave the quantity
   std::optional<double> value = {};
 
   void read(const std::string& option, const std::string& text) {
@@ -79,12 +79,12 @@ struct Measured {
   }
 };
 
-// The measurements on the device that gets the waveform.
+// The measurements on the device for which the waveforms are exported.
 struct Measurements {
   Measured pull_in{.name = measured_pull_in, .due = dimension::voltage};
   Measured frequency{.name = measured_frequency, .due = dimension::frequency};
-  Measured piezo{.name = measured_piezo, .due = dimension::inverse_voltage};  // its deflection per volt over the contact gap
-  Measured time{.name = measured_time, .due = dimension::time};               // time of closing under a step to closing_step Vdp
+  Measured piezo{.name = measured_piezo, .due = dimension::inverse_voltage};  // deflection per volt over contact gap
+  Measured time{.name = measured_time, .due = dimension::time};               // closing time under a step to closing_step Vdp
 
   explicit Measurements(const ExportRequest& request) {
     if (request.device_pull_in) pull_in.read(requested("device-vdp"), *request.device_pull_in);
@@ -115,7 +115,7 @@ struct Measurements {
   }
 };
 
-// Returns the relative error of a measurement: that of [calibration], or the usual one, with a remark.
+// Returns the relative error of a measurement: that of [calibration], or the default, with a remark.
 double error_of(const Measured& measured, const std::optional<double>& given, const NoteSink& note) {
   if (given && *given > 0) return *given;
   note(fmt::format("{}: its error is taken to be {}, because [calibration] gives none for {}", measured.said,
@@ -123,8 +123,8 @@ double error_of(const Measured& measured, const std::optional<double>& given, co
   return usual_error;
 }
 
-// Warns of a device that hardly any device of the spread is like. The argument `deviation` is that of the spread; `ratio` is
-// the measured unit over that of the nominal device; `own` is the measured value over the nominal one.
+// Warns of a device that is unlike nearly all devices of [spread], whose standard deviation is `deviation`. The argument
+// `ratio` is the measured unit over that of the nominal device; `own` is the measured value over the nominal value.
 void warn_if_strange(const Measured& measured, double own, double ratio, double deviation, const std::optional<double>& error,
                      const NoteSink& note) {
   constexpr double strange = 4;
@@ -136,13 +136,13 @@ void warn_if_strange(const Measured& measured, double own, double ratio, double 
                   measured.said, plain_number(100 * std::abs(own - 1), 3), plain_number(off / sigma, 2)));
 }
 
-// Returns the scene, with the usual process variation where it gives none.
+// Returns the scene; with the usual process variation if the scene gives none.
 PreparedScene with_spread(const PreparedScene& p) {
   SceneFile file = p.scene.file;
   return assume_spread(file) ? prepare(file) : p;
 }
 
-// Returns the units of the device on which this was measured.
+// Returns the voltage and time units of the device with these measurements.
 DeviceUnits units_of(const PreparedScene& p, const Measurements& measured, int jobs, const Progress& progress,
                      const NoteSink& note) {
   const PullInMeter meter(p, {.pull_in = measured.pull_in.value.has_value(),
@@ -175,7 +175,7 @@ DeviceUnits units_of(const PreparedScene& p, const Measurements& measured, int j
   return known.of({.volts = volts, .time = time, .piezo = piezo, .volts_by_time = told.volts_by_time});
 }
 
-// Returns the waveforms of that device. Throws InvalidInput where a source cannot give them.
+// Returns the waveforms for the device with these measurements. Throws InvalidInput if a voltage source cannot produce them.
 std::vector<Waveform> waveforms_of(const PreparedScene& p, const Measurements& measured, int jobs, const Progress& progress,
                                    const NoteSink& note) {
   const std::vector<Waveform> own = in_units(p.waveforms(), p.scene.device, units_of(p, measured, jobs, progress, note));
@@ -190,7 +190,7 @@ std::vector<Waveform> waveforms_of(const PreparedScene& p, const Measurements& m
   return own;
 }
 
-// Returns the drives whose samples have a number of bits; `note` names the others.
+// Returns the drives whose source has a number of bits, as integers; `note` receives the names of the other drives.
 std::map<std::string, Coded> coded(const PreparedScene& p, const SentSignals& sent, const NoteSink& note) {
   std::map<std::string, Coded> all;
   const std::vector<std::string> names = p.drive_names();
@@ -220,10 +220,10 @@ double last_breakpoint(const std::map<std::string, Signal>& signals) {
   return last;
 }
 
-// The exported scene, with the samples that are asked for.
+// The exported scene, with the samples that the request specifies.
 struct Exported {
   PreparedScene sampled;
-  std::optional<PreparedScene> drawn;  // set where the samples are not those of the scene
+  std::optional<PreparedScene> drawn;  // scene without these samples; set if the request specifies samples
   std::vector<std::string> drives;
 };
 Exported exported(SceneFile file, const ExportRequest& request, bool need_pull_in, const Progress& progress) {
@@ -234,7 +234,7 @@ Exported exported(SceneFile file, const ExportRequest& request, bool need_pull_i
   return {prepare_and_choose(file, need_pull_in, progress), std::move(drawn), std::move(drives)};
 }
 
-// Writes these drives, one alone for the file of a generator, as a file of that format.
+// Writes the signals of these drives in a format; the file of a generator has a single drive.
 std::string sent_text(const std::string& format, const PreparedScene& p, const std::vector<std::string>& drives,
                       const SentSignals& sent, double end, const Sampling& sampling, const NoteSink& note) {
   if (format == "csv") return csv(sent.signals, end, sent.sample_rates);
@@ -249,12 +249,13 @@ std::string sent_text(const std::string& format, const PreparedScene& p, const s
 
 constexpr std::array<std::string_view, 3> circuits{"spice-model", "spice-bench", "verilog-a"};
 
-// Returns the ending of a file of this format: ".arb".
+// Returns the file name ending of a format, such as ".arb".
 std::string_view ending_of(const std::string& format) {
   return format == "spice-pwl" ? ".cir" : format == "keysight-arb" ? ".arb" : ".csv";
 }
 
-// Returns the switch itself, where that is asked for. Throws InvalidInput for a switch that has no such model.
+// Returns the circuit model if `format` is one; none for other formats. Throws InvalidInput for a switch without a circuit
+// model.
 std::optional<std::string> circuit(const std::string& format, const PreparedScene& p) {
   if (format == "spice-model") return spice_model(p);
   if (format == "spice-bench") return spice_bench(p);
@@ -307,7 +308,7 @@ std::string exported_text(const SceneFile& file, const ExportRequest& request, c
             plain_number(amplifier, 6), name));
     }
   }
-  const double end = std::max(p.duration, last_breakpoint(sent.signals));  // the hold level belongs to the waveform
+  const double end = std::max(p.duration, last_breakpoint(sent.signals));  // the hold level is part of the waveform
   std::string text = sent_text(request.format, p, what.drives, sent, end, request.sampling, note);
   if (generator == nullptr) return text;
   const Drive& drive = p.drives.at(what.drives.front());

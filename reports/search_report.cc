@@ -10,8 +10,8 @@
 namespace softland {
 namespace {
 
-// Writes the waveform of a measured device, or that of every device where measuring wins nothing; empty where neither was
-// found.
+// Returns the command line that writes the waveform for a measured device, or, if calibration gains nothing, the waveform for
+// all devices; empty if the search found neither.
 std::string next_command(const RobustSearchResult& found, const std::filesystem::path& folder) {
   if (!found.calibrated && !found.chosen) return {};
   if (!found.calibrated) return fmt::format("softland export {} --format spice-pwl", shell_word(folder.string()));

@@ -24,8 +24,8 @@ struct SearchReport {
   ClosingRecord result = {};
 };
 
-/// Adds the report on devices. For a search with one target this takes further simulations, which `progress` watches; an
-/// interruption marks the search as interrupted.
+/// Adds the report on devices. After a search that minimises one statistic of the devices, this takes further simulations,
+/// which `progress` watches; an interruption marks the search as interrupted.
 void add_devices(SearchReport& report, const PlannedSearch& search, const std::string& command, const Progress& progress);
 
 /// Adds the record of the result. `folder` is the final folder of the files, for the command line that suggests how to use the

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Lists all files that any search may leave: beside the results of one search there must be none of an earlier one.
+// Returns the names of all files that any search may write: files of an earlier search must not remain beside the results.
 std::vector<std::string> files_of_searches() {
   std::vector<std::string> files{"best.toml",      "best.csv",        "report.html",    "gap.svg", "result.json",
                                  "trajectory.csv", "evaluations.csv", evaluations_file, seeds_file};
@@ -36,7 +36,7 @@ ResultFolder claimed(const SearchOutput& output, const StoredSearch& search, con
   if (stays) kept = {evaluations_file};
   if (stays && search.seeds > 1) kept.emplace_back(seeds_file);
   ResultFolder folder = output.claim(files_of_searches(), kept);
-  // The previous holder of the folder may have moved them.
+  // Another run may have moved the database file before this run had locked the folder.
   require_request(!known || is_store(known->place / evaluations_file), [&] {
     return fmt::format("{}: {} was removed; try again", requested("resume"), (known->place / evaluations_file).string());
   });
@@ -63,7 +63,7 @@ void SearchSession::begin(const FamilyColumns& columns) {
   if (places_ == nullptr) places_ = &own_.emplace(output_, search_, known_, columns);
   search_.options.memory = &places_->evaluations();
   FamilyColumns of_log = columns;
-  of_log.families.resize(families_of(search_.options.family).size());  // the other families are in the store alone
+  of_log.families.resize(families_of(search_.options.family).size());  // additional families are not in evaluations.csv
   log_.emplace(places_->folder(), std::move(of_log));
 }
 

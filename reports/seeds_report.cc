@@ -27,7 +27,7 @@ constexpr std::array shown_figures{figure_of(&Metrics::initial_contact_time), fi
 
 double or_none(double value) { return std::isfinite(value) ? value : worst; }
 
-// Lowest value, quartiles and highest value.
+// Lowest value, quartiles and highest value of a sample.
 using FiveNumbers = std::array<double, 5>;
 FiveNumbers five_numbers(const std::vector<double>& sample) {
   FiveNumbers all;
@@ -58,7 +58,7 @@ json five_json(const FiveNumbers& n) {
           {"most", json_number(n[4])}};
 }
 
-// Says why a search has failed; empty where it has not.
+// Returns the reason why a search failed; empty if the search succeeded.
 std::string failure(const SearchOfSeed& one) {
   if (!std::isfinite(one.cost)) return "no feasible waveform";
   if (!one.better_than_baseline && !one.goal_met) return "no better than the plain step";

@@ -20,12 +20,12 @@ using nlohmann::json;
 
 std::string shown(const json& value) { return shortened(value.dump(-1, ' ', false, json::error_handler_t::replace)); }
 
-// Throws InvalidInput about a key, with its value.
+// Throws InvalidInput about a key, with its value, unless the rule holds.
 void require_value(bool holds, std::string_view key, const json& value, std::string_view rule) {
   require(holds, [&] { return fmt::format("{} = {}: {}", key, shown(value), rule); });
 }
 
-// Refuse a misspelt key: the record would otherwise say that nothing happened.
+// Refuses unknown keys: a misspelt key would otherwise be taken for a contact that stayed open.
 void require_known(const json& object, const std::string& path, std::initializer_list<std::string_view> known) {
   for (const auto& [key, value] : object.items()) {
     require(std::find(known.begin(), known.end(), key) != known.end(), [&key = key, &path, &known] {
@@ -110,7 +110,7 @@ std::vector<Waveform> CommandedShot::waveforms(const PreparedScene& nominal) con
 }
 
 CommandedShot commanded_shot(int number, double hold_time, const SentSignals& sent) {
-  constexpr double tolerance = 1e-4;  // share of the peak
+  constexpr double tolerance = 1e-4;  // error as a share of the peak
   CommandedShot shot{.number = number, .hold_time = hold_time, .drives = {}, .amplifiers = sent.amplifiers};
   for (const auto& [name, signal] : sent.signals) {
     Table& table = shot.drives[name];

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// Returns the first name beside the file that is free.
+// Returns the first unused file name among closings-1.jsonl, closings-2.jsonl, ...
 fs::path free_name(const fs::path& file) {
   std::error_code ignored;
   for (int k = 1;; ++k) {
@@ -60,7 +60,7 @@ TuningLog::TuningLog(fs::path file, const json& origin, bool resume) : file_(std
 
 TuningLog::~TuningLog() { ::close(descriptor_); }
 
-// Reads all complete lines and returns their bytes; ignores an incomplete last line that a power cut has left.
+// Reads all complete lines and returns their number of bytes. An incomplete last line, as after a power cut, is ignored.
 std::size_t TuningLog::read(const json& origin) {
   const std::string content = read_file(file_);
   const std::size_t size = content.rfind('\n') + 1;  // npos + 1 is 0

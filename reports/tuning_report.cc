@@ -57,7 +57,7 @@ std::string bounces_prose(int count) {
   return count == 0 ? "without a bounce" : count == 1 ? "with one bounce" : fmt::format("with {} bounces", count);
 }
 
-// Returns "touched at 41.2 µs with 3 bounces".
+// Describes the record of a closing: "touched at 41.2 µs with 3 bounces".
 std::string record_prose(const ContactRecord& record) {
   if (!record.error.empty()) return "gave no record: " + record.error;
   const std::optional<double> touch = first_touch(record);
@@ -66,7 +66,7 @@ std::string record_prose(const ContactRecord& record) {
   return fmt::format("touched at {}{}", quantity(*touch, "s", 4), count ? " " + bounces_prose(*count) : "");
 }
 
-// Returns "41.0 to 41.4 µs".
+// Returns a range of times: "41.0 to 41.4 µs".
 std::string range_prose(double low, double high) {
   if (!std::isfinite(low) || !std::isfinite(high)) return "—";
   const std::string from = quantity(low, "s", 4), to = quantity(high, "s", 4);
@@ -116,9 +116,9 @@ std::pair<std::string, std::string> headline_of(const TuningReport& report) {
   return {fmt::format("After {} none was bounce-free.", after), ""};
 }
 
-// ---- the page
+// ---- the web page
 
-// The canvas of the rectangles has this width, whatever the width it is shown at.
+// Width of the canvas of the bars; a page scales the canvas.
 constexpr double strip_width = 1000;
 
 std::string bar(double from, double to, double top, double height, const char* what) {
@@ -135,7 +135,8 @@ std::string strip(const std::string& bars, const std::string& words) {
       strip_width, escaped(words), bars);
 }
 
-// Draws two deviations to either side, out of three of the prior's.
+// Draws the belief about a quantity as a bar from -2 to +2 standard deviations, on an axis from -3 to +3 prior standard
+// deviations.
 std::string belief_bar(const BelievedQuantity& q) {
   constexpr double shown = 3, drawn = 2;
   const auto place = [&](double value) { return strip_width * (0.5 + (value - q.prior_mean) / (2 * shown * q.prior_deviation)); };
@@ -145,7 +146,7 @@ std::string belief_bar(const BelievedQuantity& q) {
       fmt::format("{}: now {}, before {}", q.name, q.mean, q.prior_mean));
 }
 
-// Show factors as they change the scene's value, other quantities as they are.
+// Formats the belief about a quantity; a factor as the change of the value in the scene.
 std::string believed_text(double mean, double deviation, const BelievedQuantity& q) {
   if (!q.unit.empty()) return fmt::format("{} ± {}", quantity(mean, q.unit), quantity(deviation, q.unit, 2));
   return fmt::format("{} ± {}\u00a0%", internal::relative_change(mean - 1), internal::plain_number(100 * deviation, 2));
@@ -173,7 +174,7 @@ ReportSection belief_section(const BeliefSummary& belief) {
   return section;
 }
 
-// The time range of all strips of records [s].
+// The time range of all pictures of records [s].
 struct Shown {
   double from = std::numeric_limits<double>::infinity(), to = 0;
   void take(double time) {
@@ -187,9 +188,10 @@ void take(Shown& shown, const PredictedRecord& p) {
   for (const double time : {p.touch_low, p.touch_high}) shown.take(time);
 }
 
-// Shows the touches, and some time after them; an early prediction may reach much further.
+// Returns a time range that covers the touches and some time after them; the record predicted for an early shot may be much
+// longer.
 Shown shown_times(const TuningReport& report, std::size_t first) {
-  constexpr double before = 0.8, after = 1.6;  // factors of the time of the first and of the last touch
+  constexpr double before = 0.8, after = 1.6;  // factors for the first and the last time of touch
   Shown touches;
   take(touches, report.next.predicted);
   for (std::size_t i = first; i < report.closings.size(); ++i) {
@@ -204,7 +206,7 @@ std::string expected_bar(const PredictedRecord& p, const Shown& shown) {
   return bar(shown.place(p.touch_low), shown.place(p.touch_high), 1, 22, "expected");
 }
 
-// Draws a thick bar where the contact is closed.
+// Draws the record of a closing: a thick bar while the contact is closed.
 std::string record_bars(const ContactRecord& record, const Shown& shown) {
   std::string bars;
   double closed_since = std::numeric_limits<double>::quiet_NaN();
@@ -217,7 +219,7 @@ std::string record_bars(const ContactRecord& record, const Shown& shown) {
     }
   }
   if (std::isfinite(closed_since)) bars += bar(shown.place(closed_since), strip_width, 7, 10, "seen");
-  // A closing time alone says nothing about the time after it.
+  // A closing time without edges says nothing about the time after the closing.
   if (record.edges.empty() && record.closing_time) bars += bar(shown.place(*record.closing_time), 0, 3, 18, "seen");
   return bars;
 }
@@ -238,7 +240,7 @@ TableRow record_row(const TuningReport::Closing& one, const Shown& shown) {
                      "picture")};
 }
 
-// Describes the delay; empty where the records may begin with the drives, as far as is known.
+// Describes the delay between drives and records; empty if the delay may be 0.
 std::string delay_prose(const BeliefSummary& belief) {
   constexpr double certain = 2;  // least number of standard errors
   const auto delay = std::find_if(belief.quantities.begin(), belief.quantities.end(),
@@ -276,7 +278,7 @@ internal::Picture picture_of(const TuningReport& report) {
   internal::Picture drawn;
   const auto &kept = report.kept.waveforms, &next = report.next.waveforms;
   const bool differ = kept != next;
-  const double hold = 0.25;  // shown part of the hold level, as a share of the time before it
+  const double hold = 0.25;  // length of the hold level that is drawn, as a share of the time before
   for (const auto& [name, rows] : kept) {
     internal::Chart chart{.id = "drive-" + std::to_string(drawn.charts.size()),
                           .title = kept.size() == 1 ? "Voltage" : "Voltage of " + name,
@@ -344,7 +346,7 @@ bool TuningReport::ever_bounce_free() const {
 
 namespace {
 
-// Returns the last closing that gave a record; null where none did.
+// Returns the last closing with a record; null if no closing has a record.
 template <class Closing>
 const Closing* last_record(const std::vector<Closing>& closings) {
   const auto last = std::find_if(closings.rbegin(), closings.rend(), [](const auto& one) { return one.record.error.empty(); });

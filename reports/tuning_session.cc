@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Lists the values that all closings of a log have in common.
+// Returns the values that all closings of a log have in common.
 Json origin_of(const SceneFile& file, const TunerOptions& options) {
   return {{"scene", content_key(canonical(file, "scene").text()).hexadecimal()},
           {"actuator", name_of(actuators, options.actuator)},
@@ -38,7 +38,7 @@ Json origin_of(const SceneFile& file, const TunerOptions& options) {
           {"constrain", options.touch ? Json(options.touch->text) : Json()}};
 }
 
-// Reads the start and the findings of a tuning, from the folder that --out named.
+// Reads the belief about a device from the result folder of a completed tuning.
 TunedBelief tuned_in(const std::string& folder, const Json& origin) {
   const std::string path = (std::filesystem::path(folder) / "tune.json").string();
   try {
@@ -62,8 +62,8 @@ struct TuningSession::State {
   Json origin = {};
   std::filesystem::path log_file = {};
   std::unique_ptr<TuningLog> log = {};
-  std::size_t behind = 0;     // closings of the log that were learned
-  bool is_on_record = false;  // true while the log holds the record of the next shot, which is not learned
+  std::size_t behind = 0;     // number of closings of the log that were learned
+  bool is_on_record = false;  // true while the log has the record of the next shot, but this record is not yet learned
   std::optional<Tuner> tuner = {};
   std::vector<TunedClosing> closings = {};
 
@@ -109,8 +109,8 @@ void TuningSession::begin(const Progress& progress) {
   if (s.log && s.log->recipes().empty()) s.log->append(s.tuner->recipes());
 }
 
-// Check that the same shot is proposed again, or that the kept waveform was fired once more; otherwise the closings belong to
-// something else.
+// Check that the tuning proposes the logged shot again, or that the shot repeated the kept waveform; otherwise the log belongs
+// to another tuning.
 bool TuningSession::learn_kept(const Progress& progress) {
   State& s = *state_;
   if (!s.log || s.behind == s.log->closings().size()) return false;
@@ -151,7 +151,7 @@ std::optional<TuningEnd> TuningSession::ends(int most) {
 }
 
 void TuningSession::throw_if_failing() const {
-  constexpr std::ptrdiff_t most_failures = 3;  // failures in a row
+  constexpr std::ptrdiff_t most_failures = 3;  // largest number of failures in a row
   const std::vector<TunedClosing>& all = closings();
   const auto of_log = all.rend() - static_cast<std::ptrdiff_t>(state_->behind);
   const auto failures =
