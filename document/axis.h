@@ -11,7 +11,7 @@ inline constexpr const char* ink = "#1b1f24";    // colour of text and of the ma
 inline constexpr const char* muted = "#5f6b76";  // colour of ticks and frames
 
 /// Returns `value` if a chart can draw it, NaN if it is beyond 1e100, and 0 if it is within 1e-100 of 0. Only a damaged file
-/// holds values that large or small; they would overflow the coordinates.
+/// has values that large or small; such values would overflow the coordinates of a chart.
 [[nodiscard]] double drawable(double value);
 /// Returns the points whose two coordinates drawable(double) can draw.
 [[nodiscard]] Points drawable(const Points& points);

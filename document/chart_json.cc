@@ -40,7 +40,7 @@ const char* role_name(Role role) {
 
 const char* scale_name(AxisScale scale) { return scale == AxisScale::linear ? "linear" : "log"; }
 
-// Returns these rows of a column, packed; as numbers of six digits if the axis is logarithmic.
+// Returns the values of a column in these rows: packed, or as numbers of six digits if the axis is logarithmic.
 json rows_json(const std::vector<double>& column, const std::vector<std::size_t>& rows, bool logarithmic) {
   std::vector<double> kept;
   double largest = 0;

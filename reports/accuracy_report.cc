@@ -78,7 +78,7 @@ std::vector<Recommendation> read_recommendations(const json& from, const std::ve
   return all;
 }
 
-// Gives a figure that the reference has and a row lacks an infinite error, which JSON cannot express.
+// Sets the error of a figure to infinity if the reference has the figure and the row lacks it; JSON cannot express infinity.
 void set_missing(std::vector<AccuracyRow>& rows, const Metrics& reference) {
   for (AccuracyRow& row : rows) {
     for (std::size_t i = 0; i < row.errors.size(); ++i) {

@@ -40,7 +40,8 @@ struct Headline {
 [[nodiscard]] std::string robust_caption(const ClosingRecord& result);
 /// Compares the winner with the least closing time of any waveform; empty if that time is unknown.
 [[nodiscard]] std::string limit_prose(const ClosingRecord& result);
-/// Returns false when the winner is bounce-free but bounces in a confirmation with the same gas law.
+/// Returns false if the winner is bounce-free but bounces in a confirmation with another integrator tolerance or number of
+/// modes.
 [[nodiscard]] bool checks_agree(const ClosingRecord& result);
 /// Returns true if the winner closes without a bounce in all confirmations.
 [[nodiscard]] bool all_checks_land(const SearchRecord& search);

@@ -268,7 +268,7 @@ TableCell searched_cell(const ClosingRecord& result, const std::string& paramete
   if (box == result.search->bounds.end()) return "";
   const auto [low, high] = box->second;
   const double value = result.search->parameters.at(parameter);
-  constexpr double near = 0.01;  // share of the box
+  constexpr double near = 0.01;  // share of the searched range
   const char* bound = value - low <= near * (high - low)    ? "at its lower bound"
                       : high - value <= near * (high - low) ? "at its upper bound"
                                                             : "";

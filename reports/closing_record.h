@@ -94,7 +94,7 @@ struct ClosingRecord {
 /// Returns the record as --json writes it: without large parts (curves, the text of the scene, the log of the search) and
 /// without repetitions.
 [[nodiscard]] nlohmann::json summary_json(nlohmann::json record);
-/// Returns status and figures of a run, except those of the drives.
+/// Returns status and figures of a run, except figures of the drives.
 [[nodiscard]] nlohmann::json metrics_json(const Metrics& metrics);
 
 /// Parses the content of a result.json: an object of kind "simulate" or "optimize"; all other members may be missing or of

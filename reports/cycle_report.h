@@ -29,7 +29,7 @@ struct CycleRecord {
     std::optional<std::vector<ClosedStretch>> closed;  ///< times in which the contact touches
   };
   struct Cycle {
-    Metrics metrics;                  ///< CycleFigures::metrics
+    Metrics metrics;                  ///< figures of the cycle, see CycleFigures
     double on_time = Metrics::unset;  ///< CycleFigures::on_time [s]
   };
   struct Drive {

@@ -255,7 +255,7 @@ LimitRecord read_limit(const json& from) { return internal::whole_record<LimitRe
 std::string text_of(const LimitRecord& limit) {
   const std::string peak = std::isfinite(limit.touch.peak) ? fmt::format(", up to {}", quantity(limit.touch.peak, "V")) : "";
   ReportSection section{.id = "least-times", .heading = "Least times", .parts = {}};
-  if (!limit.hold_warning.empty()) section.parts.emplace_back(Paragraph{"warning: " + limit.hold_warning});  // first
+  if (!limit.hold_warning.empty()) section.parts.emplace_back(Paragraph{"warning: " + limit.hold_warning});
   section.parts.emplace_back(touches_table(limit));
   if (!limit.over_velocity.empty())
     section.parts.emplace_back(list_table("impact velocity up to", limit.over_velocity,

@@ -42,7 +42,7 @@ bool are_numbers(const std::vector<double>& all, std::size_t count) {
 
 bool rises(const std::vector<double>& all) { return std::ranges::is_sorted(all) && all.back() > all.front(); }
 
-// Returns true if all columns of a motion have the right length; those in a damaged file may not.
+// Returns true if all columns of a motion have the right length; a damaged file may have shorter columns.
 bool is_sound(const ShownMotion& m) {
   const auto all = [](const std::vector<std::vector<double>>& columns, std::size_t rows) {
     return std::ranges::all_of(columns, [&](const auto& column) { return are_numbers(column, rows); });

@@ -23,7 +23,7 @@ struct Origin {
 [[nodiscard]] Origin origin_of(const char* kind, const PreparedScene& scene, const std::string& command);
 /// Makes the origin with the text of the scene in scene_toml.
 [[nodiscard]] Origin whole_origin_of(const char* kind, const PreparedScene& scene, const std::string& command);
-/// Returns the data of a document for computing the result again: those of the origin, seed and tolerance.
+/// Returns the data for computing the result of a document again: origin, seed and tolerance.
 [[nodiscard]] MadeAgain made_again(const Origin& origin, std::optional<std::uint64_t> seed = {},
                                    double tolerance = std::numeric_limits<double>::quiet_NaN());
 /// Returns the title of the scene; empty if the scene has none.

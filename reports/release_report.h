@@ -46,7 +46,7 @@ struct ReleaseRecord {
   std::uint64_t seed = 1;
   std::string termination;
   std::vector<std::string> warnings;  ///< warnings of the scene, and on a contact force that few asperities carry
-  std::map<std::string, Gap> gaps;    ///< "plain" and "best"; only files have them
+  std::map<std::string, Gap> gaps;    ///< by opening, "plain" or "best"; only files have gaps
 };
 [[nodiscard]] ReleaseRecord record_of(const OpeningResult& release, const std::string& command);
 

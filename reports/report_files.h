@@ -21,7 +21,7 @@ struct ReportFile {
 /// Lists report.html, gap.svg, result.json, and trajectory.csv if the record has a trajectory.
 [[nodiscard]] std::vector<ReportFile<ClosingRecord>> files_of(const ClosingRecord& result);
 
-/// Names of the files on drives evaluated with simulated devices, by `robustness` or at the end of a search over devices.
+/// Names of the files on simulated devices, by `robustness` or at the end of a search over devices.
 inline constexpr std::array robustness_files{"robustness.html", "robustness.json", "devices.csv"};
 [[nodiscard]] std::vector<ReportFile<RobustnessReport>> files_of(const RobustnessReport& report);
 

@@ -32,8 +32,8 @@ class ResultFolder {
   /// Returns the final folder of the results of this run: the folder itself. Results of an interrupted run stay in their
   /// subfolder if the folder has results of an earlier run.
   [[nodiscard]] std::filesystem::path destination(bool interrupted) const;
-  /// Moves the results to destination(). In the folder, they replace results of earlier runs of the same kind: all of `files`,
-  /// and unfinished results.
+  /// Moves the results to destination(). In the folder, the results replace those of earlier runs of the same kind: all of
+  /// `files`, and unfinished results.
   void publish(bool interrupted);
 
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }

@@ -45,8 +45,8 @@ inline constexpr std::string_view worst_prose =
 
 /// Returns a Sobol' index clamped to [0, 1], which its estimate may leave by chance.
 [[nodiscard]] inline double share_of(double index) { return std::clamp(index, 0.0, 1.0); }
-/// Returns the reason why a figure has no Sobol' indices. The indices use other devices than the sample, and these may stay
-/// open although all devices of the sample close.
+/// Returns the reason why a figure has no Sobol' indices. The indices use other devices than the sample; a device for the
+/// indices may stay open although all devices of the sample close.
 [[nodiscard]] std::string why_no_indices(std::size_t rows, std::size_t failed_rows);
 
 }  // namespace softland::internal

@@ -48,8 +48,7 @@ struct CommandedShot {
 /// The longest line that is read [byte].
 inline constexpr std::size_t longest_line = std::size_t{16} << 20;
 
-/// Reads one line as a JSON object. This function and those below throw InvalidInput with the rule: "must be a JSON object:
-/// ...".
+/// Reads one line as a JSON object. All functions below throw InvalidInput with the rule: "must be a JSON object: ...".
 [[nodiscard]] nlohmann::json read_line(std::string_view line);
 /// Returns true if this line says that no more shots follow.
 [[nodiscard]] bool is_end(const nlohmann::json& line);

@@ -33,7 +33,7 @@ class TuningLog {
 
   /// Returns the closings that the file had when it was opened.
   [[nodiscard]] const std::vector<Closing>& closings() const { return closings_; }
-  /// Returns the candidate waveforms in the file; empty if the file ends before them.
+  /// Returns the candidate waveforms in the file; empty if the file has only the line on the device.
   [[nodiscard]] const std::vector<CandidateWaveform>& recipes() const { return recipes_; }
   /// Returns the new name of an earlier file that was not continued; empty if there was no earlier file.
   [[nodiscard]] const std::filesystem::path& moved_to() const { return kept_aside_; }

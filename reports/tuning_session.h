@@ -34,7 +34,7 @@ class TuningSession {
   /// Stores the closings in the file `log`: with `resume`, the session continues the closings in the file, otherwise it begins
   /// a new file. Returns the new name of an earlier file; empty if there was none. Throws as TuningLog. Call it before begin().
   std::filesystem::path keep(const std::filesystem::path& log, bool resume);
-  /// Searches the candidate waveforms, or takes those of the log. Throws as Tuner.
+  /// Searches the candidate waveforms of the tuning, or reads them from the log. Throws as Tuner.
   void begin(const Progress& progress = {});
   /// Learns from the next closing that the log had when it was opened; returns false after the last closing. Throws
   /// InvalidInput if the tuning would have proposed another shot.

@@ -59,7 +59,7 @@ void read_sweep(const std::string& option, const std::string& text, std::optiona
   asked = range;
 }
 
-// Sets the level of a drive to that of --bias NAME=V, in place of the level in the scene.
+// Sets the level of a drive to the value of --bias NAME=V, which replaces the level in the scene.
 void set_bias(PreparedScene& p, const std::string& assignment) {
   const auto refuse = [&](std::string_view rule) {
     throw InvalidRequest(fmt::format("{} {}: {}", requested("bias"), visible(assignment), rule));
@@ -178,8 +178,8 @@ Outcome run(const Setting& setting, const PullInRequest& request) {
   const Progress& progress = setting.progress;
   PullInMemory remembered;
   const PullInFinder find_pull_in = remembered.finder(file);
-  // Find the pull-in voltages before anything that needs them, such as a waveform in units of Vdp: they are then reported even
-  // if the rest is interrupted.
+  // Find the pull-in voltages first, since a waveform in units of Vdp needs them: an interruption of the rest does not lose
+  // them.
   const Scene scene = read_scene(file);
   const bool leaves_choices = scene.auto_modes || scene.simulate.automatic_effects;
   PreparedScene prepared = leaves_choices ? prepare_and_choose(file, false, progress) : prepare_statics(file);

@@ -81,7 +81,7 @@ void options(Archive& a, RobustnessRequest& r) {
   jobs_option(a, r.options.jobs);
 }
 
-// The findings, and the report on them; the report keeps references to `nominal` and `found`.
+// The findings and their report; the report keeps references to `nominal` and `found`.
 struct Judged {
   std::shared_ptr<const PreparedScene> nominal;
   Robustness found = {};
