@@ -2,7 +2,7 @@
 //
 //   thickness and all gaps, by one factor       normal, 2 %
 //   Young's modulus                             normal, 3 %
-//   a plate: stiffness, and all gaps            normal, 6.7 % (that of a beam of such a thickness) and 2 %
+//   a plate: stiffness, and all gaps            normal, 6.7 % (as of a beam whose thickness and modulus vary) and 2 %
 #pragma once
 
 #include <string_view>

@@ -4,7 +4,7 @@
 //   quantity = "closing_time"        # pull_in, release, frequency, capacitance, closing_time, contact, position or velocity
 //   drive = "main"                   # driven electrode or piezo; not needed if the scene has one electrode
 //   level = "22 V"                   # commanded voltage, for a closing time, a capacitance, or a frequency under voltage
-//   waveform = "drive.csv"           # instead of a level: time_s and a column for each drive; "scene": that of the scene
+//   waveform = "drive.csv"           # instead of a level: time_s and a column for each drive; "scene": waveform of the scene
 //   value = "38.2 us"                # one number, or a list of repeated measurements
 //   file = "times.csv"               # instead of a value: file of rows, with a header line
 //   error = "50 ns"                  # one standard deviation, absolute or a percentage of the value
@@ -47,30 +47,30 @@ namespace softland {
 struct BenchQuantity {
   std::string_view name;
   Dimension dimension;
-  bool has_level = false;     ///< true when it may have a level
-  bool has_waveform = false;  ///< true when it may have a waveform instead of a level
-  bool is_over_time = false;  ///< true for rows over time
-  bool is_positive = true;    ///< true when its values must be above 0
+  bool has_level = false;     ///< true when a measurement of this quantity may have a level
+  bool has_waveform = false;  ///< true when a measurement of this quantity may have a waveform instead of a level
+  bool is_over_time = false;  ///< true for a quantity recorded against time
+  bool is_positive = true;    ///< true when the measured values must be above 0
 };
 
 struct BenchMeasurement {
   std::string quantity;                 ///< name among bench_quantities()
   std::string drive = {};               ///< name of the drive; empty where it is not given
-  std::string device = {};              ///< name of the device; empty where it is not given
+  std::string device = {};              ///< name of the measured device; empty where it is not given
   std::vector<double> values = {};      ///< measured values [SI unit]
   std::vector<double> errors = {};      ///< standard deviation of each value [SI unit]
-  std::vector<double> levels = {};      ///< level of each value [V]; empty where none is given
+  std::vector<double> levels = {};      ///< commanded voltage of each value [V]; empty where none is given
   std::vector<double> times = {};       ///< time of each value of a quantity over time [s]
-  bool has_end = false;                 ///< true when the file says where its rows end
-  std::optional<std::string> waveform;  ///< "scene", or a path
+  bool has_end = false;                 ///< true when the key `until` has removed later rows
+  std::optional<std::string> waveform;  ///< source of the waveform: "scene", or the path of a file
   int mode = 1;
-  std::string place = {};  ///< place for messages: "bench.toml:12"
+  std::string place = {};  ///< place of the measurement for messages: "bench.toml:12"
 };
 
 struct Bench {
   std::string name;
   std::vector<BenchMeasurement> measurements;
-  std::map<std::string, std::vector<std::string>> changes;  ///< assignments by device, as --set takes them
+  std::map<std::string, std::vector<std::string>> changes;  ///< changed keys of the scene by device: "gap.electrode=3.4 um"
 };
 
 [[nodiscard]] const std::vector<BenchQuantity>& bench_quantities();
@@ -81,7 +81,7 @@ struct Bench {
 
 /// Reads a bench file. Throws InvalidInput with file, line, key, value and rule.
 [[nodiscard]] Bench load_bench(const std::filesystem::path& path);
-/// Reads a bench text. `name` stands for it in messages; paths in it are relative to `directory`.
+/// Reads a bench text. `name` stands for the text in messages; paths in the text are relative to `directory`.
 [[nodiscard]] Bench parse_bench(std::string_view text, const std::string& name, const std::filesystem::path& directory = ".");
 
 }  // namespace softland

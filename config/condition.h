@@ -19,9 +19,9 @@ enum class Comparison { below, at_most, equal, at_least, above };
 struct Condition {
   Figure figure;
   Comparison comparison = Comparison::below;
-  double limit = 0;      ///< limit [SI unit of the figure, or a factor on the figure of the plain step]
+  double limit = 0;      ///< limit [SI unit of the figure, or a factor on the figure of an actuation by a plain step]
   std::string text;      ///< the text as given
-  bool of_step = false;  ///< true if the limit is a factor on the figure of the plain step: see beside_step()
+  bool of_step = false;  ///< true if the limit is a factor on the figure of an actuation by a plain step: see beside_step()
 
   /// Returns the violation relative to the limit (absolute if the limit is 0); 0 or less if the condition holds. Returns
   /// infinity for a value that is not finite, as a failed closing has.
@@ -33,13 +33,13 @@ struct Condition {
 /// the broken rule.
 [[nodiscard]] Condition parse_condition(std::string_view text, std::span<const Figure> figures);
 
-/// Makes the limit of a condition relative to the plain step absolute; `of_step` is the figure of the step. Throws InvalidInput
-/// if the step does not have the figure, or if it is 0.
+/// Replaces a limit relative to an actuation by a plain step with an absolute limit; `of_step` is the figure of that actuation.
+/// Throws InvalidInput if the actuation does not have the figure, or if the figure is 0.
 [[nodiscard]] Condition beside_step(Condition condition, double of_step);
 
 /// The statistic over simulated devices that a search minimises.
 struct RobustMeasure {
-  Risk risk;  ///< statistic of the cost of a closing; with `yield`, over the devices that violate that condition
+  Risk risk;  ///< statistic of the cost of a closing; with `yield`, over the devices that violate the condition `yield`
   std::optional<Condition> yield;  ///< condition that as many devices as possible shall fulfil
   std::string text;                ///< the text as given
 };

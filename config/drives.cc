@@ -138,7 +138,7 @@ Signal compile(const SectionReader& in, const Waveform& waveform, double before)
   }
 }
 
-/// Returns the range of a voltage, also of one that is a multiple of another: resolved scenes are written in volts.
+/// Returns the permitted range of any voltage, also of a multiple of Vsp or Vdp, because resolved scenes are written in volts.
 const Range& any_voltage() {
   static const Range range = Key{.dimensions = {dimension::voltage}}.range_of(dimension::voltage);
   return range;
@@ -214,7 +214,7 @@ std::string missing_rise(const Waveform& waveform, double before, const DriverLi
                      engineering(std::abs(step->level - before) / limits.max_slew, "s", 3));
 }
 
-/// Returns the electrode whose hold level a percentage of the piezo's amplitude refers to; empty when the device has no such
+/// Returns the electrode to whose hold level a percentage of the piezo's amplitude refers; empty when the device has no such
 /// electrode.
 std::string_view main_electrode(const Device& device) {
   for (const Electrode& electrode : device.electrodes) {
@@ -389,8 +389,8 @@ void check_drives(const SceneFile::Impl& file, Scene& scene) {
       if (waveform.keys_in_pull_in_units().empty()) scene.limits_in_pull_in.emplace_back(drive);
     }
   }
-  // The rules of waveform families do not depend on the pull-in voltage, so 1 V is used to check them. Levels that change
-  // with it are not given in volts.
+  // The rules of waveform families do not depend on the pull-in voltage, so 1 V is used to check them. A hold level that is
+  // another for 0.5 V is a multiple of a pull-in voltage.
   scene.standing = levels_held(file, scene, 1, &scene.file_notes);
   scene.begins_closed = begins_closed(file, device);
   if (scene.need_pull_in.empty()) return;

@@ -13,10 +13,10 @@
 
 namespace softland::internal {
 
-/// Keys that may be given instead of the key of a parameter.
+/// Keys that may be given instead of the key of a waveform parameter.
 inline constexpr std::string_view frequency_key = "frequency";  ///< replaces the key of an angular frequency
 inline constexpr std::string_view file_key = "file";            ///< replaces the key of the rows of a table
-/// Keys used together with `file`: they give what a file of an instrument does not contain.
+/// Keys of [waveform.NAME] that are used together with `file`: they give facts that the file of an instrument does not contain.
 namespace file_keys {
 inline constexpr std::string_view column = "column", time_column = "time_column", interval = "interval", skip = "skip",
                                   unit = "unit", time_unit = "time_unit", decimal = "decimal", scale = "scale", shift = "shift";
@@ -24,8 +24,8 @@ inline constexpr std::string_view uneven = "uneven";  ///< value of `interval`: 
 inline constexpr std::string_view first = "first";    ///< value of `shift`: the first row is at t = 0
 inline constexpr std::array all{column, time_column, interval, skip, unit, time_unit, decimal, scale, shift};
 }  // namespace file_keys
-inline constexpr std::string_view before_key = "before";  ///< key of every family: the value before t = 0
-/// Key of every family. Its value, open or closed, names the equilibrium at t = 0 in which a simulation begins.
+inline constexpr std::string_view before_key = "before";  ///< key of every waveform: its voltage before t = 0
+/// Key of every waveform. Its value, open or closed, names the equilibrium at t = 0 in which a simulation begins.
 inline constexpr std::string_view before_state_key = "before_state", open_state = "open", closed_state_word = "closed";
 /// Value of rise_time that selects the shortest rise permitted by max_slew of the driver.
 inline constexpr std::string_view steepest_rise = "driver";
@@ -33,7 +33,7 @@ inline constexpr std::string_view steepest_rise = "driver";
 /// Returns the dimension of a waveform parameter in a scene; the dimension of a level depends on the drive.
 [[nodiscard]] Dimension dimension_of(ParameterKind kind);
 
-/// Returns the waveform with every level raised by `by`.
+/// Returns the waveform with every level raised by `by` [V].
 [[nodiscard]] Waveform raised(Waveform waveform, double by);
 
 /// Returns the reason why the device has no drive of this name, with a hint; empty where it has one.
@@ -46,7 +46,7 @@ void check_drive_name(const SceneFile::Impl& file, const std::string& electrode)
 /// Sets Scene::need_pull_in and Scene::standing.
 void check_drives(const SceneFile::Impl& file, Scene& scene);
 
-/// Reads all drives in volts, with waveforms inside their limits. Throws InvalidInput.
+/// Reads all drives in volts. Throws InvalidInput for a waveform outside the limits of its driver.
 [[nodiscard]] Drives read_drives(const SceneFile::Impl& file, const Device& device,
                                  const std::map<std::string, PullInVoltages>& pull_in);
 

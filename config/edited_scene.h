@@ -14,12 +14,12 @@ struct SceneEdit {
   std::string path;         ///< path of the key: "structure.thickness"
   std::size_t element = 0;  ///< element of a list, counted from 1; 0 for a key without a list
   Quantity value;
-  std::string remark = {};  ///< comment at the end of its line, after the previous text; empty for none
+  std::string remark = {};  ///< comment to add at the end of the line of the key; empty for none
 };
 
-/// Returns the text with the new values, each in the unit that is written there, to ten digits. A missing key is added to its
-/// section, or with its section at the end, in the SI unit. `name` stands for the text in messages. Throws InvalidInput for a
-/// text that is not TOML, and where a key cannot be added because its section is an inline table.
+/// Returns the text with the new values, each in the unit of the value that it replaces, to ten digits. A missing key is added
+/// to its section, or with its section at the end, in the SI unit. `name` stands for the text in messages. Throws InvalidInput
+/// for a text that is not TOML, and where a key cannot be added because its section is an inline table.
 [[nodiscard]] std::string edited_scene(std::string_view text, const std::string& name, const std::vector<SceneEdit>& edits);
 
 /// Returns the text of a scene with the section [spread] of another scene, which replaces an existing one or is added at the

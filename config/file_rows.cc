@@ -60,7 +60,7 @@ void shift_times(std::vector<double>& times, double shift) {
   }
 }
 
-// Returns the voltage before t = 0: the mean of the rows before, which must be one value up to noise.
+// Returns the voltage before t = 0: the mean of the rows before t = 0, which must be constant up to noise.
 double level_before(const SectionReader& in, const Trace& trace, std::size_t count) {
   constexpr double noise = 0.05;  // share of the range of the record
   const auto [least, most] = extremes(trace.values, count);
@@ -108,8 +108,8 @@ FileRows from_zero(const SectionReader& in, const Trace& trace) {
   return rows;
 }
 
-// Thins a long record to the rows that a source needs: that of [driver], or one fast enough to resolve a two-thousandth of the
-// record.
+// Thins a long record to the rows that the bandwidth of [driver] or, without it, a bandwidth that resolves 1/2000 of the record
+// needs.
 void downsample(FileRows& rows, const SectionReader& driver) {
   constexpr std::size_t few = 4096;
   constexpr double relative_error = 1e-3, parts = 2000;

@@ -16,10 +16,9 @@ struct FileRows {
   std::string told = {};              ///< one line of notes about a file of another program; empty for a file of softland
 };
 
-/// Reads the file that [waveform.NAME] names. The numbers of a file written by softland (column time_s) are kept to the bit,
-/// unless a key describes the file. Other files are read by exchange/; a long one is thinned to what the bandwidth of
-/// [driver.NAME] passes. Throws InvalidInput with key
-/// and file.
+/// Reads the file that [waveform.NAME] names. The numbers of a file written by softland (column time_s) are read bit for bit,
+/// unless the section has keys that describe the file. Other files are read by exchange/; a long file is thinned to what the
+/// bandwidth of [driver.NAME] passes. Throws InvalidInput with key and file.
 [[nodiscard]] FileRows read_file_rows(const SectionReader& waveform, std::string_view drive, const SectionReader& driver);
 
 }  // namespace softland::internal

@@ -14,8 +14,8 @@ class InvalidKey : public InvalidInput {
  public:
   struct Place {
     std::string key;   ///< path of the key: "gap.contact"
-    std::string file;  ///< name of the file in messages; empty where an option set the key
-    int line = 0;      ///< line, counted from 1; 0 where it is not known
+    std::string file;  ///< name of the scene file in messages; empty where a command-line option set the key
+    int line = 0;      ///< line of the key in the scene file, counted from 1; 0 where the line is not known
   };
   InvalidKey(const std::string& message, Place place, std::source_location where = std::source_location::current())
       : InvalidInput(message, where), place_(std::move(place)) {}

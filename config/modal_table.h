@@ -17,7 +17,7 @@ inline constexpr std::string_view file = "file", axis = "axis", direction = "dir
                                   rest_offsets = "rest_offsets", widths = "widths", far_anchor = "far_anchor";
 }  // namespace modal_keys
 
-/// Returns the keys of the table of modes; in a scene they precede the fields of a ModalStructure.
+/// Returns the keys that describe the table of modes; in a scene they precede the other keys of [structure].
 [[nodiscard]] std::vector<Key> modal_table_keys();
 
 /// Sets the table, length, width and number of modes of the structure. A file of another program adds a note to the scene. Throws

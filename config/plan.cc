@@ -32,7 +32,7 @@ namespace {
 
 constexpr std::uint64_t most_searched = 10'000'000;
 
-/// Puts the place of an entry in front of messages about it.
+/// Adds the place of an entry of a plan to the beginning of messages about the entry.
 template <class Read>
 auto at_place(const PlanRequest& request, std::string_view key, std::size_t number, Read&& read) {
   try {
@@ -42,7 +42,7 @@ auto at_place(const PlanRequest& request, std::string_view key, std::size_t numb
   }
 }
 
-/// Splits "KEY=...".
+/// Splits "KEY=VALUES" into key and values.
 std::pair<std::string, std::string> name_and_values(const std::string& entry) {
   const std::size_t equals = entry.find('=');
   require(equals != std::string::npos && equals > 0,

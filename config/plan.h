@@ -62,7 +62,7 @@ inline constexpr std::string_view plan_options[] = {"certify",  "samples",   "ta
 struct PlanKey {
   std::string path;         ///< path of the key: "electrode.main.span"
   std::size_t element = 0;  ///< element of a list, counted from 1; 0 for a key without a list
-  Quantity base = {};       ///< value in the scene, if the variable is a factor
+  Quantity base = {};       ///< value of the key in the scene, if the variable is a factor
 };
 
 /// A varied number of the scene, or several numbers varied by one factor.
@@ -72,7 +72,7 @@ struct PlanVariable {
   Dimension dimension = {};                ///< dimension of its values; none for a factor
   bool is_factor = false;                  ///< true when it multiplies the scene's own numbers
   bool is_whole = false;                   ///< true for a whole number
-  std::vector<std::string> words = {};     ///< words of a choice or a flag, whose value counts them from 1; otherwise empty
+  std::vector<std::string> words = {};     ///< words of a choice or a flag; the value is the number of a word, from 1
   std::vector<double> values = {};         ///< values on a grid [SI unit of `dimension`]
   double low = 0, high = 0;                ///< range of a sample [SI unit of `dimension`]
   bool is_logarithmic = false;             ///< true for equal ratios instead of equal steps
@@ -93,10 +93,10 @@ class Plan {
   [[nodiscard]] const std::string& study() const { return study_; }
   [[nodiscard]] const std::map<std::string, std::string>& options() const { return options_; }
   [[nodiscard]] std::uint64_t seed() const { return seed_; }
-  /// Returns true if a search for a Pareto front finds the points; pareto() names the minimised figures.
+  /// Returns true if a search for a Pareto front chooses the points; pareto() names the figures that the search minimises.
   [[nodiscard]] bool is_search() const { return is_search_; }
   [[nodiscard]] const std::string& pareto() const { return pareto_; }
-  /// Maps a place in the unit cube to the box of the ranges; returns the values of the variables there [SI unit].
+  /// Maps a place in the unit cube to the box of the ranges; returns the values of the variables at the mapped place [SI unit].
   [[nodiscard]] std::vector<double> values_in_box(std::vector<double> place) const;
   /// Returns the values of the variables at point k, in their order [SI unit]. Throws InvalidInput for the points of a search.
   [[nodiscard]] std::vector<double> values(std::uint64_t k) const;
@@ -119,7 +119,7 @@ class Plan {
   std::string pareto_;
   std::vector<PlanVariable> variables_;
   std::vector<std::vector<double>> rows_;  // rows of a list [SI unit]
-  std::optional<PointSet> sample_;         // point set of a sample; for a search it decides how ranges are read
+  std::optional<PointSet> sample_;         // point set of a sample; set for a search, too, whose ranges are read alike
   bool is_search_ = false;
   std::uint64_t points_ = 1;
   std::optional<SamplePoints> sampled_;

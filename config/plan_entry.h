@@ -1,4 +1,4 @@
-// The entries of a plan: the keys that one names, and the values or the range that it gives them. See config/plan.h.
+// Reads the entries of a plan: the keys that an entry names, and their values or range. See config/plan.h.
 #pragma once
 
 #include <fmt/format.h>
@@ -85,7 +85,7 @@ class KeyFinder {
   struct Found {
     PlanKey key;
     const Key* schema = nullptr;
-    std::optional<Quantity> base = {};  ///< its value in the scene
+    std::optional<Quantity> base = {};  ///< value of the key in the scene
   };
 
   /// Finds the keys of an entry by its name. Throws InvalidInput with the rule only.
@@ -156,7 +156,7 @@ class KeyFinder {
   const SceneFile::Impl& file_;
 };
 
-/// Reads one entry of a plan to a variable.
+/// Reads one entry of a plan into a variable.
 class EntryReader {
  public:
   EntryReader(const KeyFinder& finder, const std::string& name) {
@@ -267,7 +267,7 @@ class EntryReader {
     const Dimension given = all.front().dimension;
     const std::vector<Dimension>& allowed = keys_.front().schema->dimensions;
     const std::optional<Quantity>& base = keys_.front().base;
-    // A position on the beam may be a length in the scene; a percentage is then a factor on that length.
+    // A position on the beam may be a length in the scene; a percentage is then a factor on the length.
     const bool is_of_value = keys_.front().schema->bound.place != nullptr && given == dimension::none && is_percent && base &&
                              base->dimension != dimension::none;
     const bool fits = variable_.is_whole

@@ -15,7 +15,7 @@ namespace softland {
 namespace internal {
 
 class SectionReader;
-/// Reads the same keys from [waveform.NAME] of a scene.
+/// Reads the keys that describe how a file is read from [waveform.NAME] of a scene.
 [[nodiscard]] ReadKeys read_keys(const SectionReader& in);
 
 }  // namespace internal

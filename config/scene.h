@@ -44,7 +44,7 @@ class SceneFile {
   void set(std::string_view assignment);
   /// Sets a key to a value; a number is in the SI unit of the key. Throws std::logic_error for a key that no scene has.
   void assign(const std::string& path, const SceneValue& value);
-  /// Sets a key of one quantity, in the unit of its dimension; in a list its element number `element`, counted from 1. Throws
+  /// Sets a key that holds one quantity, or element number `element` (counted from 1) of a key that holds a list. Throws
   /// std::logic_error for a key or an element that does not exist.
   void assign(const std::string& path, const Quantity& value, std::size_t element = 0);
   /// Adds a contact whose law is defined by a program: an OwnContact (model/contact/own.h). The scene must not have [contact];
@@ -54,11 +54,11 @@ class SceneFile {
   /// Removes a section or a key, if it exists.
   void erase(const std::string& path);
   /// Replaces [waveform.DRIVE] by this waveform in volts and seconds, with digits that read back to the same bits. The rows of
-  /// a Table stand in the scene itself. Value and state before t = 0 stay as written. Throws InvalidInput for a waveform
-  /// outside its family's rules.
+  /// a Table are written into the scene. Value and state before t = 0 do not change. Throws InvalidInput for a waveform outside
+  /// its family's rules.
   void set_waveform(const std::string& drive, const Waveform& given);
 
-  /// Removes the lines of all keys: messages then give the name of the file only.
+  /// Removes the line numbers of all keys: messages then give the name of the file only.
   void forget_places();
 
   /// Returns the same scene under another name: its text is written and read again, and an added contact is kept.
@@ -112,7 +112,7 @@ inline constexpr std::string_view piezo_drive = "piezo", dispersion_drive = "dis
 struct Drive {
   std::string name = {};                    ///< name of the electrode, piezo_drive or dispersion_drive
   std::optional<Waveform> waveform = {};    ///< waveform; 0 V without one
-  std::optional<double> before = {};        ///< given value before t = 0 [V]; 0 V without one
+  std::optional<double> before = {};        ///< value before t = 0 that the scene gives [V]; 0 V without one
   bool begins_closed = false;               ///< true when its before_state is closed: see Scene::begins_closed
   std::optional<DriverLimits> limits = {};  ///< none if unlimited; [0, default_limit()] for electrodes whose Vdp is known
   DriverModel source = {};                  ///< source; ideal if the scene does not describe one; prepare() adds its load
@@ -147,11 +147,11 @@ class Drives {
   [[nodiscard]] Drive& at(std::string_view name) { return drives_[place(name)]; }
   /// Returns the index of a drive in Switch::drives(). Throws InvalidInput if the switch has no such drive.
   [[nodiscard]] std::size_t place(std::string_view name) const;
-  /// Returns the drives of these names, in the order of the names. Throws InvalidInput where one is missing.
+  /// Returns the drives of these names, in the order of the names. Throws InvalidInput if the switch lacks one of the drives.
   [[nodiscard]] Drives of(const std::vector<std::string>& names) const;
   /// Returns the waveforms of the drives that have one, by name of the drive.
   [[nodiscard]] DriveWaveforms waveforms() const;
-  /// Returns the given values before t = 0, by name of the drive [V].
+  /// Returns the values before t = 0 that the scene gives, by name of the drive [V].
   [[nodiscard]] std::map<std::string, double> before() const;
 
  private:
@@ -159,7 +159,7 @@ class Drives {
 };
 
 struct SimulateOptions {
-  double duration = 0;     ///< window [s]; 0: chosen (six periods of the first mode, or four closings by a step)
+  double duration = 0;     ///< simulated time [s]; 0: chosen (six periods of the first mode, or four closings by a step)
   double accuracy = 1e-6;  ///< target relative error of t_i, v_i and B_H
   double tolerance = 0;    ///< relative tolerance of the integrator; 0: derived from accuracy
   double open_at = std::numeric_limits<double>::quiet_NaN();  ///< time of the command to open [s]; NaN: derived from the drives
@@ -208,7 +208,7 @@ struct Scene {
   MetricsOptions metrics;
   DeviceSpread spread;
   Calibration calibration;
-  /// True if simulations begin in the closed equilibrium under the values of the drives before t = 0; false: in the open one.
+  /// True if simulations begin in the closed equilibrium under the values of the drives before t = 0, instead of the open one.
   bool begins_closed = false;
   /// Drives (electrode names) whose waveform or written limits use Vsp or Vdp.
   std::vector<std::string> need_pull_in;
@@ -228,7 +228,7 @@ struct Scene {
 };
 
 /// Reads and checks a scene, waveforms included (except what needs the pull-in voltages). Throws InvalidInput whose message has
-/// file, line, key path, value, rule and, for an unknown key, the nearest known one.
+/// file, line, key path, value, rule and, for an unknown key, the nearest valid key.
 [[nodiscard]] Scene read_scene(const SceneFile& file);
 
 /// Returns the scene with every default written out and every voltage in volts. A value without a fixed default, such as a

@@ -63,7 +63,7 @@ struct SceneFile::Impl {
   struct Origin {
     std::string text;  ///< "scenes/x.toml:12" or "--set gap.contact=3"
     bool is_option = false;
-    std::string replaced = {};  ///< path of a value that this one replaced; empty if none
+    std::string replaced = {};  ///< path of a value that this key replaced; empty if none
   };
 
   std::string name;
@@ -84,12 +84,12 @@ struct SceneFile::Impl {
   /// option.
   [[noreturn]] void fail_section(std::string_view path, std::string_view rule) const;
 
-  /// Returns "; --set structure.length=1 m replaced structure.sections" for messages, if an option replaced a value in this
-  /// section.
+  /// Returns "; --set structure.length=1 m replaced structure.sections" for messages, if a command-line option replaced a value
+  /// in the section.
   [[nodiscard]] std::string replaced_in(std::string_view section) const;
 
   /// Returns the list at a path with a new value for one element, counted from 1. Throws InvalidInput that begins with `option`
-  /// if there is no such list.
+  /// if the path holds no such list.
   [[nodiscard]] toml::array with_element(const std::vector<std::string>& path, std::size_t element, const toml::node& value,
                                          const std::string& option) const;
   /// Returns NAME of every [section.NAME], sorted. Throws InvalidInput if the section holds anything else.

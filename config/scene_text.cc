@@ -66,7 +66,7 @@ std::string float_text(double value) {
 
 std::string key_text(std::string_view key) { return is_bare_key(key) ? std::string(key) : toml_string(key); }
 
-/// The keys of `table`: those in `order` first, then the rest by name.
+/// Returns the keys of `table`: those in `order` first, then the rest by name.
 
 struct Entry {
   std::string key;

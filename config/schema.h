@@ -1,5 +1,5 @@
-// The table of all sections and keys of a scene. Reading, checking, hints, defaults and the order of written scenes follow from
-// it.
+// The table of all sections and keys of a scene. The table determines reading, checks, hints, defaults and the order of written
+// scenes.
 #pragma once
 
 #include <cstddef>
@@ -46,8 +46,8 @@ struct Key {
   KeyType type = KeyType::quantity;
   /// Permitted dimensions of the value; empty if another key decides. The first one gives the SI unit of the key.
   std::vector<Dimension> dimensions = {};
-  Range range = {};         ///< see range_of()
-  std::size_t count = 0;    ///< quantities: their number; 0 for any number
+  Range range = {};         ///< permitted values; see range_of()
+  std::size_t count = 0;    ///< quantities: number of list elements; 0 for any number
   bool any_word = false;    ///< integer: true if any text may replace the number
   bool may_be_one = false;  ///< quantities: true if a single quantity may replace the list
   bool is_nested = false;   ///< quantities: true if it may be a list of lists, which are read in sequence
@@ -56,19 +56,19 @@ struct Key {
   std::vector<std::string_view> words = {};
   std::string_view fallback = {};  ///< default as TOML; empty for none
   bool required = false;
-  std::vector<std::string_view> only_for = {};  ///< choices of the selector to which this key belongs; empty: all
+  std::vector<std::string_view> only_for = {};  ///< values of Section::selector for which this key exists; empty: all
   std::vector<std::string_view> instead_of =
       {};                           ///< keys that may be given instead of this one; one of them suffices if this one is required
   std::string_view about = {};      ///< description, one line
   std::string_view beyond = {};     ///< advice for a user who needs a value outside the range
-  std::string_view why_fixed = {};  ///< reason why varied devices cannot vary it; empty where they can
+  std::string_view why_fixed = {};  ///< reason why [spread] cannot vary this key; empty if [spread] can
   std::string_view if_list = {};    ///< quantity: advice for a user who gives a list
   std::string_view like = {};       ///< an example value as text; empty: see example_of()
   std::string_view unless = {};     ///< if this other key is given, the key is not required
   const Section* (*part)() = nullptr;  ///< table, tables: the keys of one table
   Bound bound = {};
 
-  // Properties that the makers of keys (config/schema/sections.h) leave open.
+  // Setters of properties that the functions in config/schema/sections.h do not set.
   [[nodiscard]] Key needed() && { return required = true, std::move(*this); }
   [[nodiscard]] Key by_default(std::string_view toml) && { return fallback = toml, std::move(*this); }
   [[nodiscard]] Key of(std::vector<std::string_view> owners) && { return only_for = std::move(owners), std::move(*this); }
@@ -98,7 +98,7 @@ struct Section {
   std::string_view entry = {};   ///< NAME of the [section.NAME] to which these keys apply; empty: every other NAME
   bool is_named = false;         ///< true for [name.NAME], any number of them
   bool may_be_named = false;     ///< true for [name], or [name.NAME] of several
-  std::string_view beside = {};  ///< a key in the section that holds the [section.NAME]; separate code reads it
+  std::string_view beside = {};  ///< key in [name] beside the sections [name.NAME]; separate code reads this key
   bool required = false;
   bool always_in_force = false;    ///< true if the defaults apply even without the section
   bool may_vary = false;           ///< true when [spread] may name its numbers
@@ -116,7 +116,7 @@ struct Section {
   [[nodiscard]] const Key* find(std::string_view key, std::string_view choice = {}) const;
 };
 
-/// Returns all sections in the order of a written scene.
+/// Returns the descriptions of all sections in the order of a written scene.
 [[nodiscard]] const std::vector<Section>& schema();
 /// Returns the description of [name] or [name.ENTRY], or null.
 [[nodiscard]] const Section* find_section(std::string_view name, std::string_view entry = {});
@@ -124,7 +124,7 @@ struct Section {
 /// Returns the key at a path whose parts may name elements of lists, or null: {"structure", "sections[2]", "width"}.
 [[nodiscard]] const Key* find_key(const std::vector<std::string>& path);
 
-/// Returns " (did you mean 'thickness'?)" for a near miss, else " (known: a, b, c)"; empty when nothing is known.
+/// Returns " (did you mean 'thickness'?)" for a near miss, else " (known: a, b, c)"; empty when `known` is empty.
 [[nodiscard]] std::string hint(std::string_view word, const std::vector<std::string_view>& known);
 
 }  // namespace softland::internal

@@ -46,7 +46,7 @@ class SectionReader {
   /// Returns the description of a key, or null.
   [[nodiscard]] const Key* find(std::string_view key) const { return section_.find(key, choice_); }
 
-  /// Returns the value or the default [SI unit]; NaN without either.
+  /// Returns the value of a number, or its default [SI unit]; NaN without either.
   [[nodiscard]] double number(std::string_view key) const;
   [[nodiscard]] const std::vector<Quantity>& quantities(std::string_view key) const;
   [[nodiscard]] std::vector<double> numbers(std::string_view key) const;

@@ -75,7 +75,7 @@ std::function<std::string(double)> refusal_outside(const Range& range, const std
 struct DriveErrorRow {
   DriveError value;
   std::string_view name;
-  double nominal;  // [SI unit]
+  double nominal;  // value of the key in the scene [SI unit]
   Dimension dimension;
 };
 constexpr std::array drive_errors{
@@ -199,7 +199,7 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
                                            hint(parts.back(), candidates)));
 }
 
-/// Converts the numbers of an entry to the unit of the variable: that of the one key, or of the factor.
+/// Converts the numbers of an entry of [spread] to the unit of its variable: that of its single key, or of a factor.
 class EntryUnits {
  public:
   EntryUnits(const SectionReader& in, const std::vector<FoundKey>& keys) : in_(in), keys_(keys) {

@@ -36,7 +36,7 @@ struct VariedDrive {
 /// A number of a scene that varies from device to device.
 struct VariedKey {
   std::string path;            ///< path of the key: "structure.thickness", "driver.main.gain"
-  std::size_t element = 0;     ///< element of a list, counted from 1; 0 for a key without a list
+  std::size_t element = 0;     ///< element of a list that varies, counted from 1; 0 for a key without a list
   std::string unit;            ///< SI unit
   double nominal = 0;          ///< the scene's value
   Dimension measured_in = {};  ///< dimension of the varied values, one of those that the key may have
@@ -44,9 +44,9 @@ struct VariedKey {
   /// Returns the number in a scene that the key sets. Null if the key does not set a single number; the scene must then be read
   /// again with the new value.
   std::function<double&(Scene&)> member;
-  /// Error of a drive; it is not a key of the scene and has no member.
+  /// Error of the source of a drive, if the varied number is such an error; Scene has no member for it.
   std::optional<VariedDrive> drive;
-  /// Returns the reason why a device cannot have this value; empty where it can.
+  /// Returns the reason why a device cannot have this value; empty where the value is valid.
   std::function<std::string(double)> refusal;
 
   /// Returns for example "electrode.main.span[2]".
@@ -57,8 +57,8 @@ struct VariedKey {
 struct SpreadVariable {
   std::string name;  ///< name of its entry in [spread]
   std::vector<VariedKey> keys;
-  bool is_factor = true;  ///< true: multiplies the values of the scene; otherwise it is the value of its one key, or
-  bool is_added = false;  ///< true: is added to the values of the scene, times the weights of the keys
+  bool is_factor = true;  ///< true: multiplies the values of the scene; false, unless is_added: replaces the value of its one key
+  bool is_added = false;  ///< true: is added to the values of the scene, multiplied by the weights of the keys
   Distribution distribution;
   /// True for jitter, which has a random value for every edge of every device. The value of the variable for a device is then a
   /// number in (0, 1) that seeds the random numbers of its edges.
@@ -76,7 +76,7 @@ struct DeviceSpread {
   [[nodiscard]] bool empty() const { return variables.empty(); }
   /// True when errors of drives are among the variables.
   [[nodiscard]] bool varies_drives() const;
-  /// Removes a variable, with its correlations.
+  /// Removes a variable and its correlations.
   void leave_out(std::size_t variable);
   /// Gives the variables this correlation. Throws as GaussianCopula does.
   void correlate(const Eigen::MatrixXd& matrix);

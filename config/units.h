@@ -77,7 +77,7 @@ struct Quantity {
 [[nodiscard]] std::string_view noun(const Dimension& dimension);
 /// Returns a description for messages: "a length [m]", "a plain number".
 [[nodiscard]] std::string describe(const Dimension& dimension);
-/// Returns an example for messages, a text of this dimension such as "2 um"; empty where no usual one exists.
+/// Returns an example for messages, a text of this dimension such as "2 um"; empty if the dimension has no usual example.
 [[nodiscard]] std::string_view example(const Dimension& dimension);
 
 /// Returns the shortest decimal text that reads back to the same bits.

@@ -144,7 +144,7 @@ void BlockReader::take_beside(const CellList& cells, std::size_t line, std::stri
   }
   if (!has_others) return;
   ++rows_with_words_;
-  if (cells.size() != width_ && !block_.lines.empty()) return;  // read_row() refuses it
+  if (cells.size() != width_ && !block_.lines.empty()) return;  // read_row() refuses a row of another width
   if (block_.lines.size() >= longest_preamble) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
       if (!others[i].empty())
@@ -157,7 +157,7 @@ void BlockReader::take_beside(const CellList& cells, std::size_t line, std::stri
 // Returns the number of characters of a number without its sign.
 std::size_t digits_in(std::string_view cell) { return cell.size() - (cell.starts_with('-') || cell.starts_with('+') ? 1 : 0); }
 
-// Returns true if the file may end within its last number: all numbers above have one length, and the last one is shorter.
+// Returns true if the file may end within its last number: the last cell is shorter than the last cells of all other rows.
 bool BlockReader::was_cut(const CellList& cells) const {
   constexpr std::size_t fewest = 3;
   return block_.lines.size() >= fewest && digits_in(cells[is_numeric_.size() - 1]) < last_length_;
@@ -353,8 +353,8 @@ void BlockReader::read_lines() {
   }
 }
 
-// Refuses a line above the numbers that would be a row but for one cell: it follows units or a heading of times, or begins like
-// a number.
+// Refuses a line above the numbers that has one invalid cell and would otherwise be a row of numbers: the line follows units or
+// a heading of times, or begins like a number.
 void BlockReader::refuse_broken_row(const std::vector<Line>& above) const {
   CellList cells, before;
   if (!above.empty()) {

@@ -23,7 +23,7 @@ enum class CellKind {
   number,
   blank,       ///< empty, or a dash
   not_finite,  ///< inf, nan, overrange
-  other_sign,  ///< a number with the other decimal sign
+  other_sign,  ///< a number with a decimal sign other than that of the file
   no_number,
 };
 struct Cell {

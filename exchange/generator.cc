@@ -22,8 +22,8 @@ VoltageRange range_of(const std::vector<double>& volts) {
   return low == 0 ? VoltageRange{0, 1} : VoltageRange{std::min(0.0, low), std::max(0.0, low)};
 }
 
-// Source: Keysight 33500 Series Operating and Service Guide, "Arbitrary waveform file format": codes from -32767 to 32767 between
-// both levels.
+// Source: Keysight 33500 Series Operating and Service Guide, "Arbitrary waveform file format": codes from -32767 to 32767
+// between the low and the high level.
 std::string keysight_arb(const GeneratorSamples& s) {
   constexpr double full_scale = 32767;
   const auto [low, high] = range_of(s.volts);

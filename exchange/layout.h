@@ -10,13 +10,13 @@ namespace softland::internal {
 
 using CellList = std::vector<std::string_view>;
 
-/// A line of the file; its cells are views of it.
+/// A line of the file; `text` is a view of the file's content.
 struct Line {
   std::string_view text;
   std::size_t number = 0;
 };
 
-/// Throws messages about a file.
+/// Throws InvalidInput with the name of the file, and the line and column where they are known.
 class Refusals {
  public:
   explicit Refusals(std::string file) : file_(std::move(file)) {}
@@ -42,14 +42,15 @@ void split_row(std::string_view line, char separator, CellList& cells);
 [[nodiscard]] std::size_t numbers_in(const CellList& cells);
 
 /// Returns the last lines of a text that are not blank, from the last one upwards, without the first `skip` lines. A last line
-/// without a line end, which may be incomplete, comes at the end of the list. Line numbers are relative.
+/// without a line end, which may be incomplete, comes at the end of the list. In a long text, line numbers do not count from its
+/// beginning.
 [[nodiscard]] std::vector<Line> last_lines(std::string_view text, std::size_t skip);
 
 /// Returns the separator for which most lines consist of numbers only or, if there are none, contain a number.
 [[nodiscard]] char separator_of(const std::vector<Line>& lines);
 
-/// Returns for every column if it holds numbers, that is more numbers than words in the last lines of the text. If there are
-/// lines without words, only those count. The last element is true; empty if there are no numbers.
+/// Returns true for each column that has more numbers than words in the last lines of the text. If there are lines without
+/// words, only those lines count. The last element is true; empty if there are no numbers.
 [[nodiscard]] std::vector<bool> numeric_columns(const std::vector<Line>& last, char separator);
 
 }  // namespace softland::internal

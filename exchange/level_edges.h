@@ -1,9 +1,9 @@
 // Finds the times at which a contact closes and opens, from a recorded voltage that crosses a threshold.
 //
-//   closed from the time when the trace is hysteresis / 2 beyond the threshold, until it is as far on the other side
+//   closed while the trace is beyond the threshold; it must pass the threshold by hysteresis / 2 to change the state
 //
-// The time of an edge is that of the last crossing of the threshold before, by linear interpolation between rows. States that
-// last for less than `merge` are ignored: first openings, then touches.
+// The time of an edge is that of the last crossing of the threshold before the edge, by linear interpolation between rows.
+// States that last for less than `merge` are ignored: first short openings, then short contacts.
 #pragma once
 
 #include <string>
@@ -31,8 +31,8 @@ struct LevelEdge {
 
 /// The shift of the times of a file.
 struct TimeShift {
-  bool first_is_zero = false;  ///< true: the first row is at t = 0
-  double shift = 0;            ///< added to all times otherwise [s]
+  bool first_is_zero = false;  ///< true: times are shifted so that the first row is at t = 0
+  double shift = 0;            ///< time added to all times if first_is_zero is false [s]
 };
 void shift_times(Trace& trace, const TimeShift& shift);
 
@@ -41,9 +41,9 @@ struct ContactTraceKeys {
   TimeShift shift = {};
   ThresholdKeys contact;
 };
-/// Returns the edges from t = 0 on, when the drives begin, of the voltage in a file of an instrument. Throws as read_recording()
-/// and trace_of(). Throws InvalidInput for a contact that is closed at t = 0, and for a missing threshold unless the channel
-/// holds states.
+/// Returns the edges of the contact from t = 0 on, when the drives begin, from the voltage in a file of an instrument. Throws
+/// as read_recording() and trace_of(). Throws InvalidInput for a contact that is closed at t = 0, and for a missing threshold
+/// unless the channel holds states 0 and 1.
 [[nodiscard]] std::vector<LevelEdge> contact_edges(const std::string& file, const ContactTraceKeys& keys);
 /// Returns the edges of a trace; `name` names the trace in messages.
 [[nodiscard]] std::vector<LevelEdge> contact_edges(const Trace& trace, const ThresholdKeys& keys, const std::string& name);

@@ -7,8 +7,8 @@
 
 namespace softland::internal {
 
-/// A point near the place: `along` is the distance from the place in units of the window, -1 to 1; `p` and `q` are the
-/// coordinates across the axis in units of the extent of the mesh.
+/// A mesh point near the place of the fit. `along` is the distance from the place in units of the window, -1 to 1; `p` and `q`
+/// are the coordinates across the axis in units of the extent of the mesh.
 struct NearPoint {
   double along = 0, p = 0, q = 0;
   double value = 0;

@@ -36,12 +36,12 @@ struct Measured {
 /// Reads a text such as "160000Hz", "8 ns" or "5"; none if it has no number, or an unknown unit.
 [[nodiscard]] std::optional<Measured> measured(std::string_view text);
 /// Reads a value of a preamble, which may begin with the name of a channel ("CH1:2e-06"), but must not be a time of day. `unit`
-/// is the unit that the key of the value names, as in "Sample interval (us)".
+/// is the unit in the name of the key, as in "Sample interval (us)".
 [[nodiscard]] std::optional<Measured> measured_value(std::string_view text, const std::optional<Unit>& unit);
 
 /// Returns true for a unit that instruments write beside numbers in cells, as in "5.0 V" or "-52.43 us".
 [[nodiscard]] bool is_unit_of_cells(const std::optional<Unit>& unit);
-/// Reads a cell that is a number with such a unit; none for any other cell.
+/// Reads a cell that is a number with a unit; none for any other cell.
 [[nodiscard]] std::optional<Measured> measured_cell(std::string_view cell);
 
 }  // namespace softland::internal

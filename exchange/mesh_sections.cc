@@ -109,7 +109,7 @@ std::vector<double> MeshSections::widths() const {
   const double rounding = printed * sections_.back().place;
   std::vector<double> all;
   for (std::size_t k = 0; k < sections_.size(); ++k) {
-    // Nodes near a place serve for its edges in an irregular mesh.
+    // In an irregular mesh, nodes near a place give its width.
     const std::size_t reach = is_irregular() ? nearby : 0;
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (std::size_t s = k - std::min(k, reach); s <= std::min(k + reach, sections_.size() - 1); ++s) {
@@ -185,7 +185,7 @@ double MeshSections::twist(const Section& section, const NodalMode& mode, const 
 }
 
 double MeshSections::fitted(std::size_t place, const NodalMode& mode) const {
-  constexpr double reach = 2.5;  // even places, fewer than `nearby`
+  constexpr double reach = 2.5;  // half the width of the fit window, in spacings of the places; less than `nearby`
   const std::size_t p = direction_.direction, q = 3 - axis_.direction - p;
   std::vector<NearPoint> near;
   for (std::size_t s = place - std::min(place, nearby); s <= std::min(place + nearby, sections_.size() - 1); ++s) {

@@ -23,16 +23,16 @@ struct Way {
 
 /// Motion of the sections in one mode, in the unit of the mode, and the squared motion of all nodes by kind.
 struct SectionMotion {
-  std::vector<double> along, across, axial;  ///< motion by place: in the direction of motion, across both, along the axis
-  std::vector<double> twist;                 ///< motion by rotation about the axis, half the extent of the mesh from the middle
+  std::vector<double> along, across, axial;  ///< motion by place in the direction of motion, the third direction, the axis
+  std::vector<double> twist;                 ///< motion by rotation about the axis, half the extent of the mesh from its middle
   double bending = 0, in_plane = 0, axial_share = 0, torsion = 0;
   [[nodiscard]] double all() const { return bending + in_plane + axial_share + torsion; }
 };
 
 class MeshSections {
  public:
-  /// `clamp` [m] is the position of the clamp on the axis; none: the first node. Throws InvalidInput by `refusals` for fewer than
-  /// three places, including the clamp, and for an irregular mesh with too few nodes to find the motion at some place.
+  /// `clamp` [m] is the position of the clamp on the axis; none: the clamp is at the first node. Throws InvalidInput for fewer
+  /// than three places, including the clamp, and for an irregular mesh with too few nodes to find the motion at some place.
   MeshSections(const std::vector<Vector3>& nodes, Way axis, Way direction, double length_unit, std::optional<double> clamp,
                const Refusals& refusals);
 
@@ -66,8 +66,8 @@ class MeshSections {
   double length_unit_;  // [m]
   const Refusals& refusals_;
   std::vector<Section> sections_;
-  double first_ = 0, clamp_ = 0;  // places on the axis [m]
-  double step_ = 0;               // distance of the even places of an irregular mesh [m]; 0: there are sections
+  double first_ = 0, clamp_ = 0;  // positions of the first node and of the clamp on the axis [m]
+  double step_ = 0;               // spacing of the fitted places of an irregular mesh [m]; 0 for a mesh with sections
   Vector3 middle_{};              // middle of the mesh, in the unit of the file
   double extent_ = 0;             // the larger extent across the axis, in the unit of the file; 0 for a line
 };

@@ -23,9 +23,9 @@ struct ModeFound {
   int number = 0;        ///< number in the file, from 1
   double frequency = 0;  ///< [Hz]
   ModeKind kind = ModeKind::bending;
-  double share = 0;  ///< share of this kind in the squared motion of all nodes; 1 if the file holds one direction only
-  std::vector<double> along, across, axial;  ///< motion by section: in the direction of motion, across both, along the axis
-  std::vector<double> twist;                 ///< motion by rotation about the axis, half the extent of the mesh from the middle
+  double share = 0;  ///< share of the mode's kind in the squared motion of all nodes; 1 if the file holds one direction only
+  std::vector<double> along, across, axial;  ///< motion by section in the direction of motion, the third direction, the axis
+  std::vector<double> twist;                 ///< motion by rotation about the axis, half the extent of the mesh from its middle
   /// "bending", "in-plane"
   [[nodiscard]] std::string name() const;
 };
@@ -44,7 +44,7 @@ struct ModeTable {
   std::vector<ModeFound> found;     ///< every mode of a mesh, used or not; empty for a table
   std::vector<double> places = {};  ///< places of the sections of `found`, from the clamp [m]
   std::vector<std::string> left_out = {};
-  std::vector<std::string> notes = {};  ///< assumptions about what the file does not say
+  std::vector<std::string> notes = {};  ///< assumptions about facts that the file does not contain
 };
 
 /// Reads a file. Throws InvalidInput with file, line and rule for an unreadable file, for one without modes (a static result, a

@@ -35,7 +35,7 @@ struct NodalModes {
   std::vector<std::string> left_out = {}, notes = {};
 };
 
-// Recognise and read one kind of file each. Readers throw InvalidInput with file, line and rule.
+// Functions that recognise or read one file format each. Readers throw InvalidInput with file, line and rule.
 [[nodiscard]] bool is_frd(std::string_view text);
 [[nodiscard]] NodalModes read_frd(std::string_view text, const std::string& file);
 

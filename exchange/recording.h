@@ -18,7 +18,7 @@ namespace softland {
 
 /// The facts about a file that the user supplies because the file lacks them.
 struct ReadKeys {
-  std::string column = {};              ///< name of the channel; empty: the only one
+  std::string column = {};              ///< name of the channel; empty: see channel_of()
   int column_number = 0;                ///< number of the column of the channel, from 1; 0: selected by name
   std::string time_column = {};         ///< name of the column of times; empty: found by its heading
   int time_column_number = 0;           ///< number of the column of times, from 1; 0: selected by name

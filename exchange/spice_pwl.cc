@@ -134,7 +134,7 @@ class NetlistReader {
     tell_numbers_in_comment(given, line);
     take_numbers(line.substr(open + 1));
   }
-  // Notes numbers in a comment among the points, which may be points by mistake.
+  // Adds a note about numbers in a comment among the points: the comment may hide points by mistake.
   void tell_numbers_in_comment(std::string_view given, std::string_view line) {
     std::string_view comment = trimmed(given);
     comment.remove_prefix(line.size());
@@ -215,7 +215,7 @@ struct PlainTimes {
     thrice |= repeats && count > 1 && all[count - 2] == time;
     all.push_back(time);
   }
-  // Returns true if the times seem rounded: three rows of the same time, or every time twice. A jump has two rows of a time.
+  // Returns true if the times seem rounded: three rows of one time, or every time twice. A jump has two rows of a time.
   [[nodiscard]] bool are_rounded() const {
     constexpr std::size_t fewest = 8;
     return thrice || (all.size() >= fewest && 2 * repeated + 1 >= all.size());

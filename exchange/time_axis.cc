@@ -23,8 +23,8 @@ constexpr double single_precision = 1.2e-7;
 std::string seconds(double time) { return engineering(time, "s", 6); }
 std::string quoted(const std::string& key) { return "\"" + printable_line(key) + "\""; }
 
-/// An interval that the file states. For an interval without a unit, `value` takes it in seconds, and `in_units` in the
-/// horizontal unit of the file.
+/// An interval that the file states. If the file names no unit, `value` assumes seconds, and `in_units` assumes the horizontal
+/// unit of the file.
 struct Interval {
   std::string source;
   double value = 0;
@@ -73,7 +73,7 @@ class RowTimer {
   RowTimes made_;
 };
 
-// Returns true for the file of a generator, which gives the period; the samples are one period.
+// Returns true for a file of a generator, which states the period; the samples cover one period.
 bool RowTimer::is_generator() const {
   return (column_ == nullptr || column_->name == "xpos") &&
          (column_ != nullptr || preamble_.text.find("rigol:dg") != std::string::npos || preamble_.first(Of::interval) == nullptr);
@@ -269,7 +269,7 @@ void RowTimer::require_start() const {
   if (is_decided() || count_ < 2) return;
   const double interval = made_.interval.value_or(std::abs(duration()) / intervals());
   for (const TimeClaim& claim : preamble_.claims) {
-    // Only the middle in GW Instek files has a known meaning. A start without a unit may refer to another quantity.
+    // A middle of the record has a known meaning in GW Instek files only. A start without a unit may refer to another quantity.
     const bool is_axis = claim.of == Of::centre ? preamble_.text.find("sampling period") != std::string::npos
                                                 : claim.has_unit || !intervals_.empty();
     if (!is_start(claim) || !is_axis) continue;

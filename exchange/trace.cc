@@ -114,7 +114,7 @@ std::vector<double> resolved_times(const Recording& recording, const ReadKeys& k
         "{}: the file has neither times nor an interval; give interval = \"...\", the time between rows, or time_column",
         recording.file);
   });
-  if (keys.interval) return recording.times;  // these times are even
+  if (keys.interval) return recording.times;  // times from a given interval are evenly spaced
   const TimeAxis axis = time_axis(recording);
   if (keys.uneven || recording.is_breakpoints) {
     require_not_back(recording, axis);

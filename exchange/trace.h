@@ -15,9 +15,9 @@ struct Trace {
 };
 
 /// Returns the channel that channel_of() selects, over the times according to the file and to `keys`. Throws InvalidInput with
-/// file, line and the key that decides for a missing channel, and for times that are missing, repeat, decrease or deviate from
-/// the interval of the file. It also throws for a value that is not finite between finite ones, and, unless `any_unit`, for a
-/// unit other than a voltage.
+/// file, line and the deciding key for a missing channel, and for times that are missing, repeat, decrease or deviate from the
+/// interval of the file. Throws also for a value that is not finite between finite values, and, unless `any_unit`, for a unit
+/// other than a voltage.
 [[nodiscard]] Trace trace_of(const Recording& recording, const ReadKeys& keys, const std::string& usual, bool any_unit = false);
 
 }  // namespace softland

@@ -29,7 +29,7 @@ namespace {
 constexpr std::size_t header_lines = 11;
 constexpr std::string_view end_mark = "    -1";
 
-/// Names of the contents of a data set 58, by its function type.
+/// Names of the kinds of functions that a data set 58 can hold; the index is the function-type number in the file.
 constexpr std::array function_names{"a general or unknown function",
                                     "a time response",
                                     "an auto spectrum",

@@ -1,9 +1,9 @@
 // Reads value change dumps (VCD), as logic analysers and simulators of digital circuits write them.
 //
 // A variable keeps its value until the next change. Every time of a change becomes two rows, with the values before and after,
-// so that straight lines between rows are steps. Variables with the same identifier have the same values. The states x and z, and
-// W, U and
-// - of VHDL, are missing numbers; vectors are whole numbers.
+// so that straight lines between rows are steps. Variables with the same identifier have the same values.
+//
+// The states x and z, and the states W, U and '-' of VHDL, are missing numbers; vectors are whole numbers.
 //
 // Source: IEEE Std 1364-2005, clause 18.
 #include <fmt/format.h>

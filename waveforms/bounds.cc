@@ -98,8 +98,8 @@ double size_of(const SignalPieceOf<double>& piece, bool of_rate, double from, do
                         : std::abs(piece.value) + std::abs(piece.slope) * longest + swing);
 }
 
-/// Returns a time in [from, to] at which the function is within `tolerance` of its maximum. `curvature(a, b)` bounds its second
-/// derivative between a and b: a chord of length h is at most h^2 / 8 of that below the function.
+/// Returns a time in [from, to] at which the function is within `tolerance` of its maximum. `curvature(a, b)` bounds the second
+/// derivative between a and b: a chord of length h is at most h^2 / 8 times this bound below the function.
 template <typename Function, typename Curvature>
 double time_of_maximum(Function function, const Curvature& curvature, double from, double to, double tolerance) {
   struct Interval {

@@ -5,7 +5,7 @@
 //   V(t) = sum over i of levels_i B_i(t) on [0, duration], B_i the cubic B-splines of these knots (de Boor, A Practical Guide to
 //   Splines, 1978, chapter IX)
 //
-// It begins on the first level, with a jump where that is not 0 V, and ends on the last, which holds for ever.
+// The voltage begins at the first level, which may be a jump at t = 0, and ends at the last level, which holds for ever.
 #pragma once
 
 #include <array>
@@ -49,7 +49,7 @@ namespace internal {
 
 }  // namespace internal
 
-/// Returns the pieces of a valid spline.
+/// Returns the pieces of a valid B-spline waveform.
 template <class P>
 [[nodiscard]] Pieces<P> pieces(const BSplineOf<P>& spline) {
   const std::size_t n = spline.levels.size(), spans = n - 3;
@@ -73,7 +73,7 @@ template <class P>
   all.push_back({.begin = spline.duration, .value = spline.levels.back()});
   return all;
 }
-/// Compiles the spline. Throws InvalidParameter.
+/// Compiles the spline to a signal. Throws InvalidParameter for an invalid spline.
 [[nodiscard]] Signal signal(const BSpline& spline, double before = 0);
 
 }  // namespace softland

@@ -2,10 +2,10 @@
 //
 //   V(t) = b(t) + amplitude e(t) exp(-s / decay_time) sin(phase + angular_frequency s + sweep s^2 / 2),  s = t - start
 //
-// for t in [start, end], b(t) elsewhere (t >= 0). b rises linearly to base on [0, rise_time], from the voltage before t = 0; the
-// envelope e fades in after start and out before end as that of a harmonic. At its end the frequency is frequency_ratio times
-// that at its start: sweep = (frequency_ratio - 1) angular_frequency / (end - start). A chirp that never ends keeps its
-// frequency, and decays.
+// for t in [start, end], b(t) elsewhere (t >= 0). b rises linearly to base on [0, rise_time], from the voltage before t = 0;
+// the envelope e rises after start and falls before end as in harmonic.h. The frequency at the end is frequency_ratio times the
+// frequency at the start: sweep = (frequency_ratio - 1) angular_frequency / (end - start). A chirp that never ends has a
+// constant frequency and must decay.
 #pragma once
 
 #include <array>
@@ -68,7 +68,7 @@ struct FamilyOf<Chirp> {
 template <class P>
 [[nodiscard]] Pieces<P> pieces(const ChirpOf<P>& chirp, const P& before = P(0)) {
   using std::cos, std::exp, std::sin;
-  // Make base and envelope as for a harmonic; its sine becomes a term.
+  // A harmonic gives the base and the envelope; its sine becomes a term of the chirp.
   Pieces<P> all = pieces(HarmonicOf<P>{.base = chirp.base,
                                        .rise_time = chirp.rise_time,
                                        .amplitude = chirp.amplitude,
@@ -96,7 +96,7 @@ template <class P>
   }
   return all;
 }
-/// Compiles the chirp. Throws InvalidParameter.
+/// Compiles the chirp to a signal. Throws InvalidParameter for an invalid chirp.
 [[nodiscard]] Signal signal(const Chirp& chirp, double before = 0);
 
 }  // namespace softland

@@ -22,7 +22,7 @@ using Complex = std::complex<double>;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// The function Re[polynomial(s) exp(exponent s)], with s counted from the beginning of the piece.
+/// The function Re[polynomial(s) exp(exponent s)], with the time s counted from the beginning of the piece.
 struct Exponential {
   std::array<Complex, 4> polynomial = {};
   Complex exponent = {};
@@ -48,7 +48,7 @@ std::vector<Exponential> exponentials_of(const SignalPiece& piece) {
   return all;
 }
 
-/// Returns the steady response of T dV/dt + V = input.
+/// Returns the steady-state solution V of T dV/dt + V = input.
 Exponential answer(const Exponential& input, double time_constant) {
   // If the input decays at the rate of the filter, the response has a factor proportional to time.
   constexpr double same = 1e-6;
@@ -100,10 +100,10 @@ SignalPiece piece_of(double begin, const std::vector<Exponential>& parts) {
   return piece;
 }
 
-/// Returns true if a piece is constant, as a held sample is.
+/// Returns true if the voltage of a piece is constant, as between two samples of a converter.
 bool is_held_level(const SignalPiece& piece) { return piece.slope == 0 && !piece.oscillates() && piece.terms.empty(); }
 
-/// Returns the response of the filter to a constant level; `left` is the difference between output and level at its beginning
+/// Returns the response of the filter to a constant level; `left` is the output less the level at the beginning of the level
 /// [V].
 SignalPiece answer_to_level(const SignalPiece& level, double time_constant, double left) {
   SignalPiece piece{.begin = level.begin, .value = level.value};
@@ -113,7 +113,7 @@ SignalPiece answer_to_level(const SignalPiece& level, double time_constant, doub
 
 /// Replaces pieces with a frequency sweep by cubics that match the values and slopes at their ends.
 std::vector<SignalPiece> without_sweeps(const std::vector<SignalPiece>& pieces) {
-  constexpr double tolerance = 1e-6;  // relative to the largest size of the terms
+  constexpr double tolerance = 1e-6;  // error of the cubics, relative to the largest size of the terms
   std::vector<SignalPiece> all;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const SignalPiece& piece = pieces[i];
@@ -197,7 +197,7 @@ Signal slewed(const Signal& held, double max_slew) {
 }
 
 Signal filtered(const Signal& input, double time_constant) {
-  constexpr double over = 40;  // number of time constants after which the response is dropped
+  constexpr double over = 40;  // number of time constants after which an exponential response is dropped
   const std::vector<SignalPiece> pieces = without_sweeps(input.pieces());
   std::vector<SignalPiece> all;
   double output = input.before();

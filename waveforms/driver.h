@@ -43,8 +43,8 @@ struct DriverModel {
 /// rounded, so that the voltage does not jump at t = 0.
 [[nodiscard]] Signal commanded_samples(const Signal& commanded, const DriverModel& model, const DriverLimits& limits, double end);
 
-/// Returns the driver limits for a table of samples. By rounding, the change between two samples may exceed that of the waveform
-/// by one step of the converter.
+/// Returns the driver limits for a table of samples. By rounding, the change between two samples may exceed the change of the
+/// waveform by one step of the converter.
 [[nodiscard]] DriverLimits limits_of_samples(DriverLimits limits, const DriverModel& model);
 
 /// Returns the applied voltage of the source: the output of its converter with gain, offset and delay. Throws as held(). A source
@@ -54,7 +54,7 @@ struct DriverModel {
 
 namespace internal {
 
-/// The stages of applied().
+/// The stages by which applied() computes the applied voltage.
 [[nodiscard]] Signal sampled(const Signal& commanded, double rate, std::optional<int> bits, const DriverLimits& limits,
                              double end);
 [[nodiscard]] Signal slewed(const Signal& held, double max_slew);

@@ -13,17 +13,17 @@ namespace softland {
 
 /// Returns breakpoints [s, V] whose straight connections stay within `tolerance` [V] of the signal on [0, end]; pulses and
 /// steps come out exact. A jump at t becomes points at t and at t + jump_time [s], or a thousandth of the interval after t if
-/// that is shorter; with jump_time = 0 both have the time t. A signal that does not start at its 0 V before t = 0 starts with a
-/// jump. The last point is at `end`, or one jump_time later. Throws InvalidInput unless end and jump_time are finite and
-/// >= 0, the tolerance of a curve > 0, and the points of a piece at most 1e7.
+/// that is shorter; with jump_time = 0 both points have the time t. If the voltage at t = 0 differs from that before t = 0, the
+/// points start with a jump. The last point is at `end`, or one jump_time later. Throws InvalidInput unless end and jump_time
+/// are finite and >= 0, the tolerance of a curve > 0, and the points of a piece at most 1e7.
 [[nodiscard]] std::vector<std::pair<double, double>> polyline(const Signal& signal, double end, double tolerance,
                                                               double jump_time);
 
-/// Writes CSV with a header `time_s,<drive>,<drive>...` on the union of all breakpoints; the table family reads it. A jump of
+/// Writes CSV with a header `time_s,<drive>,<drive>...` on the union of all breakpoints; read_table() reads the file. A jump of
 /// any drive is two rows of the same time; sines and other curves are sampled so that straight lines stay within 1e-4 of the
-/// drive's peak. A step, pulse or table that ends before `end` and stands alone reads back to the same signal bit for bit;
-/// together with other drives its ramps are split at their breakpoints, to rounding. Throws InvalidInput when there is no
-/// signal, a name does not fit into a header, or `end` is not finite and >= 0.
+/// drive's peak. A step, pulse or table that is the only signal reads back to the same signal bit for bit; together with
+/// other drives its ramps are split at their breakpoints, to rounding. Throws InvalidInput when there is no signal, a name does
+/// not fit into a header, or `end` is not finite and >= 0.
 ///
 /// `sample_rates` are the sample rates of the drives that consist of held samples [Hz]. Each sample at k / rate has a row, up to
 /// the last one, which is held without end. Reading the file gives the same samples.
@@ -44,8 +44,8 @@ struct Coded {
 /// Returns the name of a drive in SPICE: letters become lower case, and other characters than letters and digits an underscore.
 [[nodiscard]] std::string spice_name(const std::string& drive);
 /// Writes a SPICE file with one subcircuit `softland_<drive> plus minus` per drive, which holds one PWL voltage source; usable
-/// with .include in ngspice, LTspice, HSPICE. Jumps take 1 ps, or a ten-millionth of `end` or a thousandth of the interval
-/// after them if that is shorter; curves as in csv(). Names are those of spice_name(). `about` stands in the first line. Throws
+/// with .include in ngspice, LTspice, HSPICE. A jump takes 1 ps, or a ten-millionth of `end` or a thousandth of the interval
+/// after the jump if that is shorter; curves as in csv(). Names are those of spice_name(). `about` is in the first line. Throws
 /// InvalidInput as csv(), and when two drives get the same name.
 [[nodiscard]] std::string spice_pwl(
     const std::map<std::string, Signal>& signals, double end,

@@ -75,8 +75,8 @@ template <class P>
   const std::vector<internal::Stretch<P>> envelope = internal::envelope(h);
   std::vector<P> begins;
   for (const internal::Stretch<P>& stretch : envelope) begins.push_back(stretch.begin);
-  // Compute in volts with one division: a ramp whose slope is rounded twice does not end on the base, which would count as a
-  // jump.
+  // Compute the ramp in volts with one division: a ramp whose slope is rounded twice does not end on the base, which would
+  // count as a jump.
   std::vector<internal::Stretch<P>> straight_line{{.begin = P(0), .value = h.base}};
   if (!(internal::vanishes(h.base) && internal::vanishes(before)) && internal::decided(h.rise_time > 0)) {
     const auto same = std::find_if(begins.begin(), begins.end(), [&](const P& t) { return internal::coincide(t, h.rise_time); });
@@ -99,7 +99,7 @@ template <class P>
   }
   return all;
 }
-/// Compiles the harmonic. Throws InvalidParameter.
+/// Compiles the harmonic to a signal. Throws InvalidParameter for an invalid harmonic.
 [[nodiscard]] Signal signal(const Harmonic& harmonic, double before = 0);
 
 namespace internal {

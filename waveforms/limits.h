@@ -16,8 +16,8 @@ struct DriverLimits {
 };
 
 /// Returns an empty text if the signal keeps the limits at all times (to 1e-12 relative), else one sentence with the value and
-/// the limit. The voltage before t = 0 counts, so that a min_voltage above 0 V is violated by a signal that starts at 0 V. A
-/// limit of NaN is violated.
+/// the limit. The voltage before t = 0 is checked too: a signal that starts at 0 V violates a min_voltage above 0 V. A limit of
+/// NaN is violated.
 [[nodiscard]] std::string violation(const Signal& signal, const DriverLimits& limits);
 
 }  // namespace softland

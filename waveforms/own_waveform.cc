@@ -43,7 +43,7 @@ class Following {
     const double held = voltage(times.back());
     largest_ = std::max(largest_, std::abs(held));
     for (std::size_t k = 0; k + 1 < times.size(); ++k) {
-      // If the waveform jumps at the end of a stretch, the stretch ends on the value before the jump.
+      // If the waveform jumps at the end of a stretch, the stretch ends with the voltage before the jump.
       constexpr double rounding = 1e-12;
       const double end = times[k + 1], before = voltage(std::nextafter(end, times[k])), after = voltage(end);
       const double ends_on = std::abs(after - before) > rounding * largest_ ? before : after;

@@ -22,19 +22,19 @@ namespace softland {
 
 /// Largest error of the cubics of an own waveform, relative to its largest |V|.
 inline constexpr double own_waveform_accuracy = 1e-7;
-/// Largest number of cubics.
+/// Largest number of cubics that approximate an own waveform.
 inline constexpr std::size_t most_own_pieces = 20'000;
 
 /// A parameter of an own waveform, and the bounds between which a search varies it.
 struct OwnParameter {
-  std::string name;  ///< letters, digits, '_'; by custom it ends with its unit: "rise_s", "level_V"
+  std::string name;  ///< letters, digits, '_'; by convention the name ends with the unit: "rise_s", "level_V"
   double lower = 0, upper = 0;
   double start = 0;  ///< value at which a search begins, within the bounds
 };
 
 /// Base class of own waveforms. All functions are called from several threads at once: they must not change shared data, and
-/// give the same for the same arguments. Their exceptions pass through to the caller that asked for the signal; in a search the
-/// point then counts as infeasible, and OptimizerResult::first_exception keeps the first message.
+/// must return equal values for equal arguments. Their exceptions pass through to the caller of signal(); a search treats the
+/// point as infeasible, and OptimizerResult::first_exception keeps the first message.
 class OwnWaveform {
  public:
   OwnWaveform() = default;
@@ -42,15 +42,15 @@ class OwnWaveform {
   OwnWaveform& operator=(const OwnWaveform&) = default;
   virtual ~OwnWaveform() = default;
 
-  /// Returns the name in messages and results; a search names it like a family. It must differ from the built-in families, and
-  /// not contain '+', ',', ':' and '='.
+  /// Returns the name in messages and results, and for requests of a search. The name must differ from those of the built-in
+  /// families, and not contain '+', ',', ':' and '='.
   [[nodiscard]] virtual std::string_view name() const = 0;
   /// Returns the parameters that can be varied; none by default. Their values are the `x` of the other functions, in this
   /// order.
   [[nodiscard]] virtual std::vector<OwnParameter> parameters() const { return {}; }
   /// Returns the times at which the voltage kinks or jumps [s]: above 0 and increasing. The last one is the end: the voltage
-  /// stays from then on. A waveform without breakpoints must be constant, and not 0 V. If two differ by rounding only, the
-  /// later one counts.
+  /// stays constant from then on. A waveform without breakpoints must be constant, and not 0 V. Of two breakpoints that differ
+  /// by rounding only, the later one is used.
   [[nodiscard]] virtual std::vector<double> breakpoints(std::span<const double> x) const = 0;
   /// Returns the voltage [V] at a time [s] from 0 to the end; at a jump the value after it.
   [[nodiscard]] virtual double voltage(double time, std::span<const double> x) const = 0;
@@ -63,19 +63,19 @@ struct Own {
   double volts = 1, time = 1;
 };
 
-/// It has no table of parameters, since no scene can hold it.
+/// An own waveform has no table of parameters, because no scene can hold it.
 template <>
 struct FamilyOf<Own> {
   static constexpr std::string_view name = "own";
   static constexpr std::array<Parameter<Own>, 0> parameters = {};
 };
 
-/// Returns the waveform with the parameters at which a search begins. Throws InvalidInput where it is null, or a parameter has
-/// no name, or bounds that are not finite and in order about its start.
+/// Returns the waveform with the parameters at which a search begins. Throws InvalidInput if `waveform` is null, or a parameter
+/// has no name, or bounds that are not finite and in order about its start.
 [[nodiscard]] Own own(std::shared_ptr<const OwnWaveform> waveform);
-/// Compiles the waveform. Throws InvalidInput with its name where it is null or has other parameters than these; where
-/// breakpoints are not in order, or missing and the voltage is not constant; and where a voltage is not finite, or not smooth
-/// between two breakpoints.
+/// Compiles the waveform to a signal. Throws InvalidInput with the name of the waveform if the waveform is null or has other
+/// parameters than `own`. Throws also if breakpoints are not in order, or missing and the voltage is not constant; and if a
+/// voltage is not finite, or not smooth between two breakpoints.
 [[nodiscard]] Signal signal(const Own& own, double before = 0);
 /// Returns "the own waveform 'NAME'", as messages name it.
 [[nodiscard]] std::string described(const Own& own);

@@ -43,14 +43,14 @@ template <class P>
 struct TermOf {
   using Cubic = std::array<P, 4>;
 
-  Cubic cosine = {};        ///< [V], [V/s], [V/s^2], [V/s^3]
-  Cubic sine = {};          ///< the same
+  Cubic cosine = {};        ///< coefficients of C: [V], [V/s], [V/s^2], [V/s^3]
+  Cubic sine = {};          ///< coefficients of S: [V], [V/s], [V/s^2], [V/s^3]
   P decay = 0;              ///< [1/s]
   P angular_frequency = 0;  ///< angular frequency at the beginning of the piece [rad/s]
   P sweep = 0;              ///< [rad/s^2]
 
   [[nodiscard]] bool turns() const { return !internal::vanishes(angular_frequency) || !internal::vanishes(sweep); }
-  /// Returns the voltage [V] at s after the piece began.
+  /// Returns the voltage [V] at time s after the begin of the piece.
   [[nodiscard]] P voltage(const P& s) const {
     using std::cos, std::exp, std::sin;
     P sum = at(cosine, s);
@@ -60,7 +60,7 @@ struct TermOf {
     }
     return internal::vanishes(decay) ? sum : sum * exp(P(0) - decay * s);
   }
-  /// Returns the rate [V/s].
+  /// Returns dV/dt [V/s] at time s after the begin of the piece.
   [[nodiscard]] P rate(const P& s) const {
     using std::cos, std::exp, std::sin;
     const P c = at(cosine, s);
@@ -201,7 +201,7 @@ struct Stretch {
   [[nodiscard]] P at(const P& time) const { return value + slope * (time - begin); }
 };
 
-/// Returns the stretch that holds from `time` on; the first one begins at 0.
+/// Returns the stretch that contains `time`, at a boundary the later one; the first stretch begins at 0.
 template <class P>
 [[nodiscard]] const Stretch<P>& stretch_at(const std::vector<Stretch<P>>& line, const P& time) {
   std::size_t found = 0;

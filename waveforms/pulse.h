@@ -50,7 +50,7 @@ template <class P>
 [[nodiscard]] Pieces<P> pieces(const PulseOf<P>& pulse, const P& before = P(0)) {
   return internal::straight_pieces(points(pulse, before));
 }
-/// Compiles the pulse. Throws InvalidParameter.
+/// Compiles the pulse to a signal. Throws InvalidParameter for an invalid pulse.
 [[nodiscard]] Signal signal(const Pulse& pulse, double before = 0);
 
 namespace internal {

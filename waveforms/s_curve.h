@@ -3,7 +3,7 @@
 //
 //   V(t) = (V_k + V_(k+1)) / 2 - (V_(k+1) - V_k) / 2 cos(pi (t - t_k) / edge)
 //
-// The last level holds for ever. One level alone is a smooth rise.
+// The last level holds for ever. A curve of one level is a smooth rise.
 #pragma once
 
 #include <array>
@@ -59,7 +59,7 @@ template <class P>
   all.push_back({.begin = edge_end, .value = level});
   return all;
 }
-/// Compiles the S-curve. Throws InvalidParameter.
+/// Compiles the S-curve to a signal. Throws InvalidParameter for an invalid curve.
 [[nodiscard]] Signal signal(const SCurve& curve, double before = 0);
 
 }  // namespace softland

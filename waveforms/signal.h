@@ -55,8 +55,8 @@ class Signal {
   struct Range {
     double minimum = 0, maximum = 0;  ///< [V]
   };
-  /// Returns the smallest and largest voltage on [0, end] [V], that before t = 0 included, sines to 1e-9 of their amplitude and
-  /// terms to 1e-9 of their size. These five functions throw InvalidInput unless end >= 0.
+  /// Returns the smallest and largest voltage on [0, end] and before t = 0 [V], sines to 1e-9 of their amplitude and terms to
+  /// 1e-9 of their size. The functions with an argument `end` throw InvalidInput unless end >= 0.
   [[nodiscard]] Range range(double end = std::numeric_limits<double>::infinity()) const;
   [[nodiscard]] double maximum(double end = std::numeric_limits<double>::infinity()) const { return range(end).maximum; }
   [[nodiscard]] double minimum(double end = std::numeric_limits<double>::infinity()) const { return range(end).minimum; }
@@ -65,7 +65,7 @@ class Signal {
   /// Returns the largest |dV/dt| on [0, end] [V/s]; infinity if there is a jump (one at t = 0 counts).
   [[nodiscard]] double peak_slew(double end = std::numeric_limits<double>::infinity()) const;
   /// Returns a step length that resolves the signal after `time` [s]: a fraction of the shortest period, at most the shortest
-  /// time constant of its piece; infinity where the piece has neither.
+  /// time constant of the piece; infinity where the piece has neither.
   [[nodiscard]] double resolving_step(double time) const;
 
  private:
@@ -76,17 +76,17 @@ class Signal {
   double before_ = 0;
 };
 
-/// Returns the voltage that each signal ends on [V].
+/// Returns the final voltage of each signal [V].
 [[nodiscard]] std::vector<double> hold_levels(std::span<const Signal> signals);
 /// Returns the voltage of each signal before t = 0 [V].
 [[nodiscard]] std::vector<double> values_before(std::span<const Signal> signals);
 /// Returns the time at which the last piece of any signal begins [s].
 [[nodiscard]] double last_breakpoint(std::span<const Signal> signals);
 
-/// Returns the signal until `time` [s]; from then on its voltage just before `time` is held, which for 0 s is that before t = 0.
+/// Returns the signal until `time` [s]; after that, the voltage just before `time` is held (for 0 s, the voltage before t = 0).
 [[nodiscard]] Signal held_from(const Signal& signal, double time);
 /// Returns the part of a signal after a breakpoint [s], before which the signal must be constant. Time counts from the
-/// breakpoint, and the voltage before is `before` [V].
+/// breakpoint, and the voltage before the breakpoint is `before` [V].
 [[nodiscard]] Signal part_from(const Signal& signal, double time, double before = 0);
 
 /// Returns the signal times a factor, a finite number.

@@ -168,7 +168,7 @@ bool SignalSlopes::find_in_groups(const Neighbourhood& near, const Signals& here
 
 bool SignalSlopes::holds_along_all(const Neighbourhood& near, const Signals& here) const {
   constexpr double tolerance =
-      1e-5;  // relative to the largest change; a parameter in a wrong group has an error of its whole change
+      1e-5;  // relative to the largest change; the error of a parameter in a wrong group is its whole change
   const auto share = [](std::size_t k) {
     const double golden = std::fmod(0.618033988749895 * static_cast<double>(k + 1), 1.0);
     return (k % 2 == 0 ? 1 : -1) * (0.5 + golden / 2);

@@ -30,7 +30,7 @@ class SignalSlopes {
   struct Slope {
     std::size_t parameter = 0;
     double begin = 0;  ///< d(begin of the piece) / dp [s]
-    /// Returns the slope of the voltage by the formula of the piece, at a time from 0 [V].
+    /// Returns the slope of the voltage [V per unit of the parameter] by the formula of the piece, at a time counted from 0.
     [[nodiscard]] double voltage(double time) const {
       if (piece != nullptr) return piece->voltage(time);
       if (above != nullptr) return (above->voltage(time) - below->voltage(time)) * per_step;
@@ -41,15 +41,15 @@ class SignalSlopes {
     double origin = 0;                                     // time about which a polynomial piece is written: s = time - origin
     std::array<double, 4> cubic = {};                      // coefficients of the derivative of a polynomial piece
     std::shared_ptr<const SignalPiece> piece = nullptr;    // derivative of a piece in which only sizes of sines or terms change
-    const SignalPiece *above = nullptr, *below = nullptr;  // pieces of a difference where more changes
+    const SignalPiece *above = nullptr, *below = nullptr;  // pieces of a difference, if more changes
     double per_step = 0;
   };
 
   /// Step to either side of a parameter, as a share of its range.
   static constexpr double share_of_range = 1e-6;
   /// `signals` returns one signal per drive for x; it is also called for points near x between `lower` and `upper`. A parameter
-  /// without room between these bounds has no slopes. `groups` were found at another x; if they are valid here, they give the
-  /// same numbers with fewer signals.
+  /// whose bounds are equal has no slopes. `groups` were found at another x; if they are valid at this x, they give the same
+  /// numbers with fewer signals.
   using SignalsOf = std::function<std::vector<Signal>(std::span<const double>)>;
   SignalSlopes(const SignalsOf& signals, std::span<const double> x, std::span<const double> lower, std::span<const double> upper,
                const std::vector<ParameterGroup>& groups = {});
@@ -74,15 +74,15 @@ class SignalSlopes {
   void find_one_by_one(const Neighbourhood& near, const Signals& here);
   [[nodiscard]] bool find_in_groups(const Neighbourhood& near, const Signals& here, const std::vector<ParameterGroup>& groups);
   [[nodiscard]] bool holds_along_all(const Neighbourhood& near, const Signals& here) const;
-  /// `mover` returns the parameter that changes a piece, and its step from below to above. Returns false if it returns none for a
-  /// piece that has changed.
+  /// `mover` returns the parameter that changes a piece, and its step from below to above. Returns false if `mover` returns
+  /// none for a piece that has changed.
   template <class Mover>
   bool add(Mover&& mover, Signals above, Signals below);
 
   std::size_t parameters_;
   std::vector<std::vector<std::vector<Slope>>> slopes_;  // slopes by drive and piece
   std::vector<std::size_t> kinks_;
-  std::vector<Signals> kept_;  // signals with the pieces that slopes point to
+  std::vector<Signals> kept_;  // signals whose pieces the slopes point to
   bool are_grouped_ = false;
 };
 

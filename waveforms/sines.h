@@ -48,7 +48,7 @@ struct FamilyOf<Sines> {
 template <class P>
 [[nodiscard]] Pieces<P> pieces(const SinesOf<P>& sines, const P& before = P(0)) {
   const P end = sines.start + sines.duration;
-  // Make the base as for a harmonic.
+  // The base is that of a harmonic.
   Pieces<P> all = pieces(HarmonicOf<P>{.base = sines.base,
                                        .rise_time = sines.rise_time,
                                        .amplitude = P(1),
@@ -71,7 +71,7 @@ template <class P>
   }
   return all;
 }
-/// Compiles the sines. Throws InvalidParameter.
+/// Compiles the sines to a signal. Throws InvalidParameter for invalid sines.
 [[nodiscard]] Signal signal(const Sines& sines, double before = 0);
 
 }  // namespace softland

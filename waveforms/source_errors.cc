@@ -10,14 +10,14 @@ namespace softland {
 namespace {
 
 constexpr double no_bound = std::numeric_limits<double>::infinity();
-constexpr double most_of_gap = 0.49;  // largest move of an edge towards its neighbour, as a share of the time between them
+constexpr double most_of_gap = 0.49;  // largest move of an edge towards the adjacent edge, as a share of the time between both
 
 /// An edge: breakpoints that a delay of the edge moves together.
 struct Edge {
   std::size_t first, last;
 };
 
-/// Returns true if the piece is a constant level, or a sine of constant amplitude on it.
+/// Returns true if the piece is a constant level, with or without a sine of constant amplitude.
 bool is_level(const SignalPiece& piece) { return piece.slope == 0 && piece.amplitude_slope == 0 && piece.terms.empty(); }
 
 std::vector<Edge> edges_of(const Signal& signal) {
@@ -46,8 +46,8 @@ std::vector<double> begins(const std::vector<SignalPiece>& pieces, const std::ve
   return all;
 }
 
-/// Returns the piece between other times: the straight line and the envelope run from and to the same values, the carrier is
-/// late by `late`, and the terms are stretched with it.
+/// Returns the piece between other times: the straight line and the envelope run from and to the same values, the sine is late
+/// by `late`, and the terms are stretched with the piece.
 SignalPiece moved(const Signal& signal, std::size_t i, double begin, double end, double offset, double late) {
   const SignalPiece& piece = signal.pieces()[i];
   SignalPiece own = piece;

@@ -5,8 +5,8 @@
 // An edge is a jump, a ramp between two levels, which moves as a whole, or a corner where ramps or curves meet; a curve between
 // two edges is stretched with them. The edges of a harmonic's sine are where it begins, ends or fades: the carrier keeps its
 // phase. f begins with its first edge; before it, only the offset acts. An edge moves towards a neighbour by at most 0.49 of
-// the time between them, so that edges keep their order and pulses their levels; the room before the first and after the last
-// is unlimited.
+// the time between them, so that edges keep their order and pulses their levels; the first edge may move back, and the last
+// edge forth, without limit.
 //
 // A simulation begins at t = 0 at rest under the voltage before t = 0. If an edge would be earlier than t = 0, the time axis is
 // shifted so that it begins at the first edge. All drives of a device must then have the same shift.
@@ -34,8 +34,8 @@ struct SourceErrors {
 /// Returns the time of the first edge [s], which may be before 0; infinity without an edge.
 [[nodiscard]] double first_edge(const Signal& signal, const SourceErrors& errors);
 
-/// Returns the signal with these errors, with time counted from `origin` [s], which is at most 0; an earlier edge is moved to
-/// `origin`. Throws InvalidInput unless all numbers are finite and the gain is > 0.
+/// Returns the signal with these errors, with time counted from `origin` [s], which is at most 0; an edge before `origin` is
+/// moved to `origin`. Throws InvalidInput unless all numbers are finite and the gain is > 0.
 [[nodiscard]] Signal with_errors(const Signal& signal, const SourceErrors& errors, double origin = 0);
 
 }  // namespace softland

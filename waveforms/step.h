@@ -30,7 +30,7 @@ template <class P>
 [[nodiscard]] Pieces<P> pieces(const StepOf<P>& step, const P& before = P(0)) {
   return internal::straight_pieces<P>({{P(0), before}, {step.rise_time, step.level}});
 }
-/// Compiles the step. Throws InvalidParameter.
+/// Compiles the step to a signal. Throws InvalidParameter for an invalid step.
 [[nodiscard]] Signal signal(const Step& step, double before = 0);
 
 }  // namespace softland

@@ -43,7 +43,7 @@ template <class P>
 [[nodiscard]] Pieces<P> pieces(const TableOf<P>& table) {
   return internal::straight_pieces(points(table));
 }
-/// Compiles the table. Throws InvalidInput.
+/// Compiles the table to a signal. Throws InvalidInput for an invalid table.
 [[nodiscard]] Signal signal(const Table& table, double before = 0);
 
 /// Reads column `drive` of a CSV file with a header line: `time_s` and one column per drive [V]. Throws InvalidInput with file,

@@ -37,7 +37,7 @@ class Thinning {
   [[nodiscard]] double largest_excess() const { return largest_; }
 
  private:
-  /// Returns the first row at or after `from` + 1 whose next one has the same time, or the last row.
+  /// Returns the first row after `from` at which the table jumps (the next row has the same time), or the last row.
   std::size_t jump_after(std::size_t from) {
     if (jump_ <= from) {
       jump_ = from + 1;

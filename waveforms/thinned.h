@@ -1,9 +1,9 @@
 // Removes rows of a table such that a source of a given bandwidth applies nearly the same voltage.
 //
-// Kept rows are rows of the table, with straight lines between them: the voltage stays between its extremes, and no slope
-// increases. Take two inputs of T dV/dt + V = input whose difference has the integral E(t) from 0 on: the outputs
-// differ by at most 2 max|E| / T (integration by parts of the response). Rows are therefore removed as long as |E| permits.
-// Noise that the source averages disappears, and edges keep their times.
+// Straight lines connect the rows that are not removed: the voltage stays between its extremes, and no slope increases.
+// Take two inputs of T dV/dt + V = input whose difference has the integral E(t) from 0 on: the outputs differ by at most
+// 2 max|E| / T (integration by parts of the response). Rows are therefore removed as long as |E| permits. Noise that the source
+// averages disappears, and edges keep their times.
 #pragma once
 
 #include "waveforms/table.h"

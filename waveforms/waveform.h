@@ -26,11 +26,11 @@ namespace softland {
 using Waveform = std::variant<Step, Harmonic, Pulse, Table, SCurve, Chirp, BSpline, Sines, Own>;
 /// Waveforms by the name of the drive, for some or all drives of a scene.
 using DriveWaveforms = std::map<std::string, Waveform>;
-/// Number of families that a scene can hold: all but the own waveform, which is the last.
+/// Number of waveform families that a scene can hold: all but the own waveform, which is the last alternative of Waveform.
 inline constexpr std::size_t families_of_scenes = std::variant_size_v<Waveform> - 1;
 
-/// Returns the signal of a waveform from t = 0 on; the voltage before is `before` [V], from which a first edge rises. Throws
-/// InvalidInput with the parameter, its value and the rule.
+/// Returns the signal of a waveform from t = 0 on; `before` is the voltage before t = 0 [V], from which a first edge rises.
+/// Throws InvalidInput with the parameter, its value and the rule.
 [[nodiscard]] Signal signal(const Waveform& waveform, double before = 0);
 [[nodiscard]] std::vector<Signal> signals_of(const std::vector<Waveform>& waveforms);
 /// Returns the limits of a driver for the signal of a waveform. For an own waveform, which is approximated, the voltage limits
@@ -42,7 +42,7 @@ inline constexpr std::size_t families_of_scenes = std::variant_size_v<Waveform> 
 /// Returns step | harmonic | pulse | table | s-curve | chirp | bspline | sines; for an own waveform its name.
 [[nodiscard]] std::string_view family(const Waveform& waveform);
 
-/// Calls f with a default waveform of every family that a scene can hold, in the order of the variant.
+/// Calls f with a default waveform of every family that a scene can hold, in the order of the alternatives of Waveform.
 template <class F>
 void for_each_family(F&& f) {
   [&]<std::size_t... i>(std::index_sequence<i...>) { (f(std::variant_alternative_t<i, Waveform>{}), ...); }

@@ -47,7 +47,7 @@ const Section* holes_keys() {
   return &keys;
 }
 
-// Returns the ends of a linear width.
+// Returns the width at the begin (element 0) or the end (element 1) of a beam section with linear width.
 double& width_of_section(Scene& scene, std::size_t number, std::size_t element) {
   SectionPart& part = section_part(scene, number);
   return element == 0 ? part.width : part.end_width;

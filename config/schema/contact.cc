@@ -45,8 +45,8 @@ Key conduction_key(std::string_view name, const Dimension& dimension, Range rang
   return key;
 }
 
-// Returns the keys of the resistance of the closed contact (model/contact/resistance.h). A law with a hardness has its own key
-// for it.
+// Returns the keys of the resistance of the closed contact (model/contact/resistance.h). A contact law that needs a hardness
+// has a key of its own for the hardness.
 std::vector<Key> conduction_keys() {
   Key hardness = conduction_key<&Conduction::hardness>(
       "hardness", dimension::pressure, positive, "hardness of the softer metal; conducting spots are plastic at this pressure");
@@ -100,7 +100,7 @@ void check_pad_length(const Device& d, const Contact& c, const SectionReader& in
   in.require(c.pad_length < d.structure.length, "pad_length", "must be less than " + in.written_length(d.structure));
 }
 
-/// Checks the name and the gap, which only one of several contacts has.
+/// Checks the name and the gap, keys that a contact has only if the scene has several contacts.
 void check_named(const Device& d, std::size_t k, const SectionReader& in) {
   const Contact& c = d.contacts[k];
   constexpr std::size_t longest = 64;

@@ -138,7 +138,7 @@ void check_extent(const Structure& s, Electrode& e, const SectionReader& in) {
 void check_fringing(const Structure& s, const Electrode& e, const SectionReader& in) {
   const FringingRow& law = row_of(fringing_laws, e.fringing);
   const SectionReader structure(in.file(), "structure");
-  // If sections of a beam have their own thickness, the fringing field uses the local thickness.
+  // In a beam built of sections, the fringing field uses the local thickness.
   const bool lacks_thickness = law.needs_thickness && std::isnan(s.thickness) && !s.is_built();
   const std::string fringing =
       fmt::format("fringing = {}{}", toml_string(law.name), in.is_given("fringing") ? "" : ", the default,");

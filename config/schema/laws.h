@@ -17,12 +17,12 @@
 
 namespace softland::internal {
 
-/// Returns the number of field i of `Law` in a scene; `part` gives the variant of laws in the scene.
+/// Returns the value of field i, a number, of law `Law` in a scene; `part` returns the variant of laws in the scene.
 template <auto part, class Law, std::size_t i>
 [[nodiscard]] double& bound_number(Scene& scene, std::size_t entry) {
   return *number_of(part(scene, entry), fields_of<Law>[i].key);
 }
-/// Sets field i of `Law` in a scene by a word.
+/// Sets field i of law `Law` in a scene to the enumerator of a word.
 template <auto part, class Law, std::size_t i>
 void bound_word(Scene& scene, std::size_t entry, std::string_view word) {
   std::visit(
@@ -76,8 +76,8 @@ template <auto part, class Law, std::size_t i>
   return key;
 }
 
-/// Returns the key `model`, then the keys of all laws, each with the laws to which it belongs. The keys of every law keep their
-/// order.
+/// Returns the key `model`, then the keys of all laws, each with the laws to which the key belongs. The keys of every law keep
+/// their order.
 template <class Variant, auto part>
 [[nodiscard]] std::vector<Key> keys_of_laws(std::string_view about) {
   Key model{.name = "model", .type = KeyType::choice, .required = true, .about = about};
@@ -98,7 +98,7 @@ template <class Variant, auto part>
   return keys;
 }
 
-/// Returns the law that a section names, with its defaults. Throws InvalidInput where a word is refused.
+/// Returns the law that a section names, with its defaults. Throws InvalidInput if a field of the law has a forbidden word.
 template <class Variant>
 [[nodiscard]] Variant law_of(const SectionReader& in) {
   const Variant law = *law_named<Variant>(in.text("model"));
@@ -113,7 +113,7 @@ template <class Variant>
   return law;
 }
 
-/// Throws InvalidInput where one number of the law is below another that bounds it.
+/// Throws InvalidInput if a number of the law is below another number of the law that is its lower bound.
 template <class... Laws>
 void check_bounds(std::variant<Laws...> law, const SectionReader& in) {
   std::visit(

@@ -27,7 +27,7 @@ Key connection_key() {
   return key;
 }
 
-// Sets the contacts that make the connection, and whether it needs all of them.
+// Sets the contacts that make the connection, and whether the connection needs all of them.
 void set_connection(Device& d, const SectionReader& in) {
   if (!in.is_given("closed")) return;
   const bool is_list = in.is_list("closed");
@@ -49,8 +49,8 @@ void set_connection(Device& d, const SectionReader& in) {
   for (Contact& c : d.contacts) c.connects = std::ranges::find(given, c.name) != given.end();
 }
 
-// Sorts the contacts; the static figures are those of the first one. The order must not depend on that of the file. Contacts
-// that make the connection come first, back stops last; equal ones are sorted from the tip, then by their gap.
+// Sorts the contacts independently of their order in the file; the static figures are those of the first contact. Contacts that
+// make the connection come first, back stops last; equal ones are sorted from the tip, then by their gap.
 void order_contacts(Device& d) {
   if (d.contacts.size() < 2) return;
   d.contacts.front().gap = d.gap.contact;
@@ -65,7 +65,7 @@ void order_contacts(Device& d) {
   d.gap.contact = d.contacts.front().gap;
 }
 
-// The electrical figures need a contact, and a resistance the resistivity of every contact that makes the connection.
+// Electrical figures need a contact; a resistance needs the resistivity of every contact that makes the connection.
 void check_electrical(const Device& d, const SectionReader& in) {
   for (const std::string_view key : {"closed_force", "closed_resistance", "closed_after"}) {
     in.require(!in.is_given(key) || d.has_contact(), key, "needs a [contact]");

@@ -13,8 +13,8 @@
 namespace softland::internal {
 namespace {
 
-/// Range of the sizes of a quantity in a scene [SI unit]. It exceeds that of any switch, and products of a few such values stay
-/// within double precision.
+/// Range of the sizes of a quantity in a scene [SI unit]. The range exceeds that of any switch, and products of a few values in
+/// the range stay within double precision.
 struct Extent {
   Dimension dimension;
   double smallest;  ///< smallest value of a positive quantity

@@ -13,7 +13,7 @@
 
 namespace softland::internal {
 
-// The open ends of these ranges are those of the dimension.
+// If one of these ranges leaves an end open, the dimension of the key determines that end.
 inline constexpr Range any{};
 inline constexpr Range not_negative{.least = 0};
 inline constexpr Range small_error{.least = 0, .most = 0.1, .least_open = true};
@@ -21,7 +21,7 @@ inline constexpr Range small_error{.least = 0, .most = 0.1, .least_open = true};
 /// An electrode's voltages may be multiples of its pull-in voltages.
 inline const std::vector<Dimension> drive_voltage{dimension::voltage, dimension::static_pull_in, dimension::dynamic_pull_in};
 
-/// Returns the key of a number that sets no member.
+/// Returns a key for a number, without the member of a scene that the key sets.
 [[nodiscard]] inline Key number(std::string_view name, std::vector<Dimension> dimensions, Range range, std::string_view about) {
   return {.name = name, .dimensions = std::move(dimensions), .range = range, .about = about};
 }
@@ -47,7 +47,7 @@ struct Of {
     key.bound.number = [](Scene& scene, std::size_t entry) -> double& { return part(scene, entry).*member; };
     return key;
   }
-  /// Returns the key of begin and end: lengths, percentages of the beam's length, or its tip.
+  /// Returns a key for begin and end on the beam: lengths, percentages of the beam's length, or its tip.
   template <auto first, auto last>
   [[nodiscard]] static Key span(std::string_view name, std::string_view about) {
     Key key = internal::numbers(name, {dimension::length, dimension::none}, not_negative, about);
@@ -58,7 +58,7 @@ struct Of {
     };
     return key;
   }
-  /// Returns the key of the spans of one or several pads.
+  /// Returns a key for the spans of one or several pads.
   template <auto first, auto last, auto further>
   [[nodiscard]] static Key spans(std::string_view name, std::string_view about) {
     Key key = span<first, last>(name, about);
@@ -78,7 +78,7 @@ struct Of {
                                                                    return part(scene, entry).*member;
                                                                  }}};
   }
-  /// Returns the key of one of the names in a table.
+  /// Returns a key whose value is one of the names in the table `rows`.
   template <const auto& rows, auto member>
   [[nodiscard]] static Key choice(std::string_view name, std::string_view about) {
     Key key = one_of(name, names_of(rows), about);

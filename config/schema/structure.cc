@@ -20,7 +20,7 @@
 namespace softland::internal {
 namespace {
 
-/// Returns the key of field i of a kind.
+/// Returns the scene key for field i of a kind of structure.
 template <class Kind, std::size_t i>
 Key key_of_structure() {
   constexpr const Field<Structure>& field = structure_fields<Kind>[i];
@@ -39,7 +39,7 @@ bool is_same(const Key& a, const Key& b) {
   return a.name == b.name && a.about == b.about && a.required == b.required && a.why_fixed == b.why_fixed && a.words == b.words;
 }
 
-/// Returns keys that describe a kind in addition to its fields: they stand before those.
+/// Returns the keys of a kind of structure that precede the keys of its fields.
 template <class Kind>
 std::vector<Key> further_keys() {
   if constexpr (std::is_same_v<Kind, ModalStructure>) return modal_table_keys();
@@ -47,7 +47,7 @@ std::vector<Key> further_keys() {
   return {};
 }
 
-/// Returns `kind`, and the keys of all kinds, each with the kinds that it belongs to; keys that belong to all have none.
+/// Returns the key `kind`, and the keys of all kinds of structure. A key that only some kinds have lists these kinds.
 std::vector<Key> structure_keys() {
   std::vector<Key> keys;
   const auto add = [&](Key key, std::string_view kind) {

@@ -6,7 +6,7 @@
 namespace softland::internal {
 namespace {
 
-/// Returns the keys of one parameter of a family: two if it may be given in two ways.
+/// Returns the keys of one parameter of a waveform family: two keys if the parameter may be given in two ways.
 template <class Family>
 std::vector<Key> keys_of(const Parameter<Family>& parameter, const std::vector<Dimension>& level, bool factor) {
   Key key = std::holds_alternative<double Family::*>(parameter.member) ? number(parameter.name, level, any, parameter.about)
@@ -49,7 +49,7 @@ std::vector<Key> keys_of(const Parameter<Family>& parameter, const std::vector<D
   return {std::move(key)};
 }
 
-/// Returns the keys that give what a file of an instrument does not contain.
+/// Returns the keys beside `file`, for facts that the file of an instrument does not contain.
 std::vector<Key> keys_beside_file() {
   Key column{.name = file_keys::column,
              .type = KeyType::integer,
@@ -82,8 +82,8 @@ std::vector<Key> keys_beside_file() {
   return keys;
 }
 
-/// Returns the section for waveforms of the drive `entry`, or of all drives without a section of their own, with levels of
-/// these dimensions.
+/// Returns the section for waveforms of the drive `entry`, or of all drives without a section of their own. `level` holds the
+/// permitted dimensions of a level.
 Section section_of(std::string_view entry, const std::vector<Dimension>& level, std::string_view about) {
   std::vector<std::string_view> names;
   std::vector<Key> keys{one_of("family", {}, "shape of the voltage against time").needed(),
