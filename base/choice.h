@@ -12,14 +12,14 @@
 
 namespace softland {
 
-/// A row of a table that holds names only. The rows of other tables have these two members and further ones.
+/// A row of a table that holds names only. The rows of other tables also have the members `value` and `name`.
 template <class E>
 struct Named {
   E value;
   std::string_view name;
 };
 
-/// A list of at most 12 words, for a member of a row.
+/// A list of at most 12 words, for a member of a table's row.
 class Words {
  public:
   constexpr Words(std::initializer_list<std::string_view> words) {
@@ -48,7 +48,7 @@ template <auto value>
 }  // namespace internal
 
 /// Returns true when the rows stand for all enumerators, in the order of the enumeration, and have distinct names. Every table
-/// of choices has a static_assert of this.
+/// of choices is checked by this function in a static_assert.
 template <const auto& rows>
 [[nodiscard]] consteval bool is_complete() {
   using E = decltype(rows[0].value);

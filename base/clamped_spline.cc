@@ -33,8 +33,8 @@ ClampedSpline::ClampedSpline(std::vector<double> x, std::vector<double> y, Splin
   require(n >= 2 && y_.size() == n, "the x and y of a spline must have the same size, at least 2");
   require(std::adjacent_find(x_.begin(), x_.end(), [](double a, double b) { return !(a < b); }) == x_.end(),
           "the x of a spline must increase from point to point");
-  // Rows of the tridiagonal system of the curvatures: the slope at the first point, continuous slopes between, and at the last
-  // point either s'' = 0 or the slope.
+  // The rows of the tridiagonal system for the curvatures: the slope at the first point, continuous slopes between, and at the
+  // last point either s'' = 0 or the slope.
   std::vector<double> diagonal(n), above(n), right(n);
   const auto width = [&](std::size_t k) { return x_[k + 1] - x_[k]; };
   const auto chord = [&](std::size_t k) { return (y_[k + 1] - y_[k]) / width(k); };
@@ -79,7 +79,7 @@ double ClampedSpline::integral_of_slopes(const ClampedSpline& other) const {
 }
 
 bool is_hinged(const std::vector<double>& x, const std::vector<double>& y) {
-  // Thick beams have exponents of 1.4 to 1.5: shear lets them leave their clamp with a slope.
+  // Thick beams have exponents of 1.4 to 1.5: shear gives them a slope at the clamp.
   constexpr double near = 0.2, between = 1.2;
   if (x.size() < 4 || !(x[2] < near * x.back()) || !(y[1] * y[2] > 0)) return false;
   return std::log(y[2] / y[1]) / std::log(x[2] / x[1]) < between;

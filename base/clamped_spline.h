@@ -24,7 +24,7 @@ class ClampedSpline {
   [[nodiscard]] double slope(double x) const;
   /// Returns the integral of s^2 from the first point to the last.
   [[nodiscard]] double integral_of_square() const;
-  /// Returns the integral of s' t' from the first point to the last, t being another spline through the same places.
+  /// Returns the integral of s' t' from the first point to the last, t being another spline through points at the same x.
   [[nodiscard]] double integral_of_slopes(const ClampedSpline& other) const;
 
  private:

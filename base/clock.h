@@ -1,5 +1,5 @@
-// The clock of computations with a budget of time. Such a computation takes its clock as an option, so that a test can pass
-// another.
+// The clock of computations with a budget of time. A computation takes the clock as an option, so that a test can replace the
+// clock.
 #pragma once
 
 #include <chrono>

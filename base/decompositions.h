@@ -21,21 +21,20 @@ struct SymmetricEigen {
 /// definite.
 [[nodiscard]] Eigen::VectorXd generalized_eigenvalues(const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& mass);
 
-/// Returns orthonormal columns that are orthogonal to the columns of `held`, which are fewer than its rows and independent.
+/// Returns orthonormal columns that are orthogonal to the columns of `held`, which must be independent and fewer than its rows.
 [[nodiscard]] Eigen::MatrixXd orthogonal_complement(const Eigen::MatrixXd& held);
 
 /// Returns the lower triangular L with L L^T = matrix, which is symmetric and positive definite.
 [[nodiscard]] Eigen::MatrixXd cholesky_factor(const Eigen::MatrixXd& matrix);
 /// Returns the x with matrix x = right; none where the symmetric matrix is not positive definite.
 [[nodiscard]] std::optional<Eigen::VectorXd> solve_definite(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
-/// Returns combinations of the columns of `basis` that are orthonormal in an energy. `energy` is the matrix of this energy
+/// Returns combinations of the columns of `basis` that are orthonormal in an energy. `energy` is the matrix of the energy
 /// between the columns of `basis`. Returns none when `energy` is not positive definite.
 [[nodiscard]] std::optional<Eigen::MatrixXd> orthonormal_in(const Eigen::MatrixXd& energy, const Eigen::MatrixXd& basis);
 
 /// Returns the x with matrix x = right, for a symmetric matrix that is positive definite up to rounding.
 [[nodiscard]] Eigen::VectorXd solve_semidefinite(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
-/// Returns the x with the least squares of matrix x - right, column by column; unknowns that the matrix does not determine are
-/// 0.
+/// Returns the x that minimises |matrix x - right|^2, column by column; unknowns that the matrix does not determine are 0.
 [[nodiscard]] Eigen::MatrixXd least_squares(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right);
 
 /// Returns the x with matrix x = right, by elimination with partial pivoting; not finite where the matrix is singular.

@@ -32,7 +32,7 @@ int threads_available(int wanted) {
   try {
     while (static_cast<int>(probes.size()) < wanted) probes.emplace_back([&] { counted.wait(); });
   } catch (const std::system_error&) {
-    // The machine is out of threads.
+    // The machine cannot start another thread.
   }
   counted.count_down();
   return static_cast<int>(probes.size());
@@ -116,8 +116,8 @@ class Loop {
   Loop(std::size_t count, int threads, const std::function<void(std::size_t)>& task, const std::atomic<bool>* stop)
       : count_(count), threads_(threads), task_(task), stop_(stop), end_(count) {}
 
-  // Runs tasks until none is left; every thread of the loop calls this. The threads take tasks in their order, so that all
-  // tasks before one that throws have been begun.
+  // Runs tasks until all tasks have been begun; every thread of the loop calls this function. The threads take tasks in order,
+  // so that all tasks before a task that throws have been begun.
   void work() {
     const int outer = std::exchange(threads_of_loop, threads_);
     while (stop_ == nullptr || !stop_->load(std::memory_order_relaxed)) {

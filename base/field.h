@@ -1,6 +1,6 @@
-// A field of a parameter struct, described once: the keys of scenes, their checks, written scenes, messages and tests use this.
+// A field of a parameter struct, described once for keys of scenes, their checks, written scenes, messages and tests.
 //
-// A part of a switch, such as the contact, is a variant of the parameter structs of its laws. A law is such a struct with
+// A part of a switch, such as the contact, is a variant of the parameter structs of its laws. A law is a parameter struct with
 //
 //   static constexpr std::string_view name;      its name in a scene
 //   static consteval auto fields();              an array of Field, in the order of a written scene
@@ -27,21 +27,21 @@ namespace softland {
 /// The value of a number that a scene does not give.
 inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
 
-/// A number of the parameter struct `Owner`, a flag, or a word that chooses one of its enumerators. A field with neither `in`,
+/// A field of the parameter struct `Owner`: a number, a flag, or an enumerator that a word chooses. A field with neither `in`,
 /// `count`, `flag` nor `words` is a number that sets no member: separate code reads it.
 template <class Owner>
 struct Field {
   std::string_view key;              ///< key in a scene, and in messages
   std::string_view unit = {};        ///< SI unit; empty for a plain number and for a word
-  std::string_view about = {};       ///< one line of description for people
-  double& (*in)(Owner&) = nullptr;   ///< number of the struct, see reach(); null for other kinds of field
+  std::string_view about = {};       ///< description for people, one line
+  double& (*in)(Owner&) = nullptr;   ///< number of the struct, see reach(); null for other fields
   int& (*count)(Owner&) = nullptr;   ///< whole number of the struct
   bool& (*flag)(Owner&) = nullptr;   ///< flag of the struct
-  std::string_view or_word = {};     ///< word that may stand instead of a whole number
-  bool required = false;             ///< true when a scene must give this field; an absent field keeps the value of an Owner{}
+  std::string_view or_word = {};     ///< word that may replace a whole number
+  bool required = false;             ///< true when a scene must give this field; an absent field has the value of an Owner{}
   Range range = positive;            ///< allowed range; in a scene the extent of the unit closes open ends
   std::string_view fallback = {};    ///< value of an Owner{} as a scene writes it; empty where an absent field means "none"
-  std::string_view instead_of = {};  ///< key of another field of the law that may not be given together with this one
+  std::string_view instead_of = {};  ///< key of another field of the law that excludes this field
   std::string_view unless = {};      ///< key whose presence makes this field optional
   std::string_view not_below = {};   ///< key of another field of the law whose value is the least allowed one
   std::string_view such_as = {};     ///< example value for messages, where the usual example of the unit does not fit
@@ -50,7 +50,7 @@ struct Field {
   std::string_view if_list = {};     ///< advice for a list in place of the number
   std::vector<std::string_view> (*words)() = nullptr;    ///< words that the field accepts
   void (*choose)(Owner&, std::string_view) = nullptr;    ///< sets the enumerator of a word
-  std::string_view refused_word = {}, why_refused = {};  ///< word that users may expect here, and why it is refused
+  std::string_view refused_word = {}, why_refused = {};  ///< word that users may expect for this field, and why it is refused
 };
 
 /// Returns the member at the end of a path of members: reach<Law, &Law::summits, &Summits::radius>.
@@ -72,7 +72,7 @@ template <class Law, std::size_t... n>
 template <class Law>
 inline constexpr auto fields_of = Law::fields();
 
-/// Returns true when a scene can name the law, which is so unless the law declares `is_of_scenes = false`.
+/// Returns true when a scene can name the law; a law that declares `is_of_scenes = false` cannot be named.
 template <class Law>
 [[nodiscard]] consteval bool is_of_scenes() {
   if constexpr (requires { Law::is_of_scenes; }) return Law::is_of_scenes;
@@ -121,7 +121,7 @@ template <class Variant>
   return text;
 }
 
-/// Returns the field of a number under this key, or null.
+/// Returns the field with this key if it is a number, else null.
 template <class Owner>
 [[nodiscard]] constexpr const Field<Owner>* find_field(std::span<const Field<Owner>> fields, std::string_view key) {
   for (const Field<Owner>& field : fields) {
@@ -147,7 +147,7 @@ template <class... Laws>
   return number == nullptr ? otherwise : *number;
 }
 
-/// Returns `other` with the numbers of `own`, for all keys that both laws have.
+/// Returns the law `other` with the numbers of the law `own`, for all keys that both laws have.
 template <class... Laws>
 [[nodiscard]] std::variant<Laws...> under(std::variant<Laws...> own, std::variant<Laws...> other) {
   std::visit(

@@ -1,4 +1,4 @@
-// Gauss-Legendre points and weights on [-1, 1] for any order: the tables of the libraries stop at fixed orders.
+// Gauss-Legendre points and weights on [-1, 1] for any order; the tables in libraries end at fixed orders.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// Lanes of four numbers, which a processor with vector instructions computes at once. Arrays of any size are filled up to
+// Lanes of four numbers, which a processor with vector instructions processes at once. Arrays of any size are padded to whole
 // lanes.
 #pragma once
 
@@ -11,7 +11,7 @@ namespace softland {
 inline constexpr std::size_t lanes = 4;
 using Lane = Eigen::Array<double, lanes, 1>;
 
-/// Returns the values followed by as many `idle` as fill the last lane.
+/// Returns the values, padded with `idle` to whole lanes.
 [[nodiscard]] inline std::vector<double> padded_to_lanes(std::vector<double> values, double idle) {
   values.resize((values.size() + lanes - 1) / lanes * lanes, idle);
   return values;

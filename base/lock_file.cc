@@ -64,11 +64,11 @@ LockFile::LockFile(const std::filesystem::path& file, const LockedPlace& place, 
       throw InvalidInput(taken ? fmt::format("{}: {} ({})", place.name, place.occupied, who)
                                : fmt::format("{}: the {} cannot be locked: {}", place.name, place.kind, reason(error)));
     }
-    // The previous holder may have removed the file between our opening and locking it.
+    // The previous holder may have removed the file after this process opened it and before this process locked it.
     if (held()) break;
     ::close(descriptor_);
   }
-  // A file of this name that does not begin with the first word of a lock file belongs to somebody else.
+  // A file of this name that does not begin with the first word of a lock file is not a lock file of this program.
   std::array<char, word.size()> begin{};
   const ssize_t there = ::pread(descriptor_, begin.data(), begin.size(), 0);
   if (there != 0 && (there < 0 || std::string_view(begin.data(), static_cast<std::size_t>(there)) != word)) {

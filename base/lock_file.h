@@ -1,4 +1,4 @@
-// A lock file, by which one process at a time works in a folder or on a store. Its content describes the process.
+// A lock file, by which one process at a time works in a folder or on a database file. Its content describes the process.
 #pragma once
 
 #include <filesystem>
@@ -9,13 +9,13 @@ namespace softland {
 
 /// The place that a lock protects from other runs, with the words that messages use for it.
 struct LockedPlace {
-  std::string name;      ///< name, with which messages begin: "--out run1"
-  std::string kind;      ///< kind of the place: "folder"
+  std::string name;      ///< name of the place, with which messages begin: "--out run1"
+  std::string kind;      ///< kind of the place, for messages: "folder"
   std::string occupied;  ///< message when another process has the lock: "another run works in this folder"
 };
 
-/// Keeps other runs out during the lifetime of this object, by flock on `file`, which the constructor creates and the
-/// destructor removes. The lock of a process ends with the process.
+/// Excludes other runs during the lifetime of this object, by flock on `file`, which the constructor creates and the destructor
+/// removes. The lock of a process ends with the process.
 class LockFile {
  public:
   /// Throws InvalidInput with the words of `place` when the file cannot be created, is not a lock file, or another run has
@@ -24,7 +24,7 @@ class LockFile {
   ~LockFile();
   LockFile(const LockFile&) = delete;
   LockFile& operator=(const LockFile&) = delete;
-  /// Returns true when the lock file still exists at its path: somebody may have removed or renamed its folder.
+  /// Returns true when the lock file still exists at its path; a user may have removed or renamed its folder.
   [[nodiscard]] bool held() const;
 
  private:

@@ -10,8 +10,7 @@
 namespace softland {
 
 /// Turns the reports to a Progress (base/progress.h) into progress that only grows. A smaller part, which another thread
-/// reports late, leaves the progress as it is. A computation that begins again becomes another round of the same name, "closing
-/// (2)".
+/// reports late, does not change the progress. A computation that begins again is shown with a count, "closing (2)".
 class MonotoneProgress {
  public:
   /// Returns the name to show, and the completed part, 0 to 1.

@@ -6,10 +6,10 @@
 
 namespace softland {
 
-/// Returns `text` without anything that acts on a terminal or hides content. Escapes of six characters, such as `\u001b`,
+/// Returns `text` without characters that control a terminal or hide content. Escapes of six characters, such as `\u001b`,
 /// replace control characters (C0 except line feed and tab, DEL, C1), characters that change the direction of text, and the
-/// line and paragraph separators of Unicode. A string of JSON keeps its meaning, since JSON has the same escapes. Bytes that
-/// are not UTF-8 become U+FFFD.
+/// line and paragraph separators of Unicode. A string of JSON does not change its meaning, since JSON has the same escapes.
+/// Bytes that are not UTF-8 become U+FFFD.
 [[nodiscard]] std::string printable(std::string_view text);
 
 /// Returns the same as printable() for text on one line: line feeds and tabs are escaped too.

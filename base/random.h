@@ -21,29 +21,29 @@ enum class Stream : std::uint64_t {
   normals = 4,
   scene = 5,
   perturbation = 6,
-  spread = 7,              ///< the switches of an ensemble
-  indices = 8,             ///< the points of the estimates of Sobol' indices
+  spread = 7,              ///< devices of an ensemble
+  indices = 8,             ///< points of the estimates of Sobol' indices
   bootstrap = 9,           ///< indices of the values that a bootstrap sample takes
-  folds = 10,              ///< values that a cross-validation holds back together
+  folds = 10,              ///< partition of values for a cross-validation
   measurement = 11,        ///< errors of measurements on a device
   fresh = 12,              ///< seeds of simulated devices that a search has not used
   jitter = 13,             ///< delays of the edges of a drive (jitter)
-  classes = 14,            ///< the devices that are sorted into classes, and the starts of the search for these classes
-  plan = 15,               ///< the points of an exploration
+  classes = 14,            ///< devices that are sorted into classes, and the starts of the search for the classes
+  plan = 15,               ///< points of an exploration of a design space
   offspring = 16,          ///< members of a population that become parents, and the variation of their child
-  hop = 17,                ///< distance at which a local search begins from the best point
-  race = 18,               ///< the search over waveform families on devices
+  hop = 17,                ///< distance from the best point at which a local search begins
+  race = 18,               ///< seeds of the rounds of a search over waveform families
   tuning = 19,             ///< devices that represent the current estimate of the device under test
   practice_device = 21,    ///< parameter values of a simulated device to practise tuning on
   practice_gain = 22,      ///< gain of the sources of the practice device, and the scatter of this gain
   practice_edges = 23,     ///< errors of the measured times at which the contact of the practice device closes and opens
   piezo_measurement = 24,  ///< errors of the measured deflection by a piezo
-  fit = 25,                ///< starts of the searches of a fit
+  fit = 25,                ///< starts of the minimisations of a fit
 };
 
 /// Returns output number n, counted from 0, of SplitMix64 with this seed.
 [[nodiscard]] constexpr std::uint64_t split_mix_64(std::uint64_t seed, std::uint64_t n) {
-  std::uint64_t bits = seed + (n + 1) * 0x9e3779b97f4a7c15u;  // 2^64 divided by the golden ratio
+  std::uint64_t bits = seed + (n + 1) * 0x9e3779b97f4a7c15u;  // the constant is 2^64 divided by the golden ratio
   bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
   bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
   return bits ^ (bits >> 31);

@@ -20,7 +20,7 @@ namespace softland {
 namespace {
 
 // The files read so far and their names. Device and inode identify a file, since other names, links and relative paths may lead
-// to the same file. The names are kept too: in a long process a new file may get the inode of a deleted one.
+// to the same file. The names are stored too: in a long process a new file may get the inode of a deleted one.
 using Identity = std::pair<dev_t, ino_t>;
 std::mutex guard;
 std::map<Identity, std::set<std::filesystem::path>>& files_read() {
@@ -76,7 +76,7 @@ std::string look_into(const std::filesystem::path& path) {
     check(count >= 0);
     if (count == 0) break;
     content.append(block, 0, static_cast<std::size_t>(count));
-    // The size is checked here and not in `info`: files of /proc report none, and a file may grow.
+    // The size is checked while reading and not in `info`: files of /proc report none, and a file may grow.
     require(content.size() <= largest_file,
             name + ": is too large, it must have at most " + std::to_string(largest_file >> 20) + " MiB");
   }

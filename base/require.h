@@ -1,4 +1,4 @@
-// Invalid input is an exception that names the error; numerical trouble is a status in a result, never an exception.
+// Invalid input is reported by an exception; numerical failure is reported by a status in a result, never by an exception.
 #pragma once
 
 #include <concepts>
@@ -28,7 +28,7 @@ inline void require(bool rule_holds, std::string_view message, std::source_locat
   if (!rule_holds) throw InvalidInput(std::string(message), where);
 }
 
-/// Throws InvalidInput with message() unless `rule_holds`; calls message() only then.
+/// Throws InvalidInput with message() unless `rule_holds`; calls message() only if `rule_holds` is false.
 template <std::invocable Message>
 void require(bool rule_holds, Message&& message, std::source_location where = std::source_location::current()) {
   if (!rule_holds) throw InvalidInput(message(), where);
@@ -37,7 +37,7 @@ void require(bool rule_holds, Message&& message, std::source_location where = st
 /// Returns the name of a field of a request, for the message of an InvalidRequest.
 [[nodiscard]] inline std::string requested(std::string_view field) { return '\x02' + std::string(field) + '\x03'; }
 
-/// Returns the text with `before` in front of each field that requested() has marked: "--" for a command line, "" for a
+/// Returns the text with `before` in front of each field name that requested() has marked: "--" for a command line, "" for a
 /// library.
 [[nodiscard]] inline std::string with_fields(std::string_view words, std::string_view before) {
   std::string text;
@@ -48,13 +48,13 @@ void require(bool rule_holds, Message&& message, std::source_location where = st
   return text;
 }
 
-/// Thrown for a request, such as OptimizeOptions, that breaks a rule. Its message marks the fields by requested(); what() has
-/// their bare names.
+/// Thrown for a request, such as OptimizeOptions, that breaks a rule. Its message marks the names of fields by requested();
+/// what() contains the names without marks.
 class InvalidRequest : public InvalidInput {
  public:
   explicit InvalidRequest(const std::string& message, std::source_location where = std::source_location::current())
       : InvalidInput(softland::with_fields(message, ""), where), message_(message) {}
-  /// Returns the message with `before` in front of each of its fields.
+  /// Returns the message with `before` in front of each name of a field.
   [[nodiscard]] std::string with_fields(std::string_view before) const { return softland::with_fields(message_, before); }
 
  private:
@@ -67,7 +67,7 @@ void require_request(bool rule_holds, Message&& message, std::source_location wh
   if (!rule_holds) throw InvalidRequest(message(), where);
 }
 
-/// Throws InvalidRequest with the message "FIELD GIVEN: RULE" unless `rule_holds`; broken() returns the rule.
+/// Throws InvalidRequest with the message "FIELD GIVEN: RULE" unless `rule_holds`; broken() returns the text of the rule.
 template <std::invocable Broken>
 void require_field(bool rule_holds, std::string_view field, std::string_view given, Broken&& broken,
                    std::source_location where = std::source_location::current()) {
@@ -93,7 +93,7 @@ inline void require_of(std::string_view parameter, bool rule_holds, const std::s
   if (!rule_holds) throw InvalidParameter(parameter, message, where);
 }
 
-/// Throws InvalidParameter with message() unless `rule_holds`; calls message() only then.
+/// Throws InvalidParameter with message() unless `rule_holds`; calls message() only if `rule_holds` is false.
 template <std::invocable Message>
 void require_of(std::string_view parameter, bool rule_holds, Message&& message,
                 std::source_location where = std::source_location::current()) {

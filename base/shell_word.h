@@ -9,8 +9,8 @@
 
 namespace softland {
 
-/// Returns the word quoted where a shell would change it. Some bytes would change in print: control characters, those that
-/// change the direction of text, and invalid UTF-8. They are written as bash, ksh and zsh read them, $'\012', on one line.
+/// Returns the word quoted where a shell would change it. Control characters, characters that change the direction of text, and
+/// invalid UTF-8 are written as bash, ksh and zsh read them, $'\012', on one line.
 [[nodiscard]] inline std::string shell_word(std::string_view word) {
   constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=:,+%";
   if (!word.empty() && word.find_first_not_of(plain) == std::string_view::npos) return std::string(word);

@@ -1,4 +1,4 @@
-// Text of the user in messages, cut to what a reader needs to recognise it.
+// Shortens text of the user in messages to what a reader needs to recognise it.
 #pragma once
 
 #include <algorithm>

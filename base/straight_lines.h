@@ -9,7 +9,7 @@
 namespace softland {
 
 /// Returns the value at x of the straight lines between `values` at `places`. Both have the same size, at least 2, and `places`
-/// increases. The outermost lines continue beyond the ends.
+/// increases. The first and the last line continue beyond the ends.
 [[nodiscard]] inline double along_lines(const std::vector<double>& places, const std::vector<double>& values, double x) {
   const auto next = std::clamp<std::ptrdiff_t>(std::ranges::upper_bound(places, x) - places.begin(), 1,
                                                static_cast<std::ptrdiff_t>(places.size()) - 1);

@@ -50,7 +50,7 @@ class TemporaryFile {
     return true;
   }
   [[nodiscard]] bool sync() const { return ::fsync(descriptor_) == 0; }
-  /// Gives a new file the usual rights, and one that replaces another the rights of that one.
+  /// Gives a file that replaces another one the permissions of the replaced file.
   [[nodiscard]] bool adopt_rights(const std::filesystem::path& path) const {
     std::error_code missing;
     const auto old = std::filesystem::status(path, missing);
@@ -68,7 +68,7 @@ class TemporaryFile {
   bool renamed_ = false;
 };
 
-/// Returns the file that a link leads to, so that a link stays one.
+/// Returns the file to which a symbolic link leads, so that the link is not replaced.
 std::filesystem::path behind_links(const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::is_symlink(path, error)) return path;
@@ -76,12 +76,12 @@ std::filesystem::path behind_links(const std::filesystem::path& path) {
   return error ? path : target;
 }
 
-/// Returns the message of errno.
+/// Returns a message with the path, the failed action and the text of errno.
 std::string failure(const std::filesystem::path& path, const char* what) {
   return fmt::format("{}: cannot {}: {}", path.string(), what, std::generic_category().message(errno));
 }
 
-/// Throws for a place that the user named: the place is invalid, unless the disk is full.
+/// Unless `done`, throws OutputLost for a full disk or an input/output error, and InvalidInput for any other error of the path.
 void require_place(bool done, const std::filesystem::path& path, const char* what) {
   if (done) return;
   if (errno == ENOSPC || errno == EDQUOT || errno == EIO) throw OutputLost(failure(path, what));

@@ -1,4 +1,4 @@
-// A file written here is either the old one or the new one, never half of it.
+// Writes files such that a crash leaves either the complete old or the complete new content.
 #pragma once
 
 #include <filesystem>
@@ -8,18 +8,18 @@
 
 namespace softland {
 
-/// Throws InvalidInput with path and reason unless write_whole() may write there. The folder must exist and be writable. `path`
-/// must not be a folder, a device, a pipe, a database or its companion, nor, under any name, a file that this run has read.
-/// Call it before a long computation.
+/// Throws InvalidInput with path and reason unless write_whole() may write to `path`. The folder must exist and be writable.
+/// `path` must not be a folder, a device, a pipe, a database or its companion, nor, under any name, a file that this run has
+/// read. Call this function before a long computation.
 void check_writable(const std::filesystem::path& path);
 
 /// Writes `content` to `path` whole: a temporary name in the same folder, fsync, rename, fsync of the folder. A symbolic link
-/// keeps its place; the file behind it is replaced. Whatever goes wrong, an existing file stays as it was and the temporary one
-/// is removed. Throws as check_writable() does, and OutputLost with path and reason where the content does not get there, as on
-/// a full disk.
+/// remains; the file to which it leads is replaced. After any failure an existing file is unchanged and the temporary file is
+/// removed. Throws as check_writable() does, and OutputLost with path and reason if the content cannot be written, as on a full
+/// disk.
 void write_whole(const std::filesystem::path& path, std::string_view content);
 
-/// Does the same for content that comes in pieces: it is written as `content` hands it to its argument.
+/// Writes content that comes in parts: `content` passes each part to its argument.
 void write_whole(const std::filesystem::path& path,
                  const std::function<void(const std::function<void(std::string_view)>&)>& content);
 

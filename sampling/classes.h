@@ -6,8 +6,8 @@
 // For a measured quantity this is the quantizer of least mean square error. Its classes are narrow where points are many and
 // wide where they are few. Their widths lie between those of classes of equal shares, whose outermost classes are very wide,
 // and equal widths. Lloyd's iteration finds the centres from several starts; a better local minimum may exist. The centres of a
-// start are drawn from the points one by one, with a probability in proportion to the square distance to the nearest centre
-// drawn so far.
+// start are drawn one by one from the points, with a probability in proportion to the square distance to the nearest centre
+// drawn before.
 //
 // Sources: S. P. Lloyd, "Least squares quantization in PCM", IEEE Trans. Inf. Theory 28 (1982) 129; J. Max, "Quantizing for
 // minimum distortion", IRE Trans. Inf. Theory 6 (1960) 7; D. Arthur & S. Vassilvitskii, "k-means++", SODA 2007 (starts).
@@ -28,12 +28,12 @@ struct Classes {
   std::vector<SpacePoint> centres;  ///< centres in ascending order
   std::vector<double> shares;       ///< share of the points in each class
 
-  /// Returns the number of the class of a point, that of the nearest centre; the lowest of several equally near.
+  /// Returns the number of the class of a point, that of the nearest centre; the lowest number of several equally near centres.
   [[nodiscard]] std::size_t nearest(const SpacePoint& point) const;
 };
 
 /// Returns the classes, which depend on the arguments alone. There are fewer classes than `count` when there are fewer distinct
-/// points. Throws InvalidInput when `count` is 0, without points, and for a point that is not finite.
+/// points. Throws InvalidInput when `count` is 0, when there are no points, and for a point that is not finite.
 [[nodiscard]] Classes classes_of(std::span<const SpacePoint> points, std::size_t count, std::uint64_t seed);
 
 }  // namespace softland

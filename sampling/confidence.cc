@@ -31,7 +31,7 @@ Interval wilson_interval(std::size_t successes, std::size_t trials, double confi
   const double z = standard_normal_quantile((1 + confidence) / 2), z2 = z * z;
   const double middle = (share + z2 / (2 * n)) / (1 + z2 / n);
   const double half = z / (1 + z2 / n) * std::sqrt(share * (1 - share) / n + z2 / (4 * n * n));
-  // Without a success, or without a failure, a bound is exactly 0 or 1.
+  // A bound is exactly 0 without a success, and exactly 1 without a failure.
   return {.low = successes == 0 ? 0 : middle - half, .high = successes == trials ? 1 : middle + half};
 }
 

@@ -1,8 +1,8 @@
 // Confidence intervals of figures of a sample of independent values, larger being worse and +infinity the worst (statistics.h).
 //
 // An interval of confidence c covers the figure of the distribution in a share c of all samples. The figure is below the
-// interval in a share (1 - c) / 2 of them, and above it in as many. Scrambled Sobol' points and Latin hypercubes are not
-// independent samples: for means over such points these intervals are too wide.
+// interval in a share (1 - c) / 2 of all samples, and above it in the same share. Scrambled Sobol' points and Latin hypercubes
+// are not independent samples: for means over such points these intervals are too wide.
 //
 // Every function throws InvalidInput unless 0 < confidence < 1.
 #pragma once
@@ -54,10 +54,10 @@ struct BootstrapOptions {
 
 namespace internal {
 
-/// Throws what bootstrap_interval throws for these options.
+/// Throws what bootstrap_interval() throws for invalid options.
 void check(const BootstrapOptions& options);
 
-/// Returns the index, below `count`, of the row that repetition number `repetition` draws at `place`.
+/// Returns the index, below `count`, of the row that repetition number `repetition` draws as its row number `place`.
 [[nodiscard]] std::size_t bootstrap_row(std::uint64_t seed, std::size_t repetition, std::size_t place, std::size_t count);
 
 /// Returns the middle `confidence` of the values of a figure over the repetitions; NaN when a value is NaN.

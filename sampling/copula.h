@@ -30,15 +30,15 @@ class GaussianCopula {
 
   [[nodiscard]] std::size_t dimensions() const { return static_cast<std::size_t>(factor_.rows()); }
 
-  /// Turns independent u into correlated numbers, in place, which stay between 2^-53 and 1 - 2^-53. Throws InvalidInput unless
-  /// u has one number per dimension, each above 0 and below 1.
+  /// Turns independent u into correlated numbers, in place, which are between 2^-53 and 1 - 2^-53. Throws InvalidInput unless u
+  /// has one number per dimension, each above 0 and below 1.
   void correlate(std::span<double> u) const;
 
  private:
-  Eigen::MatrixXd factor_;  // lower triangular factor
+  Eigen::MatrixXd factor_;  // lower triangular Cholesky factor of the correlation matrix
 };
 
-/// Return Spearman's rank correlation of two variables whose underlying normal numbers have this correlation, and the inverse,
+/// Convert the correlation of underlying normal variables to Spearman's rank correlation, and the rank correlation back,
 /// 2 sin(pi rho_S / 6). Throw InvalidInput unless the argument is between -1 and 1.
 [[nodiscard]] double rank_correlation(double correlation);
 [[nodiscard]] double correlation_of_ranks(double rank_correlation);

@@ -34,7 +34,7 @@ Normal logarithm_of(const Lognormal& d) {
   return {.mean = std::log(d.mean) - variance / 2, .standard_deviation = std::sqrt(variance)};
 }
 
-// Each kind of distribution has its check, its support, its quantile, and the probabilities of a value of at most x and of one
+// Each kind of distribution has a check, its support and quantile, and the probabilities of a value of at most x and of a value
 // below x.
 
 void check(const Normal& d) {
@@ -243,7 +243,7 @@ double Distribution::quantile(double p) const {
   if (!(p > 0 && p < 1)) require(false, "p = " + text(p) + " must be above 0 and below 1");
   const double of_whole = std::min(below_ + p * kept_, 1 - 0x1p-53);  // rounding may give 1, where a quantile is infinite
   const double value = std::visit([&](const auto& d) { return quantile_of(d, of_whole); }, parameters_);
-  return std::clamp(value, support_.low, support_.high);  // rounding may lead out of the support
+  return std::clamp(value, support_.low, support_.high);  // by rounding the value may leave the support
 }
 
 double Distribution::cdf(double x) const {

@@ -28,7 +28,7 @@ namespace softland {
 
 enum class DistributionKind { normal, lognormal, uniform, triangular, empirical };
 
-/// Name and keys of a kind. The keys are the names of the parameters in the messages of InvalidParameter.
+/// Name and keys of a kind of distribution. The keys are the names of the parameters in the messages of InvalidParameter.
 struct DistributionRow {
   DistributionKind value;
   std::string_view name;
@@ -70,11 +70,11 @@ struct Truncation {
 
 class Distribution {
  public:
-  /// The alternatives stand in the order of DistributionKind.
+  /// The alternatives are in the order of DistributionKind.
   using Parameters = std::variant<Normal, Lognormal, Uniform, Triangular, Empirical>;
 
-  /// The least probability that a truncation may keep. A smaller one is a mistake of units, and its quantiles would show
-  /// rounding errors.
+  /// The least probability that a truncation may leave. A smaller probability is a mistake of units, and its quantiles would
+  /// show rounding errors.
   static constexpr double least_kept = 1e-6;
 
   /// Throws InvalidParameter: `parameter()` is a key of distribution_kinds, or truncate_low or truncate_high.
@@ -102,7 +102,7 @@ class Distribution {
   Truncation truncation_;
   Interval support_;
   double below_ = 0;  // probability that the truncation cuts off below
-  double kept_ = 1;   // probability that the truncation keeps
+  double kept_ = 1;   // probability that the truncation leaves
   double mean_ = 0, standard_deviation_ = 0;
 };
 

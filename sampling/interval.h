@@ -5,7 +5,7 @@
 
 namespace softland {
 
-/// A closed interval; a side without a bound is infinite, an interval that is not known has NaN for both.
+/// A closed interval; an end without a bound is infinite, an unknown interval has NaN for both ends.
 struct Interval {
   double low = std::numeric_limits<double>::quiet_NaN();
   double high = std::numeric_limits<double>::quiet_NaN();

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int resolved_bits = 32;  // bits of a coordinate that the direction numbers give
 
-// Returns the middle of one of 2^52 equal intervals, from the highest bits.
+// Returns the middle of one of 2^52 equal intervals of (0, 1), which the highest bits select.
 double in_open_interval(std::uint64_t bits) { return (static_cast<double>(bits >> 12) + 0.5) * 0x1p-52; }
 
 std::vector<std::uint32_t> direction_numbers(std::size_t dimensions) {
@@ -28,7 +28,7 @@ std::vector<std::uint32_t> direction_numbers(std::size_t dimensions) {
 
 // Returns 64 bits of which the highest 32 are those of `digits`, scrambled.
 std::uint64_t scrambled(std::uint64_t key, std::uint32_t digits) {
-  // Node 2^j + (the first j bits) decides on bit j, counted from 0 at the highest.
+  // Node 2^j + (the first j bits) of the binary tree decides on bit j, counted from 0 at the highest bit.
   std::uint32_t flips = 0;
   for (unsigned j = 0; j < resolved_bits; ++j) {
     const std::uint64_t node = (std::uint64_t{digits} | std::uint64_t{1} << resolved_bits) >> (resolved_bits - j);
@@ -71,7 +71,7 @@ SamplePoints::SamplePoints(PointSet kind, std::size_t dimensions, std::uint64_t 
              "dimensions = " + std::to_string(dimensions) + " must be between 1 and " + std::to_string(most_dimensions));
   require_of("size", 1 <= size && size <= largest_size,
              "size = " + std::to_string(size) + " must be between 1 and " + std::to_string(largest_size));
-  // The key is not a draw of the stream, so that the stream stays free for other numbers of the same purpose.
+  // The key is not a random number of the stream, so that the stream remains free for other numbers of the same purpose.
   for (std::size_t i = 0; i < dimensions; ++i) keys_.push_back(split_mix_64(random_bits(seed, stream, 0), i));
   if (kind == PointSet::sobol) directions_ = direction_numbers(dimensions);
 }

@@ -56,7 +56,7 @@ class SamplePoints {
   [[nodiscard]] std::size_t dimensions() const { return keys_.size(); }
   [[nodiscard]] std::uint64_t size() const { return size_; }
 
-  /// Writes point k. Throws InvalidInput unless k < size() and `u` has as many elements as there are dimensions.
+  /// Writes point k to `u`. Throws InvalidInput unless k < size() and `u` has as many elements as there are dimensions.
   void point(std::uint64_t k, std::span<double> u) const;
 
  private:

@@ -34,7 +34,7 @@ std::vector<double> polynomials(Germ germ, int degree, double u) {
   return values;
 }
 
-// Adds all exponents of this degree; those of the variables before `from` are given.
+// Adds all exponents of this degree; `term` holds the exponents of the variables before `from`.
 void add_terms(std::vector<Exponents>& terms, Exponents& term, std::size_t from, int degree) {
   if (from + 1 == term.size()) {
     term[from] = degree;

@@ -5,9 +5,9 @@
 //   mean+sigma mean + factor times the standard deviation
 //   worst      the largest value
 //
-// CVaR uses every value of the tail, so that a single one moves it little. A quantile depends on one or two values. A mean with
-// its deviation also punishes values far on the good side. The worst value grows with the size of the sample. Source: R. T.
-// Rockafellar & S. Uryasev, Journal of Risk 2 (2000) 21.
+// CVaR uses every value of the tail, so that a single value changes it little. A quantile depends on one or two values. A mean
+// with its deviation also punishes values far on the good side. The worst value grows with the size of the sample. Source:
+// R. T. Rockafellar & S. Uryasev, Journal of Risk 2 (2000) 21.
 #pragma once
 
 #include <span>
@@ -21,8 +21,8 @@ struct Risk {
   double parameter = 0.9;  ///< level of cvar and quantile, factor of mean_sigma
 };
 
-/// Returns the risk. Throws InvalidInput for a sample without values or with NaN, and for a parameter outside [0, 1) (cvar),
-/// [0, 1] (quantile), [0, infinity) (mean_sigma).
+/// Returns the risk of a sample. Throws InvalidInput for a sample without values or with NaN, and for a parameter outside
+/// [0, 1) (cvar), [0, 1] (quantile), [0, infinity) (mean_sigma).
 [[nodiscard]] double risk(std::span<const double> sample, const Risk& measure);
 
 }  // namespace softland

@@ -9,11 +9,11 @@
 namespace softland {
 namespace {
 
-// The terms of all sums, one row after the other.
+// The terms of the sums over the rows, one row after the other.
 struct Rows {
   std::size_t dimensions, count;
   std::vector<double> sums, squares;       // f(A) + f(B), f(A)^2 + f(B)^2
-  std::vector<double> first_order, total;  // terms of row j and variable i at j d + i, times the variance
+  std::vector<double> first_order, total;  // terms of S_i and T_i, times the variance; row j and variable i at j d + i
 };
 
 Rows rows_of(std::size_t dimensions, const std::vector<double>& kept, double mean) {

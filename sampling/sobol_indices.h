@@ -58,7 +58,7 @@ struct SobolIndex {
   bool above_zero = false;  ///< true when the index is distinguishable from zero
 };
 
-/// Indices from the rows that were used. They are NaN when all figures are equal, so that the variance is zero.
+/// Indices from the rows that were used. The indices are NaN when all figures are equal, so that the variance is zero.
 struct SobolIndices {
   double mean = std::numeric_limits<double>::quiet_NaN();
   double variance = std::numeric_limits<double>::quiet_NaN();
@@ -77,8 +77,8 @@ struct SobolOptions {
   double most_failed = 0.01;
 };
 
-/// Estimates the indices from the figures of all evaluations of a design, in its order. Throws InvalidInput unless the number
-/// of figures is a positive multiple of d + 2, and what bootstrap_interval throws for its options.
+/// Estimates the indices from the figures of all evaluations of a design, in the order of the evaluations. Throws InvalidInput
+/// unless the number of figures is a positive multiple of d + 2, and what bootstrap_interval() throws for invalid options.
 [[nodiscard]] SobolEstimate sobol_indices(std::size_t dimensions, std::span<const double> figures,
                                           const SobolOptions& options = {});
 

@@ -18,13 +18,13 @@
 
 namespace softland::internal {
 
-/// Thrown when the file breaks the rules of its format.
+/// Thrown when the database file breaks the rules of its format.
 class DamagedStore : public InvalidInput {
  public:
   using InvalidInput::InvalidInput;
 };
 
-/// Thrown if a statement that any sound store accepts fails, for the whole store or at one of its rows.
+/// Thrown if a statement that succeeds on any undamaged database fails, for the whole database or at one of its rows.
 class StatementFailed : public DamagedStore {
  public:
   StatementFailed(const std::string& message, std::string reason) : DamagedStore(message), reason_(std::move(reason)) {}
@@ -48,8 +48,8 @@ enum class Access {
 using FileNumber = std::pair<unsigned long long, unsigned long long>;
 [[nodiscard]] std::optional<FileNumber> number_of(const std::filesystem::path& file);
 
-/// Records that this process has a file open. The locks of SQLite belong to the process and are lost when it closes any other
-/// descriptor of the file. A file that is open must therefore not be opened again to look at its content.
+/// Records that this process has a database file open. The locks of SQLite belong to the process and are lost when it closes
+/// any other descriptor of the file. An open file must therefore not be opened again to look at its content.
 class OpenFile {
  public:
   explicit OpenFile(const std::filesystem::path& file);
@@ -58,7 +58,7 @@ class OpenFile {
   OpenFile& operator=(const OpenFile&) = delete;
   /// Returns true if this process has the file open.
   [[nodiscard]] static bool is_open(const std::filesystem::path& file);
-  /// Returns true if this is the file at the path.
+  /// Returns true if the path leads to this file.
   [[nodiscard]] bool is(const std::filesystem::path& file) const { return number_ && number_ == number_of(file); }
 
  private:
@@ -136,7 +136,7 @@ class Statement {
   std::unique_ptr<sqlite3_stmt, Finalize> handle_;
 };
 
-/// During its lifetime, statements throw Interrupted when `progress` is asked to stop.
+/// During its lifetime, statements throw Interrupted when `progress` requests a stop.
 class InterruptibleQuery {
  public:
   InterruptibleQuery(const Database& database, const Progress& progress);

@@ -69,7 +69,7 @@ Parts opened(const std::vector<fs::path>& paths) {
   return parts;
 }
 
-// Adds the first few parts of the plan that are missing.
+// Adds the names of the first few parts of the plan that are missing.
 void add_missing_parts(std::vector<std::string>& notes, const Parts& parts) {
   constexpr std::size_t most_names = 20;
   const int count = parts.front()->plan().shard.count;
@@ -109,7 +109,7 @@ std::vector<std::string> notes_on(const Parts& parts, const StoredPlan& plan, st
 // Writes the rows of all parts in the order of their points.
 std::int64_t write_rows(const Database& database, std::int64_t number, Parts& parts, const StoredPlan& plan, std::int64_t session,
                         const Progress& progress) {
-  // Rows of the same point are read in the order in which the parts are given.
+  // Rows of one point are read in the order in which the parts are given.
   const auto later = [&](std::size_t a, std::size_t b) {
     return std::pair(parts[a]->row().point, a) > std::pair(parts[b]->row().point, b);
   };
@@ -162,7 +162,7 @@ Merged merge_studies(const std::vector<fs::path>& paths, const fs::path& out, co
   const UnnamedStore made(out);
   {
     const Database database(made.path(), Access::create, out.string());
-    // The file has no name yet and is removed after a failure, so that it needs no safe journal.
+    // The temporary file is removed after a failure, so that it needs no safe journal.
     database.run("PRAGMA journal_mode = MEMORY; PRAGMA synchronous = OFF");
     create_tables(database, merged.plan.columns);
     Transaction transaction(database);

@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view magic{"SQLite format 3\0", 16};
 using Header = std::array<unsigned char, 100>;
-constexpr std::size_t version_for_reading = 19, application_id = 68;  // positions in the header
+constexpr std::size_t version_for_reading = 19, application_id = 68;  // positions in the header of an SQLite file
 constexpr int write_ahead = 2;
 
 fs::path beside(const fs::path& path, const char* ending) {

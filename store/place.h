@@ -1,4 +1,4 @@
-// The files of a store: checks what exists at its path, and opens, locks and copies it.
+// The files of a store (a database of study results): checks what exists at its path, and opens, locks and copies it.
 #pragma once
 
 #include <filesystem>
@@ -20,8 +20,8 @@ void require_store(const std::filesystem::path& path);
 /// Throws InvalidInput if a new store would replace an existing file, or a file with the name of its log or journal.
 void require_room(const std::filesystem::path& path);
 
-/// Locks the store against other writers, also under another name of the file. Throws InvalidInput with the name of the other
-/// writer.
+/// Locks the store against other writers, also under another name of the file. Throws InvalidInput with a description of the
+/// other writer.
 [[nodiscard]] std::unique_ptr<const LockFile> lock_store(const std::filesystem::path& path, const std::string& command);
 [[nodiscard]] std::filesystem::path lock_of(const std::filesystem::path& path);
 
@@ -37,14 +37,14 @@ void require_room(const std::filesystem::path& path);
 /// Copies a damaged store with its log to FILE.damaged, unless that copy exists. Returns a sentence about the copy for messages.
 [[nodiscard]] std::string kept_copy(const std::filesystem::path& path);
 
-/// Copies a store that no longer exists at `path` to a file of its own. The file is FILE.rescued beside it; if the folder is
-/// gone too, in the current folder or that of temporary files. Returns its path. Throws OutputLost, beginning with `said`,
-/// where no place accepts it.
+/// Copies a store that no longer exists at `path` to another file. The file is FILE.rescued beside `path`; if the folder is
+/// gone too, in the current folder or that of temporary files. Returns the path of the copy. Throws OutputLost, beginning with
+/// `said`, if no folder accepts the copy.
 [[nodiscard]] std::filesystem::path copied_to_rescue(const Database& database, const std::filesystem::path& path,
                                                      const std::string& said);
 
-/// A store under construction, in a temporary file beside its final path. The complete store is renamed by give_name();
-/// otherwise the file is removed.
+/// A store under construction, in a temporary file beside its final path. give_name() renames the complete store; without a
+/// call of give_name() the file is removed.
 class UnnamedStore {
  public:
   explicit UnnamedStore(std::filesystem::path name);

@@ -145,7 +145,7 @@ class StudyStore::Implementation {
   std::vector<StoredRow> waiting_;
   std::chrono::steady_clock::time_point due_;
   bool committing_ = false, hurried_ = false, stopping_ = false;
-  std::exception_ptr failure_;        // failure to write rows; these rows wait to be written again
+  std::exception_ptr failure_;        // failure to write rows; the waiting rows are written again later
   std::exception_ptr contradiction_;  // error about a row that contradicts the store and was not written
   std::string lost_;                  // copy of rescued_ for callers
   std::thread writer_;
@@ -251,8 +251,8 @@ void StudyStore::Implementation::let_go() {
   database_.reset();
 }
 
-// Saves the content of a removed file, and later rows, to another file. A removed file is writable until it is closed, and then
-// lost.
+// Saves the content of a removed store, and later rows, to another file: a removed file remains writable until it is closed,
+// and is then lost.
 void StudyStore::Implementation::keep_in_place() {
   if (!rescued_.empty()) return;
   if (!database_->is_at(path_)) {
@@ -276,7 +276,7 @@ void StudyStore::Implementation::move_to_rescue(const std::string& what) {
   rescued_ = fmt::format("{}; all of its rows, and those computed since, are in the store {}", said, rescue.string());
 }
 
-// Throws errors that have occurred since the last call. Waiting rows are written again afterwards.
+// Throws errors that have occurred since the last call of this function; the writing thread then tries the waiting rows again.
 void StudyStore::Implementation::throw_told() {
   for (std::exception_ptr* told : {&failure_, &contradiction_}) {
     if (!*told) continue;

@@ -32,7 +32,7 @@
 
 namespace softland {
 
-/// Version of the tables. A store of a later one is refused.
+/// Version of the tables. A store of a later version is refused.
 inline constexpr int store_schema = 2;
 inline constexpr std::size_t rows_per_commit = 1000;
 inline constexpr double seconds_per_commit = 1;  ///< time after the first row that is not yet durable [s]
@@ -41,7 +41,7 @@ inline constexpr double seconds_per_commit = 1;  ///< time after the first row t
 enum class ColumnKind { variable, figure };
 
 struct StoredColumn {
-  std::string key;   ///< name in the database and in the header of CSV: "gap_contact_m"; see column_key()
+  std::string key;   ///< name of the column in the database and in the header of CSV: "gap_contact_m"; see column_key()
   std::string name;  ///< key of the scene, such as "gap.contact", or readable name of a figure
   std::string unit;  ///< SI unit, "m/s"; empty for a count, a ratio, yes or no
   ColumnKind kind = ColumnKind::figure;
@@ -54,7 +54,7 @@ struct StoredColumn {
 /// The share of a plan that one part of a study computes: every `count`-th point, from index - 1 on, so that all parts cost
 /// about the same.
 struct Shard {
-  int index = 1;  ///< 1 to count
+  int index = 1;  ///< number of the part, 1 to count
   int count = 1;
   [[nodiscard]] bool contains(std::int64_t point) const { return point % count == index - 1; }
   /// Returns the number of points among 0 ... points - 1 that the shard contains.
@@ -66,7 +66,7 @@ struct Shard {
 [[nodiscard]] Shard shard_from(std::string_view text);
 
 struct StoredPlan {
-  std::string text;                   ///< canonical text, equal for equal plans; the shard is not part of it
+  std::string text;                   ///< canonical text of the plan, equal for equal plans; the shard is not part of the text
   std::int64_t points = 0;            ///< number of points, numbered 0 ... points - 1
   std::vector<StoredColumn> columns;  ///< columns of every row, in this order
   std::uint64_t seed = 0;
@@ -114,9 +114,9 @@ class StudyStore {
     resume  ///< an existing store with the same columns and shard is continued, with this or another plan
   };
 
-  /// Creates or continues the store. Throws InvalidInput with path and reason if `path` must not exist but does, or is not a
-  /// store. The same holds for a store of a later schema or of other columns, one that is not writable, and one to which another
-  /// process writes. Throws OutputLost if the disk is full. A damaged store is not changed; it is copied to FILE.damaged.
+  /// Creates or continues the store. Throws InvalidInput with path and reason if `path` must not exist but does, if the file is
+  /// not a store, has a later schema or other columns, or is not writable, and if another process writes to the store. Throws
+  /// OutputLost if the disk is full. A damaged store is not changed; it is copied to FILE.damaged.
   StudyStore(const std::filesystem::path& path, const StoredPlan& plan, const StoredOrigin& origin, Opening opening);
   /// Commits waiting rows without reporting errors; close() reports them.
   ~StudyStore();
@@ -124,7 +124,7 @@ class StudyStore {
   StudyStore& operator=(const StudyStore&) = delete;
 
   [[nodiscard]] const std::filesystem::path& path() const;
-  /// Returns for every point of the plan if the store held a row of it when it was opened.
+  /// Returns for every point of the plan whether the store held a row of the point when it was opened.
   [[nodiscard]] std::vector<bool> done() const;
   /// Returns true if the store holds rows of earlier plans, which find() can return.
   [[nodiscard]] bool has_earlier_plans() const;
@@ -134,8 +134,8 @@ class StudyStore {
   [[nodiscard]] std::optional<StoredRow> find(const ContentKey& content) const;
 
   /// Queues a row, which another thread writes. A row that is equal to one in the store is ignored. Throws InvalidInput if the
-  /// store has a different row of this point, or if the row does not fit the plan. Throws OutputLost if earlier rows could not
-  /// be written; these are written again at the next call. May be called on any thread.
+  /// store has a different row of the same point, or if the row does not fit the plan. Throws OutputLost if earlier rows could
+  /// not be written; the next call writes these rows again. May be called on any thread.
   void add(StoredRow row);
   /// Waits until all queued rows are on the disk. Throws as add().
   void flush();

@@ -21,10 +21,10 @@
 
 namespace softland::internal {
 
-/// Columns of results besides those of the plan.
+/// Columns of the table `results` besides those of the plan.
 inline constexpr std::array<const char*, 7> fixed_columns{"plan", "point", "content", "status", "reason", "extra", "checksum"};
 
-/// Throws InvalidInput unless a store can hold such a plan.
+/// Throws InvalidInput unless a store can hold the plan.
 void check_plan(const StoredPlan& plan);
 
 /// Creates the tables for rows of these columns.
@@ -33,7 +33,7 @@ void create_tables(const Database& database, const std::vector<StoredColumn>& co
 /// Throws InvalidInput for tables of a later schema, and DamagedStore if tables are missing.
 void check_schema(const Database& database);
 
-/// A plan as the store holds it.
+/// A plan and its number in the store.
 struct NumberedPlan {
   std::int64_t number = 0;
   StoredPlan plan;
@@ -64,7 +64,7 @@ class SessionTally {
 /// Returns "SELECT ... FROM results" with the columns that row_in() reads.
 [[nodiscard]] std::string select_rows(const Database& database, const std::vector<StoredColumn>& columns);
 [[nodiscard]] std::array<unsigned char, 16> bytes_of(const ContentKey& key);
-/// Returns the row that the statement is at. Throws DamagedStore if the row has changed since it was written.
+/// Returns the current row of the statement. Throws DamagedStore if the row has changed since it was written.
 [[nodiscard]] StoredRow row_in(const Database& database, const Statement& statement, std::size_t values);
 
 /// Reads the rows of a plan in the order of their points.
@@ -100,7 +100,7 @@ class RowReader {
   std::map<std::string, std::int64_t, std::less<>>::iterator counted_ = by_status_.end();
 };
 
-/// Thrown if the store has a different row of the same point.
+/// Thrown if the store has a different row of the point of a row to be written.
 class Contradiction : public InvalidInput {
  public:
   using InvalidInput::InvalidInput;
@@ -110,8 +110,8 @@ class Contradiction : public InvalidInput {
 class RowWriter {
  public:
   RowWriter(const Database& database, std::int64_t plan, const std::vector<StoredColumn>& columns);
-  /// Writes a row; returns false if the store already has an equal one. Throws Contradiction if the store has a different row of
-  /// this point.
+  /// Writes a row; returns false if the store already has an equal row. Throws Contradiction if the store has a different row
+  /// of the same point.
   bool write(const StoredRow& row);
 
  private:
