@@ -33,7 +33,7 @@ class ArrowEquations {
            (core_equations_.matrixLU().diagonal().array() != 0).all();
   }
 
-  /// Replaces the right-hand side by the solution.
+  /// Replaces the right-hand side `x` by the solution.
   void solve(double* x) const {
     Eigen::Map<Eigen::VectorXd> head(x, core_), tail(x + core_, size_ - core_);
     for (std::size_t s = 0; s < blocks_.size(); ++s) {

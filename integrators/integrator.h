@@ -8,7 +8,7 @@ namespace softland {
 
 enum class Integrator {
   automatic,   ///< the caller chooses a method that suits its equations; make_stepper() refuses this value
-  lawson,      ///< explicit Runge-Kutta 5(4) for the deviation from the free motion of the modes, own code
+  lawson,      ///< explicit Runge-Kutta 5(4) for the deviation from the free motion of the modes, own implementation
   arkode_erk,  ///< explicit Runge-Kutta 5(4) for the whole motion, ARKODE
   esdirk,      ///< diagonally implicit Runge-Kutta 5(4), ARKODE, exact Jacobian
   bdf,         ///< CVODE, exact Jacobian
@@ -28,7 +28,7 @@ inline constexpr std::array integrator_descriptors{
     IntegratorDescriptor{Integrator::adams, "adams", false},
 };
 
-/// All integrators that a user can choose.
+/// All integrators that a user can choose, without `automatic`.
 inline constexpr auto all_integrators = [] {
   std::array<Integrator, integrator_descriptors.size()> all{};
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = integrator_descriptors[i].integrator;

@@ -57,7 +57,7 @@ void Lawson::turn_to_nodes(double h) {
   for (std::size_t b = 0; b < omega_.size(); b += lanes) {
     const Lane phase = h * lane(omega_, b);
     for (std::size_t s = 1; s < stages; ++s) {
-      if (s == last) {  // the stage is at the same time as the stage before
+      if (s == last) {  // this stage is at the time of the stage before
         for (const auto member : {&Stage::cosine, &Stage::sine, &Stage::slack})
           lane(k_[s].*member, b) = lane(k_[s - 1].*member, b);
         continue;
@@ -184,7 +184,7 @@ bool Lawson::step(double t_stop) {
       y_.swap(trial_);
       rates_.swap(next_rates_);
       last_error_ = std::max(log_error, Pair::least_error);
-      // A step that t_stop shortened says little about the next steps, and these begin with a restart anyway.
+      // The error of a step that t_stop shortened says little about the next step, which begins with a restart anyway.
       h_ = h * std::clamp(growth, Pair::least_growth, most);
       first_ = false;
       return true;

@@ -12,14 +12,14 @@
 // 1960). The pair: Dormand & Prince 1980, RK5(4)7M; the solution of fifth order is used, and the last stage is the first of the
 // next step. Step size control: proportional-integral (Gustafsson 1991) with the exponents of Hairer & Wanner 1996, IV.2. The
 // error of a step is the root mean square, over the unknowns, of the embedded estimate over the absolute tolerances. An
-// estimate that is not a number rejects the step. The unknowns after the modes in the state are integrated by the pair alone.
+// estimate that is not a number rejects the step. The pair alone integrates the unknowns that follow the modes in the state.
 // The phase of the fastest mode advances by two radians per step at the most.
 //
 // The last two stages, which are at the same time, show how stiff the equations are: stiffness is the ratio of the difference
 // of their slopes to the difference of their states (Hairer & Wanner 1996, IV.2).
 //
-// The reference closing takes 2100 right-hand sides at a tolerance of 1e-6, and 4200 by the pair for the whole motion. The
-// error of its highest rebound is 3e-7 instead of 2e-4.
+// At a tolerance of 1e-6, the reference closing needs 2100 right-hand sides, and 4200 if the pair integrates the whole motion.
+// The error of its highest rebound is 3e-7 instead of 2e-4.
 #pragma once
 
 #include <array>
@@ -46,9 +46,9 @@ class Lawson final : public Stepper {
   using Modal = std::vector<double>;  // one value per mode, padded to whole lanes
 
   struct Stage {
-    Modal q, v;                 // P', R'
+    Modal q, v;                 // P' and R' of each mode
     Modal cosine, sine, slack;  // functions of the phase up to the stage's node; slack: (1 - cosine) / omega^2
-    std::vector<double> rest;   // slope of the unknowns after the modes
+    std::vector<double> rest;   // time derivatives of the unknowns after the modes
   };
 
   void turn_to_nodes(double h);
@@ -61,7 +61,7 @@ class Lawson final : public Stepper {
   Modal omega_, inverse_;
   double fastest_ = 0;
   std::vector<double> y_, trial_, rates_, next_rates_, weight_;
-  Modal q_, v_, a_;  // values at the start of the step
+  Modal q_, v_, a_;  // q, v and a of each mode at the start of the step
   Modal q_weight_, v_weight_;
   std::array<Stage, stages> k_;
   double turned_ = 0;  // step length for which the phases were computed [s]

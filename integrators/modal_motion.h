@@ -37,7 +37,7 @@ class ModalMotion {
   }
 
   /// Sets a step of `length` [s], divided into equal pieces. q, v and a are coordinates, velocities and accelerations of the
-  /// modes at its start, `end` is the motion of the point at its end. The fastest mode's phase must not exceed largest_phase.
+  /// modes at the start of the step, `end` is the motion of the point at its end. No phase of a mode may exceed largest_phase.
   void set(double length, int pieces, const double* q, const double* v, const double* a, const Sample& end) {
     per_length_ = 1 / length;
     Lane start = Lane::Zero();
@@ -81,7 +81,7 @@ class ModalMotion {
     s.acceleration += (omega * omega * (pull * turned.cosine - push * turned.sine)).sum();
   }
 
-  // Adds the quintic at this share x of the step.
+  // Adds to `s` the quintic at this share x of the step.
   void add_rest(double x, Sample& s) const {
     s.position += rest_.position(x);
     s.velocity += per_length_ * rest_.velocity(x);

@@ -14,10 +14,10 @@ inline constexpr double largest_phase = 2;
 
 struct Turn {
   Lane cosine, sine;
-  Lane slack;  ///< 1 - cosine, without cancellation
+  Lane slack;  ///< 1 - cosine of the phase, without cancellation
 };
 
-/// Taylor series of cosine and sine at half the phase; the first term left out is below 1e-18.
+/// Returns the rotation by a phase: Taylor series of cosine and sine at half the phase; the first omitted term is below 1e-18.
 [[nodiscard]] inline Turn turn(const Lane& phase) {
   constexpr std::size_t degree = 18;
   constexpr auto factors = [] {  // (-1)^(k/2) / k!, alternating even and odd k
@@ -35,7 +35,7 @@ struct Turn {
   return {.cosine = 1 - slack, .sine = 2 * sine * cosine, .slack = slack};
 }
 
-/// Returns the rotation by the sum of both phases.
+/// Returns the rotation by the sum of the phases of `a` and `b`.
 [[nodiscard]] inline Turn operator+(const Turn& a, const Turn& b) {
   const Lane slack = a.slack + b.slack - a.slack * b.slack + a.sine * b.sine;
   return {.cosine = 1 - slack, .sine = a.sine * b.cosine + a.cosine * b.sine, .slack = slack};

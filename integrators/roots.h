@@ -25,7 +25,7 @@ double bracketed_zero(const F& f, double low, double high) {
       {&f, [](const void* object, double at) -> double { return (*static_cast<const F*>(object))(at); }}, low, high);
 }
 
-/// Places in (0, 1) in ascending order, at most N.
+/// Roots in (0, 1) in ascending order, at most N.
 template <std::size_t N>
 struct SignChanges {
   std::array<double, N> at{};
@@ -34,8 +34,8 @@ struct SignChanges {
   [[nodiscard]] const double* end() const { return at.data() + count; }
 };
 
-/// Returns the places at which the polynomial c[0] + c[1] s + ... + c[N] s^N changes sign in 0 < s < 1: between the zeros of
-/// its derivative it is monotone.
+/// Returns the roots at which the polynomial c[0] + c[1] s + ... + c[N] s^N changes sign in 0 < s < 1. Each root is bracketed
+/// by zeros of the derivative, between which the polynomial is monotone.
 template <std::size_t M>
 [[nodiscard]] SignChanges<M - 1> sign_changes(const std::array<double, M>& c) {
   constexpr std::size_t degree = M - 1;

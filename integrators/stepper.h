@@ -15,7 +15,7 @@ namespace softland {
 struct OdeSystem {
   std::size_t size = 0;
   std::vector<double> frequencies = {};  ///< frequencies of the modes [rad/s]
-  /// Writes (v', z').
+  /// Writes (v', z') to `rates`.
   std::function<void(double t, const double* y, double* rates)> rates;
   std::function<void(double t, const double* y, double* jacobian)> jacobian;
   /// Sizes of a Jacobian in the shape of an arrow; 0 for a dense Jacobian. Beyond the first `core` unknowns the Jacobian has
@@ -27,24 +27,24 @@ class Stepper {
  public:
   virtual ~Stepper() = default;
   /// Starts a smooth stretch at (t, y), where (v', z') is `rates`. `absolute` are the absolute tolerances per unknown,
-  /// `first_step` a suggestion [s].
+  /// `first_step` is a suggested length [s].
   virtual bool restart(double t, const double* y, const double* rates, const std::vector<double>& absolute, double first_step,
                        double max_step) = 0;
   /// Makes one step, never beyond t_stop. Returns false when the step failed; see message().
   virtual bool step(double t_stop) = 0;
   [[nodiscard]] virtual double time() const = 0;
   [[nodiscard]] virtual const double* state() const = 0;
-  /// Returns (v', z') at time(); the last evaluation of the right-hand side was there.
+  /// Returns (v', z') at time(), where the last evaluation of the right-hand side was.
   [[nodiscard]] virtual const double* rates() = 0;
   [[nodiscard]] virtual std::string message() const = 0;
-  /// Returns the stiffness, when an explicit method computes it: the last step's length over the time in which the fastest part
-  /// of the solution decays; 0 when it is not known. At the limit of stability, about 3, this ratio and not the tolerance keeps
-  /// steps short.
+  /// Returns the stiffness, if an explicit method computes it: the last step's length over the time in which the fastest part
+  /// of the solution decays; 0 if unknown. The limit of stability is about 3: there, stability instead of the tolerance
+  /// limits the length of steps.
   [[nodiscard]] virtual double stiffness() const { return 0; }
 };
 
 /// Makes a stepper that keeps a reference to the system. `tolerance` is the relative tolerance from which the absolute
-/// tolerances of restart() are derived; an implicit method chooses its predictor by it. Throws std::logic_error for
+/// tolerances of restart() are derived; an implicit method chooses its predictor by this tolerance. Throws std::logic_error for
 /// `automatic`.
 [[nodiscard]] std::unique_ptr<Stepper> make_stepper(Integrator integrator, const OdeSystem& system, double tolerance);
 

@@ -57,7 +57,7 @@ struct Destroy {
 template <class Handle>
 using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Destroy>;
 
-/// Owns an object of the library. A null pointer means that the library was out of memory.
+/// Owns an object of SUNDIALS. A null pointer means that SUNDIALS was out of memory.
 template <class Handle>
 Owned<Handle> made(Handle handle) {
   if (handle == nullptr) throw std::bad_alloc();
@@ -83,7 +83,7 @@ class Context {
 class SundialsStepper : public Stepper {
  public:
   explicit SundialsStepper(const OdeSystem& system) : system_(system), y_(new_vector()), weights_(new_vector()) {
-    // With fused operations one pass replaces a pass per term of a stage's sum: the vectors are short, but the calls take time.
+    // Fused operations add all terms of a stage's sum in one call: the vectors are short, so that calls cost most of the time.
     N_VEnableFusedOps_Serial(y_.get(), SUNTRUE);
     last_.rates.resize(system.size - system.frequencies.size());
   }
@@ -134,7 +134,7 @@ class SundialsStepper : public Stepper {
     auto* me = static_cast<SundialsStepper*>(self);
     const double* state = N_VGetArrayPointer(y);
     double* out = N_VGetArrayPointer(dydt);
-    // A step begins at the end of the last step, where the right-hand side is known.
+    // A step begins at the end of the last step, where the right-hand side has been computed.
     const Evaluation& known = me->last_.is_at(t, state)    ? me->last_
                               : me->begin_.is_at(t, state) ? me->begin_
                                                            : me->evaluate(t, state);
@@ -151,7 +151,7 @@ class SundialsStepper : public Stepper {
     static_cast<SundialsStepper*>(self)->system_.jacobian(t, N_VGetArrayPointer(y), SUNDenseMatrix_Data(j));
     return 0;
   }
-  // SUNDIALS refuses tolerances below the rounding errors of their unknowns. In a stiff contact the tolerances are that small.
+  // SUNDIALS refuses a tolerance below the rounding error of the unknown. In a stiff contact, tolerances are that small.
   static int error_weights(N_Vector y, N_Vector ewt, void* self) {
     constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
     const auto* me = static_cast<SundialsStepper*>(self);
@@ -194,7 +194,7 @@ class SundialsStepper : public Stepper {
 
   void load(double t, const double* y, const double* rates, const std::vector<double>& absolute) {
     t_ = t;
-    last_.t = std::numeric_limits<double>::quiet_NaN();  // the last evaluation belongs to another stretch
+    last_.t = std::numeric_limits<double>::quiet_NaN();  // the last evaluation is of another smooth stretch
     begin_.t = t;
     begin_.y.assign(y, y + system_.size);
     begin_.rates.assign(rates, rates + last_.rates.size());
@@ -208,13 +208,13 @@ class SundialsStepper : public Stepper {
 };
 
 constexpr long unbounded_steps = -1;               // the caller bounds the work
-constexpr double smallest_change_of_step = 1e-10;  // relative; a larger change of the step makes a new factorisation
+constexpr double smallest_change_of_step = 1e-10;  // relative change of the step above which the matrix is factorised again
 constexpr int steps_of_a_jacobian = 2;
-// Predictor of the iteration for a stage: the state before the step, or an extrapolation from the last step whose order is
-// lower for later stages. On a compressible film the former takes half the time of the latter at a tolerance of 1e-4, the
-// latter 0.4 of the time of the former at 1e-8, and both take the same at 1e-5.
+// Predictors of the iteration for a stage: trivial is the state before the step, the other an extrapolation from the last step
+// whose order is lower for later stages. On a compressible film trivial needs half the time at a tolerance of 1e-4,
+// extrapolation 0.4 of the time at 1e-8, and both need the same time at 1e-5.
 constexpr int predictor_trivial = 0, predictor_of_falling_order = 2;
-constexpr double extrapolates_below = 3e-6;  // relative tolerance
+constexpr double extrapolates_below = 3e-6;  // relative tolerance below which the predictor extrapolates
 
 class ErkStepper final : public SundialsStepper {
  public:
@@ -239,7 +239,7 @@ class ErkStepper final : public SundialsStepper {
            ok(ERKStepSetTableNum(memory_, ARKODE_DORMAND_PRINCE_7_4_5), "ERKStepSetTableNum") &&
            ok(ERKStepWFtolerances(memory_, &SundialsStepper::error_weights), "ERKStepWFtolerances") &&
            ok(ERKStepSetMaxNumSteps(memory_, unbounded_steps), "ERKStepSetMaxNumSteps") &&
-           // The library's interpolant is never used.
+           // Steppers do not use the interpolant of the library.
            ok(ERKStepSetInterpolantType(memory_, ARK_INTERP_LAGRANGE), "ERKStepSetInterpolantType") &&
            ok(ERKStepSetInterpolantDegree(memory_, 0), "ERKStepSetInterpolantDegree");
   }

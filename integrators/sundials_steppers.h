@@ -11,11 +11,11 @@ namespace softland {
 /// Makes a diagonally implicit Runge-Kutta 5(4) with eight stages (Kennedy & Carpenter 2003), ARKODE. At tight tolerances the
 /// iteration for a stage starts from an extrapolation of the last step.
 [[nodiscard]] std::unique_ptr<Stepper> make_esdirk(const OdeSystem& system, double tolerance);
-/// Makes backward differentiation, orders 1 to 5, CVODE.
+/// Makes backward differentiation formulas of orders 1 to 5, CVODE.
 [[nodiscard]] std::unique_ptr<Stepper> make_bdf(const OdeSystem& system);
-/// Makes Adams-Moulton with functional iteration, orders 1 to 12, CVODE.
+/// Makes the Adams-Moulton method of orders 1 to 12 with functional iteration, CVODE.
 [[nodiscard]] std::unique_ptr<Stepper> make_adams(const OdeSystem& system);
-/// Makes explicit Runge-Kutta 5(4) of Dormand & Prince (1980), ARKODE.
+/// Makes the explicit Runge-Kutta method 5(4) of Dormand & Prince (1980), ARKODE.
 [[nodiscard]] std::unique_ptr<Stepper> make_arkode_erk(const OdeSystem& system);
 
 }  // namespace softland

@@ -14,24 +14,24 @@ namespace {
 // Shares of the budget of an epoch.
 constexpr double refining = 0.2;  // share of the given budget; with a gradient this share is spent twice
 constexpr double sampling = 0.15;
-constexpr double hopping = 0.6;  // share of the remaining budget, for a search that continues an earlier one with a gradient
+constexpr double hopping = 0.6;  // share of the remaining budget for hops, with a gradient after an earlier search
 constexpr double first_heat = 0.4;
 constexpr double later_heat = 0.2;
 
-constexpr long longest_epoch = 5000;  // evaluations: beyond that, other starts are more promising than longer searches
+constexpr long longest_epoch = 5000;  // [evaluations]; beyond this number, other starts are more promising than longer searches
 constexpr long epochs_with_gradient = 4, shortest_epoch = 600;
 constexpr std::size_t searches_at_once = 4;
 constexpr std::size_t starts_refined = 2;
-constexpr long shortest_refinement = 125;  // evaluations
-constexpr long shortest_heat = 20;         // evaluations: the least for a simplex or a quadratic model of 7 variables
+constexpr long shortest_refinement = 125;  // [evaluations]
+constexpr long shortest_heat = 20;         // [evaluations]; a simplex or a quadratic model of 7 variables needs as many
 
-// Standard deviations of hops, fractions of the box. Each hop is a local search from a random point near the best point.
+// Standard deviations of the length of a hop, fractions of the box. A hop is a local search that starts near the best point.
 constexpr std::array hop_sizes = {0.0005, 0.002, 0.008, 0.03};
-constexpr std::size_t fewest_hopping = 16;  // variables: with fewer variables sampling the box is more successful
-constexpr long iterations_of_hop = 8;       // iterations, and one more for each variable, for a model of the curvature
+constexpr std::size_t fewest_hopping = 16;  // [variables]; with fewer variables, sampling the box is more successful than hops
+constexpr long iterations_of_hop = 8;       // [iterations]; plus one for each variable, for a model of the curvature
 constexpr long evaluations_of_iteration = 1 + evaluations_of_gradient;
 
-// Fractions of the box.
+// Lengths as fractions of the box.
 constexpr double largest_separation = 0.15;
 constexpr double first_step = 0.25;
 constexpr double polishing_step = 0.02;
@@ -53,8 +53,8 @@ double distance(const Point& a, const Point& b) {
   return farthest;
 }
 
-/// Returns the best known points that are apart from each other and from the points already explored; the required distance
-/// shrinks until there are enough.
+/// Returns the best evaluated points that are apart from each other and from the points already explored; the required distance
+/// shrinks until there are enough points.
 std::vector<Point> promising_points(std::vector<EvaluationRecord::Known> known, const std::vector<Point>& explored) {
   std::stable_sort(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.answer.value < b.answer.value; });
   std::vector<Point> chosen;
@@ -73,7 +73,7 @@ std::vector<Point> promising_points(std::vector<EvaluationRecord::Known> known, 
   return chosen;
 }
 
-/// Returns the best point; empty when no point was feasible so far.
+/// Returns the best evaluated point; empty when no point was feasible so far.
 Point best_point(const EvaluationRecord& record) {
   const auto& known = record.known();
   const auto best =
@@ -90,7 +90,7 @@ void sample(EvaluationRecord& record, std::uint64_t first, std::size_t count) {
   record.run(tasks);
 }
 
-/// Continues each search that has not converged for `budget` evaluations.
+/// Runs each search that has not converged for `budget` further evaluations.
 void advance(EvaluationRecord& record, std::vector<LocalSearch>& searches, long budget) {
   std::vector<EvaluationRecord::Task> tasks;
   for (LocalSearch& search : searches) {
@@ -111,7 +111,7 @@ long share_of(long budget, double share, std::size_t searches) {
 }
 
 /// Runs monotonic basin hopping (Leary 2000, J. Glob. Optim. 18, 367) within a budget: local searches start from random points
-/// near the best point, which a better result of a search replaces.
+/// near the best point, and a better result of a search becomes the new best point.
 void hop(EvaluationRecord& record, const Method& method, long budget) {
   const long each =
       std::max(shortest_heat, evaluations_of_iteration * (iterations_of_hop + static_cast<long>(record.dimension())));
@@ -136,7 +136,7 @@ void hop(EvaluationRecord& record, const Method& method, long budget) {
   }
 }
 
-/// `finisher`, when it is another method, continues the searches after their first round.
+/// Searches by epochs. `finisher`, if not null, continues the local searches after their first round.
 void search(EvaluationRecord& record, const std::array<const Method*, searches_at_once>& methods, const Method* finisher,
             const Method& polisher) {
   std::uint64_t points_sampled = 0;
@@ -145,7 +145,7 @@ void search(EvaluationRecord& record, const std::array<const Method*, searches_a
     return LocalSearch(method, start, step, random_bits(record.seed(), Stream::library_seed, searches_begun++));
   };
   std::vector<Point> explored;
-  // A search with a gradient ends sooner, and more searches find more valleys.
+  // Local searches with a gradient need fewer evaluations, and more searches find more valleys.
   const long longest = record.has_gradient()
                            ? std::clamp(record.remaining() / epochs_with_gradient, shortest_epoch, longest_epoch)
                            : longest_epoch;

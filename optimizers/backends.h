@@ -11,7 +11,7 @@ namespace softland::internal {
 
 enum class Backend { search_auto, cma_es, nlopt, ipopt };
 
-/// A local method converges to a minimum nearby and may be started again; a global one is run once.
+/// A local method converges to a minimum nearby and may start again from another point; a global method runs once.
 enum class Reach { local, global };
 
 struct Method {
@@ -38,9 +38,9 @@ struct RunReport {
   std::string message;     ///< message of the library
 };
 
-/// run_nlopt() and run_ipopt() always return, whatever the objective does. Repeated with the same arguments they evaluate the
-/// same points in the same order. So a search that ran out of budget is continued by repeating its run: the evaluations made
-/// before are answered from memory.
+/// run_nlopt() and run_ipopt() always return, whatever the objective does. A repeated run with the same arguments evaluates the
+/// same points in the same order. So a search that ran out of budget continues by repeating its run: the objective at points of
+/// the earlier run is read from memory.
 [[nodiscard]] RunReport run_nlopt(const Method& method, const RunOptions& run, BudgetedObjective& budgeted);
 [[nodiscard]] RunReport run_cma_es(const RunOptions& run, BudgetedObjective& budgeted);
 [[nodiscard]] RunReport run_ipopt(const RunOptions& run, BudgetedObjective& budgeted);

@@ -27,7 +27,7 @@ constexpr double smallest_spread = 1e-7;
 /// Folds the real line onto [0, 1].
 double mirror(double u) { return std::abs(std::remainder(u, 2.0)); }
 
-/// Returns the weights of the better half of lambda children, the best first; they add up to 1.
+/// Returns the weights of the better half of lambda children, the best child first; the weights add up to 1.
 VectorXd recombination_weights(Eigen::Index lambda) {
   const Eigen::Index mu = lambda / 2;
   const Eigen::ArrayXd rank = Eigen::ArrayXd::LinSpaced(mu, 1, static_cast<double>(mu));
@@ -35,7 +35,7 @@ VectorXd recombination_weights(Eigen::Index lambda) {
   return weights / weights.sum();
 }
 
-// The constants of the strategy, as the source names and chooses them.
+// The constants of the strategy, with the names and values of the source.
 struct Strategy {
   Strategy(Eigen::Index n, double population)
       : dimension(static_cast<double>(n)),

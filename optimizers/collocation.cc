@@ -19,8 +19,8 @@ using Eigen::VectorXd;
 
 constexpr Index stages = 3;
 
-// The Radau points of a piece [0, 1], and the slopes at these points of the polynomials that are 1 at one of (0, points) and 0
-// at the others.
+// The Radau points of a piece [0, 1], and, for the polynomials that are 1 at one of (0, points) and 0 at the others, the slopes
+// at these points.
 struct Radau {
   std::array<double, stages + 1> points = {0, (4 - std::sqrt(6.0)) / 10, (4 + std::sqrt(6.0)) / 10, 1};
   Eigen::Matrix<double, stages, stages + 1> slopes;
@@ -52,7 +52,7 @@ const Radau& radau() {
   return rule;
 }
 
-// The weight of one variable of the program in the value of a control at a point.
+// The weight of one variable of the nonlinear program in the value of a control at a point.
 struct ControlWeight {
   Index column;  // column of the controls
   double weight;
@@ -268,7 +268,7 @@ class Program final : public Ipopt::TNLP {
   [[nodiscard]] VectorXd state_of(const double* x, Index point) const {
     return Eigen::Map<const VectorXd>(x + state(point, 0), n_);
   }
-  // Returns the beginning of a piece for j = 0, else its point j.
+  // Returns the states at the beginning of a piece for j = 0, else at point j of the piece.
   [[nodiscard]] VectorXd node_of(const double* x, Index piece, Index j) const {
     const Index point = piece * stages + j - 1;
     return point < 0 ? problem_.start : state_of(x, point);
@@ -390,7 +390,7 @@ class Program final : public Ipopt::TNLP {
   Index columns_ = 0;
   std::vector<Place> points_;
   std::vector<bool> depends_;
-  std::vector<ControlledSystem::Rates> rates_;  // rates at the points
+  std::vector<ControlledSystem::Rates> rates_;  // rates f(x, c) and their derivatives at the points of collocation
 };
 
 void check(const ControlProblem& p, const ControlledCourse& guess) {
@@ -443,7 +443,7 @@ std::string words_of(Ipopt::ApplicationReturnStatus status) {
   }
 }
 
-// Returns the index of the interval that contains a fraction, and the relative place inside this interval.
+// Returns the index of the interval that contains a fraction of T, and the relative place inside this interval.
 std::pair<std::size_t, double> interval_of(const std::vector<double>& at, double fraction) {
   const auto above = std::upper_bound(at.begin() + 1, at.end() - 1, fraction);
   const auto i = static_cast<std::size_t>(above - at.begin()) - 1;

@@ -1,8 +1,8 @@
-// Optimal control by direct collocation: it finds, among all controls that take a system from its start to its required end,
-// the one that takes the least time, or ends in the best state.
+// Optimal control by direct collocation: among all controls that take a system from its start to its required end, find the
+// control that takes the least time, or ends in the best state.
 //
-//   minimise T, or e.x(T)    over T, c(.)    subject to  x' = f(x, c) on [0, T],  x(0) = x_0,  lower <= c <= upper,  |c'| <=
-//   slew,
+//   minimise T, or e.x(T)    over T, c(.)    subject to  x' = f(x, c) on [0, T],  x(0) = x_0,
+//                                                         lower <= c <= upper,  |c'| <= slew,
 //                                                         rows on the way and at the end:  lower <= r.x <= upper
 //
 // x are the states, c the controls, T the time. Transcription: on each piece of the mesh x is a polynomial of degree three. It
@@ -31,8 +31,8 @@ class ControlledSystem {
   /// Returns true when rate `r` can depend on entry `k` of (x, c); other entries are left out of the sparse matrices.
   [[nodiscard]] virtual bool depends(Eigen::Index r, Eigen::Index k) const = 0;
   struct Rates {
-    Eigen::VectorXd value;  ///< f
-    Eigen::MatrixXd slope;  ///< derivatives by (x, c), one row per state
+    Eigen::VectorXd value;  ///< f(x, c)
+    Eigen::MatrixXd slope;  ///< derivatives of f by (x, c), one row per state
   };
   [[nodiscard]] virtual Rates rates(const Eigen::VectorXd& x, const Eigen::VectorXd& c) = 0;
   /// Returns the second derivatives of multipliers.f by (x, c): a symmetric matrix.
@@ -40,7 +40,7 @@ class ControlledSystem {
                                                   const Eigen::VectorXd& multipliers) = 0;
 };
 
-/// The condition lower <= row.x <= upper.
+/// The condition lower <= row.x <= upper on the states x.
 struct StateCondition {
   Eigen::VectorXd row;
   double lower = -std::numeric_limits<double>::infinity();
@@ -54,45 +54,45 @@ struct ControlBound {
   /// control is constant between its knots, with jumps.
   double slew = std::numeric_limits<double>::infinity();
   double before = 0;
-  /// Value that a control with a bounded slew must have at T; any value when absent.
+  /// Value that a control with a bounded slew must have at the end, t = T; any value when absent.
   std::optional<double> after = {};
 };
 
 struct ControlProblem {
   ControlledSystem* system = nullptr;
-  Eigen::VectorXd start = {};                   ///< x_0
+  Eigen::VectorXd start = {};                   ///< x_0, the states at t = 0
   std::vector<ControlBound> bounds = {};        ///< one per control; all with jumps, or all with a slew
-  std::vector<StateCondition> on_the_way = {};  ///< conditions at the ends of all pieces but the last
+  std::vector<StateCondition> on_the_way = {};  ///< conditions at the ends of all pieces of the mesh but the last
   std::vector<StateCondition> at_the_end = {};
   double shortest = 0, longest = 0;               ///< bounds of T
-  std::optional<Eigen::VectorXd> ends_best = {};  ///< e; when it is absent T is minimised
+  std::optional<Eigen::VectorXd> ends_best = {};  ///< e of the minimised e.x(T); when it is absent T is minimised
   std::vector<double> knots = {};                 ///< knots of the controls, fractions of T from 0 to 1
   double longest_piece = 1;                       ///< longest piece of the mesh, a fraction of T
   long max_iterations = 500;
   double tolerance = 1e-8;                  ///< tolerance of the optimality conditions
-  const std::atomic<bool>* stop = nullptr;  ///< set by another thread; ends the solution with its result so far
+  const std::atomic<bool>* stop = nullptr;  ///< set by another thread; ends the solution with the last iterate as its result
 };
 
-/// A control and the course of the states under it.
+/// A control and the states against time under this control.
 struct ControlledCourse {
   bool converged = false;
   bool interrupted = false;
   std::string message = {};  ///< message of Ipopt
   int iterations = 0;
-  double time = 0;                  ///< T
-  std::vector<double> knots = {};   ///< fractions of T
+  double time = 0;                  ///< T, the time that the control takes [unit of the problem]
+  std::vector<double> knots = {};   ///< knots of the controls, fractions of T
   Eigen::MatrixXd controls = {};    ///< a column per interval between knots, or per knot where a slew is bounded
   std::vector<double> points = {};  ///< fractions of T: 0, then the points of collocation
   Eigen::MatrixXd states = {};      ///< a column per point
-  [[nodiscard]] Eigen::VectorXd state_at(double fraction) const;  ///< linear between points
+  [[nodiscard]] Eigen::VectorXd state_at(double fraction) const;  ///< states, linear between points
   [[nodiscard]] Eigen::VectorXd control_at(double fraction) const;
 };
 
-/// Solves the problem from a guess: any course of the same states and controls, which need not fulfil any condition. Throws
+/// Solves the problem from a guess: states and controls of the same numbers, which need not fulfil any condition. Throws
 /// InvalidInput for a problem or a guess whose sizes or bounds do not fit; numerical trouble is in the result.
 [[nodiscard]] ControlledCourse solve(const ControlProblem& problem, const ControlledCourse& guess);
 
-/// Returns the knots of the course with further knots in the middle of some intervals: those in which a control is between its
+/// Returns the knots of `course` with further knots in the middle of some intervals: those in which a control is between its
 /// bounds, those at whose ends a control jumps, and their neighbours. No interval becomes shorter than `shortest`.
 [[nodiscard]] std::vector<double> refined_knots(const ControlledCourse& course, const std::vector<ControlBound>& bounds,
                                                 double shortest);

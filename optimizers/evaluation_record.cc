@@ -24,21 +24,21 @@ double compress(double value) {
   if (size <= large_value) return value;
   return std::copysign(large_value * (1 + std::log(size / large_value)), value);
 }
-// First penalty: above compress(x) for every finite x (the largest is 6.8e14).
+// First penalty: above compress(x) for every finite x (the largest compress(x) is 6.8e14).
 constexpr double first_penalty = 1e15;
 
-// The step is short, because the smooth pieces of an objective may be short: those of the cost of a closing are narrower than a
-// thousandth of the box. The noise of about 1e-9 in objectives is then 1e-4 of a slope of order 1.
+// Step of differences, a fraction of the box. The smooth parts of an objective may be short: those of the cost of a closing are
+// narrower than 1e-3. The noise of about 1e-9 in objectives then gives an error of 1e-4 of a slope of order 1.
 constexpr double difference_step = 1e-5;
 
-// Libraries step over a bound by a rounding error, and pass NaN when the objective makes them. Adding 0 turns -0 to 0.
+// Libraries exceed a bound by a rounding error, and pass NaN after a NaN of the objective. Adding 0 turns -0 to 0.
 Point inside(std::span<const double> point) {
   Point moved(point.begin(), point.end());
   for (double& coordinate : moved) coordinate = std::isnan(coordinate) ? 0.5 : std::clamp(coordinate, 0.0, 1.0) + 0.0;
   return moved;
 }
 
-// A search that is continued first repeats its own past, so the limit grows with the number of known points.
+// A continued search first repeats its own evaluations, so the limit of repetitions grows with the number of evaluated points.
 constexpr long circles_allowed = 1000;
 
 }  // namespace
@@ -111,8 +111,8 @@ Answer BudgetedObjective::remember(const Point& point, double value) {
   return answer;
 }
 
-// The penalty is above every value seen, but of the same size: a penalty of 1e15 next to values of order 1 would make the
-// models of the objective useless that some methods fit.
+// The penalty is above every value seen, but of the same size: some methods fit models to the objective, and a penalty of 1e15
+// next to values of order 1 would spoil the models.
 double BudgetedObjective::penalty() const {
   if (worst_seen_ < best_seen_) return first_penalty;
   const double spread = worst_seen_ - best_seen_;
@@ -131,7 +131,7 @@ Values BudgetedObjective::values(std::span<const double> point) {
   return {found->second, answer.feasible};
 }
 
-// Returns false when the problem has no gradients; gradients that it does not know are NaN.
+// Returns false when the problem has no gradients; an unknown gradient is NaN.
 bool BudgetedObjective::known_gradients(const Point& point, std::span<double> gradients) {
   if (!record_.has_gradient()) return false;
   const auto recall = [&](const Numbers& known) {
@@ -159,7 +159,7 @@ void BudgetedObjective::gradients(std::span<const double> point, std::span<doubl
     const auto of = [&](std::size_t value) -> double& { return gradients[value * n + i]; };
     const auto is_finite = [&](std::size_t value) { return std::isfinite(of(value)); };
     if (are_known && std::ranges::all_of(all, is_finite)) continue;
-    // Take two offsets, both to the same side next to a bound.
+    // Take two offsets, both to the same side if the point is next to a bound.
     double a = -difference_step;
     double b = difference_step;
     if (point[i] + a < 0) a = 2 * difference_step;
@@ -305,7 +305,7 @@ long EvaluationRecord::run(const std::vector<Task>& tasks) {
   return evaluations_ - before;
 }
 
-// After an exception only the value is known, and the conditions stay as they are.
+// Returns the value, then the conditions; after an exception, the conditions are 0.
 std::vector<double> EvaluationRecord::values(BudgetedObjective& budgeted, const Point& point, const Answer& answer) const {
   std::vector<double> kept(1 + problem_.conditions.count, 0.0);
   kept[0] = answer.value;
@@ -321,7 +321,7 @@ std::vector<double> EvaluationRecord::values(BudgetedObjective& budgeted, const 
   return kept;
 }
 
-// Returns the gradients by the point of the search. After an exception differences replace them.
+// Returns the gradients by the scaled variables of the search. After an exception, differences replace the gradients.
 std::vector<double> EvaluationRecord::gradients(BudgetedObjective& budgeted, const Point& point) const {
   std::vector<double> scaled((1 + problem_.conditions.count) * free_.size(), std::numeric_limits<double>::quiet_NaN());
   try {

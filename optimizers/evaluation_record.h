@@ -1,4 +1,4 @@
-// The record of one minimisation, which makes, counts and remembers every evaluation; libraries evaluate only through it.
+// The record of one minimisation: it makes, counts and stores every evaluation; libraries evaluate only through the record.
 //
 // Work comes in rounds of tasks. A task is sequential and has a fixed budget; the tasks of a round run in parallel. The order
 // of evaluations is (round, task, position within the task), whatever thread made them when. "First", "best so far" and
@@ -22,10 +22,10 @@
 
 namespace softland::internal {
 
-/// A point of the search: the variables that are free to move, each scaled to [0, 1].
+/// A point of the search: the variables whose bounds differ, each scaled to [0, 1].
 using Point = std::vector<double>;
 
-/// Exception by which a BudgetedObjective ends the run of a library. Each backend translates it into what its library needs.
+/// Exception by which a BudgetedObjective ends the run of a library. Each backend translates Cut as its library requires.
 struct Cut {};
 
 /// The value of a point as a search receives it. An infeasible point has a finite penalty above all values seen before.
@@ -34,7 +34,7 @@ struct Answer {
   bool feasible;
 };
 
-/// The values {cost, g_1, ... g_n}: what is minimised, then the conditions.
+/// The values {cost, g_1, ... g_n} of an evaluation: the minimised cost, then the conditions g_i <= 0.
 struct Values {
   std::vector<double> all;
   bool feasible;
@@ -45,7 +45,7 @@ struct PointHash {
 };
 using Memory = std::unordered_map<Point, Answer, PointHash>;
 using Numbers = std::unordered_map<Point, std::vector<double>, PointHash>;
-/// Cost of the gradients of the problem at one point, in evaluations.
+/// Cost of computing the gradients of the problem at one point, in evaluations.
 inline constexpr long evaluations_of_gradient = 3;
 
 class EvaluationRecord;
@@ -53,15 +53,15 @@ class EvaluationRecord;
 /// The evaluations of one task, made by one thread. Libraries see the problem only through this class.
 class BudgetedObjective {
  public:
-  /// Throws Cut when the share of the budget is used up, the minimisation is over, or the search goes in circles: it asks very
-  /// often in succession for known points. A point that was seen before is answered from memory and costs nothing.
+  /// Returns the value at a point. A point that was evaluated before is read from memory and costs nothing. Throws Cut when the
+  /// share of the budget is used up, the minimisation is over, or a search repeats evaluated points very often in succession.
   Answer operator()(std::span<const double> point);
-  /// Returns the value with the conditions of the problem; the value alone where the problem has none. No condition is broken
-  /// at an infeasible point. Throws Cut.
+  /// Returns the value with the conditions of the problem; the value alone if the problem has no conditions. At an infeasible
+  /// point no condition counts as broken. Throws Cut.
   Values values(std::span<const double> point);
-  /// Writes the gradients of all values, one after the other. A gradient that the problem does not give is taken by central
-  /// differences. Differences are one-sided at the bounds and next to infeasible points, and 0 where all neighbours are
-  /// infeasible. Throws Cut.
+  /// Writes the gradients of all values, one after the other. Central differences replace a gradient that the problem does not
+  /// give. Differences are one-sided at the bounds and next to infeasible points, and 0 where all neighbours are infeasible.
+  /// Throws Cut.
   void gradients(std::span<const double> point, std::span<double> gradients);
   /// Returns the number of conditions of the problem.
   [[nodiscard]] std::size_t conditions() const;
@@ -71,7 +71,7 @@ class BudgetedObjective {
   /// Resets the count of repeated points. Call this before every run of a library.
   void begin_search() { repeats_ = 0; }
   [[nodiscard]] long evaluations() const { return static_cast<long>(records_.size()); }
-  /// Returns the lowest feasible value this task has found; infinite without one.
+  /// Returns the lowest feasible value that this task has found; infinite if it has found none.
   [[nodiscard]] double best_of_task() const { return best_of_task_; }
   [[nodiscard]] const Point& best_point_of_task() const { return best_point_of_task_; }
 
@@ -80,7 +80,7 @@ class BudgetedObjective {
   struct Record {
     Point point;
     Answer answer;
-    double value;  ///< value as returned by the objective
+    double value;  ///< value as returned by the objective, before it is compressed or replaced by a penalty
   };
   BudgetedObjective(EvaluationRecord& record, std::size_t task, long budget, long first_index);
 
@@ -100,8 +100,8 @@ class BudgetedObjective {
   Point best_point_of_task_;
   Memory memory_;
   std::vector<Record> records_;
-  Numbers values_;     ///< values of evaluations with conditions
-  Numbers gradients_;  ///< gradients of the problem
+  Numbers values_;     ///< values with conditions, by point
+  Numbers gradients_;  ///< gradients of the problem, by point
   std::optional<std::string> first_exception_;
 };
 
@@ -132,10 +132,10 @@ class EvaluationRecord {
     return options_.max_evaluations - evaluations_ - evaluations_of_gradient * static_cast<long>(gradients_.size());
   }
   [[nodiscard]] bool over() const { return remaining() <= 0 || target_reached_ || outside_ != Termination::not_run; }
-  /// Returns everything evaluated in the rounds so far, in order.
+  /// Returns all evaluations of the rounds so far, in order.
   [[nodiscard]] const std::vector<Known>& known() const { return known_; }
-  /// Returns true when work on the current round should end early for a reason other than the evaluation budget. It is cheap
-  /// enough for waiting loops.
+  /// Returns true when work on the current round should end early for a reason other than the evaluation budget. The function
+  /// is cheap enough for waiting loops.
   [[nodiscard]] bool cut_off(std::size_t task);
 
   /// Returns the result; `message` is that of the last search, `converged` is true when this search ended by its own criterion.
@@ -158,12 +158,12 @@ class EvaluationRecord {
   const Problem& problem_;
   const OptimizerOptions& options_;
   std::chrono::steady_clock::time_point begin_;
-  std::vector<std::size_t> free_;  ///< indices of the variables with lower < upper
+  std::vector<std::size_t> free_;  ///< indices of the variables whose bounds differ
   std::vector<Point> starts_;
   /// Exact values of the user's starts, which scaling would round.
   std::unordered_map<Point, std::vector<double>, PointHash> exact_;
 
-  // These change between rounds only.
+  // Only the code between rounds changes the following members.
   std::vector<Known> known_;
   Memory memory_;
   Numbers values_, gradients_;
@@ -174,7 +174,7 @@ class EvaluationRecord {
   bool target_reached_ = false;
   OptimizerResult best_;
 
-  // The threads of a round share these.
+  // The threads of a round share the following members.
   std::atomic<std::size_t> target_task_;
   std::atomic<Termination> outside_ = Termination::not_run;
   std::mutex report_mutex_;

@@ -51,7 +51,7 @@ class StrandProblem final : public Ipopt::TNLP {
     if (m > 0) std::copy_n(strand_.values(view(x, n)).all.begin() + 1, m, values);
     return true;
   }
-  // A call without `values` asks for the positions of the entries: all of them, row by row.
+  // Without `values`, sets the positions of the entries of the Jacobian: all entries, row by row.
   bool eval_jac_g(Ipopt::Index n, const Ipopt::Number* x, bool, Ipopt::Index m, Ipopt::Index, Ipopt::Index* rows,
                   Ipopt::Index* columns, Ipopt::Number* values) override {
     if (m == 0) return true;

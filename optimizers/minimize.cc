@@ -46,7 +46,7 @@ void check(const Problem& problem, const OptimizerOptions& options) {
   require(!std::isnan(options.target), "target must not be NaN");
 }
 
-// A search from an infeasible point sees only the constant penalty: finding another start is worth a few evaluations.
+// Number of infeasible starts that are skipped: a search would see only the constant penalty, and another start costs little.
 constexpr std::uint64_t infeasible_starts_skipped = 20;
 
 // Number of runs in succession without a new evaluation after which the search ends: further starts would bring nothing new.

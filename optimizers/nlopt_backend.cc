@@ -1,4 +1,4 @@
-// NLopt 2.7.1. Its methods behave in ways that its interface does not tell:
+// NLopt 2.7.1. Its methods have properties that its interface does not show:
 // - NLopt's limits are not enough: several methods report success on NaN, hang, or swallow exceptions. So the BudgetedObjective
 //   counts evaluations, keeps the best point and ends a run; only the message of NLopt's result is used.
 // - Random numbers come from a generator of the calling thread, seeded from the clock unless nlopt::srand is called in it.
@@ -19,7 +19,7 @@ namespace {
 // Tolerance in units of the box. It is far below what the noise of an objective allows to resolve, so that no method ends too
 // early in a narrow valley.
 constexpr double step_tolerance = 1e-7;
-// MLSL polishes many minima and needs only to distinguish them.
+// Tolerance inside MLSL, which finds many minima and needs only to distinguish them.
 constexpr double step_tolerance_inside_mlsl = 1e-4;
 
 struct Callback {
@@ -53,7 +53,7 @@ double call(const std::vector<double>& x, std::vector<double>& gradient, void* d
   }
 }
 
-// Serves methods with a gradient, whose scale is linear.
+// Evaluates the conditions for methods with a gradient, whose scale is linear.
 void call_conditions(unsigned count, double* values, unsigned dimension, const double* x, double* gradient, void* data) {
   BudgetedObjective& budgeted = static_cast<Callback*>(data)->budgeted;
   const std::span<const double> point(x, dimension);

@@ -21,15 +21,15 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int idle_generations_allowed = 100;
-constexpr double least_difference = 1e-14;  // least difference of two parents, as a part of the box: closer ones are equal
+constexpr double least_difference = 1e-14;  // share of the box; two parents with a smaller difference are equal
 
-using Point = std::vector<double>;  // scaled to [0, 1]
+using Point = std::vector<double>;  // variables scaled to [0, 1]
 
 struct Member {
   Point point;
   ParetoValue value;
-  std::size_t rank = 0;  // 0 where no member is better
-  double crowding = 0;   // distance to its neighbours in the front
+  std::size_t rank = 0;  // rank of the member's front; 0: the front that no member dominates
+  double crowding = 0;   // distance of the member to its neighbours in the front
 };
 
 bool is_better(const ParetoValue& a, const ParetoValue& b) {
@@ -37,7 +37,7 @@ bool is_better(const ParetoValue& a, const ParetoValue& b) {
   return dominates(a.objectives, b.objectives);
 }
 
-/// Random numbers of one pair of children.
+/// Random numbers for one pair of children.
 class Draws {
  public:
   Draws(std::uint64_t seed, std::uint64_t pair) : seed_(random_bits(seed, Stream::offspring, pair)) {}
@@ -120,8 +120,8 @@ const Member& tournament(const std::vector<Member>& members, Draws& draws) {
   return b.crowding > a.crowding ? b : a;
 }
 
-/// Returns the distance of the children from the middle of their parents, in halves of the distance of the parents. Its
-/// distribution is cut off at `room`, the place of a bound.
+/// Returns the distance of the children from the middle of their parents, in halves of the distance of the parents. `room`, the
+/// same measure of the nearest bound, limits its distribution.
 double spread_factor(double u, double room, double index) {
   const double all = 2 - std::pow(room, -(index + 1));
   const double part = u * all;
@@ -157,7 +157,7 @@ void mutate(Point& point, const ParetoOptions& options, Draws& draws) {
   }
 }
 
-/// Evaluates points, each only once, and remembers all.
+/// Evaluates points, each only once, and stores all of them.
 class Evaluations {
  public:
   Evaluations(const ParetoProblem& problem, const ParetoOptions& options) : problem_(problem), options_(options) {}
@@ -165,7 +165,7 @@ class Evaluations {
   [[nodiscard]] bool over() const { return ended_ != Termination::not_run; }
   [[nodiscard]] Termination ended() const { return ended_; }
 
-  /// Returns members at these points, without those for which evaluations or time did not suffice.
+  /// Returns the members for these points, except points for which evaluations or time did not suffice.
   std::vector<Member> members_at(const std::vector<Point>& points) {
     std::vector<std::vector<double>> fresh;
     std::set<std::vector<double>> seen;
@@ -275,7 +275,7 @@ class Evaluations {
   const ParetoOptions& options_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::vector<ParetoEvaluation> log_;
-  std::map<std::vector<double>, std::size_t> known_;  // number in the log, by x
+  std::map<std::vector<double>, std::size_t> known_;  // index of the evaluation in the log, by x
   std::string first_exception_;
   Termination ended_ = Termination::not_run;
   std::mutex mutex_;

@@ -1,11 +1,11 @@
 // Minimisation of several objectives by NSGA-II. It finds the Pareto front: the points at which no objective can improve unless
-// another one becomes worse.
+// another objective becomes worse.
 //
 // A population begins at the given starts and at the points of a Sobol' sequence. In every generation pairs of parents have two
 // children each, by simulated binary crossover and polynomial mutation; each parent is the better of two random members. The
 // best half of parents and children survives, ranked by domination and, within a front, by the distance from their neighbours.
-// A point that keeps all constraints is better than one that violates some; of two that violate constraints the one with the
-// smaller violation is better.
+// A point that satisfies all constraints is better than a point that violates some; of two points that violate constraints, the
+// point with the smaller violation is better.
 //
 // Source: K. Deb, A. Pratap, S. Agarwal & T. Meyarivan, "A fast and elitist multiobjective genetic algorithm: NSGA-II", IEEE
 // Trans. Evol. Comput. 6 (2002) 182; bounded crossover and mutation as in their own code: K. Deb & R. B. Agrawal, Complex Systems
@@ -34,11 +34,11 @@ struct ParetoValue {
 struct ParetoProblem {
   std::vector<Variable> variables = {};
   std::size_t objectives = 2;
-  /// Evaluates a point; called from several threads at once when jobs > 1, and must give the same value for the same x. A value
-  /// that is not finite, a wrong number of values, or an exception make the point infeasible beyond any violation; the first
-  /// exception is kept in the result.
+  /// Evaluates a point; called from several threads at once when jobs > 1, and must return equal values for equal x. A value
+  /// that is not finite, a wrong number of values, or an exception make the point infeasible beyond any violation; the result
+  /// has the message of the first exception.
   std::function<ParetoValue(std::span<const double>)> evaluate = {};
-  /// Members of the first population; points outside the bounds are moved to them.
+  /// Members of the first population; points outside the bounds are moved to the bounds.
   std::vector<std::vector<double>> starts = {};
 };
 
@@ -55,9 +55,9 @@ struct ParetoOptions {
   std::uint64_t seed = 1;
   int jobs = 1;
   double crossover_probability = 0.9;
-  double crossover_index = 15;              ///< index of the distribution of children: the larger, the closer to their parents
-  double mutation_index = 20;               ///< index of the distribution of mutations; each child has one on average
-  const std::atomic<bool>* stop = nullptr;  ///< set by another thread; ends the search with its result so far
+  double crossover_index = 15;  ///< index of the distribution of children: the larger, the closer to their parents
+  double mutation_index = 20;   ///< index of the distribution of mutations; on average, one variable of each child mutates
+  const std::atomic<bool>* stop = nullptr;  ///< set by another thread; ends the search with the front found so far
   /// Called under a lock after every evaluation, in the order in which evaluations end. Its exceptions end minimize_all().
   std::function<void(const ParetoEvaluation&)> on_evaluation = {};
 };
@@ -65,7 +65,7 @@ struct ParetoOptions {
 struct ParetoResult {
   Termination termination = Termination::not_run;
   long evaluations = 0;
-  /// Best of all evaluated points that keep the constraints, in the order of the first objective.
+  /// the nondominated points among the evaluated points without violation, in the order of the first objective
   std::vector<ParetoEvaluation> front;
   std::string first_exception;
 };

@@ -1,7 +1,7 @@
-// Points of several objectives, all of them to be minimised: the points that no other one dominates, the volume of the space of
-// objectives that they dominate together, and the knee of their front.
+// Points of several objectives, all of them to be minimised. The functions find the points that no other point dominates (the
+// front), the volume of the space of objectives that the points dominate together, and the knee of the front.
 //
-// A point dominates another one if it is nowhere worse and somewhere better. A point with a value that is not finite is never
+// A point dominates another point if it is nowhere worse and somewhere better. A point with a value that is not finite is never
 // part of a front.
 #pragma once
 
@@ -36,8 +36,8 @@ struct ObjectiveRange {
 };
 [[nodiscard]] std::vector<ObjectiveRange> objective_ranges(std::span<const Objectives> points);
 
-/// Returns the number of the point at the knee of the front: with every objective scaled to [0, 1] over the points, the one
-/// farthest below the plane through (1, 0, ...), (0, 1, 0, ...) and so on. For two objectives this is the line between the two
+/// Returns the number of the point at the knee of the front: with every objective scaled to [0, 1] over the points, the point
+/// farthest below the plane through (1, 0, ...), (0, 1, 0, ...) and so on. For two objectives this is the line between both
 /// ends of the front. Returns none when no point lies below this plane by more than rounding: a front that is straight or
 /// bulges outwards has no knee, nor has one whose points agree in an objective. Source: I. Das, "On characterizing the knee of
 /// the Pareto curve based on normal-boundary intersection", Structural Optimization 18 (1999) 107.

@@ -18,33 +18,33 @@ struct Variable {
   double upper = 1;
 };
 
-/// Conditions g(x) <= 0 of a minimisation. Only the methods with a gradient use them. The other methods, and every comparison
-/// of points, use the objective alone: so the objective must rise with the violation.
+/// Conditions g(x) <= 0 of a minimisation. Only the methods with a gradient use the conditions. The other methods, and every
+/// comparison of points, use the objective alone: so the objective must rise with the violation.
 struct Conditions {
   std::size_t count = 0;
   /// Returns {cost, g_1, ... g_count} at a point at which the objective is finite; called from threads like the objective.
   std::function<std::vector<double>(std::span<const double>)> values = {};
-  /// Returns the derivatives by x of all these values: those of the cost, then those of g_1 and so on. Differences replace this
-  /// function when it is null, and values that are NaN.
+  /// Returns the derivatives by x of the elements of `values`: those of the cost, then those of g_1 and so on. Differences
+  /// replace a NaN, and the whole function when it is null.
   std::function<std::vector<double>(std::span<const double>)> gradients = {};
 };
 
 /// Minimise objective(x) subject to lower <= x <= upper. Optimizers work on x scaled to [0, 1]; a variable with lower == upper
-/// stays at this value.
+/// is constant.
 struct Problem {
   std::vector<Variable> variables = {};
   /// Called from several threads at once when jobs > 1, each call with its own x, which lies within the bounds exactly. The
-  /// objective must give the same value for the same x: a repeated point is answered from memory. A non-finite value or an
-  /// exception makes the point infeasible; the first exception is kept in the result.
+  /// objective must return equal values for equal x: the value of a repeated point is read from memory. A non-finite value or
+  /// an exception makes the point infeasible; the result has the message of the first exception.
   std::function<double(std::span<const double>)> objective = {};
   /// Returns the derivatives of the objective by x; may be null. A NaN is replaced by a difference. Several threads may call
   /// this function at once, like the objective.
   std::function<std::vector<double>(std::span<const double>)> gradient = {};
-  /// Conditions. When a problem has some, `gradient` is not used.
+  /// Conditions g(x) <= 0. If there are some, `conditions.gradients` replaces `gradient`.
   Conditions conditions;
-  /// Starting points worth trying first; may be empty. Points outside the bounds are moved to them. Every optimizer evaluates
-  /// all starts, as given to the last digit; local methods search from each in turn, `auto` and the methods with a gradient
-  /// from the most promising.
+  /// Starting points that are evaluated first; may be empty. Points outside the bounds are moved to the bounds. Every optimizer
+  /// evaluates all starts, as given to the last digit; local methods search from each in turn, `auto` and the methods with a
+  /// gradient from the most promising ones.
   std::vector<std::vector<double>> starts = {};
 };
 
@@ -52,7 +52,7 @@ struct Evaluation {
   /// Number of the evaluation: unique, and increasing in an order that does not depend on the number of jobs. Numbers are left
   /// out where a search ended before its share of the budget did, so the number may exceed the number of evaluations.
   long index = 0;
-  double value = 0;  ///< the objective; non-finite (NaN where it threw) when infeasible
+  double value = 0;  ///< value of the objective; non-finite when infeasible (NaN after an exception)
   std::vector<double> x;
   std::size_t problem = 0;  ///< number of the problem, when several problems share a log
 };
@@ -60,12 +60,12 @@ struct Evaluation {
 struct OptimizerOptions {
   std::string optimizer = "auto";
   long max_evaluations = 2000;
-  double max_seconds = std::numeric_limits<double>::infinity();  ///< [s]
+  double max_seconds = std::numeric_limits<double>::infinity();  ///< time budget [s]
   std::uint64_t seed = 1;
   double step = 0.25;     ///< first step of a local method, as a share of the box; `auto` uses its own
   double population = 1;  ///< points of a generation of cma-es, as a multiple of the usual number
-  int jobs = 1;           ///< threads, the calling one among them; `auto` makes use of them
-  /// True when the starts are the best points of an earlier search. With a gradient `auto` then spends most of its budget on
+  int jobs = 1;           ///< number of threads, including the calling one; `auto` uses all of them
+  /// True when the starts are the best points of an earlier search. `auto` with a gradient then spends most of its budget on
   /// local searches from points near the best start.
   bool goes_on = false;
   /// True when the objective is smooth around the starts: `auto` then begins with a gradient method from the starts.
@@ -76,13 +76,13 @@ struct OptimizerOptions {
   /// between runs, and the calls may include evaluations that the result leaves out (beyond the target in the job-independent
   /// order). An exception ends the search with Termination::failure.
   std::function<void(const Evaluation&)> on_evaluation = {};
-  /// Called under the same lock whenever an evaluation is the best so far.
+  /// Called under the lock of on_evaluation whenever an evaluation is the best so far.
   std::function<void(const Evaluation&)> on_improvement = {};
 };
 
 /// The reason why a search ended. A search that ended by interrupted, time_budget or evaluation_budget has the best point so
-/// far; x is empty when no point was feasible. no_feasible_point: the search went to its end and every evaluation was
-/// non-finite or threw.
+/// far; x is empty when no point was feasible. no_feasible_point: the search was completed and every evaluation was non-finite
+/// or threw an exception.
 enum class Termination {
   not_run,
   converged,
@@ -101,14 +101,14 @@ struct OptimizerResult {
   std::vector<double> x;     ///< the best point; empty if no point was feasible
   double value = std::numeric_limits<double>::quiet_NaN();  ///< objective at x
   long evaluations = 0;
-  std::vector<Evaluation> improvements;  ///< best-so-far history in the job-independent order
-  std::string first_exception;           ///< message of the first exception of the objective; empty when it threw none
+  std::vector<Evaluation> improvements;  ///< each evaluation that was the best so far, in the job-independent order
+  std::string first_exception;           ///< message of the first exception of the objective; empty without an exception
 };
 
 /// Returns the names accepted in OptimizerOptions::optimizer, `auto` first.
 [[nodiscard]] std::span<const std::string_view> optimizer_names();
 
-/// Returns one line for --help. Throws InvalidInput for a name that is not among optimizer_names().
+/// Returns a description of an optimizer for --help, one line. Throws InvalidInput for a name outside optimizer_names().
 [[nodiscard]] std::string_view optimizer_description(std::string_view name);
 
 /// Solves the problem. Throws InvalidInput for an unknown or refused optimizer, no variables or no objective, a bound that is
@@ -119,15 +119,15 @@ struct OptimizerResult {
 /// max_seconds and stop. The time budget, the stop flag and the target are checked before every evaluation; a running
 /// evaluation is never interrupted.
 ///
-/// `auto` searches near the best of the starts, samples the box and runs local searches from well separated good points. It
-/// lets the promising ones continue and polishes the best, with the problem's gradient when there is one; it uses several jobs.
-/// The methods with a gradient continue from the best points of such a search after its first two fifths. Another local method
-/// runs from the starts in turn and then from random points, each time until it converges, as long as the budget lasts;
-/// infeasible points are skipped. A global method runs once.
+/// `auto` searches near the best of the starts, samples the box and runs local searches from well separated good points. The
+/// promising searches continue, and a last search improves the best point, with the problem's gradient when there is one;
+/// `auto` uses several jobs. The methods with a gradient continue from the best points of such a search after its first two
+/// fifths. Another local method runs from the starts in turn and then from random points, each time until it converges, as long
+/// as the budget lasts; infeasible points are skipped. A global method runs once.
 ///
-/// Without a gradient of the problem central differences are used, which count as evaluations; a gradient of the problem counts
-/// as three, with those of its conditions. Ipopt solves one problem at a time in a process; others wait, so an objective must
-/// not itself minimize with ipopt while ipopt calls it.
+/// If the problem has no gradient, central differences are used, which count as evaluations; a gradient of the problem counts
+/// as three, with those of its conditions. Ipopt solves one problem at a time in a process, and other calls wait, so an
+/// objective must not itself minimize with ipopt while ipopt calls it.
 [[nodiscard]] OptimizerResult minimize(const Problem& problem, const OptimizerOptions& options);
 
 }  // namespace softland

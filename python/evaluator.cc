@@ -65,7 +65,7 @@ py::tuple evaluate(const Evaluator& evaluator, const Rows& rows, int jobs, const
     evaluator.evaluate(in, out, ends, jobs, progress);
     return true;
   });
-  // Each of the few different statuses is converted to a Python text once.
+  // There are few different statuses: each is converted to a Python text once.
   std::map<std::string, py::str> texts;
   py::list status(count);
   py::dict reasons;

@@ -44,7 +44,7 @@ void explore_part(Exploration& exploration, const ExploreRequest& request, const
       .run();
 }
 
-// Explores a design space into a store. After Ctrl-C the store keeps the rows that are done.
+// Explores a design space into a database file. After Ctrl-C the file holds the computed rows.
 void explore(const PyScene& scene, const verbs::Arguments& arguments, const std::string& command, const py::object& on_progress) {
   const verbs::Study& verb = verbs::study_named("explore");
   const auto [request, shard, plan] = in_keywords("explore", [&] {

@@ -111,8 +111,8 @@ std::shared_ptr<const PythonWaveform::Course> PythonWaveform::course(std::span<c
     std::vector<std::size_t> open(made->arcs.size());
     for (std::size_t i = 0; i < open.size(); ++i) open[i] = i;
     for (std::size_t intervals = fewest_intervals; !open.empty() && intervals <= most_intervals; intervals *= 2) {
-      // One call returns the voltages of all arcs that are not accurate yet. The function returns the voltage after a breakpoint,
-      // so that the end of an arc is evaluated slightly before it.
+      // One call returns the voltages of all arcs between breakpoints that are not accurate yet. At a breakpoint the Python
+      // function returns the voltage after a jump, so that the end of an arc is evaluated slightly before the breakpoint.
       std::vector<double> times;
       for (const std::size_t i : open) {
         const Arc& arc = made->arcs[i];

@@ -16,8 +16,8 @@
 
 namespace softland::python {
 
-/// Keeps the first exception of Python functions that the library calls. The library treats it as an infeasible candidate; it is
-/// raised after the computation.
+/// Keeps the first exception of Python functions that the library calls. The library treats the exception as an infeasible
+/// candidate; FirstError raises it after the computation.
 class FirstError {
  public:
   void keep(std::exception_ptr error) {
@@ -41,10 +41,10 @@ class FirstError {
   std::exception_ptr first_;
 };
 
-/// A voltage that a Python function computes for an array of times. A polynomial approximates it between two breakpoints,
-/// through Chebyshev points of the second kind. Their number doubles until the polynomial of half of them gives the others to
-/// own_waveform_accuracy, so that a candidate takes a few calls. Barycentric formula: J.-P. Berrut & L. N. Trefethen, SIAM Review
-/// 46 (2004) 501, eq. 4.2.
+/// A voltage that a Python function computes for an array of times. A polynomial approximates the voltage between two
+/// breakpoints, through Chebyshev points of the second kind. The number of points doubles until the polynomial through every
+/// other point gives the remaining values to own_waveform_accuracy, so that a candidate takes a few calls. Barycentric formula:
+/// J.-P. Berrut & L. N. Trefethen, SIAM Review 46 (2004) 501, eq. 4.2.
 class PythonWaveform final : public OwnWaveform {
  public:
   /// `voltage` is a function (times, x) -> volts of arrays; `breakpoints` is a function (x) -> times, or an array of times.
@@ -63,7 +63,7 @@ class PythonWaveform final : public OwnWaveform {
   struct Arc {
     double begin = 0, end = 0;
     std::vector<double> values;  // voltages at Chebyshev points, from the end to the begin
-    double least = 0, most = 0;  // smallest and largest of these voltages
+    double least = 0, most = 0;  // smallest and largest of `values`
     [[nodiscard]] double at(double time) const;
   };
   struct Course {
@@ -77,11 +77,11 @@ class PythonWaveform final : public OwnWaveform {
   std::vector<OwnParameter> parameters_;
   pybind11::object breakpoints_, voltage_;
   mutable std::mutex lock_;
-  mutable std::vector<std::shared_ptr<const Course>> known_;  // the latest candidates
+  mutable std::vector<std::shared_ptr<const Course>> known_;  // voltages of the latest candidates
   mutable FirstError first_;
 };
 
-/// An objective that a Python function computes from the figures of a closing and of the plain step.
+/// An objective that a Python function computes from the figures of a closing and of an actuation by a plain step.
 class PythonObjective final : public OwnObjective {
  public:
   PythonObjective(std::string name, pybind11::object value, bool lands_first);

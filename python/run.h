@@ -32,7 +32,7 @@ class StoppedByInterrupt {
 /// One call from Python into the library.
 class InterruptibleRun {
  public:
-  /// `progress` is called with the name of the current stage and its done share, at most ten times a second; None: not called.
+  /// `on_progress` is called with the name of the current stage and its completed share, at most ten times a second; or None.
   explicit InterruptibleRun(pybind11::object on_progress = pybind11::none());
   InterruptibleRun(const InterruptibleRun&) = delete;
   InterruptibleRun& operator=(const InterruptibleRun&) = delete;
@@ -58,13 +58,13 @@ class InterruptibleRun {
 
   [[nodiscard]] const Progress& progress() const { return progress_; }
   [[nodiscard]] const std::atomic<bool>* stop() const { return &stop_; }
-  /// Returns true if the run was asked to stop in another way than by end_by_wish().
+  /// Returns true if a stop was requested by anything but end_by_wish().
   [[nodiscard]] bool given_up() const { return stop_.load(std::memory_order_relaxed) && !ended_by_wish_; }
-  /// For callbacks of the library: throws, to end the work, if Ctrl-C or a failed Python function has asked it to stop.
+  /// For callbacks of the library: throws Interrupted, to end the work, after Ctrl-C or an exception of a Python function.
   void throw_if_given_up() const {
     if (given_up()) throw Interrupted();
   }
-  /// Calls a Python function from any thread. The first exception of such a function ends the work, and is raised afterwards.
+  /// Calls a Python function from any thread. The first exception of a Python function ends the work, and is raised afterwards.
   template <class Call>
   void call(Call&& call) {
     const pybind11::gil_scoped_acquire held;
@@ -74,7 +74,7 @@ class InterruptibleRun {
       keep(std::current_exception());
     }
   }
-  /// Keeps an exception that passes through the library, which may treat it as an infeasible candidate.
+  /// Keeps an exception and stops the work; the library may treat the exception as an infeasible candidate.
   void keep(std::exception_ptr error);
 
  private:
@@ -90,7 +90,7 @@ class InterruptibleRun {
   Progress progress_;
 
  public:
-  /// Ends the work because a callback returned True; the result is the best one so far.
+  /// Ends the work because a callback returned True; the result is the best point so far.
   void end_by_wish() {
     ended_by_wish_ = true;
     stop_ = true;

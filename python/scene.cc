@@ -28,7 +28,7 @@ namespace py = pybind11;
 std::shared_ptr<const PreparedScene> PyScene::ready(bool default_limits, InterruptibleRun& run) {
   std::shared_ptr<const PreparedScene>& kept = default_limits ? limited : plain;
   if (!kept) {
-    const SceneFile copy = file;  // another Python thread may change it meanwhile
+    const SceneFile copy = file;  // another Python thread may change the scene meanwhile
     kept = run([&](const Progress& progress) {
       return std::make_shared<const PreparedScene>(prepare_and_choose(copy, default_limits, progress));
     });
@@ -61,14 +61,14 @@ namespace {
 
 using Value = std::variant<bool, int, double, std::string>;
 
-// Changes a key as --set does; a number is in the SI unit of the key.
+// Changes a key as the option --set does; a number is in the SI unit of the key.
 void change(SceneFile& file, const std::string& key, const Value& value) {
   if (const auto* text = std::get_if<std::string>(&value)) return file.set(key + "=" + *text);
   try {
     if (const auto* flag = std::get_if<bool>(&value)) return file.assign(key, SceneValue(*flag));
     if (const auto* whole = std::get_if<int>(&value)) return file.assign(key, SceneValue(*whole));
     file.assign(key, SceneValue(std::get<double>(value)));
-  } catch (const std::logic_error&) {  // read_scene() reports the fault of the key
+  } catch (const std::logic_error&) {  // read_scene() reports the error of the key
     file.set(key + "=" +
              std::visit(
                  []<class T>(const T& one) {

@@ -1,4 +1,4 @@
-// A scene for Python, and the results of verbs on it.
+// A scene for Python, and the results of studies of the scene.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -17,10 +17,10 @@
 
 namespace softland::python {
 
-/// A scene file and its prepared forms, which are kept until the scene changes.
+/// A scene file and its prepared forms, which are reused until the scene changes.
 struct PyScene {
   SceneFile file;
-  std::filesystem::path directory;                                ///< the directory that relative paths in it start from
+  std::filesystem::path directory;                                ///< folder to which relative paths in the scene refer
   std::shared_ptr<const PreparedScene> plain = {}, limited = {};  ///< prepare_and_choose() without and with default limits
 
   /// Returns the prepared scene; it is prepared at the first call.
@@ -31,7 +31,7 @@ struct PyScene {
   }
 };
 
-/// The result of a verb: its JSON and its files, each of which is made when it is requested.
+/// The result of a verb of verbs/study.h: its JSON and its files, each of which is made when it is requested.
 struct Outcome {
   std::string json;
   std::map<std::string, std::function<std::string()>> files = {};
@@ -41,7 +41,7 @@ struct Outcome {
 
 [[nodiscard]] Outcome python_outcome(const nlohmann::json& data, const std::vector<verbs::Outcome::File>& files);
 
-/// A simulated closing, with the scene and the motion that belong to it.
+/// A simulated closing, with its scene and its motion.
 struct PyClosing : verbs::Simulated {
   std::string command;
 };
@@ -62,7 +62,7 @@ struct PyWaveform {
 /// Returns the waveforms by drive of a Python dict of softland._softland.Waveform; they replace those of a scene.
 [[nodiscard]] DriveWaveforms waveforms_of(const pybind11::dict& given, InterruptibleRun& run);
 
-/// Returns the result of `work`. Messages about a request name options by their Python keywords.
+/// Returns the result of `work`. Messages about an invalid request name options by their Python keywords.
 template <class Work>
 auto in_keywords(const char* verb, Work&& work) {
   try {
@@ -77,7 +77,7 @@ auto in_keywords(const char* verb, Work&& work) {
 [[nodiscard]] Outcome study(PyScene& scene, const std::string& verb, const verbs::Arguments& arguments,
                             const pybind11::dict& waveforms, std::string command, const pybind11::object& on_progress);
 
-/// Returns the scene with other waveforms. Throws InvalidInput for an unknown drive, and for a waveform beyond the limits.
+/// Returns the scene with other waveforms. Throws InvalidInput for an unknown drive, and for a waveform beyond driver limits.
 [[nodiscard]] std::shared_ptr<const PreparedScene> driven_by(const std::shared_ptr<const PreparedScene>& prepared,
                                                              const DriveWaveforms& waveforms);
 

@@ -49,8 +49,7 @@ PlannedSearch planned_search(const Request& request, const SceneFile& file, Inte
   return search;
 }
 
-// Returns the search as one that is stored in a folder. Its start waveforms become part of its plan; a file must be able to hold
-// them.
+// Returns a search that is stored in a folder. Its start waveforms become part of its plan; a file must be able to hold them.
 StoredSearch kept_search(const Request& request, const PyScene& scene, std::optional<KnownSearch>& known, InterruptibleRun& run) {
   require(!request.objective && request.own_waveforms.empty(),
           "out: must not be given for a search with Python functions, which cannot be stored in a file");
@@ -69,8 +68,8 @@ StoredSearch kept_search(const Request& request, const PyScene& scene, std::opti
   return stored_search(asked, stores, known);
 }
 
-// Sets callbacks that report to Python, which may end the search. During the search they throw nothing, because the search would
-// treat that as an infeasible candidate; run.stop() ends it.
+// Sets callbacks that report to Python, which may end the search by run.stop(). Callbacks during the search throw nothing,
+// because the search would treat an exception as an infeasible candidate.
 void listen(PlannedSearch& search, const Request& request, InterruptibleRun& run, SearchSession* session = nullptr) {
   OptimizeOptions& options = search.options;
   options.on_preparation = [&run](std::string_view what, double part) {
@@ -123,7 +122,7 @@ auto searched(const Request& request, InterruptibleRun& run, Work&& work) {
   }
 }
 
-// Returns the result for an own waveform, which a file cannot hold: the keys of result.json that do not need the waveform.
+// Returns the result of a search for an own waveform, which no file can hold: the keys of result.json without the waveform.
 Outcome outcome_of_own(const OptimizeResult& found) {
   nlohmann::json parameters = nlohmann::json::object();
   for (const auto& [name, value] : found.parameters) parameters[name] = value;

@@ -43,7 +43,7 @@ Outcome study(PyScene& scene, const std::string& verb, const verbs::Arguments& a
   };
   InterruptibleRun run(on_progress);
   const std::map<std::string, DriveWaveforms> others = others_of(waveforms, run);
-  const SceneFile file = scene.file;  // another Python thread may change it meanwhile
+  const SceneFile file = scene.file;  // another Python thread may change the scene meanwhile
   std::shared_ptr<const PreparedScene> plain = scene.plain, limited = scene.limited;
   const auto outcome = in_keywords(verb.c_str(), [&] {
     return run([&](const Progress& progress) {

@@ -1,4 +1,4 @@
-// Tunings for Python: the shots of a session, and a simulated device that answers them.
+// Tunings of a waveform on a device for Python: the shots of a session, and a simulated device that answers shots.
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
@@ -75,7 +75,7 @@ std::unique_ptr<PracticeDevice> practice(const PyScene& scene, const verbs::Argu
   return run([&](const Progress&) { return std::make_unique<PracticeDevice>(file, options); });
 }
 
-// Returns the answer of a simulated device to a line, as `softland device` gives it.
+// Returns the answer of a simulated device to a line of input, as `softland device` gives it.
 std::string answered(const PracticeDevice& device, const std::string& line) {
   const CommandedShot shot = read_shot(read_line(line));
   const std::vector<Waveform> waveforms = shot.waveforms(device.nominal());
