@@ -1,4 +1,4 @@
-// Companions of a database: the files that SQLite keeps beside it while it is written, and the lock of a store.
+// Companions of a database: the files that SQLite has beside an open database, and the lock file of a store.
 #pragma once
 
 #include <array>

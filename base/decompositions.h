@@ -15,7 +15,7 @@ struct SymmetricEigen {
 
 /// Decomposes a symmetric matrix; only its lower triangle is read.
 [[nodiscard]] SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix);
-/// Decomposes a symmetric tridiagonal matrix: n entries on its diagonal and n - 1 beside it.
+/// Decomposes a symmetric tridiagonal matrix: n entries on its diagonal and n - 1 beside the diagonal.
 [[nodiscard]] SymmetricEigen tridiagonal_eigen(const Eigen::VectorXd& diagonal, const Eigen::VectorXd& beside);
 /// Returns the eigenvalues k of stiffness x = k mass x, in rising order; both matrices are symmetric, `mass` is positive
 /// definite.

@@ -71,7 +71,7 @@ class Workers {
         std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count) + 1);
   }
 
-  // Gives every worker a task that lasts until all workers have one: oneTBB must start each worker for that.
+  // Gives every worker a task that lasts until all workers have one: to give such a task, oneTBB must start the worker.
   void start(int count) {
     permit(count);
     {
@@ -84,7 +84,7 @@ class Workers {
   }
 
   void meet(int arriving) {
-    // A worker that is busy in another loop may not come in time; it has been started already.
+    // A worker that is busy in another loop may miss this time; its thread has been started already.
     constexpr std::chrono::seconds patience{1};
     std::unique_lock lock(meeting_);
     missing_ -= arriving;
@@ -102,7 +102,7 @@ class Workers {
   int missing_ = 0;
 };
 
-// Makes the writes of one thread visible to the next. oneTBB does so too, but the thread sanitizer cannot see that.
+// Makes the writes of one thread visible to the next. oneTBB does so too, but invisibly to the thread sanitizer.
 void hand_over() {
   static std::mutex mutex;
   const std::scoped_lock lock(mutex);

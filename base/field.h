@@ -43,7 +43,7 @@ struct Field {
   std::string_view fallback = {};    ///< value of an Owner{} as a scene writes it; empty where an absent field means "none"
   std::string_view instead_of = {};  ///< key of another field of the law that excludes this field
   std::string_view unless = {};      ///< key whose presence makes this field optional
-  std::string_view not_below = {};   ///< key of another field of the law whose value is the least allowed one
+  std::string_view not_below = {};   ///< key of another field of the law, whose value is the lower bound
   std::string_view such_as = {};     ///< example value for messages, where the usual example of the unit does not fit
   std::string_view beyond = {};      ///< advice for a value outside the range; the range then applies to scenes only
   std::string_view why_fixed = {};   ///< reason why process variation cannot vary this field; empty where it can

@@ -12,7 +12,7 @@ namespace softland {
 /// Bytes that are not UTF-8 become U+FFFD.
 [[nodiscard]] std::string printable(std::string_view text);
 
-/// Returns the same as printable() for text on one line: line feeds and tabs are escaped too.
+/// Returns printable(text) with line feeds and tabs escaped too, for text on one line.
 [[nodiscard]] std::string printable_line(std::string_view text);
 
 }  // namespace softland

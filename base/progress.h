@@ -1,4 +1,4 @@
-// Lets the caller of a long computation stop it and follow its progress.
+// Lets the caller of a long computation stop the computation and follow its progress.
 #pragma once
 
 #include <atomic>

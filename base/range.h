@@ -7,7 +7,7 @@
 
 namespace softland {
 
-/// An interval in SI units; an end that is open is not part of it.
+/// An interval in SI units; an open end is not part of the interval.
 struct Range {
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();

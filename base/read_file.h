@@ -10,8 +10,8 @@ namespace softland {
 /// The largest file that is read [byte]. Scenes, measured waveforms and results stay far below.
 inline constexpr std::size_t largest_file = std::size_t{64} << 20;
 
-/// Returns the content of a file. Throws InvalidInput with path and reason where it cannot be opened or read, is not a regular
-/// file (a folder, a device, a pipe, for which it does not wait), or is larger than `largest_file`.
+/// Returns the content of a file. Throws InvalidInput with path and reason where the file cannot be opened or read, is not a
+/// regular file (a folder, a device, or a pipe, without waiting for data), or is larger than `largest_file`.
 [[nodiscard]] std::string read_file(const std::filesystem::path& path);
 
 /// Returns the content as read_file() does, but does not mark the file as an input of this run: results may replace the file.

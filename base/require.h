@@ -9,8 +9,8 @@
 
 namespace softland {
 
-/// Thrown for input that breaks a stated rule. The message is complete: it names the value and the rule. The program turns this
-/// exception into exit status 2.
+/// Thrown for input that breaks a stated rule. The message is complete: the message names the value and the rule. The program
+/// turns this exception into exit status 2.
 class InvalidInput : public std::runtime_error {
  public:
   explicit InvalidInput(const std::string& message, std::source_location where = std::source_location::current())

@@ -21,7 +21,7 @@ void assign_where(const typename Lane::mask_type& condition, Lane& to, const Lan
 }
 
 /// Returns then() where the condition holds, else otherwise(). For one number only one of the two functions is called. For a
-/// lane both are called, so each must return a value, possibly NaN, also for numbers that do not need it.
+/// lane both are called, so each must return a value, possibly NaN, also for numbers that do not use the value.
 template <class Condition, class Then, class Otherwise>
 [[nodiscard, gnu::always_inline]] constexpr auto select(const Condition& condition, Then&& then, Otherwise&& otherwise) {
   if constexpr (std::same_as<Condition, bool>) {

@@ -15,7 +15,7 @@ namespace softland {
   return std::string(text.substr(0, longest)) + "…";
 }
 
-/// Returns the text, or '' when it is empty.
+/// Returns the text, or '' for an empty text.
 [[nodiscard]] inline std::string visible(const std::string& text) { return text.empty() ? "''" : text; }
 
 /// Returns `text` with every word of more than 1000 bytes cut short, so that a message stays readable.

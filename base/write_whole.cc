@@ -22,7 +22,7 @@
 namespace softland {
 namespace {
 
-/// Closes the descriptor and removes the file unless it was renamed in time.
+/// Closes the descriptor and removes the temporary file unless rename_to() succeeded.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::filesystem::path& beside) {

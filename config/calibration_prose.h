@@ -7,8 +7,8 @@
 
 namespace softland {
 
-/// Replaces the [calibration] of the scene. "none" removes the section, and an empty text keeps it. Throws InvalidRequest about
-/// the option `calibrate`.
+/// Replaces [calibration] of the scene. The words "none" remove the section, and empty words change nothing. Throws
+/// InvalidRequest about the option `calibrate`.
 void set_calibration(SceneFile& file, const std::string& words);
 
 }  // namespace softland

@@ -29,8 +29,8 @@ struct Condition {
   [[nodiscard]] bool holds(double value) const;
 };
 
-/// Reads a condition such as "t_p < 60 us", or one relative to the plain step such as "t_i < 3 step". Throws InvalidInput with
-/// the broken rule.
+/// Reads a condition such as "t_p < 60 us", or a condition relative to an actuation by a plain step, "t_i < 3 step". Throws
+/// InvalidInput with the broken rule.
 [[nodiscard]] Condition parse_condition(std::string_view text, std::span<const Figure> figures);
 
 /// Replaces a limit relative to an actuation by a plain step with an absolute limit; `of_step` is the figure of that actuation.

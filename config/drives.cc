@@ -67,7 +67,7 @@ struct References {
   double before = 0;                                          ///< value before t = 0 [V]
 };
 
-/// Returns a level in volts. A percentage refers to the base level or, for the piezo, to the hold voltage of the main electrode.
+/// Returns a level in volts. A percentage refers to the base level or, for the piezo, to the main electrode's hold voltage.
 double swing(const SectionReader& in, std::string_view key, const Quantity& given, const References& to, double base) {
   if (given.dimension != dimension::none || to.drive == dispersion_drive) return volts(given, to.pull_in);
   if (to.drive != piezo_drive) {
@@ -229,7 +229,7 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
   std::vector<Drive> drives;
   std::optional<double> main_hold;
   if (!main_electrode(device).empty()) main_hold = 0;
-  for (const std::string& drive : drive_names(device)) {  // the piezo comes last: it may refer to the main hold level
+  for (const std::string& drive : drive_names(device)) {  // the piezo is last: its levels may refer to the main electrode
     Drive& one = drives.emplace_back(Drive{.name = drive});
     const auto found = pull_in.find(one.name);
     const PullInVoltages known = found == pull_in.end() ? PullInVoltages{} : found->second;
@@ -294,7 +294,7 @@ std::vector<double> levels_held(const SceneFile::Impl& file, const Scene& scene,
   return levels;
 }
 
-/// Returns true if simulations begin with the switch closed; checks that all drives name the same state.
+/// Returns true if simulations begin with the switch closed; checks that all drives have equal before_state.
 bool begins_closed(const SceneFile::Impl& file, const Device& device) {
   std::string closed;  // key of a drive whose before_state is closed
   for (const std::string& drive : drive_names(device)) {
@@ -389,8 +389,8 @@ void check_drives(const SceneFile::Impl& file, Scene& scene) {
       if (waveform.keys_in_pull_in_units().empty()) scene.limits_in_pull_in.emplace_back(drive);
     }
   }
-  // The rules of waveform families do not depend on the pull-in voltage, so 1 V is used to check them. A hold level that is
-  // another for 0.5 V is a multiple of a pull-in voltage.
+  // The rules of waveform families do not depend on the pull-in voltage, so 1 V is used to check them. A hold level that
+  // differs for 1 V and 0.5 V is a multiple of a pull-in voltage.
   scene.standing = levels_held(file, scene, 1, &scene.file_notes);
   scene.begins_closed = begins_closed(file, device);
   if (scene.need_pull_in.empty()) return;

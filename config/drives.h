@@ -20,7 +20,7 @@ inline constexpr std::string_view file_key = "file";            ///< replaces th
 namespace file_keys {
 inline constexpr std::string_view column = "column", time_column = "time_column", interval = "interval", skip = "skip",
                                   unit = "unit", time_unit = "time_unit", decimal = "decimal", scale = "scale", shift = "shift";
-inline constexpr std::string_view uneven = "uneven";  ///< value of `interval`: times are taken as written
+inline constexpr std::string_view uneven = "uneven";  ///< value of `interval`: times of the file are used as written
 inline constexpr std::string_view first = "first";    ///< value of `shift`: the first row is at t = 0
 inline constexpr std::array all{column, time_column, interval, skip, unit, time_unit, decimal, scale, shift};
 }  // namespace file_keys
@@ -36,7 +36,7 @@ inline constexpr std::string_view steepest_rise = "driver";
 /// Returns the waveform with every level raised by `by` [V].
 [[nodiscard]] Waveform raised(Waveform waveform, double by);
 
-/// Returns the reason why the device has no drive of this name, with a hint; empty where it has one.
+/// Returns the reason why the device has no drive of this name, with a hint; empty where the drive exists.
 [[nodiscard]] std::string why_no_drive(const Device& device, const std::string& name);
 
 /// Throws InvalidInput for an electrode name that cannot name a drive.

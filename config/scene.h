@@ -29,8 +29,7 @@ namespace softland {
 /// The value of a key: a number in the key's SI unit, a flag, a whole number or a choice.
 using SceneValue = std::variant<double, bool, int, std::string>;
 
-/// The text of a scene with its source positions, and the changes made to it on the command line. It is a value: copies are
-/// independent.
+/// The text of a scene with its source positions, and the changes made to it on the command line. Copies are independent.
 class SceneFile {
  public:
   /// Throws InvalidInput (file, line, column, what) when the file cannot be read or is not TOML.
@@ -48,8 +47,8 @@ class SceneFile {
   /// std::logic_error for a key or an element that does not exist.
   void assign(const std::string& path, const Quantity& value, std::size_t element = 0);
   /// Adds a contact whose law is defined by a program: an OwnContact (model/contact/own.h). The scene must not have [contact];
-  /// read_scene() refuses both. Scenes made from this file have the contact as well, but text() and json() throw InvalidInput,
-  /// because a file cannot express the law.
+  /// read_scene() refuses a scene with both. Scenes made from this file have the contact as well, but text() and json() throw
+  /// InvalidInput, because a file cannot express the law.
   void add_contact(const Contact& contact);
   /// Removes a section or a key, if it exists.
   void erase(const std::string& path);
@@ -73,8 +72,8 @@ class SceneFile {
   /// Returns the keys that the scene contains in a section, in order.
   [[nodiscard]] std::vector<std::string> keys(const std::string& section) const;
   [[nodiscard]] const std::string& name() const;
-  /// Throws InvalidInput about a key such as "structure.length", with file and line (or option), key, value and rule. The message
-  /// is about the section if the scene does not contain the key.
+  /// Throws InvalidInput about a key such as "structure.length", with file and line (or option), key, value and rule. The
+  /// message is about the section if the scene does not contain the key.
   [[noreturn]] void refuse(const std::string& path, std::string_view rule) const;
 
   struct Impl;
@@ -203,7 +202,7 @@ struct Scene {
   std::string title;
   Device device;
   SimulateOptions simulate;
-  /// True for modes = "auto": `device` has the default number of modes until the number is chosen (studies/closing/auto_modes.h).
+  /// True for modes = "auto": `device` has the default number of modes until studies/closing/auto_modes.h chooses it.
   bool auto_modes = false;
   MetricsOptions metrics;
   DeviceSpread spread;

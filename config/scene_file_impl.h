@@ -34,7 +34,7 @@ inline constexpr std::size_t deepest_path = 16;
 [[nodiscard]] bool is_bare_key(std::string_view key);
 /// Returns a basic TOML string with its quotes.
 [[nodiscard]] std::string toml_string(std::string_view text);
-/// Reads the text as TOML; `name` stands for it in messages. Throws InvalidInput.
+/// Reads the text as TOML; `name` stands for the text in messages. Throws InvalidInput.
 [[nodiscard]] toml::table parse_toml(std::string_view text, const std::string& name);
 /// Returns a value as TOML on one line.
 [[nodiscard]] std::string inline_text(const toml::node& node);
@@ -97,8 +97,8 @@ struct SceneFile::Impl {
   /// Returns true if this file has the section as [section.NAME].
   [[nodiscard]] bool is_named(const internal::Section& section) const;
 
-  /// Sets the value at a path, with `place` as its origin, and creates missing sections. If a quantity can be given by one of two
-  /// keys, the other key is removed. Throws InvalidInput if a section cannot be created.
+  /// Sets the value at a path, with `place` as its origin, and creates missing sections. If a quantity can be given by one of
+  /// two keys, the other key is removed. Throws InvalidInput if a section cannot be created.
   void insert(const std::vector<std::string>& path, const toml::node& value, const Origin& place);
   /// Removes the origins of the keys at and below `path`.
   void forget(std::string_view path);

@@ -25,7 +25,7 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
     if (text[i] == '\\' && quote == '"') {
       ++i;
     } else if (is_multiline && text.substr(i).starts_with(triple)) {
-      const auto rest = text.find_first_not_of(quote, i);  // up to two quotes may stand before the closing three
+      const auto rest = text.find_first_not_of(quote, i);  // a string may end with two quotes before the closing three
       return rest == std::string_view::npos ? text.size() : rest;
     } else if (!is_multiline && (text[i] == quote || text[i] == '\n')) {
       return i + 1;
@@ -262,7 +262,7 @@ std::vector<std::string> split_path(std::string_view given) {
     const toml::table parsed = parse_toml(std::string(path) + " = 0", "");
     for (const toml::table* table = &parsed; table != nullptr;) {
       if (table->size() != 1) throw InvalidInput(rule);
-      const auto first = table->begin();  // keeps the iterator, which owns the key that it points to
+      const auto first = table->begin();  // the iterator must live: it owns the key to which it points
       parts.emplace_back(first->first.str());
       table = first->second.as_table();
     }

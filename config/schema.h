@@ -58,13 +58,13 @@ struct Key {
   bool required = false;
   std::vector<std::string_view> only_for = {};  ///< values of Section::selector for which this key exists; empty: all
   std::vector<std::string_view> instead_of =
-      {};                           ///< keys that may be given instead of this one; one of them suffices if this one is required
-  std::string_view about = {};      ///< description, one line
-  std::string_view beyond = {};     ///< advice for a user who needs a value outside the range
-  std::string_view why_fixed = {};  ///< reason why [spread] cannot vary this key; empty if [spread] can
-  std::string_view if_list = {};    ///< quantity: advice for a user who gives a list
-  std::string_view like = {};       ///< an example value as text; empty: see example_of()
-  std::string_view unless = {};     ///< if this other key is given, the key is not required
+      {};                              ///< keys that may replace this key; one of them suffices if this key is required
+  std::string_view about = {};         ///< description, one line
+  std::string_view beyond = {};        ///< advice for a user who needs a value outside the range
+  std::string_view why_fixed = {};     ///< reason why [spread] cannot vary this key; empty if [spread] can
+  std::string_view if_list = {};       ///< quantity: advice for a user who gives a list
+  std::string_view like = {};          ///< an example value as text; empty: see example_of()
+  std::string_view unless = {};        ///< if this other key is given, the key is not required
   const Section* (*part)() = nullptr;  ///< table, tables: the keys of one table
   Bound bound = {};
 
@@ -97,7 +97,7 @@ struct Section {
   std::string_view name;         ///< name of the section; empty for the keys above the first section
   std::string_view entry = {};   ///< NAME of the [section.NAME] to which these keys apply; empty: every other NAME
   bool is_named = false;         ///< true for [name.NAME], any number of them
-  bool may_be_named = false;     ///< true for [name], or [name.NAME] of several
+  bool may_be_named = false;     ///< true for [name], or several [name.NAME]
   std::string_view beside = {};  ///< key in [name] beside the sections [name.NAME]; separate code reads this key
   bool required = false;
   bool always_in_force = false;    ///< true if the defaults apply even without the section

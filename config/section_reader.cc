@@ -452,7 +452,7 @@ std::string SectionReader::written_length(const Structure& structure) const {
 }
 
 void SectionReader::require_on_beam(std::string_view key, const Structure& beam) const {
-  constexpr double rounding = 1e-12;  // rounding of a table in other units
+  constexpr double rounding = 1e-12;  // relative rounding of positions that were converted from other units
   const double length = beam.length;
   const std::vector<Quantity>& places = quantities(key);
   for (std::size_t k = 0; k + 1 < places.size(); k += 2) {

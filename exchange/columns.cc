@@ -116,7 +116,7 @@ std::optional<std::size_t> RecordingMaker::time_place() const {
   return rises ? std::optional<std::size_t>(0) : std::nullopt;
 }
 
-// Returns true if a column is a second column of times. Its times must equal those of the first, unless a key selects one.
+// Returns true if a column is a second column of times. The times of both must be equal, unless a key selects a column.
 bool RecordingMaker::is_second_time(std::size_t k, std::size_t time) const {
   const bool is_said = !keys_.time_column.empty() || keys_.time_column_number > 0;
   if (is_said || !block_.has_headings || block_.names[time].empty() || block_.names[k] != block_.names[time]) return false;

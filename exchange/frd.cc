@@ -1,7 +1,7 @@
 // Reads results of CalculiX (.frd): modes of *FREQUENCY, which CalculiX normalises to a modal mass of 1 in its units.
 //
-// Numbers stand in fixed columns, without blanks between them. A record " -1" holds the number of a node in 10 columns (5 in the
-// short format), then numbers of 12 columns. Source: CalculiX GraphiX user manual, "Result Format", sections "Nodal Point
+// Numbers stand in fixed columns, without blanks between them. A record " -1" holds the number of a node in 10 columns (5 in
+// the short format), then numbers of 12 columns. Source: CalculiX GraphiX user manual, "Result Format", sections "Nodal Point
 // Coordinate Block" and "Nodal Results Block".
 #include <fmt/format.h>
 
@@ -73,7 +73,7 @@ class FrdReader {
       fail(fmt::format("{} is \"{}\"; it must be a whole number", what, printable_line(shortened(text, 20))));
     return value;
   }
-  // Returns the width of the number of a node. The format at the end of the first line of a block gives it.
+  // Returns the width of the number of a node. The format at the end of the first line of a block gives the width.
   [[nodiscard]] std::size_t node_width(std::string_view format) const {
     if (format == "1") return 10;
     if (format == "0") return 5;

@@ -1,5 +1,5 @@
-// Writes files for arbitrary waveform generators: samples at a constant rate, each held until the next. recording.h reads the
-// same files.
+// Writes files for arbitrary waveform generators: samples at a constant rate, each held until the next. recording.h reads
+// these files.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +27,7 @@ struct GeneratorFormat {
 };
 [[nodiscard]] std::span<const GeneratorFormat> generator_formats();
 
-/// Returns the content of the file. If there are too few samples for the instrument, the last one is repeated. Throws
+/// Returns the content of the file. If there are too few samples for the instrument, the last sample is repeated. Throws
 /// InvalidInput for no samples, for too many, or for a marker that the format cannot hold.
 [[nodiscard]] std::string generator_file(const GeneratorFormat& format, GeneratorSamples samples);
 

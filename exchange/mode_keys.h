@@ -19,7 +19,7 @@ struct ModeKeys {
   std::optional<double> clamp = {};      ///< position of the clamp on the axis of the file, if there is no node at the clamp [m]
   std::vector<double> frequencies = {};  ///< frequencies of the modes of a file that does not hold them [Hz]
 
-  // These members make the names of keys in messages, such as "structure.mass" or "--mass".
+  // The following members form the names of keys in messages, such as "structure.mass" or "--mass".
   std::string prefix = {};    ///< "structure.", "--"
   char word_separator = '_';  ///< separator of the words of a name: '_' or '-'
   /// Returns the name of a key for a message.

@@ -47,8 +47,8 @@ struct ModeTable {
   std::vector<std::string> notes = {};  ///< assumptions about facts that the file does not contain
 };
 
-/// Reads a file. Throws InvalidInput with file, line and rule for an unreadable file, for one without modes (a static result, a
-/// pressure), and for an ambiguous one, with the key that decides.
+/// Reads a file. Throws InvalidInput with file, line and rule for an unreadable file, for a file without modes (a static
+/// result, a pressure), and for an ambiguous file, with the key that decides.
 [[nodiscard]] ModeTable read_mode_table(const std::string& file, const ModeKeys& keys);
 /// Reads the content of a file; `file` names it in messages.
 [[nodiscard]] ModeTable parse_mode_table(std::string_view content, const std::string& file, const ModeKeys& keys);

@@ -23,7 +23,7 @@ namespace softland::internal {
 [[nodiscard]] bool is_vcd(std::string_view text);
 [[nodiscard]] Recording read_vcd(std::string_view text, const std::string& file, const ReadKeys& keys);
 
-/// Returns true if a file begins like one of the Universal File Format.
+/// Returns true if a file begins like a file of the Universal File Format.
 [[nodiscard]] bool is_uff(std::string_view content);
 [[nodiscard]] Recording read_uff(std::string_view content, const std::string& file, const ReadKeys& keys);
 

@@ -69,11 +69,11 @@ struct Recording {
 };
 
 /// Returns the channel that the keys name, else the only channel, else the channel called `usual`. Throws InvalidInput with the
-/// names of the channels if there is none of these.
+/// names of the channels if no such channel exists.
 [[nodiscard]] const Channel& channel_of(const Recording& recording, const ReadKeys& keys, const std::string& usual);
 
-/// Reads a file. Throws InvalidInput with file, line, column and rule for an unreadable file, for one that is not a record over
-/// time (a spectrum, logic states, a mesh), and for an ambiguous one.
+/// Reads a file. Throws InvalidInput with file, line, column and rule for an unreadable file, for a file without a record over
+/// time (a spectrum, logic states, a mesh), and for an ambiguous file.
 [[nodiscard]] Recording read_recording(const std::string& file, const ReadKeys& keys = {});
 /// Reads the content of a file; `file` names it in messages.
 [[nodiscard]] Recording parse_recording(std::string_view content, const std::string& file, const ReadKeys& keys = {});

@@ -99,7 +99,7 @@ void RowTimer::take_unit() {
   }
 }
 
-// Refuses more samples than the file states; `last` is the number of samples, or the number of the last one.
+// Refuses more samples than the file states; `last` is the number of samples, or the number of the last sample.
 void RowTimer::require_count(double last) const {
   if (is_decided()) return;
   for (const TimeClaim& claim : preamble_.claims) {
@@ -126,7 +126,7 @@ void RowTimer::find_intervals() {
   }
 }
 
-// Requires all stated intervals to be equal, unless the times show which one is right.
+// Requires all stated intervals to be equal, unless the times show which interval is right.
 void RowTimer::require_same_intervals() {
   if (intervals_.empty()) return;
   const Interval& first = intervals_.front();
@@ -176,7 +176,7 @@ void RowTimer::set_even(double first_sample) {
   require_same_intervals();
   if (!made_.interval) return;
   if (!is_decided()) require_same_starts();
-  // The start follows from the first of these that the file states: a time, the number of a sample, the middle of the record.
+  // The file gives the start by a time, else by the number of a sample, else by the middle of the record.
   double start = 0;
   for (const Of of : {Of::start, Of::trigger_sample, Of::centre}) {
     if (const TimeClaim* const claim = preamble_.first(of)) {

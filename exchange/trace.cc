@@ -49,7 +49,7 @@ std::vector<double> even(double first, double interval, std::size_t count) {
   return times;
 }
 
-/// Returns the largest deviation of times from even ones with the same first time [s].
+/// Returns the largest deviation of times from evenly spaced times with the same first time [s].
 double deviation(const std::vector<double>& times, double interval) {
   double most = 0;
   for (std::size_t i = 0; i < times.size(); ++i)
@@ -130,7 +130,7 @@ std::vector<double> resolved_times(const Recording& recording, const ReadKeys& k
                       "interval = \"{}\" uses that interval, interval = \"uneven\" the times",
                       recording.file, seconds(*recording.interval), seconds(off), seconds(*recording.interval)));
     }
-    constexpr double exact = 1e-3;  // times closer to even ones than this share of the interval are used as written
+    constexpr double exact = 1e-3;  // share of the interval; times that deviate less from even spacing are used as written
     if (axis.repeated == 0 && !axis.back && off <= exact * *recording.interval) return recording.times;
     told += fmt::format("; times are rounded to {}: replaced by even times from the first one with the interval of the file",
                         seconds(recording.last_digit));

@@ -10,7 +10,7 @@ namespace softland {
 
 struct Trace {
   std::vector<double> times;   ///< times [s], not decreasing; two rows of the same time are a jump
-  std::vector<double> values;  ///< values [V], or in another unit if `keys.unit` is not one of voltage
+  std::vector<double> values;  ///< values [V], or in the unit `keys.unit` if that is no unit of voltage
   std::string told;            ///< one line for the user: which channel and times are used, and what was left out
 };
 

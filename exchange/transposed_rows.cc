@@ -12,7 +12,7 @@
 namespace softland::internal {
 namespace {
 
-/// Lines that are channels written as rows of numbers, and the lines above them.
+/// Lines of numbers that are one channel each, and the lines above the channels.
 struct LyingRows {
   std::vector<Line> above, places;
   std::vector<CellList> rows;
@@ -58,7 +58,7 @@ LyingRows rows_in(const std::vector<Line>& all) {
   return found;
 }
 
-// Returns true if the rows are channels. Rows without names must be long, without names of columns above them.
+// Returns true if each row is a channel. Rows without names must be long, and not have names of columns above.
 bool are_channels(const LyingRows& found) {
   constexpr std::size_t fewest_named = 3, fewest_unnamed = 16;
   if (found.rows.size() < 2) return false;

@@ -1,7 +1,7 @@
-// Reads modes in the Universal File Format: data sets 55 (motion of nodes) with 15 or 2411 (positions of nodes) and 164 (units).
+// Reads modes in the Universal File Format: data sets 55 (motion of nodes), 15 or 2411 (positions of nodes) and 164 (units).
 //
-// Fields of numbers have 13 or more columns, without blanks between them; their signs separate them. Source: Structural Dynamics
-// Research Corporation, Universal File Datasets 15, 55, 164, 2411.
+// Fields of numbers have 13 or more columns, without blanks between them; their signs separate them. Source: Structural
+// Dynamics Research Corporation, Universal File Datasets 15, 55, 164, 2411.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -65,8 +65,8 @@ class Uff55Reader {
     if (!lines_.next() || is_mark()) fail(fmt::format("the data set ends before {}", what));
   }
 
-  // Returns the numbers of a line. They may follow each other without a blank: a sign begins a new number unless it belongs to an
-  // exponent. Exponents may be written with D.
+  // Returns the numbers of a line. Numbers may follow each other without a blank: a sign begins a new number unless it belongs
+  // to an exponent. Exponents may be written with D.
   std::vector<double> numbers() const {
     std::vector<double> all;
     std::string text(lines_.line());

@@ -278,8 +278,8 @@ class DirkStepper final : public SundialsStepper {
            ok(ARKStepWFtolerances(memory_, &SundialsStepper::error_weights), "ARKStepWFtolerances") &&
            ok(ARKStepSetLinearSolver(memory_, solver_.get(), matrix_.get()), "ARKStepSetLinearSolver") &&
            ok(ARKStepSetJacFn(memory_, &SundialsStepper::jacobian), "ARKStepSetJacFn") &&
-           // The library remembers how fast its iterations converge for as long as it keeps a factorisation. After one lucky
-           // iteration it would accept the next iterations too early, with errors of stages of a thousand times the tolerance.
+           // SUNDIALS remembers the convergence rate of its iterations until the next factorisation. After one lucky iteration
+           // SUNDIALS would accept the next iterations too early, with errors of stages of a thousand times the tolerance.
            ok(ARKStepSetDeltaGammaMax(memory_, smallest_change_of_step), "ARKStepSetDeltaGammaMax") &&
            ok(ARKStepSetJacEvalFrequency(memory_, steps_of_a_jacobian), "ARKStepSetJacEvalFrequency") &&
            ok(ARKStepSetPredictorMethod(memory_, predictor_), "ARKStepSetPredictorMethod") &&

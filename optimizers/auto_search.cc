@@ -150,7 +150,7 @@ void search(EvaluationRecord& record, const std::array<const Method*, searches_a
                            ? std::clamp(record.remaining() / epochs_with_gradient, shortest_epoch, longest_epoch)
                            : longest_epoch;
 
-  // The user chose the starts: search their neighbourhood before the box, which would lead away from them.
+  // The user chose the starts: search near the starts before the whole box, which would lead away from the starts.
   if (!record.starts().empty()) {
     const long budget = std::min(record.remaining(), longest_epoch);
     std::vector<Point> starts = promising_points(record.known(), explored);

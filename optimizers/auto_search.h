@@ -3,8 +3,8 @@
 // It is made for landscapes with narrow curved valleys, some of them dead ends, with kinks, small jumps and noise, 4 to 7
 // variables, and a budget of 500 to 2500 evaluations. Each epoch has four steps:
 // 1. Points spread over the box are evaluated.
-// 2. Local searches start from the best evaluated points that are apart from each other and from the points of earlier searches.
-//    The best point starts cma-es, which follows curved valleys and crosses kinks and small jumps. The second best point starts
+// 2. Local searches start from the best evaluated points that are apart from each other and from points of earlier searches. The
+//    best point starts cma-es, which follows curved valleys and crosses kinks and small jumps. The second best point starts
 //    bobyqa, whose quadratic model is the fastest if the objective is smooth.
 // 3. The better half of the searches continues, until one search is left.
 // 4. A local search with small steps improves the best point. If it converges, the next epoch begins with the remaining budget.
@@ -18,7 +18,7 @@ namespace softland::internal {
 
 /// Runs until the record accepts no more evaluations (EvaluationRecord::over), or until an epoch makes no new evaluation.
 void search_auto(EvaluationRecord& record);
-/// Searches with a method with a gradient, which ends at the first kink: cma-es makes the first round of every search;
+/// Searches with a gradient method, which alone would end at the first kink: cma-es makes the first round of every search;
 /// `finisher` continues from the best points found, and then searches near the best one.
 void search_and_finish(EvaluationRecord& record, const Method& finisher);
 

@@ -1,4 +1,4 @@
-// Interface to the libraries of optimizers: one run of one method from one start, whose objective is a BudgetedObjective.
+// Interface to the libraries of optimizers: one run of one method from one start. The objective is a BudgetedObjective.
 #pragma once
 
 #include <cstdint>

@@ -61,7 +61,7 @@ struct Child {
 };
 
 // The points are mean + sigma axes diag(lengths) z, with z from the standard normal distribution. The covariance without sigma
-// is axes diag(lengths)^2 axes^T; its lower triangle is kept.
+// is axes diag(lengths)^2 axes^T; only its lower triangle is stored.
 class Distribution {
  public:
   Distribution(const Strategy& strategy, VectorXd mean, double sigma)

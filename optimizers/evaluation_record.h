@@ -125,8 +125,8 @@ class EvaluationRecord {
   [[nodiscard]] bool smooth() const { return options_.smooth; }
   [[nodiscard]] std::uint64_t seed() const { return options_.seed; }
   [[nodiscard]] const std::vector<Point>& starts() const { return starts_; }
-  /// Runs the tasks. When their budgets exceed the remaining one, the last tasks are shortened first. Returns the number of new
-  /// evaluations.
+  /// Runs the tasks. When their budgets exceed the remaining budget, the last tasks are shortened first. Returns the number of
+  /// new evaluations.
   long run(const std::vector<Task>& tasks);
   [[nodiscard]] long remaining() const {
     return options_.max_evaluations - evaluations_ - evaluations_of_gradient * static_cast<long>(gradients_.size());

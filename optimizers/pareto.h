@@ -18,7 +18,7 @@ using Objectives = std::vector<double>;
 /// Returns true when `a` dominates `b`. Throws InvalidInput for points of different lengths.
 [[nodiscard]] bool dominates(std::span<const double> a, std::span<const double> b);
 
-/// Returns the numbers of the points that no other point dominates, ascending; of equal points only the first. Throws
+/// Returns the numbers of the points that no other point dominates, ascending; of several equal points only the first. Throws
 /// InvalidInput when points have different numbers of objectives.
 [[nodiscard]] std::vector<std::size_t> pareto_front(std::span<const Objectives> points);
 

@@ -70,7 +70,7 @@ struct OptimizerOptions {
   bool goes_on = false;
   /// True when the objective is smooth around the starts: `auto` then begins with a gradient method from the starts.
   bool smooth = false;
-  double target = -std::numeric_limits<double>::infinity();  ///< the search stops once a value is at or below it
+  double target = -std::numeric_limits<double>::infinity();  ///< the search stops once a value is at or below the target
   const std::atomic<bool>* stop = nullptr;  ///< set by another thread (Ctrl-C); ends the search with its result so far
   /// Called under a lock after every evaluation, in the order in which evaluations end. With jobs > 1 this order may vary
   /// between runs, and the calls may include evaluations that the result leaves out (beyond the target in the job-independent

@@ -1,4 +1,4 @@
-// Points spread evenly over a box, each of them computed without the points before it.
+// Points spread evenly over a box, each computed without the points before.
 #pragma once
 
 #include <cstddef>

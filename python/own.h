@@ -28,7 +28,7 @@ class FirstError {
     const std::scoped_lock lock(lock_);
     return first_ != nullptr;
   }
-  /// Throws the kept exception, if any, and clears it.
+  /// Throws the stored exception, if any, and removes it from this object.
   void rethrow() {
     std::unique_lock lock(lock_);
     const std::exception_ptr first = std::exchange(first_, nullptr);

@@ -23,7 +23,7 @@ struct PyScene {
   std::filesystem::path directory;                                ///< folder to which relative paths in the scene refer
   std::shared_ptr<const PreparedScene> plain = {}, limited = {};  ///< prepare_and_choose() without and with default limits
 
-  /// Returns the prepared scene; it is prepared at the first call.
+  /// Returns the prepared scene; the first call prepares the scene.
   [[nodiscard]] std::shared_ptr<const PreparedScene> ready(bool default_limits, InterruptibleRun& run);
   [[nodiscard]] std::shared_ptr<const PreparedScene> ready(bool default_limits = false) {
     InterruptibleRun run;
@@ -59,7 +59,7 @@ struct PyWaveform {
   Waveform value;
 };
 
-/// Returns the waveforms by drive of a Python dict of softland._softland.Waveform; they replace those of a scene.
+/// Returns the waveforms by drive of a Python dict of softland._softland.Waveform; these waveforms replace those of a scene.
 [[nodiscard]] DriveWaveforms waveforms_of(const pybind11::dict& given, InterruptibleRun& run);
 
 /// Returns the result of `work`. Messages about an invalid request name options by their Python keywords.

@@ -102,7 +102,7 @@ void listen(PlannedSearch& search, const Request& request, InterruptibleRun& run
   };
 }
 
-// Runs `work`; an error of a Python function takes precedence over the error that the library reports for it.
+// Runs `work`; an error of a Python function takes precedence over the error that the library reports as a consequence.
 template <class Work>
 auto searched(const Request& request, InterruptibleRun& run, Work&& work) {
   const auto raise = [&] {
@@ -144,7 +144,7 @@ bool is_own(const OptimizeResult& found) {
          });
 }
 
-// Runs a search; a session, if any, stores it in a folder.
+// Runs a search; a session, if any, stores the search in a folder.
 Outcome run_search(PlannedSearch& search, const Request& request, InterruptibleRun& running, SearchSession* session = nullptr) {
   listen(search, request, running, session);
   return searched(request, running, [&](const Progress& progress) {

@@ -24,7 +24,7 @@ DriveWaveforms waveforms_of(const py::dict& given, InterruptibleRun&) {
 
 namespace {
 
-// Returns a waveform of a family with the given parameters in SI units; the others have the defaults of the family.
+// Returns a waveform of a family with the given parameters in SI units; other parameters have the defaults of the family.
 PyWaveform made(const std::string& name, const py::dict& parameters) {
   std::optional<Waveform> found;
   std::vector<std::string_view> families;

@@ -26,7 +26,7 @@ std::vector<std::uint32_t> direction_numbers(std::size_t dimensions) {
   return directions;
 }
 
-// Returns 64 bits of which the highest 32 are those of `digits`, scrambled.
+// Returns 64 bits: the highest 32 are the scrambled bits of `digits`, the lowest are random.
 std::uint64_t scrambled(std::uint64_t key, std::uint32_t digits) {
   // Node 2^j + (the first j bits) of the binary tree decides on bit j, counted from 0 at the highest bit.
   std::uint32_t flips = 0;
@@ -40,7 +40,7 @@ std::uint64_t scrambled(std::uint64_t key, std::uint32_t digits) {
 
 // Returns the image of k under a random permutation of 0, ..., size - 1.
 std::uint64_t permuted(std::uint64_t key, std::uint64_t k, std::uint64_t size) {
-  constexpr std::uint64_t rounds = 8;  // four suffice for large halves; a half may be one bit
+  constexpr std::uint64_t rounds = 8;  // rounds of the Feistel network; four suffice for large halves, but a half may be one bit
   const int width = static_cast<int>(std::bit_width(size - 1)), right_width = (width + 1) / 2;
   const std::uint64_t right_mask = (std::uint64_t{1} << right_width) - 1,
                       left_mask = (std::uint64_t{1} << (width - right_width)) - 1;

@@ -19,8 +19,8 @@
 // long as there are at most ten times as many terms as figures. The sum converges slowly, and q2 is low, for a figure that
 // jumps or whose slope jumps.
 //
-// Sources: N. Agarwal & N. R. Aluru, Journal of Microelectromechanical Systems 18 (2009) 1454 (electrostatic MEMS); G. Blatman &
-// B. Sudret, Journal of Computational Physics 230 (2011) 2345 (sparse terms); Y. C. Pati, R. Rezaiifar & P. S. Krishnaprasad,
+// Sources: N. Agarwal & N. R. Aluru, Journal of Microelectromechanical Systems 18 (2009) 1454 (electrostatic MEMS); G. Blatman
+// & B. Sudret, Journal of Computational Physics 230 (2011) 2345 (sparse terms); Y. C. Pati, R. Rezaiifar & P. S. Krishnaprasad,
 // 27th Asilomar Conference, 1993, 40 (matching pursuit); M. Stone, J. R. Stat. Soc. B 36 (1974) 111 (cross-validation).
 #pragma once
 
@@ -44,8 +44,8 @@ static_assert(is_complete<germs>());
 class PolynomialChaos {
  public:
   /// Row j of `points`, in the open unit cube, is the point of figure j; the germ of a variable is 2 u - 1, or Phi^-1(u).
-  /// Throws InvalidParameter: `points` unless they are inside the cube, with a column for each germ; `figures` unless they are
-  /// finite, at least four, and as many as points; `most_degree` unless it is between 1 and 50.
+  /// Throws InvalidParameter: `points` unless the points are inside the cube, with a column for each germ; `figures` unless
+  /// they are finite, at least four, and as many as points; `most_degree` unless it is between 1 and 50.
   PolynomialChaos(const std::vector<Germ>& germs_of_variables, const Eigen::MatrixXd& points, std::span<const double> figures,
                   int most_degree = 10);
 

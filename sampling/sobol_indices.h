@@ -17,8 +17,8 @@
 // whole, so that the indices are those of the switches that do not fail. There are no indices when more than `most_failed` of
 // the rows are left out.
 //
-// Sources: A. Saltelli, P. Annoni, I. Azzini, F. Campolongo, M. Ratto & S. Tarantola, Computer Physics Communications 181 (2010)
-// 259, table 2 (b); M. J. W. Jansen, Computer Physics Communications 117 (1999) 35 (total).
+// Sources: A. Saltelli, P. Annoni, I. Azzini, F. Campolongo, M. Ratto & S. Tarantola, Computer Physics Communications 181
+// (2010) 259, table 2 (b); M. J. W. Jansen, Computer Physics Communications 117 (1999) 35 (total).
 #pragma once
 
 #include <cstddef>
@@ -33,9 +33,9 @@
 
 namespace softland {
 
-/// The points at which the figure is needed, each computed by its number. Evaluation m belongs to row m / (d + 2), and within
-/// this row to A (0), B (1) or A_B^i (2 + i). So the evaluations of a row are consecutive, and with Sobol' or Monte Carlo
-/// points a design of fewer rows is the beginning of a larger one.
+/// The points at which the figure must be evaluated, each computed from its number. Evaluation m belongs to row m / (d + 2),
+/// and within this row to A (0), B (1) or A_B^i (2 + i). So the evaluations of a row are consecutive, and with Sobol' or Monte
+/// Carlo points a design of fewer rows is the beginning of a larger one.
 class SobolDesign {
  public:
   /// Takes points of 2 d dimensions, stream `indices`. Throws what SamplePoints throws.

@@ -69,8 +69,8 @@ class Statement;
 
 class Database {
  public:
-  /// Opens the database; `shown` names it in messages. All functions of the class throw OutputLost if data cannot be written to
-  /// the disk, DamagedStore, Interrupted, or InvalidInput.
+  /// Opens the database; `shown` names the database in messages. All functions of the class throw OutputLost if data cannot be
+  /// written to the disk, DamagedStore, Interrupted, or InvalidInput.
   Database(const std::filesystem::path& file, Access access, std::string shown);
 
   /// Runs SQL statements and ignores their results.
@@ -102,7 +102,7 @@ class Database {
   std::unique_ptr<sqlite3, Close> handle_;
 };
 
-/// A prepared statement. Parameters are numbered from 1, columns from 0, as SQLite does. The database must outlive it.
+/// A prepared statement of a database that must outlive the statement. SQLite numbers parameters from 1, columns from 0.
 class Statement {
  public:
   Statement(const Database& database, const std::string& sql);
@@ -114,7 +114,7 @@ class Statement {
   /// Binds a text without a copy; the text must live until the statement has been run.
   Statement& lend(int parameter, std::string_view value);
   Statement& lend(int parameter, std::span<const unsigned char> value);
-  /// Goes to the next row; returns false if there is none, after which the statement can be bound and run again.
+  /// Goes to the next row; returns false after the last row. The statement can then be bound and run again.
   bool step();
   void reset();
 

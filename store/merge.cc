@@ -46,7 +46,7 @@ class StorePart {
 
 using Parts = std::vector<std::unique_ptr<StorePart>>;
 
-// Raises the limit of open files. Every part needs one file, or three if its writer was killed.
+// Raises the limit of open files. Every part needs one file, or three if the process that wrote the part was killed.
 void allow_files(std::size_t parts) {
   rlimit limit{};
   const rlim_t needed = 4 * parts + 64;

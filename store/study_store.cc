@@ -353,7 +353,7 @@ void StudyStore::Implementation::end_log() {
   if (!was_told && !rescued_.empty()) throw OutputLost(rescued_);
 }
 
-// Runs the writing thread. After a failure it waits for the next call of the caller, which reports the failure.
+// Runs the writing thread. After a failure the thread waits for the next call of the caller, which reports the failure.
 void StudyStore::Implementation::work() {
   std::unique_lock lock(mutex_);
   for (;;) {

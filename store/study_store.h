@@ -6,8 +6,8 @@
 // whichever comes first. If the process or the machine fails, at most the rows of the last second are lost.
 //
 // A row has the number of its point in the plan, and a content key, which identifies the resolved scene that was computed. A
-// study may continue with another plan of the same columns, a finer grid or a larger sample. find() then gives the rows that the
-// earlier plans hold for equal content, so that no point is computed twice.
+// study may continue with another plan of the same columns, a finer grid or a larger sample. find() then gives the rows that
+// the earlier plans hold for equal content, so that no point is computed twice.
 //
 //   StudyStore store("map.sqlite", plan, origin, StudyStore::Opening::resume);
 //   const std::vector<bool> done = store.done();
@@ -118,7 +118,7 @@ class StudyStore {
   /// not a store, has a later schema or other columns, or is not writable, and if another process writes to the store. Throws
   /// OutputLost if the disk is full. A damaged store is not changed; it is copied to FILE.damaged.
   StudyStore(const std::filesystem::path& path, const StoredPlan& plan, const StoredOrigin& origin, Opening opening);
-  /// Commits waiting rows without reporting errors; close() reports them.
+  /// Commits waiting rows without reporting errors; close() reports errors.
   ~StudyStore();
   StudyStore(const StudyStore&) = delete;
   StudyStore& operator=(const StudyStore&) = delete;
@@ -152,7 +152,7 @@ struct StudyQuery {
   std::string where = {};
 };
 
-/// Reads a store, even while another process writes to it. It never changes the content.
+/// Reads a store, even while another process writes to the store, without changing its content.
 class StudyReader {
  public:
   /// Opens the store. Throws InvalidInput with path and reason if the file is not a store, is a store of a later schema, is

@@ -55,9 +55,9 @@ double kept(double value) { return value + 0.0; }
 
 bool has_checksums(const Database& database) { return database.number_of("PRAGMA user_version") >= first_with_checksums; }
 
-// A checksum of 32 bits of numbers and texts, equal on all machines. A change of one word always changes the sum before it is cut
-// to 32 bits, and the boundary between two texts counts. It is faster than a hash of the text of a row: 300 000 rows are written
-// per second.
+// A checksum of 32 bits of numbers and texts, equal on all machines. A change of one word always changes the sum before it is
+// cut to 32 bits, and the boundary between two texts counts. The checksum is faster than a hash of the text of a row: 300 000
+// rows are written per second.
 class Checksum {
  public:
   void add(std::uint64_t word) { state_ = (std::rotl(state_, 27) ^ word) * 0x9E3779B97F4A7C15; }

@@ -38,7 +38,7 @@ struct FamilyOf<BSpline> {
 namespace internal {
 
 /// Returns the four B-splines that are not 0 in span j of a spline of n levels: cubic polynomials over the share of the span
-/// that has passed, coefficients in rising order. The first one belongs to level j.
+/// that has passed, coefficients in rising order. The first B-spline belongs to level j.
 [[nodiscard]] std::array<std::array<double, 4>, 4> bsplines_of_span(std::size_t j, std::size_t n);
 
 /// Returns true if the knots around span j are evenly spaced; the B-splines of all such spans are equal.

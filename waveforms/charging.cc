@@ -21,7 +21,7 @@ double sign_change(const Function& function, double low, double high) {
   return 0.5 * (low + high);
 }
 
-// Returns times in [begin, end] between which V^2 of a piece is monotone: it turns where V or dV/dt changes sign.
+// Returns times in [begin, end] between which V^2 of a piece is monotone: V^2 has an extremum where V or dV/dt changes sign.
 std::vector<double> turning_times(const SignalPiece& piece, double begin, double end, double resolving_step) {
   constexpr double fewest = 64, most = 1e6;  // number of samples of a piece that is not straight
   std::vector<double> times{begin, end};

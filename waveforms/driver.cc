@@ -67,7 +67,7 @@ Exponential answer(const Exponential& input, double time_constant) {
   return out;
 }
 
-/// Returns the same function with s counted from a later time.
+/// Returns the function of `e` with the time s counted from `by` [s] later.
 Exponential later(const Exponential& e, double by) {
   Exponential moved{.polynomial = {}, .exponent = e.exponent};
   const auto& p = e.polynomial;
@@ -203,7 +203,7 @@ Signal filtered(const Signal& input, double time_constant) {
   double output = input.before();
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const double begin = pieces[i].begin, end = i + 1 < pieces.size() ? pieces[i + 1].begin : infinite;
-    // Held levels have a faster path, because a sampled waveform has thousands of them.
+    // Constant levels have a faster code, because a sampled waveform has thousands of levels.
     if (is_held_level(pieces[i])) {
       const double left = begin + over * time_constant;
       const bool settles = output != pieces[i].value;

@@ -34,9 +34,9 @@ struct DriverModel {
   [[nodiscard]] bool is_ideal() const { return !sample_rate && !bandwidth && !source_resistance; }
 };
 
-/// Returns the samples that the converter holds, each until the next. Returns the commanded signal for a source without samples,
-/// and for a signal of 0 V at all times. A sine without an end is sampled up to `end` [s]; from there its mean value is held.
-/// Throws InvalidInput for more than 1e7 samples.
+/// Returns the samples that the converter holds, each until the next. Returns the commanded signal for a source without
+/// samples, and for a signal of 0 V at all times. A sine without an end is sampled up to `end` [s]; after that its mean value
+/// is held. Throws InvalidInput for more than 1e7 samples.
 [[nodiscard]] Signal held(const Signal& commanded, const DriverModel& model, const DriverLimits& limits, double end);
 
 /// Returns the samples for a generator or a file. While the signal stays at its voltage before t = 0, the samples are not
@@ -47,8 +47,8 @@ struct DriverModel {
 /// waveform by one step of the converter.
 [[nodiscard]] DriverLimits limits_of_samples(DriverLimits limits, const DriverModel& model);
 
-/// Returns the applied voltage of the source: the output of its converter with gain, offset and delay. Throws as held(). A source
-/// commanded to 0 V at all times applies its offset; before t = 0 it applies the commanded voltage.
+/// Returns the applied voltage of the source: the output of its converter with gain, offset and delay. Throws as held(). A
+/// source commanded to 0 V at all times applies its offset; before t = 0 it applies the commanded voltage.
 [[nodiscard]] Signal applied(const Signal& commanded, const DriverModel& model, const DriverLimits& limits, double end,
                              const SourceErrors& errors = {});
 

@@ -92,7 +92,7 @@ void append_inside(std::vector<std::pair<double, double>>& points, const SignalP
 std::vector<std::pair<double, double>> polyline(const Signal& signal, double end, double tolerance, double jump_time) {
   require_end(end);
   require(jump_time >= 0 && std::isfinite(jump_time), fmt::format("jump_time is {} s; it must be finite and >= 0", jump_time));
-  // A jump must end well before the next breakpoint, which it would otherwise hide.
+  // A jump must end well before the next breakpoint, which a long jump would hide.
   constexpr double share_of_interval = 1e-3;
   const std::vector<SignalPiece>& pieces = signal.pieces();
   std::vector<std::pair<double, double>> points;

@@ -78,7 +78,7 @@ class Following {
     return times;
   }
 
-  // Checks a waveform without breakpoints, which keeps its voltage at t = 0: it must be constant and not 0 V.
+  // Checks a waveform without breakpoints, which always has its voltage at t = 0: that voltage must be constant and not 0 V.
   void check_constant() const {
     constexpr double first = 1e-12, last = 1e3;  // [s]
     constexpr int looks = 300;

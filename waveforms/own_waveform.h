@@ -1,8 +1,8 @@
 // A waveform that a program defines: a class that returns voltage against time.
 //
 // The waveform becomes a Signal: between two breakpoints, cubic polynomials approximate the voltage with an error of at most
-// own_waveform_accuracy times its largest voltage. It can be used wherever a signal can: in closings, in sources with limits and
-// errors, in lanes of devices, in tables for generators. A scene file cannot hold it.
+// own_waveform_accuracy times its largest voltage. It can be used wherever a signal can: in closings, in sources with limits
+// and errors, in lanes of devices, in tables for generators. A scene file cannot hold it.
 //
 // Between two breakpoints the voltage should have four continuous derivatives; otherwise many cubics are needed. Every kink and
 // every jump must be a breakpoint.
@@ -52,7 +52,7 @@ class OwnWaveform {
   /// stays constant from then on. A waveform without breakpoints must be constant, and not 0 V. Of two breakpoints that differ
   /// by rounding only, the later one is used.
   [[nodiscard]] virtual std::vector<double> breakpoints(std::span<const double> x) const = 0;
-  /// Returns the voltage [V] at a time [s] from 0 to the end; at a jump the value after it.
+  /// Returns the voltage [V] at a time [s] from 0 to the end; at a jump the voltage after the jump.
   [[nodiscard]] virtual double voltage(double time, std::span<const double> x) const = 0;
 };
 

@@ -9,7 +9,7 @@
 
 namespace softland {
 
-/// The role of a parameter in the signal: this decides its unit, and how a scene may give it.
+/// The role of a parameter in the signal. The role decides the unit, and how a scene may give the parameter.
 enum class ParameterKind {
   level,              ///< [V]
   swing,              ///< [V] about a level; a scene may give a percentage of that level

@@ -156,8 +156,8 @@ using Pieces = std::vector<SignalPieceOf<P>>;
 
 namespace internal {
 
-/// Returns true if a condition on the times of a waveform holds. Throws InvalidInput if it holds for only some devices of a lane,
-/// because their signals then have different pieces.
+/// Returns true if a condition on the times of a waveform holds. Throws InvalidInput if the condition holds for only some
+/// devices of a lane, because their signals then have different pieces.
 template <class Condition>
 [[nodiscard]] bool decided(const Condition& condition) {
   if constexpr (std::is_same_v<Condition, bool>) {
@@ -169,7 +169,7 @@ template <class Condition>
 }
 
 /// Returns true for two times [s] that differ only by rounding, of a sum or of their decimal text. Such times are meant to be
-/// equal, as where one edge ends and the next begins. A piece between them would be too short for any integrator.
+/// equal, as where one edge ends and the next begins. A piece between such times would be too short for any integrator.
 template <class P>
 [[nodiscard]] bool coincide(const P& time, const P& other) {
   using std::abs;
@@ -191,7 +191,7 @@ template <class P>
   return pieces;
 }
 
-/// One stretch of a piecewise linear function; it ends where the next one begins.
+/// One stretch of a piecewise linear function; it ends where the next stretch begins.
 template <class P>
 struct Stretch {
   P begin = 0;  ///< [s]

@@ -55,8 +55,8 @@ template <class P>
 
 namespace internal {
 
-/// Checks the rules of a waveform of n levels, n - 1 times and one duration of all edges; `what` is its name in messages.
-/// Throws InvalidParameter.
+/// Checks the rules of a waveform of n levels, n - 1 times and one duration of all edges; `what` is the waveform's name in
+/// messages. Throws InvalidParameter.
 void require_levels_and_edges(std::string_view what, const std::vector<double>& levels, const std::vector<double>& times,
                               double edge);
 

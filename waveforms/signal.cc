@@ -23,7 +23,7 @@ double end_of_straight(const SignalPiece& piece, double end, double favourite) {
   if (has_the_slope(favourite)) return favourite;
   const double rise = piece.slope * duration;
   const double computed = piece.value + rise;
-  // The exact end value differs from `rise` by rounding. In 2e7 random ramps it was at most one step away; two are tried.
+  // The exact end value differs from `rise` by rounding, in 2e7 random ramps by at most one last-place unit. Two are tried.
   constexpr int reach = 2;
   double rise_up = rise, rise_down = rise, value_up = computed, value_down = computed;
   for (int i = 0; i <= reach; ++i) {
@@ -55,13 +55,13 @@ double rounding_at_end(const SignalPiece& piece, double end) {
     }
     of_terms += size * (1 + std::abs(term.angular_frequency) * duration + std::abs(term.sweep) * duration * duration);
   }
-  // The times of both ends are rounded as well; their rounding grows with time.
+  // The times of both ends of the piece are rounded as well; this rounding grows with time.
   return roundings * epsilon *
          (rate * end + straight + swing * (1 + piece.angular_frequency * end + std::abs(piece.phase)) + of_terms);
 }
 
 /// Appends a sign change of `function` in (low, high), found by bisection to the last bit that matters; appends nothing without
-/// one.
+/// a sign change.
 template <typename Function>
 void append_root(std::vector<double>& times, Function function, double low, double high) {
   const double at_low = function(low);
@@ -142,7 +142,7 @@ void for_each_extreme(const std::vector<SignalPiece>& pieces, double end, Of wha
   }
 }
 
-/// Throws InvalidInput unless all numbers of the term are finite and it does not grow.
+/// Throws InvalidInput unless all numbers of the term are finite and the term does not grow.
 void check_term(const SignalTerm& term, std::size_t piece) {
   bool is_finite = std::isfinite(term.decay) && std::isfinite(term.angular_frequency) && std::isfinite(term.sweep);
   for (const double coefficient : term.cosine) is_finite = is_finite && std::isfinite(coefficient);

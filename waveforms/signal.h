@@ -27,11 +27,11 @@ class Signal {
   explicit Signal(std::vector<SignalPiece> pieces, double before = 0);
   /// Returns a constant voltage [V] from t = 0 on.
   static Signal constant(double voltage, double before = 0);
-  /// Returns the same voltage [V] at all times, before t = 0 too.
+  /// Returns a signal of one voltage [V] at all times, before t = 0 too.
   static Signal standing(double voltage);
-  /// Returns the signal of straight lines between points [s, V]; the last value is held. Two points of the same time are a jump.
-  /// The breakpoints are the times of the points, less those at the end that only repeat the held value. Throws InvalidInput
-  /// unless there is a point, times start at 0 and do not decrease, and every number is finite.
+  /// Returns the signal of straight lines between points [s, V]; the last value is held. Two points of the same time are a
+  /// jump. The breakpoints are the times of the points, less those at the end that only repeat the held value. Throws
+  /// InvalidInput unless there is a point, times start at 0 and do not decrease, and every number is finite.
   static Signal piecewise_linear(const std::vector<std::pair<double, double>>& points, double before = 0);
 
   /// Returns the voltage for time < 0 [V].
@@ -39,7 +39,7 @@ class Signal {
   [[nodiscard]] const std::vector<SignalPiece>& pieces() const { return pieces_; }
   /// Returns the number of the piece that contains a time; at a breakpoint, that of the later piece.
   [[nodiscard]] std::size_t piece_at(double time) const;
-  /// Returns the voltage [V]; at a jump the value after it.
+  /// Returns the voltage [V]; at a jump the voltage after the jump.
   [[nodiscard]] double voltage(double time) const;
   /// Returns the limit of the voltage from the left [V]. It equals voltage(time), bit for bit, where the signal does not jump.
   /// Rounding between the end of one piece and the beginning of the next, or between before() and a sine that starts there,

@@ -126,7 +126,7 @@ SignalSlopes::SignalSlopes(const SignalsOf& signals, std::span<const double> x, 
   find_one_by_one(near, here);
 }
 
-// Returns true if this number of groups needs fewer differences than the parameters do, including one for the check.
+// Returns true if this number of groups needs fewer differences than the parameters do, including a difference for the check.
 bool SignalSlopes::saves(std::size_t groups) const { return groups + 1 < parameters_; }
 
 void SignalSlopes::find_one_by_one(const Neighbourhood& near, const Signals& here) {

@@ -28,7 +28,7 @@ struct SourceErrors {
   [[nodiscard]] bool are_none() const { return gain == 1 && offset == 0 && delay == 0 && edges.empty(); }
 };
 
-/// Returns the number of edges, including one at t = 0 unless the signal keeps its voltage there.
+/// Returns the number of edges, including an edge at t = 0 unless the voltage is constant there.
 [[nodiscard]] std::size_t edge_count(const Signal& signal);
 
 /// Returns the time of the first edge [s], which may be before 0; infinity without an edge.

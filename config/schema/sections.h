@@ -105,7 +105,7 @@ inline constexpr std::string_view dielectric_advice =
 [[nodiscard]] Section piezo_section();
 [[nodiscard]] Section dispersion_section();
 [[nodiscard]] Section surface_section();
-/// Returns the section [waveform.NAME] of a drive other than the dispersion force, which has its own.
+/// Returns the section [waveform.NAME] of a drive other than the dispersion force, whose section is different.
 [[nodiscard]] Section waveform_section();
 [[nodiscard]] Section force_factor_section();
 [[nodiscard]] Section calibration_section();

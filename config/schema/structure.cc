@@ -71,7 +71,7 @@ std::vector<Key> structure_keys() {
 
 void check(Plate&, Structure& s, Scene&, const SectionReader& in) {
   const double area = in.number("area");
-  // If no law needs the width of a plate, it is taken as square.
+  // If no law needs the width of a plate, the plate is assumed square.
   if (!in.is_given("width")) s.width = std::sqrt(area);
   s.length = area / s.width;
   s.modes = 1;
