@@ -56,7 +56,7 @@ std::uint32_t big_endian(const Header& header, std::size_t place) {
   return value;
 }
 
-// Returns the reason why the file is not a store; empty for a store.
+// Returns the reason why the file is not a study database; empty for a study database.
 std::string fault_of(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);

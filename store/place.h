@@ -11,21 +11,21 @@
 
 namespace softland::internal {
 
-/// Application id in the header of every store, "SoLa", which distinguishes a store from other databases.
+/// Application id "SoLa" in the header of every study database, which distinguishes it from other databases.
 inline constexpr std::int64_t store_application = 0x536F4C61;
 
-/// Throws InvalidInput with path and reason unless this is a regular file that begins as a store does.
+/// Throws InvalidInput with path and reason unless this is a regular file that begins as a study database does.
 void require_store(const std::filesystem::path& path);
 
-/// Throws InvalidInput if a new store would replace an existing file, or a file with the name of its log or journal.
+/// Throws InvalidInput if a new database file would replace an existing file, or a file with the name of its log or journal.
 void require_room(const std::filesystem::path& path);
 
-/// Locks the store against other writers, also under another name of the file. Throws InvalidInput with a description of the
-/// other writer.
+/// Locks the database file against other writers, also under another name of the file. Throws InvalidInput with a description
+/// of the other writer.
 [[nodiscard]] std::unique_ptr<const LockFile> lock_store(const std::filesystem::path& path, const std::string& command);
 [[nodiscard]] std::filesystem::path lock_of(const std::filesystem::path& path);
 
-/// Opens the store for reading, by the access mode that its folder permits.
+/// Opens the database file for reading, by the access mode that its folder permits.
 [[nodiscard]] std::unique_ptr<const Database> open_to_read(const std::filesystem::path& path);
 
 /// Returns the journal mode of SQLite for a file system. "WAL" lets other processes read during a write. Only "TRUNCATE" is
@@ -34,17 +34,17 @@ void require_room(const std::filesystem::path& path);
 [[nodiscard]] const char* journal_on(long type);
 [[nodiscard]] const char* journal_at(const std::filesystem::path& path);
 
-/// Copies a damaged store with its log to FILE.damaged, unless that copy exists. Returns a sentence about the copy for messages.
+/// Copies a damaged database file with its log to FILE.damaged, unless that copy exists. Returns a message about the copy.
 [[nodiscard]] std::string kept_copy(const std::filesystem::path& path);
 
-/// Copies a store that no longer exists at `path` to another file. The file is FILE.rescued beside `path`; if the folder is
-/// gone too, in the current folder or that of temporary files. Returns the path of the copy. Throws OutputLost, beginning with
-/// `said`, if no folder accepts the copy.
+/// Copies a database file that no longer exists at `path` to another file. The file is FILE.rescued beside `path`; if the
+/// folder is gone too, in the current folder or that of temporary files. Returns the path of the copy. Throws OutputLost,
+/// beginning with `said`, if no folder accepts the copy.
 [[nodiscard]] std::filesystem::path copied_to_rescue(const Database& database, const std::filesystem::path& path,
                                                      const std::string& said);
 
-/// A store under construction, in a temporary file beside its final path. give_name() renames the complete store; without a
-/// call of give_name() the file is removed.
+/// A database file under construction, in a temporary file beside its final path. give_name() renames the complete database
+/// file; without a call of give_name() the file is removed.
 class UnnamedStore {
  public:
   explicit UnnamedStore(std::filesystem::path name);

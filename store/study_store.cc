@@ -138,7 +138,7 @@ class StudyStore::Implementation {
   std::optional<SessionTally> tally_;
   fs::path log_;  // path of the write-ahead log; empty without a log
   std::optional<FileNumber> log_number_;
-  std::string rescued_;  // message with the file to which the rows of a removed store were saved; only the writing thread uses it
+  std::string rescued_;  // message with the file that has the rows of a removed database file; only the writing thread uses it
 
   std::mutex mutex_;
   std::condition_variable for_writer_, for_callers_;
@@ -146,7 +146,7 @@ class StudyStore::Implementation {
   std::chrono::steady_clock::time_point due_;
   bool committing_ = false, hurried_ = false, stopping_ = false;
   std::exception_ptr failure_;        // failure to write rows; the waiting rows are written again later
-  std::exception_ptr contradiction_;  // error about a row that contradicts the store and was not written
+  std::exception_ptr contradiction_;  // error about a row that contradicts the database file and was not written
   std::string lost_;                  // copy of rescued_ for callers
   std::thread writer_;
 };
@@ -167,7 +167,7 @@ StudyStore::Implementation::Implementation(const fs::path& path, const StoredPla
   else
     require_room(path);
   lock_ = lock_store(path, origin.command);
-  const bool resumed = is_there();  // another run may have created the store since the first check
+  const bool resumed = is_there();  // another run may have created the database file since the first check
   if (!resumed) create_store(path, plan, origin);
   try {
     open();
@@ -212,7 +212,7 @@ void StudyStore::Implementation::start_session(const StoredOrigin& origin, bool 
   prepare_finding();
 }
 
-// Reads which points are done. It runs before anything is written, so that a damaged store is not changed.
+// Reads which points are done. It runs before anything is written, so that a damaged database file is not changed.
 void StudyStore::Implementation::read_done() {
   done_.resize(static_cast<std::size_t>(plan_.points));
   if (number_ == 0) return;
@@ -251,8 +251,8 @@ void StudyStore::Implementation::let_go() {
   database_.reset();
 }
 
-// Saves the content of a removed store, and later rows, to another file: a removed file remains writable until it is closed,
-// and is then lost.
+// Saves the content of a removed database file, and later rows, to another file: a removed file remains writable until it is
+// closed, and is then lost.
 void StudyStore::Implementation::keep_in_place() {
   if (!rescued_.empty()) return;
   if (!database_->is_at(path_)) {
@@ -339,7 +339,7 @@ void StudyStore::Implementation::close() {
   if (failure) std::rethrow_exception(failure);
 }
 
-// Merges the write-ahead log into the file, so that the store is a single file.
+// Merges the write-ahead log into the database file, so that no second file remains.
 void StudyStore::Implementation::end_log() {
   const bool was_told = !rescued_.empty();
   if (rows_) keep_in_place();
@@ -396,7 +396,7 @@ void StudyStore::Implementation::commit_batch(std::unique_lock<std::mutex>& lock
   for_callers_.notify_all();
 }
 
-// Writes rows. A row that contradicts the store is not written, and is reported.
+// Writes rows. A row that contradicts the database file is not written, and is reported.
 void StudyStore::Implementation::commit(const std::vector<StoredRow>& rows) {
   std::optional<Contradiction> contradiction;
   std::map<std::string, std::int64_t> by_status;

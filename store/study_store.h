@@ -32,7 +32,7 @@
 
 namespace softland {
 
-/// Version of the tables. A store of a later version is refused.
+/// Version of the tables. A database file of a later version is refused.
 inline constexpr int store_schema = 2;
 inline constexpr std::size_t rows_per_commit = 1000;
 inline constexpr double seconds_per_commit = 1;  ///< time after the first row that is not yet durable [s]
@@ -89,7 +89,7 @@ struct StoredRow {
   std::string extra = {};      ///< JSON of further data of the point, such as the waveform found there; may be empty
 };
 
-/// A run of the program that wrote to a store.
+/// A run of the program that wrote to a database file.
 struct StoredSession {
   std::string program, processor, command;  ///< see StoredOrigin
   std::string host;
@@ -99,24 +99,24 @@ struct StoredSession {
   std::int64_t rows = 0;    ///< number of rows written in the session
 };
 
-/// Returns true for a regular file that begins like a store. Other kinds of files, such as pipes, are not opened.
+/// Returns true for a regular file that begins like a study database. Other kinds of files, such as pipes, are not opened.
 [[nodiscard]] bool is_store(const std::filesystem::path& path);
 
-/// Returns a description of the current writer of the store, such as "process 4711 on node3 since ...: softland explore ...";
-/// none if there is no writer.
+/// Returns a description of the current writer of the database file, such as "process 4711 on node3 since ...: softland explore
+/// ..."; none if there is no writer.
 [[nodiscard]] std::optional<std::string> writer_of(const std::filesystem::path& path);
 
-/// Writes rows to a store; a store has one writer at a time.
+/// Writes rows to a database file, which has one writer at a time.
 class StudyStore {
  public:
   enum class Opening {
     fresh,  ///< the file must not exist
-    resume  ///< an existing store with the same columns and shard is continued, with this or another plan
+    resume  ///< an existing database file with the same columns and shard is continued, with this or another plan
   };
 
-  /// Creates or continues the store. Throws InvalidInput with path and reason if `path` must not exist but does, if the file is
-  /// not a store, has a later schema or other columns, or is not writable, and if another process writes to the store. Throws
-  /// OutputLost if the disk is full. A damaged store is not changed; it is copied to FILE.damaged.
+  /// Creates or continues the database file. Throws InvalidInput with path and reason if `path` must not exist but does. Throws
+  /// InvalidInput, too, if the file is not a study database, has a later schema or other columns, or is not writable, or if
+  /// another process writes to it. Throws OutputLost if the disk is full. A damaged file is copied to FILE.damaged.
   StudyStore(const std::filesystem::path& path, const StoredPlan& plan, const StoredOrigin& origin, Opening opening);
   /// Commits waiting rows without reporting errors; close() reports errors.
   ~StudyStore();
@@ -124,22 +124,22 @@ class StudyStore {
   StudyStore& operator=(const StudyStore&) = delete;
 
   [[nodiscard]] const std::filesystem::path& path() const;
-  /// Returns for every point of the plan whether the store held a row of the point when it was opened.
+  /// Returns for every point of the plan whether the database file held a row of the point when it was opened.
   [[nodiscard]] std::vector<bool> done() const;
-  /// Returns true if the store holds rows of earlier plans, which find() can return.
+  /// Returns true if the database file holds rows of earlier plans, which find() can return.
   [[nodiscard]] bool has_earlier_plans() const;
   /// Returns the number of rows of earlier plans.
   [[nodiscard]] std::int64_t earlier_rows() const;
   /// Returns a row of an earlier plan with this content. May be called on any thread.
   [[nodiscard]] std::optional<StoredRow> find(const ContentKey& content) const;
 
-  /// Queues a row, which another thread writes. A row that is equal to one in the store is ignored. Throws InvalidInput if the
-  /// store has a different row of the same point, or if the row does not fit the plan. Throws OutputLost if earlier rows could
-  /// not be written; the next call writes these rows again. May be called on any thread.
+  /// Queues a row, which another thread writes. A row that is equal to one in the database file is ignored. Throws InvalidInput
+  /// if the database file has a different row of the same point, or if the row does not fit the plan. Throws OutputLost if
+  /// earlier rows could not be written; the next call writes these rows again. May be called on any thread.
   void add(StoredRow row);
   /// Waits until all queued rows are on the disk. Throws as add().
   void flush();
-  /// Calls flush(), and removes log and lock, so that the store is a single file. Throws as add().
+  /// Calls flush(), and removes log and lock, so that only the database file remains. Throws as add().
   void close();
 
  private:
@@ -152,11 +152,11 @@ struct StudyQuery {
   std::string where = {};
 };
 
-/// Reads a store, even while another process writes to the store, without changing its content.
+/// Reads a database file, even while another process writes to it, without changing its content.
 class StudyReader {
  public:
-  /// Opens the store. Throws InvalidInput with path and reason if the file is not a store, is a store of a later schema, is
-  /// damaged, or cannot be read.
+  /// Opens the database file. Throws InvalidInput with path and reason if the file is not a study database, has a later schema,
+  /// is damaged, or cannot be read.
   explicit StudyReader(const std::filesystem::path& path);
   ~StudyReader();
   StudyReader(StudyReader&&) noexcept;
@@ -191,8 +191,8 @@ struct Merged {
   std::vector<std::string> notes;  ///< notes on missing points, and on parts of several programs or processors
 };
 
-/// Merges the parts of a study into one store `out`, which must not exist. Throws InvalidInput with the names of the parts if
-/// they have different plans, or different rows for a point.
+/// Merges the parts of a study into one database file `out`, which must not exist. Throws InvalidInput with the names of the
+/// parts if they have different plans, or different rows for a point.
 [[nodiscard]] Merged merge_studies(const std::vector<std::filesystem::path>& paths, const std::filesystem::path& out,
                                    const StoredOrigin& origin, const MergeOptions& options = {});
 

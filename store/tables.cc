@@ -189,7 +189,7 @@ std::vector<StoredColumn> columns_in(const Database& database) {
   return found;
 }
 
-// Checks the number of points and the part of the plan that a store holds, before other numbers are computed from them.
+// Checks the number of points and the part of the plan that a database file holds, before other numbers are computed from them.
 void require_sound(const Database& database, std::int64_t points, std::int64_t index, std::int64_t count) {
   constexpr std::int64_t most_points = std::int64_t{1} << 53;
   const auto damaged = [&](const std::string& what) {
@@ -302,7 +302,7 @@ std::map<std::string, std::int64_t> tally_of(const Database& database, std::int6
 }
 
 std::string select_rows(const Database& database, const std::vector<StoredColumn>& columns) {
-  // A missing checksum counts as a wrong one, unless the store has a schema without checksums.
+  // A missing checksum counts as a wrong one, unless the database file has a schema without checksums.
   std::string sql =
       fmt::format("SELECT point, content, status, reason, extra, {}", has_checksums(database) ? "ifnull(checksum, 0)" : "NULL");
   for (const StoredColumn& column : columns) sql += ", " + sql_name(column.key);

@@ -1,4 +1,4 @@
-// The tables of a store, and their content.
+// The tables of a database file of a study, and their content.
 //
 //   study    one row per plan: text, digest of the text, points, seed, shard, checksum of these and of the columns
 //   columns  one row per column of results: name, unit and kind
@@ -24,7 +24,7 @@ namespace softland::internal {
 /// Columns of the table `results` besides those of the plan.
 inline constexpr std::array<const char*, 7> fixed_columns{"plan", "point", "content", "status", "reason", "extra", "checksum"};
 
-/// Throws InvalidInput unless a store can hold the plan.
+/// Throws InvalidInput unless a database file can hold the plan.
 void check_plan(const StoredPlan& plan);
 
 /// Creates the tables for rows of these columns.
@@ -33,7 +33,7 @@ void create_tables(const Database& database, const std::vector<StoredColumn>& co
 /// Throws InvalidInput for tables of a later schema, and DamagedStore if tables are missing.
 void check_schema(const Database& database);
 
-/// A plan and its number in the store.
+/// A plan and its number in the database file.
 struct NumberedPlan {
   std::int64_t number = 0;
   StoredPlan plan;
@@ -46,7 +46,7 @@ struct NumberedPlan {
 
 /// Inserts a session that begins now. Returns its number.
 std::int64_t insert_session(const Database& database, std::int64_t plan, const StoredOrigin& origin);
-/// Inserts a session of another store.
+/// Inserts a session of another database file.
 void insert_session(const Database& database, std::int64_t plan, const StoredSession& session);
 /// Counts rows that were just written in a session.
 class SessionTally {
@@ -100,7 +100,7 @@ class RowReader {
   std::map<std::string, std::int64_t, std::less<>>::iterator counted_ = by_status_.end();
 };
 
-/// Thrown if the store has a different row of the point of a row to be written.
+/// Thrown if the database file has a different row of the point that a new row has.
 class Contradiction : public InvalidInput {
  public:
   using InvalidInput::InvalidInput;
@@ -110,7 +110,7 @@ class Contradiction : public InvalidInput {
 class RowWriter {
  public:
   RowWriter(const Database& database, std::int64_t plan, const std::vector<StoredColumn>& columns);
-  /// Writes a row; returns false if the store already has an equal row. Throws Contradiction if the store has a different row
+  /// Writes a row; returns false if the database file already has an equal row. Throws Contradiction if it has a different row
   /// of the same point.
   bool write(const StoredRow& row);
 

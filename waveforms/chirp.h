@@ -20,7 +20,7 @@ namespace softland {
 
 template <class P>
 struct ChirpOf {
-  P base = 0;                                              ///< [V]
+  P base = 0;                                              ///< voltage of the step [V]
   P rise_time = 0;                                         ///< rise time of the base [s], >= 0
   P amplitude = 0;                                         ///< amplitude at the start [V]
   P angular_frequency = 0;                                 ///< angular frequency at the start [rad/s], > 0
@@ -28,7 +28,7 @@ struct ChirpOf {
   P phase = 0;                                             ///< phase at the start [rad]
   P start = 0;                                             ///< [s], >= 0
   P end = std::numeric_limits<double>::infinity();         ///< [s], > start; a finite end needs end - start >= 2 fade
-  P fade = 0;                                              ///< [s], >= 0
+  P fade = 0;                                              ///< rise time and fall time of the envelope [s], >= 0
   P decay_time = std::numeric_limits<double>::infinity();  ///< time in which the amplitude falls by 1/e [s], > 0
 };
 using Chirp = ChirpOf<double>;

@@ -16,14 +16,14 @@ namespace softland {
 
 template <class P>
 struct HarmonicOf {
-  P base = 0;                                       ///< [V]
+  P base = 0;                                       ///< voltage of the step [V]
   P rise_time = 0;                                  ///< rise time of the base [s], >= 0
   P amplitude = 0;                                  ///< [V]
   P angular_frequency = 0;                          ///< [rad/s], > 0
   P phase = 0;                                      ///< [rad]
-  P start = 0;                                      ///< [s], >= 0
+  P start = 0;                                      ///< start of the sine [s], >= 0
   P end = std::numeric_limits<double>::infinity();  ///< [s], > start; a finite end needs end - start >= 2 fade
-  P fade = 0;                                       ///< [s], >= 0
+  P fade = 0;                                       ///< rise time and fall time of the envelope [s], >= 0
 };
 using Harmonic = HarmonicOf<double>;
 

@@ -20,7 +20,7 @@ template <class P>
 struct SCurveOf {
   std::vector<P> levels = {};  ///< [V], n >= 1
   std::vector<P> times = {};   ///< n - 1 switching times [s], increasing by at least edge; the first at least edge
-  P edge = 0;                  ///< [s], >= 0
+  P edge = 0;                  ///< duration of an edge [s], >= 0
 };
 using SCurve = SCurveOf<double>;
 

@@ -19,7 +19,7 @@ namespace softland {
 
 template <class P>
 struct SinesOf {
-  P base = 0;                      ///< [V]
+  P base = 0;                      ///< voltage of the step [V]
   P rise_time = 0;                 ///< rise time of the base [s], >= 0
   std::vector<P> amplitudes = {};  ///< [V], at least one
   P start = 0;                     ///< [s], >= 0

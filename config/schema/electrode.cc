@@ -151,7 +151,7 @@ void check_fringing(const Structure& s, const Electrode& e, const SectionReader&
   }
 }
 
-/// Makes the face of a dielectric on which a beam lands the contact of the scene.
+/// Checks the face of a dielectric on which a beam closes: this face becomes a contact of the scene.
 void check_landing(Device& d, const Electrode& e, const SectionReader& in) {
   if (!e.dielectric || !e.dielectric->landing) return;
   const SectionReader gap(in.file(), "gap");

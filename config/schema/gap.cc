@@ -13,7 +13,7 @@ namespace {
 Gap& gap(Scene& scene, std::size_t) { return scene.device.gap; }
 using OfGap = Of<gap>;
 
-/// Returns true if every electrode has a dielectric, on which a plate may land.
+/// Returns true if every electrode has a dielectric, on which a plate may come to rest.
 bool may_land(const Structure& structure, const SceneFile::Impl& file) {
   const std::vector<std::string> electrodes = file.names_in("electrode");
   return structure.is_rigid() && !electrodes.empty() && std::ranges::all_of(electrodes, [&](const std::string& name) {
@@ -21,7 +21,7 @@ bool may_land(const Structure& structure, const SceneFile::Impl& file) {
          });
 }
 
-/// Returns true if the beam lands on the face of a dielectric.
+/// Returns true if the beam closes on the face of a dielectric.
 bool has_landing(const SceneFile::Impl& file) {
   return std::ranges::any_of(file.names_in("electrode"), [&](const std::string& name) {
     return file.find({"electrode", name, "dielectric", "landing"}) != nullptr;
