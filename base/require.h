@@ -34,7 +34,7 @@ void require(bool rule_holds, Message&& message, std::source_location where = st
   if (!rule_holds) throw InvalidInput(message(), where);
 }
 
-/// Returns the name of a field of a request, for the message of an InvalidRequest.
+/// Returns the name of a field of a request with a mark, for the message of an InvalidRequest.
 [[nodiscard]] inline std::string requested(std::string_view field) { return '\x02' + std::string(field) + '\x03'; }
 
 /// Returns the text with `before` in front of each field name that requested() has marked: "--" for a command line, "" for a

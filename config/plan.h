@@ -119,7 +119,7 @@ class Plan {
   std::string pareto_;
   std::vector<PlanVariable> variables_;
   std::vector<std::vector<double>> rows_;  // rows of a list [SI unit]
-  std::optional<PointSet> sample_;         // point set of a sample; set for a search, too, whose ranges are read alike
+  std::optional<PointSet> sample_;         // point set of a sample; also set for a Pareto search, which reads ranges as a sample
   bool is_search_ = false;
   std::uint64_t points_ = 1;
   std::optional<SamplePoints> sampled_;

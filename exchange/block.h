@@ -15,7 +15,7 @@ namespace softland::internal {
 
 struct Block {
   std::vector<int> columns;                 ///< number of each column in the file, from 1
-  std::vector<std::vector<double>> values;  ///< NaN where a number is missing
+  std::vector<std::vector<double>> values;  ///< values by column and row; NaN where a number is missing
   std::vector<Missing> missing;
   std::vector<std::uint32_t> lines;  ///< line of each row
   std::vector<std::string> names,

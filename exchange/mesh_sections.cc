@@ -16,7 +16,7 @@ namespace {
 
 constexpr double printed = 2e-5;             // rounding of six printed digits, as a share of the length
 constexpr std::size_t nodes_of_section = 3;  // least number of nodes for the mean of a section
-constexpr std::size_t nearby = 3;            // number of even places on either side that a fit uses
+constexpr std::size_t nearby = 3;            // number of evenly spaced places on either side that a fit uses
 constexpr int place_digits = 6;
 
 }  // namespace

@@ -228,7 +228,7 @@ double PolynomialChaos::first_order(std::size_t i) const {
     const int whole = std::accumulate(terms_[k].begin(), terms_[k].end(), 0);
     if (terms_[k][i] == whole) sum += coefficients_[k] * coefficients_[k];
   }
-  return sum / variance();  // 0 / 0 is NaN
+  return sum / variance();  // NaN if the variance is 0
 }
 
 double PolynomialChaos::total(std::size_t i) const {
@@ -237,7 +237,7 @@ double PolynomialChaos::total(std::size_t i) const {
   for (std::size_t k = 1; k < terms_.size(); ++k) {
     if (terms_[k][i] > 0) sum += coefficients_[k] * coefficients_[k];
   }
-  return sum / variance();  // 0 / 0 is NaN
+  return sum / variance();  // NaN if the variance is 0
 }
 
 }  // namespace softland

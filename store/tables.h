@@ -46,7 +46,7 @@ struct NumberedPlan {
 
 /// Inserts a session that begins now. Returns its number.
 std::int64_t insert_session(const Database& database, std::int64_t plan, const StoredOrigin& origin);
-/// Inserts a session of another database file.
+/// Inserts a session that another database file holds.
 void insert_session(const Database& database, std::int64_t plan, const StoredSession& session);
 /// Counts rows that were just written in a session.
 class SessionTally {

@@ -21,9 +21,9 @@
 namespace softland {
 
 struct DriverModel {
-  std::optional<double> sample_rate = {};        ///< [Hz], > 0
-  std::optional<int> bits = {};                  ///< > 0; only with a sample_rate and finite limits of the voltage
-  std::optional<double> bandwidth = {};          ///< [Hz], > 0
+  std::optional<double> sample_rate = {};  ///< [Hz], > 0
+  std::optional<int> bits = {};            ///< number of bits, > 0; only with a sample_rate and finite limits of the voltage
+  std::optional<double> bandwidth = {};    ///< [Hz], > 0
   std::optional<double> source_resistance = {};  ///< [ohm], > 0
   double parallel_capacitance = 0;               ///< capacitance of leads and instruments, behind the resistance [F], >= 0
   double load = 0;                               ///< capacitance that the source charges in addition [F], >= 0

@@ -41,7 +41,7 @@ class SignalSlopes {
     double origin = 0;                                     // time about which a polynomial piece is written: s = time - origin
     std::array<double, 4> cubic = {};                      // coefficients of the derivative of a polynomial piece
     std::shared_ptr<const SignalPiece> piece = nullptr;    // derivative of a piece in which only sizes of sines or terms change
-    const SignalPiece *above = nullptr, *below = nullptr;  // pieces of a difference, if more changes
+    const SignalPiece *above = nullptr, *below = nullptr;  // pieces of a difference whose times or angles change
     double per_step = 0;
   };
 

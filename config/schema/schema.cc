@@ -149,7 +149,7 @@ std::string hint(std::string_view word, const std::vector<std::string_view>& kno
     const auto distance = [&](std::string_view name) { return edit_distance(word, name); };
     const auto nearest = *std::min_element(known.begin(), known.end(), [&](auto a, auto b) { return distance(a) < distance(b); });
     if (distance(nearest) <= std::max<std::size_t>(2, nearest.size() / 3)) return fmt::format(" (did you mean '{}'?)", nearest);
-    // The word may be the beginning of exactly one name: "poisson" of poissons_ratio.
+    // Suggest a name if the word begins exactly one name: "poisson" begins poissons_ratio.
     constexpr std::size_t shortest_beginning = 4;
     const auto is_begun = [&](std::string_view name) { return word.size() >= shortest_beginning && name.starts_with(word); };
     if (std::ranges::count_if(known, is_begun) == 1)
