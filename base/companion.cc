@@ -30,8 +30,7 @@ fs::path real_path(const fs::path& path) {
   return error ? path : found;
 }
 
-}  // namespace
-
+// True for a regular file that is a database, whether this process has it open or not.
 bool is_database(const fs::path& path) {
   struct stat info {};
   if (::stat(path.c_str(), &info) != 0 || !S_ISREG(info.st_mode)) return false;
@@ -39,6 +38,12 @@ bool is_database(const fs::path& path) {
     const std::lock_guard lock(databases_guard);
     if (databases().contains({info.st_dev, info.st_ino})) return true;
   }
+  return begins_as_database(path);
+}
+
+}  // namespace
+
+bool begins_as_database(const fs::path& path) {
   std::array<char, database_magic.size()> begin{};
   std::ifstream in(path, std::ios::binary);
   return in.read(begin.data(), begin.size()) && std::memcmp(begin.data(), database_magic.data(), database_magic.size()) == 0;

@@ -15,8 +15,9 @@ inline constexpr std::array<std::string_view, 4> companion_endings{"-wal", "-shm
 /// Returns true when `path` is the name of a companion of the database `of`. Neither file has to exist.
 [[nodiscard]] bool is_companion(const std::filesystem::path& path, const std::filesystem::path& of);
 
-/// Returns true for a regular file that begins as every SQLite file does.
-[[nodiscard]] bool is_database(const std::filesystem::path& path);
+/// Returns true for a file that begins as every SQLite file does. Opens and closes the file, which ends the locks that this
+/// process has on it.
+[[nodiscard]] bool begins_as_database(const std::filesystem::path& path);
 
 /// Throws InvalidInput, with a message that begins with `shown`, when `path` is the name of a companion of an existing
 /// database: writing to that file would destroy the database.

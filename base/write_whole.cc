@@ -101,7 +101,7 @@ void check_writable(const std::filesystem::path& path) {
   require_place(!std::filesystem::is_directory(old), path, "replace it");
   require(std::filesystem::is_regular_file(old), path.string() + ": is no regular file, so it is not replaced");
   require(!was_read(target), path.string() + ": is read by this run, so its output does not replace it");
-  require(!is_database(target), path.string() + ": is the store of a study, so it is not replaced");
+  require(!begins_as_database(target), path.string() + ": is the store of a study, so it is not replaced");
 }
 
 std::string name_to_be(const std::string& name) {

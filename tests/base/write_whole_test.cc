@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "base/companion.h"
 #include "base/output_lost.h"
 #include "base/read_file.h"
 #include "base/require.h"
@@ -157,6 +158,16 @@ TEST(WriteWhole, IsAskedBeforeWhetherItMay) {
   EXPECT_EQ(entries(folder.path()), 0u);
   EXPECT_THROW(check_writable(folder.path() / "missing/new"), InvalidInput);
   EXPECT_THROW(check_writable(folder.path()), InvalidInput);
+}
+
+// A database that is gone may leave its inode to a file that comes later.
+TEST(WriteWhole, ReplacesAFileWithTheInodeOfAFormerDatabase) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "rows.csv";
+  write_whole(file, "old");
+  mark_as_database(file);
+  write_whole(file, "new");
+  EXPECT_EQ(content(file), "new");
 }
 
 TEST(NameToBe, IsThatOfAFileWhoseWriterWasKilled) {

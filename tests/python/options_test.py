@@ -32,7 +32,7 @@ PROGRAM_ALONE = {
         "json": "an Outcome is the record",
         "out": "Outcome.save(folder)",
     },
-    "optimize": {"seeds": "a loop over seed", "limit": "scene.limit()"},
+    "optimize": {"seeds": "a loop over seed", "limit": "scene.limit()", "cycle": "scene.cycle(search=True)", "duty": "scene.cycle(search=True)"},
     "explore": {
         "list": "an Evaluator takes rows",
         "point": "Store has the points",
@@ -54,7 +54,7 @@ PYTHON_ALONE = {
     "device": {"errors": "the four options of instruments", "more_modes": "--model", "gas": "--model", "stiffness": "--model", "set": "--model"},
     "export": {"waveforms": "in the place of the scene's", "jobs": "the program takes all cores"},
 }
-RENAMED = {("explore", "option"): "options", ("fit", "unknown"): "unknowns", ("limit", "no-curves"): "curves", ("calibrate", "error"): "errors", ("robustness", "RESULT"): "waveforms"}
+RENAMED = {("explore", "option"): "options", ("fit", "unknown"): "unknowns", ("limit", "no-curves"): "curves", ("calibrate", "error"): "errors", ("robustness", "RESULT"): "waveforms", ("cycle", "RESULT"): "waveforms", ("cycle", "no-scan"): "scan"}
 
 
 def options_of(verb: str) -> set[str]:
