@@ -5,14 +5,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <atomic>
 #include <cerrno>
-#include <cmath>
 #include <fstream>
 #include <system_error>
-#include <utility>
-#include <vector>
 
 #include "base/companion.h"
 #include "base/output_lost.h"

@@ -4,25 +4,17 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <limits>
 #include <set>
-#include <span>
 #include <utility>
 
-#include "base/csv.h"
 #include "base/printable.h"
 #include "base/random.h"
-#include "base/read_file.h"
 #include "base/require.h"
 #include "base/shortened.h"
-#include "base/split.h"
 #include "base/trimmed.h"
 #include "config/plan_entry.h"
 #include "config/scene_file_impl.h"
-#include "config/section_reader.h"
 
 namespace softland {
 

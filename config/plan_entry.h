@@ -7,16 +7,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <limits>
 #include <set>
 #include <span>
 #include <utility>
 
-#include "base/csv.h"
-#include "base/printable.h"
-#include "base/random.h"
-#include "base/read_file.h"
 #include "base/require.h"
 #include "base/shortened.h"
 #include "base/split.h"

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "base/printable.h"
-#include "base/require.h"
 #include "document/chart.h"
 #include "document/escape.h"
 

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <boost/math/tools/minima.hpp>
-#include <cmath>
 #include <optional>
 
 #include "integrators/roots.h"
