@@ -28,64 +28,17 @@
 #include <string>
 #include <vector>
 
-#include "model/device.h"
+#include "model/beam_section.h"
 #include "model/receptance.h"
 #include "model/stretching.h"
 
 namespace softland {
-
-/// One stretch of a beam, of constant section or of a section that changes linearly along it.
-struct BeamSection {
-  double begin = 0;            ///< [m]
-  double end = 0;              ///< [m]
-  double rigidity = 0;         ///< EI [N m^2]
-  double mass_per_length = 0;  ///< mu [kg/m]
-  /// Relative change of rigidity and mass from the middle of the stretch, where they are given, to its end; linear between.
-  double taper = 0;
-  double curvature = 0;  ///< curvature at rest of a beam with sections or layers, positive away from the near electrode [1/m]
-  /// Moment per volt of a piezo layer on a beam with sections or layers, in the middle of the stretch [N m / V].
-  double piezo_moment = 0;
-};
-
-/// Bending of a two-layer section about its own neutral axis.
-struct CompositeSection {
-  double neutral_axis = 0;     ///< z_c, from the free face of the piezo layer [m]; 0 without a layer
-  double rigidity = 0;         ///< EI [N m^2]
-  double mass_per_length = 0;  ///< [kg/m]
-};
-
-/// Returns E of the beam [Pa], or E / (1 - nu^2) with plate_strain.
-[[nodiscard]] double bending_modulus(const Structure& structure);
-/// Returns the section of the beam without its piezo layer, with its surface skins if it has any.
-[[nodiscard]] CompositeSection plain_section(const Structure& structure, const std::optional<Surface>& surface = {});
-/// Returns the section of a beam with piezo layer (Zheng, Chen & Chen 2017, eqs. 5-6, equal widths).
-[[nodiscard]] CompositeSection layered_section(const Structure& structure, const Piezo& piezo);
-/// Returns the bending moment of the layer per volt, e31 a (z_c - bp / 2) with e31 = d31 Ep [N m / V]: negative for d31 < 0.
-[[nodiscard]] double piezo_moment_per_volt(const Structure& structure, const Piezo& piezo);
-/// Returns the beam's sections in order of x.
-[[nodiscard]] std::vector<BeamSection> beam_sections(const Device& device);
-/// Returns the axial stress that residual_stress leaves in the released beam between two clamps [Pa]. A stress along the beam
-/// remains entirely. The equal biaxial stress sigma of a film leaves sigma (1 - nu), since the sides of the beam are free and
-/// its length is fixed.
-[[nodiscard]] double axial_stress(const Bridge& bridge);
-/// Returns the compressive stress at which the beam buckles [Pa], with E I of plain_section(): 4 pi^2 E I / (A L^2) between two
-/// clamps, a sixteenth of this with a free end.
-[[nodiscard]] double buckling_stress(const Structure& structure, const std::optional<Surface>& surface = {});
 
 /// Returns the reason why the beam cannot rest straight under its axial stress; empty when it can.
 [[nodiscard]] std::string why_buckled(const Structure& structure, const std::optional<Surface>& surface = {});
 
 /// Returns the rule of the beam model that the device violates; empty when it violates none.
 [[nodiscard]] std::string why_no_beam(const Device& device);
-
-struct BeamSupport {
-  bool far_clamp = false;  ///< true when the end at L is clamped as well
-  double axial_force = 0;  ///< N, positive in tension [N]
-  Anchor near = {};        ///< anchor at x = 0
-  Anchor far = free_end;   ///< anchor at L unless it is clamped
-};
-/// Returns the clamps of a beam and the axial force from residual stresses of its bulk and surfaces.
-[[nodiscard]] BeamSupport beam_support(const Structure& structure, const std::optional<Surface>& surface = {});
 
 /// The modes of a beam in units of its length and of the mass and rigidity of its first section. Beams of one shape have the
 /// same normalised modes, whatever their size and material.
@@ -187,13 +140,6 @@ class BeamModes {
   Eigen::VectorXd frequencies_;
 };
 
-/// Returns the curl of a cantilever at x from its clamp [m], positive away from the near electrode. The axial stress before
-/// release grows by `gradient` [Pa/m] over the thickness, in the direction away from the near electrode. This stress bends
-/// every section by M = gradient a b^3/12, so that the curvature is M/EI: gradient/E for a plain beam and less where a layer
-/// stiffens it. Source: W. Fang & J. A. Wickert 1996, J. Micromech. Microeng. 6, 301. Valid for slopes well below 1.
-[[nodiscard]] double curl(const Device& device, double gradient, double x);
-/// Returns the smallest curl along the beam, at most 0.
-[[nodiscard]] double lowest_curl(const Device& device, double gradient);
 /// Returns the modal force per volt of the piezo layer on a beam with sections or layers: the integral of its moment per volt
 /// and phi_i''.
 [[nodiscard]] Eigen::VectorXd piezo_forces(const Device& device, const BeamModes& modes);

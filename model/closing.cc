@@ -300,7 +300,6 @@ class ClosingRun {
     if (!parts_.connection) return;
     parts_.connection->finish();
     out_.first_touch = parts_.connection->first_touch();
-    out_.first_touch_velocity = parts_.connection->impact_velocity();
   }
 
   const Switch& model_;

@@ -7,7 +7,6 @@
 #include <concepts>
 #include <utility>
 
-#include "base/decompositions.h"
 #include "base/require.h"
 #include "model/built_beam.h"
 #include "model/constants.h"
@@ -15,60 +14,17 @@
 #include "model/contact/face.h"
 #include "model/contact/pad.h"
 #include "model/far_side.h"
-#include "model/forces/dispersion.h"
 #include "model/forces/electrostatic.h"
 #include "model/forces/gold_casimir.h"
 #include "model/gas/gas_law.h"
 #include "model/gas/perforated_strip.h"
 #include "model/gas/reynolds_film.h"
 #include "model/modal_projection.h"
+#include "model/placed_laws.h"
 #include "model/sampled_modes.h"
 
 namespace softland {
 namespace {
-
-struct PointRange {
-  Eigen::Index begin, end;
-};
-
-PointRange points_in(const Eigen::ArrayXd& positions, double begin, double end) {
-  const auto first = std::lower_bound(positions.begin(), positions.end(), begin);
-  const auto last = std::lower_bound(positions.begin(), positions.end(), end);
-  return {first - positions.begin(), last - positions.begin()};
-}
-
-template <class Law>
-std::shared_ptr<const DistributedLaw> erased(Law law, PointRange range, double floor) {
-  return std::make_shared<const DistributedLawOf<Law>>(law, range.begin, range.end, floor);
-}
-
-// Points of a range under a structure of one width and thickness, and with one pattern of holes. `width` is without the holes,
-// `full_width` includes them.
-struct EvenRange {
-  PointRange points;
-  double width, thickness;
-  Holes holes = {};
-  double full_width = width;
-};
-
-// Returns ranges of points between two places, each with constant sizes of the structure. A uniform structure has one range;
-// when the width changes along the structure each point is a range of its own.
-std::vector<EvenRange> even_ranges(const Structure& s, const Eigen::ArrayXd& positions, double begin, double end) {
-  if (!s.is_built()) return {{points_in(positions, begin, end), s.width, s.thickness}};
-  std::vector<EvenRange> ranges;
-  for (const LocalSection& local : local_sections(s)) {
-    const PointRange points = points_in(positions, std::max(begin, local.begin), std::min(end, local.end));
-    const double left = area_left(local.holes);
-    if (local.is_even()) {
-      if (points.begin < points.end) ranges.push_back({points, local.width * left, local.thickness, local.holes, local.width});
-    } else {
-      for (Eigen::Index p = points.begin; p < points.end; ++p)
-        ranges.push_back(
-            {{p, p + 1}, local.width_at(positions[p]) * left, local.thickness, local.holes, local.width_at(positions[p])});
-    }
-  }
-  return ranges;
-}
 
 // Calls visit(range) for the points over each electrode on whose dielectric the beam may land.
 template <class Visit>
@@ -80,10 +36,6 @@ void for_faces(const Device& device, const Eigen::ArrayXd& positions, Visit&& vi
   }
 }
 
-std::shared_ptr<const DistributedLaw> one_law(std::vector<std::shared_ptr<const DistributedLaw>> pads) {
-  return pads.size() == 1 ? pads.front() : std::make_shared<const LawOnPads>(std::move(pads));
-}
-
 // Returns the number of points over a beam's length that resolve the field when the beam first touches a face; 0 when the beam
 // cannot land on a face. The beam bends over the face like (g / 2) (1 - cos(2 pi x / L)), so that the gap H of the field has
 // doubled at a distance of L sqrt(H / g) / pi: six points lie in this distance, which is our choice. Half as many points give
@@ -92,23 +44,6 @@ double points_to_land(const Device& device) {
   if (!device.lands_along_face()) return 0;
   constexpr double points = 6;
   return points * pi * std::sqrt(device.gap.electrode / (device.dielectric_depth() + device.landing()->begin()));
-}
-
-// Calls `make` with the force law of an electrode that has this fringing field.
-template <class Make>
-std::shared_ptr<const DistributedLaw> electrostatic(Fringing fringing, const EvenRange& range, Make&& make) {
-  return std::visit([&](const auto& law) { return make(ElectrostaticForce<std::decay_t<decltype(law)>>{law}); },
-                    row_of(fringing_laws, fringing).make(range.width, range.thickness));
-}
-
-std::shared_ptr<const DistributedLaw> dispersion_force(const Dispersion& d, double width, PointRange range, double floor) {
-  const auto along = [&](auto law) { return erased(DispersionForce<decltype(law)>{.law = law, .width = width}, range, floor); };
-  const VanDerWaals near{.hamaker_constant = d.hamaker_constant, .equilibrium_distance = d.equilibrium_distance};
-  if (d.model == DispersionModel::van_der_waals) return along(near);
-  const auto with = [&](auto casimir) {
-    return d.model == DispersionModel::casimir ? along(casimir) : along(SmallerOfBoth<decltype(casimir)>{casimir, near});
-  };
-  return d.conductor == Conductor::gold ? with(GoldCasimir{}) : with(IdealCasimir{});
 }
 
 }  // namespace
@@ -308,65 +243,6 @@ double Switch::penetration_under(double force) const {
   return high;
 }
 
-std::vector<double> Switch::share_of(double share, std::span<const double> values) const {
-  std::vector<double> part(values.begin(), values.end());
-  for (std::size_t k = 0; k < part.size(); ++k)
-    part[k] = drive_kind(k) == DriveKind::piezo ? share * values[k] : value_of_strength(k, share * strength(k, values[k]));
-  return part;
-}
-
-std::optional<Eigen::VectorXd> Switch::open_equilibrium(std::span<const double> values) const {
-  if (std::all_of(values.begin(), values.end(), [](double value) { return value == 0; })) return rest_;
-  return loaded_equilibrium(values);
-}
-
-// Finds the equilibrium in one Newton iteration if possible, and otherwise in increments of the load: a beam that stretches is
-// far stiffer when bent than Newton's method predicts from the straight beam.
-std::optional<Eigen::VectorXd> Switch::loaded_equilibrium(std::span<const double> values) const {
-  Eigen::VectorXd q = Eigen::VectorXd::Zero(modes());
-  if (std::optional<Eigen::VectorXd> found = equilibrium_from(q, values)) return found;
-  constexpr double shortest = 1e-3;
-  double step = 0.25;
-  for (double share = 0; share < 1 && step > shortest;) {
-    const double next = std::min(1.0, share + step);
-    if (std::optional<Eigen::VectorXd> found = equilibrium_from(q, share_of(next, values))) {
-      q = std::move(*found);
-      share = next;
-    } else {
-      step /= 2;
-    }
-  }
-  return step > shortest ? std::optional(q) : std::nullopt;
-}
-
-// Finds the equilibrium by Newton's method from q. The load grows ever faster as the gap closes, so the iterates stay on the
-// stable side, before the equilibrium. If the tangent at an iterate is not stable, no stable equilibrium exists.
-std::optional<Eigen::VectorXd> Switch::equilibrium_from(Eigen::VectorXd q, std::span<const double> values) const {
-  constexpr int most_iterations = 200;  // near the fold an iteration halves the distance at best
-  constexpr double rounding = 1e-14;    // share of the gap
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(modes());
-  Workspace work = workspace();
-  Eigen::VectorXd force(modes());
-  Eigen::MatrixXd by_q(modes(), modes()), by_v(modes(), modes());
-  for (int i = 0; i < most_iterations; ++i) {
-    accelerations(q.data(), zero.data(), values, false, work, force.data());
-    jacobian(q.data(), zero.data(), values, false, work, by_q, by_v);
-    if (!(smallest_gap(work) > gap_floor())) return std::nullopt;
-    // Each equation is in units of its mode's own stiffness.
-    const std::optional<Eigen::VectorXd> moved =
-        solve_definite(-(basis_.angular_frequencies().cwiseInverse().asDiagonal() * by_q *
-                         basis_.angular_frequencies().cwiseInverse().asDiagonal()),
-                       force.cwiseQuotient(basis_.angular_frequencies()));
-    if (!moved) return std::nullopt;
-    const Eigen::VectorXd step = moved->cwiseQuotient(basis_.angular_frequencies());
-    q += step;
-    if (step.cwiseProduct(basis_.contact_shape()).cwiseAbs().sum() < rounding * device_.gap.electrode) {
-      return contact_deflection(q.data()) < contact_gap_ ? std::optional(q) : std::nullopt;
-    }
-  }
-  return std::nullopt;
-}
-
 Switch::Workspace Switch::workspace() const {
   const Eigen::ArrayXd zero = Eigen::ArrayXd::Zero(quadrature_.shapes().rows());
   return {.field = {.gap = zero, .velocity = zero, .smallest_gap = 0}, .load = zero, .by_deflection = zero, .by_velocity = zero};
@@ -489,54 +365,6 @@ void Switch::rates(const double* state, std::span<const double> volts, const Con
 
 double Switch::film_scale() const {
   return 2 * bending_energy_ / (contact_gap_ * device_.structure.width * device_.structure.length * film_->ambient());
-}
-
-double Switch::film_energy(const double* state, Workspace& work) const {
-  if (!film_) return 0;
-  quadrature_.set_gap(state, work.field);
-  return film_->energy(work.field, quadrature_.weights(), state + 2 * modes());
-}
-
-double Switch::law_potential(std::size_t drive, const double* q, Workspace& work) const {
-  if (drive >= driven_laws_.size()) return 0;
-  quadrature_.set_gap(q, work.field);
-  return driven_laws_[drive]->potential(work.field, quadrature_.weights());
-}
-
-double Switch::capacitance(std::size_t drive, const double* q, Workspace& work) const {
-  return drive_kind(drive) == DriveKind::electrode ? -2 * law_potential(drive, q, work) : 0;
-}
-
-double Switch::charge(std::size_t drive, double value, const double* q, Workspace& work) const {
-  switch (drive_kind(drive)) {
-    case DriveKind::electrode:
-      return capacitance(drive, q, work) * (value - neutral_voltages_[drive]);
-    case DriveKind::dispersion:
-      return -law_potential(drive, q, work);
-    case DriveKind::piezo:
-      break;
-  }
-  return basis_.piezo_charge(q);
-}
-
-double Switch::elastic_energy(const double* q) const {
-  const double bending = basis_.bending_energy(q);
-  return stretching_ ? bending + stretching_->energy(q) : bending;
-}
-
-double Switch::dissipated_power(const double* q, const double* v, Workspace& work, const double* film) const {
-  quadrature_.set_field(q, v, work.field);
-  return dissipated_power(v, work, film);
-}
-
-double Switch::dissipated_power(const double* v, Workspace& work, const double* film) const {
-  work.load.setZero();
-  for (const auto& law : passive_laws_) law->add_load(work.field, 0, work.load.data());
-  const double modal = 2 * device_.structure.damping_ratio * basis_.at(v).cwiseAbs2().dot(basis_.angular_frequencies());
-  const double squeezed =
-      modal -
-      (quadrature_.weights() * work.load.head(quadrature_.points()) * work.field.velocity.head(quadrature_.points())).sum();
-  return film != nullptr ? squeezed + film_->dissipated_power(work.field, quadrature_.weights(), film) : squeezed;
 }
 
 double Switch::contact_reach(std::size_t c) const { return contact_ ? softland::contact_reach(contact(c)) : 0; }

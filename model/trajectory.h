@@ -1,6 +1,7 @@
 // The result of a closing: the motion of the contact point, touches, and further numbers for figures of merit.
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -30,6 +31,18 @@ struct Touch {
   double peak_energy = 0;      ///< largest energy stored in the contact law; for a rigid contact the kinetic energy [J]
   /// Largest pressure of the highest summit over the hardness (model/contact/summit_pressure.h); NaN unless both are known.
   double pressure = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// The first touch of a contact, or of any contact that makes a connection.
+struct FirstTouch {
+  double time = std::numeric_limits<double>::quiet_NaN();      ///< [s]; NaN before a touch
+  double velocity = std::numeric_limits<double>::quiet_NaN();  ///< impact velocity [m/s]; NaN before a touch
+
+  [[nodiscard]] bool happened() const { return !std::isnan(time); }
+  /// Takes a touch at a time [s] and impact velocity [m/s], unless an earlier touch is known.
+  void take(double at, double impact_velocity) {
+    if (!(time <= at)) *this = {.time = at, .velocity = impact_velocity};
+  }
 };
 
 struct Work {
@@ -111,10 +124,8 @@ struct Trajectory {
   double least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
   /// Outcomes of all contacts of a switch with several contacts; empty for a single contact.
   std::vector<ContactOutcome> contacts;
-  /// Time of the first touch of any of several contacts that makes the connection [s], and the speed of this touch [m/s]. NaN
-  /// for a single contact, and without a touch.
-  double first_touch = std::numeric_limits<double>::quiet_NaN();
-  double first_touch_velocity = std::numeric_limits<double>::quiet_NaN();
+  /// First touch of any of several contacts that makes the connection; unset for a single contact.
+  FirstTouch first_touch = {};
   /// Times of electrical closing, if Device::electrical gives a bound.
   ElectricalOutcome electrical = {};
   EnergyBalance energy;     ///< balance at the end of the run

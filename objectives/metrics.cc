@@ -35,16 +35,14 @@ void LandingFigures::rebound(const Rebound& rebound) {
 
 LandingFigures::Course MetricsObserver::course() const {
   return {.sound = rebounds_.usable(),
-          .touched = rebounds_.touched(),
           .above = rebounds_.under_way().has_value(),
           .first_touch = rebounds_.first_touch(),
-          .impact_velocity = rebounds_.impact_velocity(),
           .last_time = rebounds_.last_time(),
           .closest = closest_};
 }
 
 void MetricsObserver::knot(const TrajectoryPoint& point) {
-  if (!rebounds_.touched()) closest_ = std::min(closest_, contact_gap_ - point.position);
+  if (!rebounds_.first_touch().happened()) closest_ = std::min(closest_, contact_gap_ - point.position);
   if (opening_) opening_->follow(last_, point);
   charge_.follow(last_, point);
   rebounds_.knot(point, [this](const Rebound& rebound) { opening_ ? opening_->bounce(rebound) : figures_.rebound(rebound); });
@@ -85,7 +83,7 @@ Metrics MetricsObserver::metrics(const Trajectory& end) {
   result.overshoot_open = opening.overshoot;
   result.least_gap_open = opening.least_gap;
   const double apart = std::isfinite(result.separated) ? result.separated : 0;  // no value if the run began closed
-  result.closed_time = options_.opening.time - landing_->first_touch - apart + opening.opening_time - opening.separated;
+  result.closed_time = options_.opening.time - landing_->first_touch.time - apart + opening.opening_time - opening.separated;
   return result;
 }
 
@@ -99,8 +97,9 @@ Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) con
 
   const bool is_connection = !end.contacts.empty();
   if (!end.began_closed) {
-    result.initial_contact_time = is_connection ? end.first_touch : course.first_touch;
-    result.impact_velocity = is_connection ? end.first_touch_velocity : course.impact_velocity;
+    const FirstTouch& first = is_connection ? end.first_touch : course.first_touch;
+    result.initial_contact_time = first.time;
+    result.impact_velocity = first.velocity;
   }
   if (touched_ && !end.began_closed) result.largest_impact_velocity = largest_impact_velocity_;
   if (!ran_to_the_end || !sound) return result;
@@ -112,7 +111,7 @@ Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) con
     if (end.status == Status::done) result.status = Status::not_settled;
     return result;
   }
-  if (!course.touched) {
+  if (!course.first_touch.happened()) {
     result.closest = course.closest;
     if (end.status == Status::done) result.status = result.touched() ? Status::not_settled : Status::no_contact;
     return result;
@@ -137,7 +136,7 @@ Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) con
   result.separated = separated_ + (course.above ? course.last_time - latest_.begin : 0);
   result.reopened = course.above && latest_.height > end.contact_gap / 2;
   if (std::isfinite(end.landing_excess)) result.landing_excess = std::max(0.0, end.landing_excess);
-  const double permanent = significant_ > 0 ? last_end_ : course.first_touch;
+  const double permanent = significant_ > 0 ? last_end_ : course.first_touch.time;
   result.last_rebound_end = std::isnan(permanent) ? course.last_time : permanent;
   const double rest = course.last_time - permanent;
   // An unknown in-contact period is needed only after a rebound.

@@ -120,12 +120,11 @@ class LandingFigures {
 
   /// The motion of the contact point up to the end of a run.
   struct Course {
-    bool sound = true;  ///< true when every knot was finite, and the knots were in order of time
-    bool touched = false;
+    bool sound = true;   ///< true when every knot was finite, and the knots were in order of time
     bool above = false;  ///< true when the last rebound, already passed to rebound(), had not ended at the end of the run
-    double first_touch = Metrics::unset, impact_velocity = Metrics::unset;  ///< both of the first touch [s], [m/s]
-    double last_time = 0;                                                   ///< time of the last knot [s]
-    double closest = Metrics::unset;                                        ///< smallest separation before the first touch [m]
+    FirstTouch first_touch = {};
+    double last_time = 0;             ///< time of the last knot [s]
+    double closest = Metrics::unset;  ///< smallest separation before the first touch [m]
   };
   /// Returns the figures of the run. Call it after the end of the run; see the function metrics() below.
   [[nodiscard]] Metrics metrics(const Trajectory& end, const Course& course) const;

@@ -48,10 +48,8 @@ class ReboundFinder {
 
   /// Returns true when every knot so far was finite and in order of time.
   [[nodiscard]] bool usable() const { return usable_; }
-  [[nodiscard]] bool touched() const { return touched_; }
-  [[nodiscard]] double first_touch() const { return first_touch_; }          ///< time of first touch [s]; NaN before a touch
-  [[nodiscard]] double impact_velocity() const { return impact_velocity_; }  ///< first impact velocity [m/s]; NaN before a touch
-  [[nodiscard]] double last_time() const { return last_.time; }              ///< time of the last knot that was not ignored [s]
+  [[nodiscard]] const FirstTouch& first_touch() const { return first_touch_; }
+  [[nodiscard]] double last_time() const { return last_.time; }  ///< time of the last knot that was not ignored [s]
   /// Returns the rebound that has not ended yet, if any.
   [[nodiscard]] const std::optional<Rebound>& under_way() const { return under_way_; }
 
@@ -89,11 +87,10 @@ class ReboundFinder {
 
   template <class Found>
   void reach(const Node& next, Found&& found) {
-    if (!touched_ && next.separation <= 0) {
-      touched_ = true;
-      first_touch_ = next.time;
-      impact_velocity_ = std::abs(next.velocity);
-    } else if (touched_ && next.separation > 0) {
+    const bool touched = first_touch_.happened();
+    if (!touched && next.separation <= 0) {
+      first_touch_ = {.time = next.time, .velocity = std::abs(next.velocity)};
+    } else if (touched && next.separation > 0) {
       if (!under_way_) under_way_ = Rebound{.begin = node_.time, .end = std::numeric_limits<double>::quiet_NaN()};
       if (next.separation > under_way_->height) {
         under_way_->height = next.separation;
@@ -122,10 +119,10 @@ class ReboundFinder {
   }
 
   double gap_;  // contact gap [m]
-  bool usable_, began_ = false, touched_ = false;
+  bool usable_, began_ = false;
   TrajectoryPoint last_;
   Node node_;
-  double first_touch_ = std::numeric_limits<double>::quiet_NaN(), impact_velocity_ = std::numeric_limits<double>::quiet_NaN();
+  FirstTouch first_touch_;
   std::optional<Rebound> under_way_;
 };
 

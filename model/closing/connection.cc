@@ -127,10 +127,7 @@ void ConnectionCourse::finish() {
 }
 
 void ConnectionTouches::take(const Touch& touch) {
-  if (!(first_touch_ <= touch.begin)) {
-    first_touch_ = touch.begin;
-    impact_velocity_ = touch.impact_velocity;
-  }
+  first_touch_.take(touch.begin, touch.impact_velocity);
   pending_.impact_velocity = std::max(pending_.impact_velocity, touch.impact_velocity);
   pending_.peak_force = std::max(pending_.peak_force, touch.peak_force);
   pending_.peak_energy += touch.peak_energy;

@@ -31,14 +31,13 @@ class ConnectionTouches {
   /// Returns the last touch of the connection, after all touches of contacts have been added.
   [[nodiscard]] std::optional<Touch> finish();
 
-  /// Return time [s] and speed [m/s] of the first touch of any contact that makes the connection; NaN before this touch.
-  [[nodiscard]] double first_touch() const { return first_touch_; }
-  [[nodiscard]] double impact_velocity() const { return impact_velocity_; }
+  /// Returns the first touch of any contact that makes the connection.
+  [[nodiscard]] const FirstTouch& first_touch() const { return first_touch_; }
 
  private:
   std::optional<Touch> touch_;
   Touch pending_;
-  double first_touch_ = std::numeric_limits<double>::quiet_NaN(), impact_velocity_ = std::numeric_limits<double>::quiet_NaN();
+  FirstTouch first_touch_;
 };
 
 /// The time from which the contact force is steady [s], and the least force after the first touch [N]; see Trajectory.
@@ -63,9 +62,8 @@ class ConnectionCourse {
   /// Passes the last touch of the connection on, after every contact has passed on its last touch.
   void finish();
 
-  /// Return time [s] and speed [m/s] of the first touch of any contact that makes the connection; NaN before this touch.
-  [[nodiscard]] double first_touch() const { return touches_.first_touch(); }
-  [[nodiscard]] double impact_velocity() const { return touches_.impact_velocity(); }
+  /// Returns the first touch of any contact that makes the connection.
+  [[nodiscard]] const FirstTouch& first_touch() const { return touches_.first_touch(); }
 
  private:
   class Followed final : public ClosingObserver {

@@ -350,8 +350,7 @@ class ContactAdapter final : public simd::LaneObserver {
             .time = lane.end,
             .steady_force_time = steady,
             .least_force_after_touch = least,
-            .first_touch = touches_.first_touch(),
-            .first_touch_velocity = touches_.impact_velocity()};
+            .first_touch = touches_.first_touch()};
   }
 
  private:

@@ -84,8 +84,7 @@ struct EnsembleEnd {
          least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
   double drive_energy = std::numeric_limits<double>::quiet_NaN();  ///< EnergyBalance::source_work + Trajectory::layer_energy;
                                                                    ///< NaN if not measured [J]
-  /// Figures of a switch with several contacts, defined as in Trajectory: [s], [m/s].
-  double first_touch = std::numeric_limits<double>::quiet_NaN(), first_touch_velocity = std::numeric_limits<double>::quiet_NaN();
+  FirstTouch first_touch = {};                                     ///< as in Trajectory, for a switch with several contacts
 };
 
 /// Returns the reason why closings of this switch cannot be simulated in lanes; empty when they can.

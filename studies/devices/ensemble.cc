@@ -27,8 +27,7 @@ class LaneFigures final : public LandingObserver {
  public:
   explicit LaneFigures(const MetricsOptions& options) : figures_(options) {}
   void touch(const Touch& touch) override {
-    if (!course_.touched) course_.first_touch = touch.begin, course_.impact_velocity = touch.impact_velocity;
-    course_.touched = true;
+    course_.first_touch.take(touch.begin, touch.impact_velocity);
     figures_.touch(touch);
   }
   void rebound(double begin, double end, double height) override {
@@ -43,7 +42,6 @@ class LaneFigures final : public LandingObserver {
                    .steady_force_time = end.steady_force_time,
                    .least_force_after_touch = end.least_force_after_touch,
                    .first_touch = end.first_touch,
-                   .first_touch_velocity = end.first_touch_velocity,
                    .energy = {.source_work = end.drive_energy}};
     if (model.contacts() > 1) run.contacts.resize(model.contacts());
     return {.metrics = figures_.metrics(run, course_)};

@@ -33,7 +33,7 @@ class EdgeRecorder final : public ClosingObserver {
   }
   [[nodiscard]] VectorXd first(std::size_t count) {
     std::vector<double> all;
-    if (finder_.touched()) all.push_back(finder_.first_touch());
+    if (finder_.first_touch().happened()) all.push_back(finder_.first_touch().time);
     all.insert(all.end(), edges_.begin(), edges_.end());
     if (const auto& last = finder_.under_way()) all.push_back(last->begin);
     all.resize(count, Metrics::unset);

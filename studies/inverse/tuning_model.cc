@@ -128,7 +128,7 @@ class SingleClosing final : public ClosingObserver {
   void touch(const Touch& touch) override { closing.fastest = std::fmax(closing.fastest, touch.impact_velocity); }
   PredictedClosing ended(const Trajectory& run) {
     closing.followed = finder_.usable() && run.status == Status::done;
-    if (finder_.touched()) closing.touch = finder_.first_touch(), closing.speed = finder_.impact_velocity();
+    closing.touch = finder_.first_touch().time, closing.speed = finder_.first_touch().velocity;
     if (const auto& last = finder_.under_way()) add(*last, std::numeric_limits<double>::infinity());
     if (edges_) closing.by_capacitance = seen(edges_->rises());
     return std::move(closing);

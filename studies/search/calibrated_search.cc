@@ -24,6 +24,29 @@ constexpr std::uint64_t which_measured = 2;    // number that makes the random d
 
 }  // namespace
 
+void DevicesRow::inherit(const DevicesRow& other) {
+  const auto includes = [](const std::optional<double>& more, const std::optional<double>& less) {
+    return !less || (more && *more <= *less);
+  };
+  const Calibration& known = other.knowledge;
+  const bool knows_more = includes(knowledge.pull_in_error, known.pull_in_error) &&
+                          includes(knowledge.frequency_error, known.frequency_error) &&
+                          includes(knowledge.piezo_error, known.piezo_error) && includes(knowledge.time_error, known.time_error);
+  if (!knows_more || !lands_better(other, *this)) return;
+  judged = other.judged;
+  judged_whole = other.judged_whole;
+  searched_for_it = false;
+}
+
+bool DevicesRow::is_worth_measuring(const DevicesRow& uncalibrated) const {
+  const double lands = judged.bounce_free.value, before = uncalibrated.judged.bounce_free.value;
+  if (std::max(lands, before) >= lands_half) return lands > before;
+  const auto speed = [](const DevicesRow& row) {
+    return quantile_95(row.judged.outcomes, key_of(&Metrics::largest_impact_velocity));
+  };
+  return speed(*this) < worth_choosing * speed(uncalibrated);
+}
+
 // Computes the measured quantities of the fresh devices, for the rows with a per-device calibration, in advance.
 void RobustSearch::measure_ahead() {
   try {

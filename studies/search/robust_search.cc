@@ -86,6 +86,14 @@ double quantile(const std::vector<DeviceOutcome>& outcomes, std::string_view key
 }
 double quantile_95(const std::vector<DeviceOutcome>& outcomes, std::string_view key) { return quantile(outcomes, key, 0.95); }
 
+void share_budget(OptimizeOptions& options, RobustSearchOptions& devices) {
+  constexpr long share_of_drawing = 5;  // divisor of the budget for the search on the nominal device
+  const long all = options.max_evaluations;
+  options.max_evaluations = std::max(1L, all / share_of_drawing);
+  devices.closings = all - options.max_evaluations;
+  devices.are_a_budget = true;
+}
+
 bool lands_better(const DevicesRow& a, const DevicesRow& b) {
   const double lands = std::max(a.judged.bounce_free.value, b.judged.bounce_free.value);
   if (lands >= lands_half) return a.judged.bounce_free.value > b.judged.bounce_free.value;

@@ -47,6 +47,10 @@ struct RobustSearchOptions {
   std::function<void(const Leading&)> on_leading = {};
 };
 
+/// Divides one budget of closings: a fifth of options.max_evaluations for the search on the nominal device, the rest for the
+/// race.
+void share_budget(OptimizeOptions& options, RobustSearchOptions& devices);
+
 /// A row of the main table of results: the fresh devices under one waveform and calibration.
 struct DevicesRow {
   std::string name;             ///< "plain step", "for the drawing", "for the devices", "Vdp to 1 %"
@@ -54,7 +58,14 @@ struct DevicesRow {
   bool searched_for_it = true;  ///< false: the waveform was searched for another calibration
   bool judged_whole = true;  ///< true: simulated over the whole window of the scene; false: over the shorter window of a search
   DriveRobustness judged = {};
+
+  /// Takes the waveform of `other`, if `other` needs a less precise calibration and closes better.
+  void inherit(const DevicesRow& other);
+  /// Returns true when this row is so much better than a row without a calibration that devices are worth measuring.
+  [[nodiscard]] bool is_worth_measuring(const DevicesRow& uncalibrated) const;
 };
+/// A further waveform is offered only when its impact velocity or time is below this share of the first one's.
+inline constexpr double worth_choosing = 0.9;
 
 /// True if more devices of `a` than of `b` are bounce-free, provided that at least half are in one of the rows; otherwise true
 /// if the impacts of `a` are softer.

@@ -11,6 +11,7 @@
 #include "base/executor.h"
 #include "base/require.h"
 #include "studies/closing/plain_step.h"
+#include "studies/search/search_findings.h"
 #include "studies/search/step_comparison.h"
 
 namespace softland {
@@ -20,48 +21,13 @@ constexpr std::size_t scouted_on = 16, ranked_on = 64;  // devices for ranking c
 constexpr std::size_t kept_of_scouted = 24;             // best candidates on scouted_on devices, by each measure
 constexpr std::size_t most_of_ranked = 2;               // best candidates on ranked_on devices, by each measure
 constexpr std::size_t most_judged = 3;  // candidates judged on fresh devices, until one is not worse than the plain step
-constexpr std::size_t most_of_front = 6;
 constexpr double end_of_drawing = 0.3;  // end of the nominal search, as a share of a time budget
 
 constexpr const char *fast_row = "fast", *soft_row = "soft";
 // Largest time until a steady contact of the choices "fast", "default" and "soft", over that of the plain step.
 constexpr double fast_within = 0.5, usual_within = 1, soft_within = 2;
-constexpr double by_chance = 1.02;      // factor on these times that allows for other random devices
-constexpr double worth_choosing = 0.9;  // a further choice must be below this share of the default's impact velocity or time
+constexpr double by_chance = 1.02;  // factor on these times that allows for other random devices
 constexpr double fewer_bounce_free = 0.05;
-constexpr std::size_t drawn_devices = 50, instants_of_course = 240;
-constexpr double units_of_gap = 5000;  // resolution of the stored gaps, in units per contact gap
-constexpr double after_steady = 1.1;   // end of the stored gaps over time, in times until steady contact
-
-DevicesFindings::Row told(const DevicesRow& row) {
-  const DriveRobustness& drive = row.judged;
-  DevicesFindings::Row r{.name = row.name,
-                         .pull_in_error = row.knowledge.pull_in_error.value_or(Metrics::unset),
-                         .frequency_error = row.knowledge.frequency_error.value_or(Metrics::unset),
-                         .piezo_error = row.knowledge.piezo_error.value_or(Metrics::unset),
-                         .time_error = row.knowledge.time_error.value_or(Metrics::unset),
-                         .searched_for_it = row.searched_for_it,
-                         .bounce_free = drive.bounce_free.value,
-                         .open = std::max(0.0, 1 - drive.closing.value - drive.collapsed.value),
-                         .collapsed = drive.collapsed.value};
-  for (const Figure& f : device_figures) {
-    if (f.asked != nullptr && drive.figures[f].devices == 0) continue;
-    const bool needs_the_end = f.key == key_of(&Metrics::steady_force_time) || f.key == key_of(&Metrics::permanent_contact_time);
-    if (needs_the_end && !row.judged_whole) continue;
-    const auto& quantiles = drive.figures[f].quantiles;
-    const std::string key(f.key);
-    r.at_50[key] = quantiles[1].value, r.at_95[key] = quantiles[2].value, r.at_99[key] = quantiles[3].value;
-  }
-  for (const auto& [height, key] : DevicesFindings::yield_heights) {
-    const auto rebounds_less = [most = height](const DeviceOutcome& o) {
-      return o.closed() && o.is_held && o.metrics.major_bounce_height <= most;
-    };
-    if (drive.outcomes.empty()) continue;
-    r.yield[key] =
-        static_cast<double>(std::ranges::count_if(drive.outcomes, rebounds_less)) / static_cast<double>(drive.outcomes.size());
-  }
-  return r;
-}
 
 class RobustSearchStudy {
  public:
@@ -86,7 +52,7 @@ class RobustSearchStudy {
     if (beside_.valid()) beside_.wait();  // the results of the search over devices are read from here on
     if (progress_.stopped() && result_->rows.empty()) take_leader();
     result_->interrupted = progress_.stopped();
-    if (!result_->rows.empty()) tell_findings();
+    if (!result_->rows.empty()) complete_findings(*result_, searched_, options_.seed);
     return *std::move(result_);
   }
 
@@ -252,8 +218,8 @@ class RobustSearchStudy {
     decide_choices();
     if (undelayed_) add_row(undelayed_row, undelayed_->waveforms);
     add(measured);
-    front();
-    draw_courses();
+    judge_front(*result_, searched_, progress_);
+    draw_courses(*result_, verdict_options(), progress_);
     result_->findings.windows = hold_windows(first().given, verdict_options(), progress_);
   }
 
@@ -322,45 +288,21 @@ class RobustSearchStudy {
     return given;
   }
 
-  // Replaces the waveform of `row` by that of `other`, if `other` needs a less precise calibration and closes better.
-  static void inherit(DevicesRow& row, const DevicesRow& other) {
-    const auto includes = [](const std::optional<double>& more, const std::optional<double>& less) {
-      return !less || (more && *more <= *less);
-    };
-    const Calibration &own = row.knowledge, &known = other.knowledge;
-    const bool knows_more = includes(own.pull_in_error, known.pull_in_error) &&
-                            includes(own.frequency_error, known.frequency_error) &&
-                            includes(own.piezo_error, known.piezo_error) && includes(own.time_error, known.time_error);
-    if (!knows_more || !lands_better(other, row)) return;
-    row.judged = other.judged;
-    row.judged_whole = other.judged_whole;
-    row.searched_for_it = false;
-  }
-
-  static bool is_worth_measuring(const DevicesRow& measured, const DevicesRow& own) {
-    const double lands = measured.judged.bounce_free.value;
-    if (std::max(lands, own.judged.bounce_free.value) >= lands_half) return lands > own.judged.bounce_free.value;
-    const auto speed = [](const DevicesRow& row) {
-      return quantile_95(row.judged.outcomes, key_of(&Metrics::largest_impact_velocity));
-    };
-    return speed(measured) < worth_choosing * speed(own);
-  }
-
   void add(const CalibratedSearch& measured) {
     result_->pull_in = measured.pull_in;
     result_->closing_time = measured.closing_time;
     findings().by_error = measured.by_error;
     if (measured.rows.empty()) return;
-    const DevicesRow own = row_of_devices();
+    const DevicesRow own = result_->row_of_devices();
     std::vector<DevicesRow> rows;
     for (DevicesRow row : measured.rows) {
-      inherit(row, own);
-      for (const DevicesRow& other : rows) inherit(row, other);
+      row.inherit(own);
+      for (const DevicesRow& other : rows) row.inherit(other);
       rows.push_back(std::move(row));
     }
     std::ranges::copy(rows, std::back_inserter(result_->rows));
     const DevicesRow& best = rows[measured.best];
-    if (!is_worth_measuring(best, own)) return;
+    if (!best.is_worth_measuring(own)) return;
     findings().measured = best.name;
     result_->calibrated = with_waveforms(result_->drawing.baseline_scene, measured.best_waveforms);
     result_->calibrated->set(best.knowledge.time_error ? fmt::format("calibration.{}.error=\"50 ns\"", measured_time)
@@ -389,10 +331,6 @@ class RobustSearchStudy {
     if (found != drives.end()) result_->rows.push_back({.name = name, .knowledge = found->known.calibration(), .judged = *found});
   }
 
-  [[nodiscard]] DevicesRow& row_of_devices() {
-    return *std::ranges::find(result_->rows, std::string_view(for_the_devices), &DevicesRow::name);
-  }
-
   // Decides the winner on the fresh devices: the first candidate that is not worse than the plain step, else the plain step.
   void decide() {
     const double significant = first().given.scene.metrics.significant_rebound;
@@ -401,7 +339,7 @@ class RobustSearchStudy {
     std::vector<std::string>& worse_in = findings().worse_in;
     const auto compare = [&] {
       const std::vector<std::string_view> keys =
-          softland::worse_in(row_of_devices().judged.outcomes, step.outcomes, significant, options_.seed);
+          softland::worse_in(result_->row_of_devices().judged.outcomes, step.outcomes, significant, options_.seed);
       worse_in.assign(keys.begin(), keys.end());
     };
     std::size_t n = 0;
@@ -409,13 +347,13 @@ class RobustSearchStudy {
          compare()) {
       Robustness next = robustness(result_->varied, {of_candidate(++n)}, verdict_options(), progress_);
       result_->interrupted = next.interrupted;
-      row_of_devices().judged = next.drives.back();
+      result_->row_of_devices().judged = next.drives.back();
       std::erase_if(drives, [](const DriveRobustness& one) { return one.name == for_the_devices; });
       drives.push_back(std::move(next.drives.back()));
     }
     result_->best.plain_step_wins = !worse_in.empty();
     if (result_->best.plain_step_wins) {
-      row_of_devices().judged = step;
+      result_->row_of_devices().judged = step;
       win({});
     } else {
       result_->chosen = result_->candidates[n];
@@ -429,7 +367,7 @@ class RobustSearchStudy {
       note_delay(winner);
     }
     for (const Condition& condition : searched_.conditions())
-      findings().conditions.push_back(fulfilled(row_of_devices().judged.outcomes, condition));
+      findings().conditions.push_back(fulfilled(result_->row_of_devices().judged.outcomes, condition));
   }
 
   // Replaces the winner by a quicker choice, if that is not worse than the winner and than the plain step.
@@ -442,11 +380,11 @@ class RobustSearchStudy {
     const auto is_worse_than = [&](const std::vector<DeviceOutcome>& other) {
       return !softland::worse_in(judged->outcomes, other, significant, options_.seed).empty();
     };
-    if (is_worse_than(row_of_devices().judged.outcomes) || is_worse_than(step.outcomes)) return;
+    if (is_worse_than(result_->row_of_devices().judged.outcomes) || is_worse_than(step.outcomes)) return;
     result_->chosen = fast->candidate;
     result_->choices.erase(fast);
     judged->name = for_the_devices;
-    row_of_devices().judged = *judged;
+    result_->row_of_devices().judged = *judged;
     findings().worse_in.clear();
     DriveRobustness winner = std::move(*judged);
     drives.erase(judged);
@@ -476,7 +414,7 @@ class RobustSearchStudy {
       if (is_default) one.candidate = *result_->chosen;
       const std::string_view row = is_default ? std::string_view(for_the_devices) : std::string_view(one.name);
       const auto found = std::ranges::find(drives, row, &DriveRobustness::name);
-      one.judged = found != drives.end() ? *found : row_of_devices().judged;
+      one.judged = found != drives.end() ? *found : result_->row_of_devices().judged;
       one.tau = waited(one.judged.outcomes, result_->free.figure) / of_step;
       const auto equals = [&](const DeviceChoice& sooner) {
         return softland::worse_in(sooner.judged.outcomes, one.judged.outcomes, significant, options_.seed).empty();
@@ -516,94 +454,8 @@ class RobustSearchStudy {
                      });
     best.better_than_baseline = !best.plain_step_wins;
     best.harder_than_step = hardness_beyond_step(m, drawing.baseline.metrics);
-    best.best_cost = searched_.cost().value(row_of_devices().judged.outcomes, searched_.aims().tail);
+    best.best_cost = searched_.cost().value(result_->row_of_devices().judged.outcomes, searched_.aims().tail);
     best.baseline_cost = searched_.cost().value(result_->verdict.drives.front().outcomes, searched_.aims().tail);
-  }
-
-  // Computes contact gaps of devices over time, under the plain step and the winner, until the contact force is steady.
-  void draw_courses() {
-    if (result_->best.plain_step_wins) return;
-    const DriveRobustness &step = result_->verdict.drives.front(), &own = row_of_devices().judged;
-    double end = 0;
-    for (const DriveRobustness* one : {&step, &own})
-      end = std::fmax(end, after_steady * waited(one->outcomes, &Metrics::steady_force_time));
-    end = std::fmin(end, result_->varied.duration);
-    const double unit = result_->varied.model.contact_gap() / units_of_gap;
-    const auto courses = [&](const DriveRobustness& drive) {
-      std::vector<std::vector<int>> all;
-      for (const std::vector<double>& gap :
-           gap_courses(result_->varied, drive, drawn_devices, instants_of_course, end, verdict_options(), progress_).gaps) {
-        std::vector<int>& course = all.emplace_back();
-        for (const double g : gap) course.push_back(static_cast<int>(std::lround(g / unit)));
-      }
-      return all;
-    };
-    findings().courses = {.end = end, .unit = unit, .step = courses(step), .own = courses(own)};
-  }
-
-  // Finds the Pareto front of the candidates in time and impact speed, and judges its candidates on the fresh devices.
-  void front() {
-    std::vector<const ChosenFrom*> kept;
-    for (const ChosenFrom& one : result_->candidates) {
-      const bool beaten = std::ranges::any_of(result_->candidates, [&](const ChosenFrom& other) {
-        return other.first_touch <= one.first_touch && other.impact_speed <= one.impact_speed &&
-               (other.first_touch < one.first_touch || other.impact_speed < one.impact_speed);
-      });
-      if (!beaten && std::isfinite(one.first_touch) && kept.size() < most_of_front) kept.push_back(&one);
-    }
-    const RobustCost fresh = searched_.verdict_devices(searched_.known());
-    for (const ChosenFrom* one : kept) {
-      progress_.throw_if_stopped();
-      tell("verdict on candidates", static_cast<double>(findings().front.size()) / static_cast<double>(kept.size()));
-      const std::vector<DeviceOutcome> outcomes = searched_.closed(fresh, one->waveforms);
-      findings().front.push_back({.first_touch = quantile_95(outcomes, key_of(&Metrics::initial_contact_time)),
-                                  .impact_speed = quantile_95(outcomes, key_of(&Metrics::largest_impact_velocity)),
-                                  .bounce_free = share_of(outcomes, is_bounce_free),
-                                  .candidate = fmt::format("{} by {}", one->family, one->measure)});
-    }
-    std::ranges::stable_sort(findings().front, {}, &FrontPoint::first_touch);
-  }
-
-  // Adds the findings that were not stored earlier.
-  void tell_findings() {
-    DevicesFindings& d = findings();
-    const std::optional<Closing>& drawn = result_->drawing.best;
-    d.spread_assumed = searched_.spread_assumed();
-    d.count = static_cast<double>(result_->verdict.devices);
-    d.seed = static_cast<double>(options_.seed);
-    d.closings = static_cast<double>(searched_.budget().taken());
-    if (result_->chosen) d.measure = result_->chosen->measure, d.waveform = result_->chosen->family;
-    d.better_than_plain_step = !result_->best.plain_step_wins;
-    if (drawn) d.drawing = FigureValues(drawn->metrics), d.drawing_status = to_string(drawn->metrics.status);
-    d.drawing_goal_met = result_->drawing.goal_met;
-    for (const DevicesRow& row : result_->rows) d.rows.push_back(told(row));
-    for (const DeviceChoice& one : result_->choices)
-      d.choices.push_back({.name = one.name,
-                           .file = one.name == default_choice ? "best.toml" : one.name + ".toml",
-                           .waveform = one.candidate.family,
-                           .tau = one.tau});
-    if (const std::optional<StableApproach>& approach = result_->approach) {
-      std::vector<std::string> drives{approach->drive};
-      if (!approach->holder.empty()) drives.push_back(approach->holder);
-      d.stable_path = {.drives = drives,
-                       .share = searched_.share_with_path(),
-                       .reaches = approach->reaches,
-                       .limit = approach->limit,
-                       .touch_places = approach->touch_places(),
-                       .rise = shortest_rise(result_->varied)};
-    }
-    if (const DevicesFindings::Row* own = d.row(for_the_devices)) {
-      const double height = own->at_95.at(std::string(key_of(&Metrics::major_bounce_height)));
-      const double significant = result_->varied.scene.metrics.significant_rebound;
-      d.goal_met = height <= significant;
-      d.missed_by = std::max(0.0, height - significant);
-    }
-    for (const ChosenFrom& one : result_->candidates)
-      d.race.push_back({.measure = one.measure,
-                        .waveform = one.family,
-                        .closings = one.closings,
-                        .bounce_free = one.bounce_free,
-                        .cost = one.tail});
   }
 
   [[nodiscard]] DevicesFindings& findings() { return result_->findings; }
@@ -623,12 +475,8 @@ class RobustSearchStudy {
 
 }  // namespace
 
-void share_budget(OptimizeOptions& options, RobustSearchOptions& devices) {
-  constexpr long share_of_drawing = 5;  // divisor of the budget for the search on the nominal device
-  const long all = options.max_evaluations;
-  options.max_evaluations = std::max(1L, all / share_of_drawing);
-  devices.closings = all - options.max_evaluations;
-  devices.are_a_budget = true;
+DevicesRow& RobustSearchResult::row_of_devices() {
+  return *std::ranges::find(rows, std::string_view(for_the_devices), &DevicesRow::name);
 }
 
 bool RobustSearchResult::plain_step_lands() const {

@@ -41,10 +41,6 @@
 
 namespace softland {
 
-/// Divides one budget of closings: a fifth of options.max_evaluations for the search on the nominal device, the rest for the
-/// race.
-void share_budget(OptimizeOptions& options, RobustSearchOptions& devices);
-
 /// A waveform that the user may choose: the default, one with a quicker steady contact, or a softer and slower one.
 struct DeviceChoice {
   std::string name;  ///< "fast", "default", "soft"
@@ -74,6 +70,8 @@ struct RobustSearchResult {
   DevicesFindings findings = {};             ///< findings for reports; without rows if interrupted before the verdict
   bool interrupted = false;
 
+  /// Returns the row of the winner over the devices; call only after the verdict.
+  [[nodiscard]] DevicesRow& row_of_devices();
   /// True if 95 % of the devices have no significant rebound under the plain step.
   [[nodiscard]] bool plain_step_lands() const;
 };

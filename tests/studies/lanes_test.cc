@@ -497,7 +497,7 @@ TEST(Lanes, FollowABackStopThatIsTouched) {
   Connection seen;
   const Trajectory run = observe_closing(p.model, p.signals(), {.duration = p.duration}, seen);
   EXPECT_GT(seen.stop.touches, 0);
-  EXPECT_GT(run.first_touch, 85e-6) << "after the swing";
+  EXPECT_GT(run.first_touch.time, 85e-6) << "after the swing";
   const TestEnsemble ensemble(stopped->file, 20);
   constexpr double window = 25e-6;
   const std::vector<DeviceOutcome> one_by_one = ensemble.close(p.signals(), Vectors::none, 1e-6, false, window);

@@ -1,0 +1,32 @@
+// Keys of the columns of an evaluator: parameters of waveforms and quantities of the device, as the scene has them.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "config/scene.h"
+#include "config/units.h"
+#include "waveforms/waveform.h"
+
+namespace softland {
+
+/// Splits "electrode.main.span[2]" into its path and 2. A key without an element gives its path and 0.
+[[nodiscard]] std::pair<std::string, std::size_t> key_and_element(const std::string& key);
+/// Splits "waveform.main.level" into "main" and "level".
+[[nodiscard]] std::optional<std::pair<std::string, std::string>> waveform_key(const std::string& path);
+/// Returns the parameter of a waveform with this name, with its kind; null if the waveform family has none. Adds the names of the
+/// family's parameters up to it to `names`, for a message.
+[[nodiscard]] double* waveform_parameter(Waveform& waveform, const std::string& name, std::size_t element,
+                                         std::vector<std::string_view>& names, ParameterKind& kind);
+/// Returns the SI unit of a parameter; empty for a ratio.
+[[nodiscard]] std::string unit_of_parameter(ParameterKind kind, const std::string& drive);
+/// Returns the quantity that the scene has at a key; none if the key is missing or is not a quantity.
+[[nodiscard]] std::optional<Quantity> written_quantity(const SceneFile& file, const std::string& path, std::size_t element);
+/// Returns a scene in which these keys vary, each by its own value: a factor would be inexact because of rounding.
+[[nodiscard]] SceneFile scene_that_varies(SceneFile file, const std::vector<std::string>& keys);
+
+}  // namespace softland
