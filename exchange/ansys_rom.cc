@@ -51,7 +51,7 @@ class RomReader {
       }
       if (row.numbers.empty()) {
         end_ = row.line;
-        break;  // the names of the functions, below all numbers
+        break;  // the names of the model's functions follow the last numbers
       }
       rows_.push_back(std::move(row));
     }

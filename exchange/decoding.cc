@@ -58,7 +58,7 @@ int zero_bytes(std::string_view bytes) {
     first += bytes[2 * i] == '\0';
     second += bytes[2 * i + 1] == '\0';
   }
-  const std::size_t most = count - count / 8;  // a few characters are not ASCII
+  const std::size_t most = count - count / 8;  // an eighth of the characters may not be ASCII
   if (second >= most && first == 0) return 1;
   if (first >= most && second == 0) return 0;
   return -1;

@@ -15,8 +15,8 @@ struct NearPoint {
 };
 
 /// Returns the value on the axis: a0 of the fit value = a0 + a1 along + a2 along^2 + a3 along^3 + (b0 + b1 along) p +
-/// (c0 + c1 along) q with weights 1 - along^2. The terms in p and q account for the rotation of the section. None if the points
-/// do not determine a0: fewer than sixteen points, or points at too few places along the axis.
+/// (c0 + c1 along) q with weights 1 - along^2. The terms in p and q account for the rotation of the section. Returns none if
+/// the points do not determine a0: fewer than sixteen points, or points at too few places along the axis.
 [[nodiscard]] std::optional<double> value_on_axis(std::span<const NearPoint> points);
 
 }  // namespace softland::internal

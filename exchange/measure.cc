@@ -139,18 +139,18 @@ Heading heading_of(std::string_view text) {
   if (text.size() > 5 && same_letters(text.substr(0, 5), "time_")) {
     if (auto heading = split_heading(text, 4, text.substr(5))) return *heading;
   }
-  // headings such as "main_mV" and "resistance_ohm"
+  // Split headings such as "main_mV" and "resistance_ohm".
   if (const std::size_t at = text.rfind('_');
       at != std::string_view::npos && at > 0 && (text.ends_with('V') || text.ends_with("_ohm"))) {
     auto heading = split_heading(text, at, text.substr(at + 1));
     if (heading && (heading->unit->measure == Measure::voltage || heading->unit->symbol == "ohm")) return *heading;
   }
   Heading heading{.name = std::string(text), .unit = {}};
-  // headings such as "CH1V"
+  // Split headings such as "CH1V".
   if (text.size() > 3 && same_letters(text.substr(0, 2), "ch") && text.ends_with('V') &&
       text.find_first_not_of("0123456789", 2) == text.size() - 1)
     return {.name = std::string(text.substr(0, text.size() - 1)), .unit = unit_of("V")};
-  // circuit simulators write V(node) for a voltage and I(device) for a current
+  // Circuit simulators write V(node) for a voltage and I(device) for a current.
   if (text.size() > 3 && text[1] == '(' && text.back() == ')' && (text[0] == 'V' || text[0] == 'v')) heading.unit = unit_of("V");
   if (text.size() > 3 && text[1] == '(' && text.back() == ')' && (text[0] == 'I' || text[0] == 'i')) heading.unit = unit_of("A");
   return heading;
@@ -186,7 +186,7 @@ std::optional<Measured> measured_value(std::string_view text, const std::optiona
 
 bool is_unit_of_cells(const std::optional<Unit>& unit) {
   if (!unit) return false;
-  const bool is_suffix = unit->symbol == "m" || unit->symbol == "g";  // m and g are also suffixes of SPICE
+  const bool is_suffix = unit->symbol == "m" || unit->symbol == "g";  // m and g are also scale suffixes of numbers in SPICE
   return unit->measure == Measure::time || unit->measure == Measure::voltage || (unit->measure == Measure::other && !is_suffix);
 }
 

@@ -26,7 +26,7 @@ struct ModeFound {
   double share = 0;  ///< share of the mode's kind in the squared motion of all nodes; 1 if the file holds one direction only
   std::vector<double> along, across, axial;  ///< motion by section in the direction of motion, the third direction, the axis
   std::vector<double> twist;                 ///< motion by rotation about the axis, half the extent of the mesh from its middle
-  /// "bending", "in-plane"
+  /// Returns the name of the mode's kind, such as "bending" or "in-plane".
   [[nodiscard]] std::string name() const;
 };
 

@@ -75,7 +75,7 @@ constexpr std::array known_keys{
     KeyRow{"lowlevel", Says::level, &Preamble::low},
 };
 
-/// Keys of units.
+/// Keys of a preamble that give the units of the voltages and of the times.
 constexpr Words vertical_keys{"verticalunits", "verticalunit", "yunits", "yunit", "vunit", "yaxisunits", "yaxisunit"};
 constexpr Words horizontal_keys{"horizontalunits", "horizontalunit", "xunits",       "xunit",      "hunit",    "timeunits",
                                 "timeunit",        "timebaseunits",  "timebaseunit", "xaxisunits", "xaxisunit"};
@@ -119,7 +119,7 @@ std::string letters_of(std::string_view key) {
   return letters;
 }
 
-// Returns what a number says about the times; none if its unit does not match its key.
+// Returns the statement about the times that a number makes; none if its unit does not match its key.
 std::optional<TimeClaim> claim_of(Says says, const Measured& number) {
   using Of = TimeClaim::Of;
   const bool is_rate = says == Says::rate || says == Says::frequency;
@@ -190,7 +190,7 @@ void Preamble::take_line(std::string_view line, const std::vector<std::string_vi
       filled.push_back(cell);
     }
   }
-  // If channels have different units, there is no common unit.
+  // Channels with different units have no common unit.
   const bool differs = filled.size() > 2 && letters_of(filled[0]).starts_with("vertical") &&
                        std::any_of(filled.begin() + 2, filled.end(), [&](std::string_view cell) { return cell != filled[1]; });
   if (differs) return;

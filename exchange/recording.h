@@ -20,7 +20,7 @@ namespace softland {
 struct ReadKeys {
   std::string column = {};              ///< name of the channel; empty: see channel_of()
   int column_number = 0;                ///< number of the column of the channel, from 1; 0: selected by name
-  std::string time_column = {};         ///< name of the column of times; empty: found by its heading
+  std::string time_column = {};         ///< name of the column of times; empty: found by the heading
   int time_column_number = 0;           ///< number of the column of times, from 1; 0: selected by name
   int skip = 0;                         ///< number of lines at the beginning that are skipped
   std::string unit = {};                ///< unit of the channel, such as "mV"; empty: that of the file, else V
@@ -55,7 +55,7 @@ struct Recording {
   std::vector<double> times = {};  ///< times, one per row [s]; empty if the file has neither times nor an interval
   bool has_times = false;          ///< true if the file holds the times; false if they follow from the interval
   bool times_have_unit = false;
-  double last_digit = 0;                  ///< last digit of the times in the file [s]
+  double last_digit = 0;                  ///< unit of the last digit of the times in the file [s]
   std::optional<double> interval = {};    ///< interval that the file states beside the times [s]
   bool is_breakpoints = false;            ///< true if straight lines connect the rows, and two rows of the same time are a jump
   std::vector<std::uint32_t> lines = {};  ///< line of each row

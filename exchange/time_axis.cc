@@ -35,7 +35,7 @@ class RowTimer {
  public:
   RowTimer(const TimeColumn* column, std::size_t count, const Preamble& preamble, const ReadKeys& keys, const Refusals& refusals)
       : column_(column), count_(count), preamble_(preamble), keys_(keys), refusals_(refusals) {
-    // In a Siglent file this is the unit of the display, not that of the times.
+    // In a Siglent file the horizontal unit is that of the display, not that of the times.
     if (format_of(preamble.text) != "Siglent CSV") unit_above_ = preamble.horizontal_unit;
   }
   RowTimes make();

@@ -31,7 +31,7 @@ struct RowTimes {
   std::optional<double> interval = {};  ///< interval that the file states [s]
   bool stand_in_file = false;           ///< true if the file has the times, false if they follow from the interval
   bool have_unit = false;
-  double last_digit = 0;  ///< last digit of the times in the file [s]
+  double last_digit = 0;  ///< unit of the last digit of the times in the file [s]
   std::vector<std::string> notes = {};
 };
 

@@ -103,7 +103,7 @@ class VcdReader {
   [[noreturn]] void fail_at_word(const std::string& rule) const {
     fail(fmt::format("\"{}\" {}", printable_line(shortened(words_.word())), rule));
   }
-  /// Returns the words up to $end.
+  /// Returns the words of the file up to the next keyword $end.
   std::vector<std::string_view> words_to_end() {
     std::vector<std::string_view> all;
     while (words_.next() && words_.word() != "$end") all.push_back(words_.word());

@@ -47,8 +47,8 @@ class ArrowEquations {
  private:
   Eigen::Index size_, core_, block_;
   std::vector<Eigen::PartialPivLU<Eigen::MatrixXd>> blocks_;
-  Eigen::MatrixXd upper_;       // B
-  Eigen::MatrixXd eliminated_;  // D^-1 E
+  Eigen::MatrixXd upper_;       // block B of the matrix
+  Eigen::MatrixXd eliminated_;  // D^-1 E, from the elimination of the blocks D
   Eigen::PartialPivLU<Eigen::MatrixXd> core_equations_;
 };
 

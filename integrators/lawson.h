@@ -46,7 +46,7 @@ class Lawson final : public Stepper {
   using Modal = std::vector<double>;  // one value per mode, padded to whole lanes
 
   struct Stage {
-    Modal q, v;                 // P' and R' of each mode
+    Modal q, v;                 // rates P' and R' of each mode's deviation from its free motion
     Modal cosine, sine, slack;  // functions of the phase up to the stage's node; slack: (1 - cosine) / omega^2
     std::vector<double> rest;   // time derivatives of the unknowns after the modes
   };
@@ -64,7 +64,7 @@ class Lawson final : public Stepper {
   Modal q_, v_, a_;  // q, v and a of each mode at the start of the step
   Modal q_weight_, v_weight_;
   std::array<Stage, stages> k_;
-  double turned_ = 0;  // step length for which the phases were computed [s]
+  double turned_ = 0;  // step length for which the stages' phases were computed [s]
   double t_ = 0, h_ = 0, max_step_ = 0;
   float last_error_ = 0;  // error of the last step, as a binary logarithm
   bool first_ = true;

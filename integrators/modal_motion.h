@@ -81,7 +81,7 @@ class ModalMotion {
     s.acceleration += (omega * omega * (pull * turned.cosine - push * turned.sine)).sum();
   }
 
-  // Adds to `s` the quintic at this share x of the step.
+  // Adds the quintic after the share x of the step to `s`.
   void add_rest(double x, Sample& s) const {
     s.position += rest_.position(x);
     s.velocity += per_length_ * rest_.velocity(x);

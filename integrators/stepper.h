@@ -34,7 +34,7 @@ class Stepper {
   virtual bool step(double t_stop) = 0;
   [[nodiscard]] virtual double time() const = 0;
   [[nodiscard]] virtual const double* state() const = 0;
-  /// Returns (v', z') at time(), where the last evaluation of the right-hand side was.
+  /// Returns (v', z') at time(), from the last evaluation of the right-hand side.
   [[nodiscard]] virtual const double* rates() = 0;
   [[nodiscard]] virtual std::string message() const = 0;
   /// Returns the stiffness, if an explicit method computes it: the last step's length over the time in which the fastest part

@@ -66,8 +66,8 @@ double carried_over(double square, const NormalisedModes::Beam& from, const Norm
   return square;
 }
 
-// Finds four poles at once by Newton's method, with the motions there; none without convergence, or where rounding may be
-// large.
+// Finds four poles of the receptance at once by Newton's method, with the motions there; none without convergence, or where
+// rounding may be large.
 std::optional<Receptance::Answer> nearest_poles(Receptance& receptance, double place, const Lane& rounding, Lane& squares) {
   constexpr int most_steps = 10;
   constexpr double least_motion = 1e-3;  // least motion of the place in a normalised mode, whose mean square over the beam is 1
@@ -380,7 +380,7 @@ Eigen::RowVectorXd NormalisedModes::shape(double x, int derivative) const {
 // move at x, a has no zero between the frequencies; the second frequency is then the result. Newton's method solves (lambda_2 -
 // lambda) a = 0, whose left side is nearly linear.
 double NormalisedModes::pinned_inverse_square(double x, std::optional<double> near) const {
-  constexpr double rounding = 1e-12, last_step = 1e-8;  // the Newton step after last_step is rounding
+  constexpr double rounding = 1e-12, last_step = 1e-8;  // a Newton step after one of this length is rounding
   constexpr int most_steps = 100;
   if (beam_.is_general()) return general_pinned_inverse_square(shape(x, 0) * all_motions_, all_inverse_squares_);
   Receptance receptance(elements_, beam_.axial_force, beam_.far_clamp);

@@ -40,8 +40,8 @@ namespace softland {
 /// Returns the rule of the beam model that the device violates; empty when it violates none.
 [[nodiscard]] std::string why_no_beam(const Device& device);
 
-/// The modes of a beam in units of its length and of the mass and rigidity of its first section. Beams of one shape have the
-/// same normalised modes, whatever their size and material.
+/// The modes of a beam in units of its length and of the mass and rigidity of its first section. Beams of equal proportions
+/// have the same normalised modes, whatever their size and material.
 class NormalisedModes {
  public:
   /// The properties that the modes depend on.
@@ -67,15 +67,15 @@ class NormalisedModes {
   explicit NormalisedModes(Beam beam, const NormalisedModes* near = nullptr);
 
   [[nodiscard]] const Beam& beam() const { return beam_; }
-  /// Returns omega^-2 of the modes, in descending order.
+  /// Returns 1 / omega^2 of the modes (omega: angular frequency), in descending order.
   [[nodiscard]] const Eigen::VectorXd& inverse_squares() const { return inverse_squares_; }
   /// Return values and slopes of all modes at x in [0, 1].
   [[nodiscard]] Eigen::VectorXd value(double x) const { return (shape(x, 0) * shapes_).transpose(); }
   [[nodiscard]] Eigen::VectorXd slope(double x) const { return (shape(x, 1) * shapes_).transpose(); }
   /// Returns the integrals of the products of the modes' slopes.
   [[nodiscard]] Eigen::MatrixXd slope_products() const;
-  /// Returns omega^-2 of the first mode of the beam that is also held at x. The search starts from `near`, the result for a
-  /// similar beam.
+  /// Returns 1 / omega^2 of the first mode of the beam that is also held at deflection 0 at x. The search starts from `near`,
+  /// the result for a similar beam.
   [[nodiscard]] double pinned_inverse_square(double x, std::optional<double> near = {}) const;
 
  private:
@@ -101,7 +101,7 @@ class NormalisedModes {
   double moving_place_ = 1;
   // Scales of the rigid translation and rotation among the shape functions; 0 when the support at x = 0 prevents the motion.
   double shift_ = 0, turn_ = 0;
-  // All motions of a beam on springs or with linear sections by Ritz's method, with unit elastic energy, and omega^-2 of each.
+  // All motions of a beam on springs or with linear sections by Ritz's method, each with unit elastic energy; omega^-2 of each.
   Eigen::MatrixXd all_motions_;
   Eigen::VectorXd all_inverse_squares_;
 };
@@ -116,11 +116,11 @@ class BeamModes {
 
   [[nodiscard]] int count() const { return static_cast<int>(frequencies_.size()); }
   [[nodiscard]] const Eigen::VectorXd& angular_frequencies() const { return frequencies_; }  ///< [rad/s], rising
-  /// Returns phi_i(x) of all modes [kg^(-1/2)], x in [0, L] [m].
+  /// Returns the shapes phi_i of all modes at x in [0, L] [m] [kg^(-1/2)].
   [[nodiscard]] Eigen::VectorXd value(double x) const { return scale_ * normalised_->value(x / length_); }
-  /// Returns phi_i'(x) [kg^(-1/2)/m].
+  /// Returns the slopes phi_i' of all modes at x [m] [kg^(-1/2)/m].
   [[nodiscard]] Eigen::VectorXd slope(double x) const { return scale_ / length_ * normalised_->slope(x / length_); }
-  /// Returns the integrals of phi_i' phi_j' over the beam [1/(kg m)].
+  /// Returns the integrals over the beam of phi_i' phi_j', products of the slopes of the modes [1/(kg m)].
   [[nodiscard]] Eigen::MatrixXd slope_products() const { return scale_ * scale_ / length_ * normalised_->slope_products(); }
   /// Returns the first angular frequency of the beam that is also held at deflection 0 at x, as in contact [rad/s].
   [[nodiscard]] double pinned_frequency(double x) const {
@@ -128,8 +128,11 @@ class BeamModes {
   }
 
   [[nodiscard]] const std::shared_ptr<const NormalisedModes>& normalised() const { return normalised_; }
-  [[nodiscard]] double length() const { return length_; }                    ///< [m]
-  [[nodiscard]] double scale() const { return scale_; }                      ///< phi over the normalised mode [kg^(-1/2)]
+  [[nodiscard]] double length() const { return length_; }  ///< [m]
+  [[nodiscard]] double scale() const {
+    return scale_;
+  }                                                                          ///< mode shape over the normalised mode shape
+                                                                             ///< [kg^(-1/2)]
   [[nodiscard]] double frequency_scale() const { return frequency_scale_; }  ///< [rad/s]
 
  private:

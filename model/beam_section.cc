@@ -169,7 +169,8 @@ double curl(const Device& device, double gradient, double x) {
 double lowest_curl(const Device& device, double gradient) {
   double lowest = 0, offset = 0, slope = 0;
   for (const BeamSection& section : built_sections(device, gradient)) {
-    const double length = section.end - section.begin, flat = -slope / section.curvature;  // place where the curl turns back
+    const double length = section.end - section.begin, flat = -slope / section.curvature;  // distance at which the slope of the
+                                                                                           // curl is 0
     if (flat > 0 && flat < length) lowest = std::min(lowest, offset + slope * flat / 2);
     offset += (slope + section.curvature * length / 2) * length;
     slope += section.curvature * length;

@@ -14,7 +14,8 @@ struct BeamSection {
   double end = 0;              ///< [m]
   double rigidity = 0;         ///< EI [N m^2]
   double mass_per_length = 0;  ///< mu [kg/m]
-  /// Relative change of rigidity and mass from the middle of the stretch, where they are given, to its end; linear between.
+  /// Relative change of rigidity and mass from the middle of the stretch, to which the members above apply, to its end; linear
+  /// in between.
   double taper = 0;
   double curvature = 0;  ///< curvature at rest of a beam with sections or layers, positive away from the near electrode [1/m]
   /// Moment per volt of a piezo layer on a beam with sections or layers, in the middle of the stretch [N m / V].
@@ -34,13 +35,14 @@ struct CompositeSection {
 [[nodiscard]] CompositeSection plain_section(const Structure& structure, const std::optional<Surface>& surface = {});
 /// Returns the section of a beam with piezo layer (Zheng, Chen & Chen 2017, eqs. 5-6, equal widths).
 [[nodiscard]] CompositeSection layered_section(const Structure& structure, const Piezo& piezo);
-/// Returns the bending moment of the layer per volt, e31 a (z_c - bp / 2) with e31 = d31 Ep [N m / V]: negative for d31 < 0.
+/// Returns the bending moment of the piezo layer per volt, e31 a (z_c - bp / 2) with e31 = d31 Ep, width a and layer thickness
+/// bp [N m / V]: negative for d31 < 0.
 [[nodiscard]] double piezo_moment_per_volt(const Structure& structure, const Piezo& piezo);
 /// Returns the beam's sections in order of x.
 [[nodiscard]] std::vector<BeamSection> beam_sections(const Device& device);
 /// Returns the axial stress that residual_stress leaves in the released beam between two clamps [Pa]. A stress along the beam
-/// remains entirely. The equal biaxial stress sigma of a film leaves sigma (1 - nu), since the sides of the beam are free and
-/// its length is fixed.
+/// remains entirely. An equal biaxial stress sigma, as in a deposited film, leaves sigma (1 - nu), since the sides of the beam
+/// are free and its length is fixed.
 [[nodiscard]] double axial_stress(const Bridge& bridge);
 /// Returns the compressive stress at which the beam buckles [Pa], with E I of plain_section(): 4 pi^2 E I / (A L^2) between two
 /// clamps, a sixteenth of this with a free end.

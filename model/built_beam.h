@@ -55,7 +55,7 @@ struct LocalSection {
 /// Returns the places where the table of a beam's rest shape has kinks, between its ends [m]; empty without such a table.
 [[nodiscard]] std::vector<double> kinks_at_rest(const Structure& structure);
 
-/// A part that a device cannot have, and the reason.
+/// A section, layer or hole pattern that a device cannot have, and the reason.
 struct PartConflict {
   std::string key;  ///< key of the part: "layers[2].span"
   std::string rule;

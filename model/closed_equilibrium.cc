@@ -19,7 +19,7 @@ Eigen::MatrixXd stiffness_at(const Switch& model, const Eigen::VectorXd& q, std:
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(n);
   Eigen::MatrixXd by_q(n, n), by_v(n, n), force(n, 1);
   Switch::Workspace work = model.workspace();
-  model.accelerations(q.data(), still.data(), volts, contact, work, force.data());  // sets the field
+  model.accelerations(q.data(), still.data(), volts, contact, work, force.data());  // sets the gap field in `work`
   model.jacobian(q.data(), still.data(), volts, contact, work, by_q, by_v);
   return -(by_q + by_q.transpose()) / 2;
 }
@@ -90,7 +90,8 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
   constexpr double longest = 0.05, shortest = 1e-9;           // steps, in shares of the gaps of the field
   constexpr double least_gap = 0.25;                          // least gap of the field, over the dielectric's depth
   constexpr double rounding = 1e-12;                          // share of the bending energy
-  constexpr double least_stiffness = 1e-9, at_saddle = 1e-2;  // shares of the stiffness of a mode, and of the longest step
+  constexpr double least_stiffness = 1e-9, at_saddle = 1e-2;  // least eigenvalue over a mode's stiffness; at a saddle: share of
+                                                              // a step
   Statics statics(model);
   Switch::Workspace work = model.workspace();
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(model.modes());
@@ -143,7 +144,7 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
 }
 
 // The search begins where a force holds the beam at the plane of the first contact. A second search begins on the face when the
-// first contact is another one than the face: the beam may move from the face to this contact.
+// first contact is not the face: the beam may move from the face to this contact.
 std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<const double> volts) {
   const Eigen::VectorXd squares = model.basis().angular_frequencies().cwiseAbs2();
   const auto held_at = [&](std::size_t c) {
@@ -167,13 +168,13 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::sp
     if (!held || !(held->unknown > 0)) return std::nullopt;
     return closed_at(model, held->q, held->unknown, volts);
   }
-  // Returns the force of the contact at a depth, less the force with which the beam presses on the contact.
+  // Returns the contact force at a depth beyond the plane, less the force with which the beam presses on the contact.
   const auto excess = [&](double depth) {
     const auto held = statics.pinned(volts, plane + depth);
     if (!held) return no_equilibrium;
     return (model.has_spread_contact() ? 0 : contact_force(model.contact(), depth)) - held->unknown;
   };
-  // At the depth where this excess is least the beam must press harder than the contact pushes; the equilibrium lies deeper,
+  // At the depth of the least excess() the beam must press harder than the contact pushes back; the equilibrium lies deeper,
   // where both forces are equal.
   const auto hardest = first_minimum(excess, step);
   if (!hardest || !(hardest->value < 0)) return std::nullopt;

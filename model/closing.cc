@@ -112,7 +112,7 @@ class ClosingRun {
   void on_event(const Event& event) {
     FollowedContact& c = parts_.contacts[event.contact];
     TrajectoryPoint& p = c.pending_knots.last_waiting();
-    if (event.edge) p.position = event.edge->level;  // equal up to rounding
+    if (event.edge) p.position = event.edge->level;  // equals the position up to rounding
     if (p.position == c.plane && !model_.has_spread_contact(event.contact)) p.contact_force = 0;
     audit_.settle(here());
     if (c.touches.note(event, p)) {
@@ -130,7 +130,7 @@ class ClosingRun {
       c.phase.enter(event.edge->next, event.edge->zone);
     } else {
       change.kind = PhaseChange::Kind::turn;
-      // The remaining velocity carries the contact point this much deeper.
+      // Add the distance over which the contact point still decelerates to rest.
       c.phase.turn(p.position - c.plane - (p.acceleration < 0 ? p.velocity * p.velocity / (2 * p.acceleration) : 0));
     }
     change.after = c.phase.law();
@@ -191,7 +191,8 @@ class ClosingRun {
     return false;
   }
 
-  // Ends the run when its state at the end of a step requires this; `field` are the figures of the gap field there.
+  // Ends the run after a step when the switch has failed, or an option requires the end; `field` is the gap field at the end of
+  // the step.
   void check_interval(const FieldFigures& field) {
     if (ended_) return;
     if (field.smallest_gap < model_.gap_floor() && is_over_electrode()) {
@@ -217,7 +218,7 @@ class ClosingRun {
     }
   }
 
-  // Computes the landing excess at the first touch or, if that is later, when the drives reach their hold levels.
+  // Computes Trajectory::landing_excess at the first touch or, if that is later, when the drives reach their hold levels.
   void measure_landing() {
     if (ended_ || !parts_.has_touched() || std::isfinite(out_.landing_excess)) return;
     if (!std::isfinite(options_.closed_potential) || !parts_.drives.at_hold()) return;

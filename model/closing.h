@@ -58,7 +58,7 @@ struct ClosingOptions {
   long max_steps = 2'000'000;  ///< largest number of steps: a run that needs more ends as numerical_failure
   /// If false, the integrator does not stop at make and break of contact: the contact force sets in within a step, and the
   /// times of make and break are as exact as the interpolant. The tolerances of contact apply throughout. Studies set false to
-  /// measure the effect of restarts: see why_always_restarted().
+  /// measure the effect of these stops; see why_always_restarted().
   bool restart_at_contact = true;
   /// Potential of the closed equilibrium under the hold levels [J]; if given, Trajectory::landing_excess is computed relative
   /// to this potential.

@@ -35,7 +35,7 @@ void span(double begin, double end, double length, const std::string& name) {
 template <class Owner>
 void check_fields(const std::string& part, Owner owner, Owner unset, std::span<const Field<Owner>> fields) {
   for (const Field<Owner>& field : fields) {
-    // Skip numbers without a range, numbers with a range of the scene alone, and numbers that a separate rule checks.
+    // Skip numbers without a range, numbers whose range only scene files check, and numbers with a rule of their own.
     if (field.in == nullptr || !field.beyond.empty() || field.range == Range{}) continue;
     const double value = field.in(owner), missing = field.in(unset);
     const bool may_miss = !field.required || !field.instead_of.empty() || !field.unless.empty();
@@ -344,7 +344,7 @@ void set_face_contact(Device& d) {
   if (landing == nullptr) return;
   const double plane = d.gap.electrode - landing->begin();
   const auto set = [&](Contact& face) {
-    // The stiffness of a wall is computed from the modes of the switch; the device has a placeholder.
+    // The stiffness of a wall is computed from the modes of the switch; the stiffness here is a placeholder.
     face.model = LinearSpring{.stiffness = landing->is_wall() ? 1 : landing->stiffness};
     if (landing->asperities) face.model = *landing->asperities, face.pad_length = length_of_faces(d);
     if (!d.structure.is_rigid()) face.at = first_touch_on(d);

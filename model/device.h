@@ -24,15 +24,15 @@ namespace softland {
 
 struct Gap {
   double electrode = 0;  ///< d0, rest distance beam to electrode [m]
-  double contact = 0;    ///< dt, rest distance of the first contact to its plane, or of the contact point without contact [m]
+  double contact = 0;    ///< dt, rest distance of the first contact to its plane; free travel if there is no contact [m]
 };
 
-/// The landing of a beam on a dielectric: the pressure of its face on the beam, see model/contact/face.h. The face is a wall
-/// where neither a stiffness nor asperities are given.
+/// The contact of a beam with the face of a dielectric: the pressure of the face on the beam, see model/contact/face.h. The
+/// face is a wall when neither a stiffness nor asperities are given.
 struct Landing {
-  double stiffness = std::numeric_limits<double>::quiet_NaN();  ///< stiffness of a bed per area [Pa/m]
-  double from = 0;                                   ///< height above the face at which the pressure of a bed begins [m]
-  std::optional<UniformAsperities> asperities = {};  ///< asperities on the face, without damping
+  double stiffness = std::numeric_limits<double>::quiet_NaN();  ///< stiffness of an elastic bed on the face, per area [Pa/m]
+  double from = 0;                                              ///< height above the face at which the bed begins to press [m]
+  std::optional<UniformAsperities> asperities = {};             ///< asperities on the face, without damping
 
   [[nodiscard]] bool is_wall() const { return std::isnan(stiffness) && !asperities; }
   /// Returns the height above the face at which the pressure begins [m]; for asperities the height of the highest asperity.
@@ -46,17 +46,17 @@ struct Dielectric {
   double permittivity = 1;  ///< relative permittivity
   double roughness = 0;     ///< air gap that remains when the summits of its face touch [m]
   double charge = 0;        ///< charge per area on its face [C/m^2], of either sign
-  /// Landing on the face. A moving part that reaches a face without a landing has failed, unless the moving part is a plate on
-  /// a contact at the face.
+  /// Contact law of the face. A run fails when the moving part reaches a face without this law, unless the moving part is a
+  /// plate on a contact at the face.
   std::optional<Landing> landing = {};
 
-  /// Returns the contribution of the dielectric to the gap of the field, t / eps_r + roughness [m].
+  /// Returns the air gap that is electrically equivalent to the dielectric of thickness t, t / eps_r + roughness [m].
   [[nodiscard]] double depth() const { return thickness / permittivity + roughness; }
   /// Returns V0, the voltage of the electrode at which the charge leaves no field in the air, -charge t / (eps_r eps0) [V].
   [[nodiscard]] double neutral_voltage() const;
 };
 
-/// An electrode: one voltage, on one pad or several.
+/// An electrode: one or several pads at one voltage.
 struct Electrode {
   std::string name = {};
   Place begin;  ///< only the length of the interval matters on a plate: the electrode's area over the plate's width
@@ -121,7 +121,8 @@ struct Surface {
   ResidualLoad cantilever_load = ResidualLoad::none;  ///< effect of tau_0 on a cantilever
 };
 
-/// The rule by which the connection of a switch counts as electrically closed. The rule has no effect when no number is given.
+/// The rule by which the connection, the signal path through the contacts, counts as electrically closed. The rule has no
+/// effect when no number is given.
 struct ElectricalClosing {
   double force = std::numeric_limits<double>::quiet_NaN();       ///< the contact force must exceed this [N]; NaN: no bound
   double resistance = std::numeric_limits<double>::quiet_NaN();  ///< the resistance must be below this [Ohm]; NaN: no bound
@@ -131,7 +132,7 @@ struct ElectricalClosing {
   [[nodiscard]] double shortest_opening() const { return after >= 0 ? after : 0; }
 };
 
-/// The circuit that the connection switches: a voltage source and a resistance in series with the connection.
+/// The circuit that the contacts close: a voltage source and a resistance in series with the contacts.
 struct SwitchedLoad {
   double voltage = std::numeric_limits<double>::quiet_NaN();     ///< [V]
   double resistance = std::numeric_limits<double>::quiet_NaN();  ///< [Ohm]
@@ -168,8 +169,7 @@ struct Device {
   /// Returns the distance of a contact at rest to its plane [m]: the gap of the straight shape plus the offset of the rest
   /// shape.
   [[nodiscard]] double contact_gap(std::size_t contact = 0) const;
-  /// Returns the landing on the dielectric of the electrodes, which all dielectrics with a landing share; null without a
-  /// landing.
+  /// Returns the contact law of the dielectrics' faces, which all dielectrics with a `landing` share; null when none has one.
   [[nodiscard]] const Landing* landing() const;
   /// Returns the number of the contact along the face of the electrodes' dielectric; none when no dielectric has a landing.
   [[nodiscard]] std::optional<std::size_t> face_contact() const;
@@ -177,11 +177,10 @@ struct Device {
   /// Returns true when the moving part closes onto the dielectric of its electrodes, to within a hundredth of the electrode's
   /// gap.
   [[nodiscard]] bool lands_on_dielectric() const { return lands_along_face() || gap.contact > 0.99 * gap.electrode; }
-  /// Returns the local gap between a closed switch and the face of its electrode, for the laws of films [m]. The gap is at
-  /// least a hundredth of the rest gap, below which the film laws are continued.
+  /// Returns the local gap between a closed switch and the face of its electrode, for the laws of gas films [m]. The gap is at
+  /// least a hundredth of the rest gap: below this the film laws are continued by a tangent.
   [[nodiscard]] double closed_gap() const { return std::max(gap.electrode - gap.contact, gap.electrode / 100); }
-  /// Returns the least contribution of the near electrodes' dielectrics to the gap of their fields [m]; 0 when an electrode has
-  /// no dielectric.
+  /// Returns the least Dielectric::depth() of the electrodes on the near side [m]; 0 when an electrode has no dielectric.
   [[nodiscard]] double dielectric_depth() const;
   /// Returns true when there is a charge on the dielectric of an electrode.
   [[nodiscard]] bool is_charged() const;
@@ -218,20 +217,20 @@ struct ContactConflict {
 /// side must differ in place or gap, and a rigid contact or a contact along its pad must be the only contact.
 [[nodiscard]] std::optional<ContactConflict> contact_conflict(const Device& device);
 
-/// Returns true when the landings on both electrodes have equal parameters, or neither electrode has a landing.
+/// Returns true when the `landing` of both electrodes' dielectrics has equal parameters, or neither has a `landing`.
 [[nodiscard]] bool have_equal_landings(const Electrode& one, const Electrode& other);
 inline constexpr auto unequal_landings = "where a dielectric has a landing, every near electrode has the same one";
 
 /// Name of the contact along the face of a dielectric, for a device that has other contacts.
 inline constexpr std::string_view face_name = "dielectric";
 
-/// Adds the face of the dielectric as a contact to a device whose dielectric has a landing. The contact's plane and place are
+/// Adds the face of the dielectric as a contact to a device whose dielectric has a `landing`. The contact's plane and place are
 /// where a beam that bends under its electrodes touches first. When the device has a contact on the near side, the face comes
 /// last and is not part of the connection; otherwise the face comes first and makes the connection. A repeated call updates the
-/// contact after a change of the landing. Without a landing nothing changes.
+/// contact after a change of the landing. Without a `landing` nothing changes.
 void set_face_contact(Device& device);
 
-/// Returns the reason why a device whose contact lies at its electrode cannot land on the electrode; empty when it can.
+/// Returns the reason why a device whose contact lies at its electrode cannot close onto the electrode; empty when it can.
 [[nodiscard]] std::string why_no_landing(const Device& device);
 
 /// Returns the reason why this contact cannot act along the pad of this structure; empty when it can.

@@ -1,7 +1,7 @@
 // A force law that acts along the beam, behind one virtual call per law and right-hand side. A law is a small value type with
 // load(gap, velocity), a template over the scalar type (double for runs, Dual for exact derivatives). A conservative law acts
-// by itself or is scaled by a drive (drive_depends): by V^2 of an electrode, or the factor of a force. Such a law also has
-// potential(gap), whose slope is the load. The other laws dissipate.
+// by itself or is scaled by a drive (drive_depends): by V^2 of an electrode, or a force factor. A conservative law also has
+// potential(gap), whose slope is the load. All other laws dissipate energy.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,17 +27,18 @@ struct GapField {
 class DistributedLaw {
  public:
   virtual ~DistributedLaw() = default;
-  /// Adds load += drive * law [N/m] at the law's points; a law that no drive scales ignores `drive`. `load` is as long as the
-  /// field.
+  /// Adds drive * law to the load [N/m] at the points on which the law acts; a law that no drive scales ignores `drive`. `load`
+  /// is as long as the arrays of the field.
   virtual void add_load(const GapField& field, double drive, double* load) const = 0;
-  /// Adds derivatives of the load with respect to deflection and velocity at the law's points. The arrays are as long as the
-  /// field.
+  /// Adds derivatives of the load with respect to deflection and velocity at the points on which the law acts. The arrays are
+  /// as long as those of the field.
   virtual void add_derivatives(const GapField& field, double drive, double* by_deflection, double* by_velocity) const = 0;
-  /// Adds second derivatives of the load at the law's points: by deflection twice, by deflection and velocity, by velocity
-  /// twice. Adds nothing at points below the gap floor, where the load continues by its tangent.
+  /// Adds second derivatives of the load at the points on which the law acts: by deflection twice, by deflection and velocity,
+  /// by velocity twice. Adds nothing at points below the gap floor, where the load continues by its tangent.
   virtual void add_curvatures(const GapField& field, double drive, double* by_deflections, double* by_both,
                               double* by_velocities) const = 0;
-  /// Returns the integral of the potential per length over the law's points, at unit drive [J]; 0 for laws that dissipate.
+  /// Returns the integral of the potential per length over the points on which the law acts, at unit drive [J]; 0 for laws that
+  /// dissipate.
   [[nodiscard]] virtual double potential(const GapField& field, const Eigen::ArrayXd& weights) const = 0;
 };
 
@@ -59,18 +60,19 @@ class DistributedLawOf final : public DistributedLaw {
     const double factor = Law::drive_depends ? drive : 1;
     const Law law = law_;  // a local copy lets the compiler keep the parameters in registers
     if (field.smallest_gap >= floor_) {
-      // Loop over whole lanes, so that the compiler uses vector instructions; left-over points one by one would take as long.
+      // Loop over whole lanes, so that the compiler uses vector instructions; a scalar loop over left-over points would take as
+      // long.
       const double* share = share_.data();
       for (Eigen::Index p = begin_ / lanes * lanes; p < share_.size(); p += lanes) {
         double sum[lanes];
         for (Eigen::Index k = 0; k < lanes; ++k)
           sum[k] = load[p + k] + factor * share[p + k] * law.load(gap[p + k], velocity[p + k]);
-        for (Eigen::Index k = 0; k < lanes; ++k) load[p + k] = sum[k];  // a loop, since a copy of memory would undo the vectors
+        for (Eigen::Index k = 0; k < lanes; ++k) load[p + k] = sum[k];  // a loop: memcpy would prevent vector instructions
       }
       return;
     }
     for (Eigen::Index p = begin_; p < end_; ++p) {
-      if (!Law::drive_depends && gap[p] >= floor_) {  // at most a few points of a film are below the floor
+      if (!Law::drive_depends && gap[p] >= floor_) {  // at most a few points of a film are below the gap floor
         load[p] += law.load(gap[p], velocity[p]);
         continue;
       }
@@ -153,7 +155,8 @@ class DistributedLawOf final : public DistributedLaw {
         by_deflection[p] -= by_gap, by_velocity[p] += by_rate;
         continue;
       }
-      // The outer direction is the gap, the inner the velocity: the slope of the tangent depends on the velocity too.
+      // The outer direction of the dual numbers is the gap, the inner the velocity: the slope of the tangent depends on the
+      // velocity too.
       const double gap = std::max(field.gap[p], floor_);
       const auto at = law_.load(DualOf<Dual>(gap, 1), DualOf<Dual>(Dual(field.velocity[p], 1)));
       by_deflection[p] -= factor * at.slope.value;
@@ -165,7 +168,7 @@ class DistributedLawOf final : public DistributedLaw {
   Law law_;
   Eigen::Index begin_, end_;
   double floor_;
-  Eigen::ArrayXd share_;  // 1 at the law's points, 0 at points that only fill vector lanes
+  Eigen::ArrayXd share_;  // 1 at points on which the law acts, 0 at points that fill a vector lane
 };
 
 /// One law on several stretches of the beam.

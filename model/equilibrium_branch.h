@@ -1,5 +1,5 @@
-// Static equilibria of a switch whose contact point is held at a given deflection: the branch that a drive follows from rest to
-// the contact plane and beyond, past the fold. See model/pull_in.h.
+// Static equilibria of a switch whose contact point is held at a given deflection: the branch of equilibria from rest to the
+// contact plane and beyond, past the fold. See model/pull_in.h.
 #pragma once
 
 #include <boost/math/tools/minima.hpp>
@@ -20,7 +20,7 @@ namespace softland::statics {
 inline constexpr double no_equilibrium = std::numeric_limits<double>::quiet_NaN();
 
 // A static equilibrium with the contact point held at a given deflection. `unknown` is the strength of the drive that holds the
-// point (V^2 of an electrode, the factor of the dispersion force), or the reaction of a holder [N].
+// point (V^2 of an electrode, the factor of the dispersion force), or the force of an ideal support there [N].
 struct Held {
   Eigen::VectorXd q;
   double unknown = 0;
@@ -65,8 +65,8 @@ class Statics {
                   });
   }
 
-  // Finds the equilibrium in which a holder keeps the contact point at deflection s under constant voltages. `unknown` is the
-  // force of the beam on the holder, without the force that a contact along the pad carries.
+  // Finds the equilibrium in which a support keeps the contact point at deflection s under constant voltages. `unknown` is the
+  // force of the beam on the support, without the force that a contact along the pad carries.
   std::optional<Held> pinned(std::span<const double> volts, double s) {
     std::optional<Held> h = Held{.q = pushed(s)};
     std::vector<double> part(volts.begin(), volts.end());
@@ -81,7 +81,7 @@ class Statics {
     return h;
   }
 
-  // Finds the equilibrium with a holder by Newton's method from a state near this equilibrium.
+  // Finds the equilibrium of pinned() by Newton's method from a state near this equilibrium.
   std::optional<Held> pinned(std::span<const double> volts, double s, Held near) {
     return newton(s, std::move(near),
                   [&](const Held& at, Eigen::VectorXd& residual, Eigen::MatrixXd& by_q, Eigen::VectorXd& by_unknown) {
@@ -203,7 +203,7 @@ class EquilibriumBranch {
   // needs short steps.
   bool walks(double s) {
     constexpr int most_steps = 100;
-    constexpr double shortest = 1e-6;  // share of the distance to s
+    constexpr double shortest = 1e-6;  // shortest step, as a share of the distance to s
     const double least = shortest * std::abs(s - here_);
     double step = (s - here_) / 2;
     for (int k = 0; k < most_steps && std::abs(step) > least; ++k) {
@@ -229,7 +229,7 @@ class EquilibriumBranch {
 
 inline constexpr int branch_steps = 64;
 
-// Three depths beyond the contact plane, one step apart [m]; at the start of walk() `before` and `last` are the same.
+// Three successive depths of a search beyond the contact plane [m]; at the start `before` equals `last`.
 struct Steps {
   double before, last, next;
 };

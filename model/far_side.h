@@ -20,7 +20,7 @@ struct FarSide {
   DualOf<P> at_floor = law.load(DualOf<P>(floor, 1), DualOf<P>(1));
   static constexpr bool drive_depends = Law::drive_depends;
 
-  /// Returns the load [N/m], per unit of the drive for a driven law.
+  /// Returns the load [N/m]; for a law that a drive scales, at unit drive.
   template <class S>
   S load(S gap, S velocity) const {
     const S far = S(both_gaps) - gap;
@@ -32,7 +32,7 @@ struct FarSide {
         },
         [&]() -> S { return -law.load(far, -velocity); });
   }
-  /// Returns the potential [J/m] per unit of the drive; below the floor it is the parabola whose slope is the tangent.
+  /// Returns the potential [J/m] at unit drive; below the floor it is the parabola whose slope is the tangent.
   [[nodiscard]] double potential(double gap) const requires(Law::drive_depends) {
     const double far = both_gaps - gap, below = far - floor;
     if (below >= 0) return law.potential(far);
@@ -40,7 +40,7 @@ struct FarSide {
   }
 };
 
-/// The force on one electrode that has faces on both sides of the moving part.
+/// The force law of one electrode that acts on both sides of the moving part.
 template <class Law, class P = double>
 struct BothSides {
   Law near = {};

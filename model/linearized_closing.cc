@@ -21,7 +21,7 @@ using Eigen::VectorXd;
 
 constexpr double longest_angle = 2.5;  // largest norm of A times the duration of a part of a step
 constexpr int most_parts = 4096;       // largest number of parts of a step
-constexpr int parts_at_edge = 6;       // parts of a step that begins or ends where a contact begins or ends
+constexpr int parts_at_edge = 6;       // number of parts of a step that begins or ends where a contact begins or ends
 constexpr Index lane_size = lanes;
 
 // Returns the number of terms after which the Taylor series of the exponential of a matrix with this norm is accurate to
@@ -63,7 +63,7 @@ std::vector<double> shares_of_parts(int parts, bool after_edge, bool before_edge
   return ends;
 }
 
-// Interpolates modal coordinates, velocities and accelerations at a time within a step from those at its ends.
+// Interpolates modal coordinates, velocities and accelerations at a time within a step from the values at both ends.
 template <class Modal>
 void move_to(double t, const RecordedMotion::Motion& from, const RecordedMotion::Motion& to, Modal& q, Modal& v,
              Modal& accelerations) {
@@ -402,7 +402,7 @@ LinearizedClosing::Jump LinearizedClosing::crossed(const RecordedMotion::PhaseEv
     jump.by_device.col(j).head(size_) -=
         lost * (by_device_->interference(parameter, before.q.data()) - by_device_->edge(parameter, level));
   }
-  if (change.before.shift != 0 && change.after.shift == 0) matrix.bottomRows<1>().setZero();  // the dent has healed
+  if (change.before.shift != 0 && change.after.shift == 0) matrix.bottomRows<1>().setZero();  // the contact has lost its dent
   return jump;
 }
 

@@ -33,9 +33,10 @@
 
 namespace softland {
 
-/// The derivative of a figure: weights of d = dy/dp at the end of a step of the recorded motion, before an event at this time.
-/// A figure measured at a time that depends on the beginning of a piece of a drive also has a rate, its derivative by this
-/// time. A figure that depends on the device at fixed q and v also has derivatives by each of SwitchSlopes::moving().
+/// The derivative of a figure by a parameter p: weights of d = dy/dp, y the state, at the end of a step of the recorded motion,
+/// before an event at this time. A figure measured at a time that depends on when a waveform piece begins also has `moved`: its
+/// derivatives by the beginnings of pieces. A figure that depends on the device at fixed q and v also has derivatives by each
+/// of SwitchSlopes::moving().
 struct FigureSlope {
   struct Weights {
     std::size_t arc = 0;  ///< index in LinearizedClosing::arcs()
@@ -44,7 +45,7 @@ struct FigureSlope {
   };
   struct Moved {
     std::size_t drive = 0, piece = 0;
-    double rate = 0;  ///< rate of the figure [1/s]
+    double rate = 0;  ///< derivative of the figure by the time at which the piece begins [1/s]
   };
   std::vector<Weights> weights = {};
   std::vector<Moved> moved = {};
@@ -63,9 +64,9 @@ class LinearizedClosing {
     bool turns = false;         ///< true when the contact point's velocity changes sign at `end`
     ContactState contact;
     std::size_t step = 0;            ///< step of the recorded motion
-    std::size_t pieces_entered = 0;  ///< index of the pieces on which the drives are: see pieces()
+    std::size_t pieces_entered = 0;  ///< index of the set of waveform pieces that the drives are on: see pieces()
   };
-  /// An event of the recorded motion, after the first `arcs` arcs.
+  /// An event of the recorded motion, after the first `arcs` elements of arcs().
   struct PhaseEvent {
     std::size_t arcs = 0;
     PhaseChange change;
@@ -81,7 +82,7 @@ class LinearizedClosing {
   [[nodiscard]] static std::string refusal(const Switch& model);
 
   [[nodiscard]] const std::vector<Arc>& arcs() const { return arcs_; }
-  /// Returns the number of the piece on which each drive is during a step of the recorded motion.
+  /// Returns the number of the waveform piece on which each drive is during a step of the recorded motion.
   [[nodiscard]] const std::vector<std::size_t>& pieces(const Arc& arc) const { return pieces_[arc.pieces_entered]; }
   [[nodiscard]] const std::vector<PhaseEvent>& passages() const { return passages_; }
   /// Returns the derivatives of the switch by the parameters; null when the parameters do not change the switch.
@@ -98,7 +99,7 @@ class LinearizedClosing {
   // The derivatives of the accelerations at one state, in units in which q is multiplied by the fastest frequency.
   struct Node {
     Eigen::MatrixXd by_q, by_v;
-    Eigen::MatrixXd inputs;  // inputs: drives, dent of a contact with memory, parameters of the device
+    Eigen::MatrixXd inputs;  // inputs: drives, residual interference, parameters of the device
   };
   // A part of a step of the recorded motion, short enough for Magnus' series.
   struct Part {
@@ -107,19 +108,19 @@ class LinearizedClosing {
     bool ends_arc = false;
     int terms = 0;  // number of terms in the series of the exponential
   };
-  // Magnus' series of a part of a step, and the inputs of drives and dents: pointers into numbers_.
+  // Magnus' series of a part of a step, and the inputs of drives and of the contact's dent: pointers into numbers_.
   struct Transition {
     const double* magnus;  // rows of whole lanes
     const double* begin;   // inputs at the start of the part, modes x inputs
     const double* middle;  // inputs in the middle of the part
     const double* end;     // inputs at the end of the part
   };
-  // The change of d = dy/dp at an event, with the derivative of the dent's shift as the last row: d becomes matrix * d +
-  // by_device + sum over moved pieces. Without a matrix the first term is d.
+  // The change of d = dy/dp at an event, with the derivative of the contact's residual interference as the last row: d becomes
+  // matrix * d + by_device + sum over moved pieces. Without a matrix the first term is d.
   struct Jump {
     std::size_t parts = 0;                                              // number of parts before the event
     std::optional<Eigen::MatrixXd> matrix;                              // square, of size 2 modes + 1
-    std::vector<std::pair<FigureSlope::Moved, Eigen::VectorXd>> moved;  // d gains the vector times d(begin)/dp
+    std::vector<std::pair<FigureSlope::Moved, Eigen::VectorXd>> moved;  // adds vector * d(begin of the piece)/dp to d
     Eigen::MatrixXd by_device = {};                                     // one column per moving parameter, or none
   };
 
@@ -159,7 +160,7 @@ class LinearizedClosing {
   Index n_, size_;  // number of modes; number of unknowns, 2 modes
   Index stride_;    // size_ rounded up to whole lanes
   SwitchSlopes* by_device_;
-  Index dent_, moving_, inputs_;  // numbers of drives (the index of the dent), of moving parameters, of inputs
+  Index dent_, moving_, inputs_;  // numbers of drives (index of the residual interference), of moving parameters, of inputs
   double fastest_;                // [rad/s]
   Switch::Workspace work_;
   int refinement_;
@@ -177,7 +178,7 @@ class LinearizedClosing {
   std::vector<Jump> jumps_;
   Eigen::MatrixXd rest_;  // derivative of the rest position at the start, one column per moving parameter
   Node from_, middle_, to_;
-  bool goes_on_ = false;  // true when the next part begins at from_
+  bool goes_on_ = false;  // true when the next part of a step begins in the state from_
 };
 
 }  // namespace softland

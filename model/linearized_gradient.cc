@@ -120,7 +120,7 @@ void LinearizedClosing::for_inputs(const Part& part, const SignalSlopes& slopes,
   for (Index j = 0; j < moving_; ++j) add(dent_ + 1 + j, column(j), 1.0, 1.0, 1.0);
 }
 
-// Over a part an input is the parabola through its values at begin, middle and end.
+// Within a part of a step every input is a parabola through its values at begin, middle and end.
 MatrixXd LinearizedClosing::backward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes) {
   linearize_for(figures);
   const auto count = static_cast<Index>(figures.size());

@@ -31,21 +31,25 @@ class ModalBasis {
 
   [[nodiscard]] int modes() const { return static_cast<int>(frequencies_.size()); }
   [[nodiscard]] const Eigen::VectorXd& angular_frequencies() const { return frequencies_; }  ///< [rad/s]
-  [[nodiscard]] const Eigen::VectorXd& squares() const { return squares_; }              ///< squares of the angular frequencies
-  [[nodiscard]] const Eigen::VectorXd& contact_shape() const { return contact_shape_; }  ///< phi_i(x_c) [kg^(-1/2)]
-  /// Returns phi_i at the places of further contacts [kg^(-1/2)].
+  [[nodiscard]] const Eigen::VectorXd& squares() const { return squares_; }  ///< squares of the angular frequencies
+  [[nodiscard]] const Eigen::VectorXd& contact_shape() const {
+    return contact_shape_;
+  }  ///< mode shapes phi_i at the contact
+     ///< point [kg^(-1/2)]
+  /// Returns the mode shapes phi_i at the places of further contacts [kg^(-1/2)].
   [[nodiscard]] const std::vector<Eigen::VectorXd>& further_contact_shapes() const { return further_contact_shapes_; }
-  /// Returns phi_i'(x_c) for a contact that acts along the pad [kg^(-1/2)/m]; 0 for all other contacts.
+  /// Returns the slopes phi_i' of the modes at the contact point, for a contact that acts along the pad [kg^(-1/2)/m]; 0 for
+  /// all other contacts.
   [[nodiscard]] const Eigen::VectorXd& pad_slope() const { return pad_slope_; }
   /// Returns theta, the force on each mode per volt on the piezo [N kg^(-1/2) / V]; zero without a layer.
   [[nodiscard]] const Eigen::VectorXd& piezo_shape() const { return piezo_shape_; }
   [[nodiscard]] double in_contact_period() const { return in_contact_period_; }  ///< first period with the contact held [s]
 
-  /// Returns y(x_c) [m] from coordinates, or the velocity of the contact point [m/s] from velocities.
+  /// Returns the deflection of the contact point [m] from modal coordinates, or its velocity [m/s] from modal velocities.
   [[nodiscard]] double contact_deflection(const double* q) const {
     return deflection<double>({contact_shape_.data(), static_cast<std::size_t>(modes())}, q);
   }
-  /// Returns y'(x_c), the slope of the pad, for a contact along the pad; 0 for all other contacts.
+  /// Returns the slope of the beam at the pad, for a contact along the pad; 0 for all other contacts.
   [[nodiscard]] double pad_tilt(const double* q) const { return at(q).dot(pad_slope_); }
   /// Returns the static deflection of the contact point per volt on the piezo, without any other force and for small
   /// deflections [m/V]; 0 without a layer. The deflection is positive towards the electrodes.

@@ -13,13 +13,13 @@ static_assert(is_complete<sides>());
 /// A place on the beam, from the clamped end: a distance [m], or a share of the beam's length, which scales with this length.
 struct Place {
   constexpr Place() = default;
-  constexpr Place(double distance) : value(distance) {}  // a length is a place
+  constexpr Place(double distance) : value(distance) {}  // implicit: a plain number is a distance
   [[nodiscard]] static constexpr Place share(double of_length) {
     Place place(of_length);
     place.is_share = true;
     return place;
   }
-  /// Returns the distance [m].
+  /// Returns the distance from the clamped end of a beam of this length [m].
   [[nodiscard]] constexpr double on(double length) const { return is_share ? value * length : value; }
   [[nodiscard]] bool operator==(const Place&) const = default;
 

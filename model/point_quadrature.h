@@ -29,9 +29,12 @@ class PointQuadrature {
   [[nodiscard]] const Eigen::ArrayXd& weights() const { return weights_; }      ///< [m]
   /// Returns the rest gaps at the points; the idle points after them have the largest rest gap [m].
   [[nodiscard]] const Eigen::ArrayXd& rest_gaps() const { return rest_gaps_; }
-  /// Returns phi_i(x_p), one row per point, then rows of zero motion that fill the last block [kg^(-1/2)].
+  /// Returns the mode shapes at the points, one row per point, then rows of zero motion that fill the last block [kg^(-1/2)].
   [[nodiscard]] const Eigen::MatrixXd& shapes() const { return shapes_; }
-  [[nodiscard]] const Eigen::MatrixXd& weighted_shapes() const { return weighted_shapes_; }  ///< w_p phi_i(x_p), w_p a weight
+  [[nodiscard]] const Eigen::MatrixXd& weighted_shapes() const {
+    return weighted_shapes_;
+  }  ///< mode shapes times the weights
+     ///< of the points
 
   void set_gap(const double* q, GapField& field) const {
     // noalias() needs no temporary, so there is no allocation in the hot path.

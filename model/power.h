@@ -26,13 +26,13 @@ requires std::same_as<S, double> || LaneOfNumbers<S>
   static constexpr double shift = 6755399441055744.0;
   constexpr auto one = std::bit_cast<std::int64_t>(1.0), low_root = std::bit_cast<std::int64_t>(0.70710678118654752440);
   const S m = one_by_one(x, [](double number) {
-    // The exponent's place of `above` holds e, the rest the excess of m over the root.
+    // With x = 2^e m, the exponent bits of `above` hold e, the other bits the excess of m over sqrt(1/2).
     const std::int64_t above = std::bit_cast<std::int64_t>(number) - low_root;
     return std::bit_cast<double>((above & 0xFFFFFFFFFFFFF) + low_root);
   });
   const S e = one_by_one(x, [](double number) {
     const std::int64_t above = std::bit_cast<std::int64_t>(number) - low_root;
-    // The number is shifted as an unsigned one, with a bias that is removed again: vectors have no signed shift.
+    // Vector units cannot shift signed 64-bit numbers: a bias, subtracted afterwards, makes the number positive.
     const auto biased = static_cast<std::uint64_t>(above + (std::int64_t{1024} << 52)) >> 52;
     return std::bit_cast<double>(std::bit_cast<std::uint64_t>(shift) + biased) - (shift + 1024);
   });
@@ -57,7 +57,7 @@ requires std::same_as<S, double> || LaneOfNumbers<S>
 template <class S>
 requires std::same_as<S, double> || LaneOfNumbers<S>
 [[nodiscard, gnu::always_inline]] inline S inverse_fourth_root(const S& h) {
-  // Five quarters of the exponent of one, less an amount that makes the guess best.
+  // Five quarters of the bits of 1.0, less an amount that minimises the error of the first guess of h^(-1/4).
   constexpr std::uint64_t offset = 0x4FEB000000000000;
   S w = one_by_one(h, [](double x) { return std::bit_cast<double>(offset - (std::bit_cast<std::uint64_t>(x) >> 2)); });
   S square = w * w, e = 1.0 - h * (square * square);

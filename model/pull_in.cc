@@ -64,9 +64,9 @@ class StepTrial {
     double deflection, potential;
   };
 
-  // Damping only reduces the energy. The pass is the unstable equilibrium between rest and contact plane, or the state held at
-  // the plane if the plane comes first. No shape whose contact point has the pass's deflection has less energy. So a run that
-  // has not crossed this deflection, and whose energy falls below that of the pass, never reaches the plane.
+  // Returns the barrier of a step to `value`: the unstable equilibrium between rest and contact plane, or the state held at the
+  // plane if the plane comes first. Damping only reduces the energy, and no shape with this deflection of the contact point has
+  // less energy. So a run that falls below the energy of the barrier before its deflection never reaches the plane.
   Pass pass(double value, std::span<const double> all) {
     const double plane = model_.contact_gap(), strength = model_.strength(drive_, value);
     if (static_.kind == StaticKind::fold && branch_(plane) < strength) {
@@ -99,8 +99,8 @@ std::string_view to_string(StaticKind kind) { return kind == StaticKind::fold ? 
 
 StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias) {
   if (!pulls_in(model.device(), drive)) return {.status = Status::no_contact};
-  // The branch of an electrode begins at the switch's rest without the electrode's field, that of the dispersion force at
-  // factor 0.
+  // The branch of an electrode begins at the equilibrium without the electrode's field, that of the dispersion force at factor
+  // 0.
   std::vector<double> at_begin = standing(model, drive, bias);
   if (model.neutral_voltage(drive) != 0 && !model.open_equilibrium(at_begin)) return {.status = Status::collapsed_at_rest};
   at_begin[drive] = model.value_of_strength(drive, 0);

@@ -32,7 +32,8 @@ enum class StaticKind { fold, contact };
 
 struct StaticPullIn {
   Status status = Status::not_run;
-  double voltage = std::numeric_limits<double>::quiet_NaN();     ///< Vsp [V]; for the dispersion force its factor minus 1
+  double voltage = std::numeric_limits<double>::quiet_NaN();     ///< static pull-in voltage Vsp [V]; for the dispersion force
+                                                                 ///< its factor minus 1
   double deflection = std::numeric_limits<double>::quiet_NaN();  ///< deflection of the contact point at this voltage [m]
   StaticKind kind = StaticKind::fold;  ///< fold of the branch, or contact when the contact plane comes before the fold
 };
@@ -42,10 +43,10 @@ struct StaticPullIn {
 using Bias = std::span<const double>;
 
 /// Finds the fold of the static branch of `drive`, or the voltage at which the contact point reaches the contact plane if that
-/// comes first. The branch of an electrode begins at the switch's rest under the bias, with this electrode at V0. The status is
-/// collapsed_at_rest when this rest, or the rest with this electrode at 0 V, does not exist, and no_contact for an electrode on
-/// the far side. The branch of the dispersion force begins at factor 0, so that a negative result shows by how much the nominal
-/// force is too strong. Throws InvalidInput when the bias has another number of drives.
+/// comes first. The branch of an electrode begins at the open equilibrium under the bias, with this electrode at V0, where it
+/// does not pull. The status is collapsed_at_rest when this equilibrium, or the one with this electrode at 0 V, does not exist,
+/// and no_contact for an electrode on the far side. The branch of the dispersion force begins at factor 0, so that a negative
+/// result shows by how much the nominal force is too strong. Throws InvalidInput when the bias has another number of drives.
 [[nodiscard]] StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias = {});
 
 /// An equilibrium, stable or not, in which a drive holds the contact point.
@@ -82,10 +83,11 @@ struct ReleasePoint {
   double deflection = std::numeric_limits<double>::quiet_NaN();  ///< [m]
 };
 [[nodiscard]] ReleasePoint release_point(const Switch& model, std::size_t drive, Bias bias = {});
-/// Returns the release voltage [V]: the smallest voltage above V0 with a closed equilibrium. The voltage is 0 when the
-/// dispersion force, or the bias, keeps the switch closed by itself, and negative when a charge on the dielectric keeps the
-/// switch closed at 0 V. The voltage is NaN without a contact law, when the contact is too soft to keep the beam off the
-/// electrode at any voltage, and when the branch could not be computed. Throws as static_pull_in() does.
+/// Returns the release voltage [V]: the smallest voltage with a closed equilibrium, counted from V0, at which the electrode
+/// does not pull. The voltage is 0 when the dispersion force, or the bias, keeps the switch closed by itself, and negative when
+/// a charge on the dielectric keeps the switch closed at 0 V. The voltage is NaN without a contact law, when the contact is too
+/// soft to keep the beam off the electrode at any voltage, and when the branch could not be computed. Throws as
+/// static_pull_in() does.
 [[nodiscard]] double release_voltage(const Switch& model, std::size_t drive, Bias bias = {});
 
 /// An equilibrium of the beam on the contact.

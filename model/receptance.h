@@ -40,15 +40,15 @@ struct BeamElement {
 [[nodiscard]] Eigen::MatrixXd slope_products(const std::vector<BeamElement>& elements, const Eigen::MatrixXd& motions,
                                              const std::optional<Eigen::RowVectorXd>& first_slopes = {});
 
-/// Computes the receptance for up to four lambda at once, for elements without taper.
+/// Computes the receptance for up to four squared frequencies lambda at once, for elements without taper.
 class Receptance {
  public:
   /// The axial force is positive in tension.
   Receptance(const std::vector<BeamElement>& elements, double axial_force, bool far_clamp);
 
   struct Answer {
-    Lane deflection;   ///< receptance a
-    Lane inertia;      ///< derivative of a by lambda, the integral of mu y^2
+    Lane deflection;   ///< receptance
+    Lane inertia;      ///< derivative of the receptance by lambda, the integral of mu y^2
     Lane below;        ///< number of natural frequencies below the square root of lambda
     Lane least_pivot;  ///< smallest pivot except the last, which vanishes at a pole: small pivots magnify rounding
   };
@@ -58,8 +58,8 @@ class Receptance {
   [[nodiscard]] Eigen::VectorXd motion(Eigen::Index lane) const;
 
  private:
-  static constexpr int size = 2 + element_functions;  // deflection and rotation at an element's left end, then its functions
-  static constexpr int kept = 4;                      // number of these motions that move the element's right end
+  static constexpr int size = 2 + element_functions;  // motions of an element: two of its left end, then its shape functions
+  static constexpr int kept = 4;                      // number of motions of an element that move its right end
   // Elements with equal size and section share their quadratic form, a lower triangle. Its rows beyond `kept` are eliminated.
   struct ElementKind {
     double half = 0, rigidity = 0, mass = 0;

@@ -20,7 +20,7 @@ class RecordedMotion final : public ClosingObserver {
     double time = 0;  ///< [s]
     const double *q, *v, *accelerations;
   };
-  /// An event before the arc with the number `arc`.
+  /// An event before the smooth arc with the number `arc`.
   struct PhaseEvent {
     std::size_t arc = 0;
     double time = 0;  ///< [s]
@@ -41,7 +41,7 @@ class RecordedMotion final : public ClosingObserver {
   void step(const Knot& begin, const Knot& end, const ContactState& contact) override {
     arcs_.push_back({begin.time, end.time, contact});
     for (const Knot* knot : {&begin, &end}) {
-      modes_ = knot->state.size() - knot->rates.size();  // the states of a film are in both arrays
+      modes_ = knot->state.size() - knot->rates.size();  // state: q, v, film; rates: accelerations, film rates
       numbers_.insert(numbers_.end(), knot->state.data(), knot->state.data() + 2 * modes_);
       numbers_.insert(numbers_.end(), knot->rates.data(), knot->rates.data() + modes_);
     }

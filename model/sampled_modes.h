@@ -60,7 +60,7 @@ struct SampledModes {
   std::shared_ptr<const NormalisedModes> modes;  // null for other structures than beams
   TabulatedModes::Shapes table = {};             // empty for other structures than tables
   Eigen::ArrayXd positions, weights;             // [m]
-  Eigen::MatrixXd shapes;                        // points x modes
+  Eigen::MatrixXd shapes;                        // mode shapes, points x modes
   Eigen::VectorXd contact_shape, contact_slope, piezo_begin_slope, piezo_end_slope;
   std::vector<Eigen::VectorXd> further_contact_shapes;
   double pinned_inverse_square = 0;  // omega^-2 of the normalised beam that is also held at its contact

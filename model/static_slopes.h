@@ -21,10 +21,11 @@
 
 namespace softland {
 
-/// Returns the slopes of static_pull_in() [V per unit of the parameter]; `pull_in` is its result.
+/// Returns the derivatives of static_pull_in() by device parameters [V per unit of the parameter]; `pull_in` is its result.
 [[nodiscard]] std::vector<double> static_pull_in_slopes(const Switch& model, SwitchSlopes& by, std::size_t drive,
                                                         const StaticPullIn& pull_in, Bias bias = {});
-/// Returns the slopes of release_point() [V per unit of the parameter]; NaN for a release voltage of 0.
+/// Returns the derivatives of release_point() by device parameters [V per unit of the parameter]; NaN for a release voltage of
+/// 0.
 [[nodiscard]] std::vector<double> release_slopes(const Switch& model, SwitchSlopes& by, std::size_t drive,
                                                  const ReleasePoint& release, Bias bias = {});
 
@@ -32,14 +33,14 @@ namespace softland {
 /// these values of all drives [rad/s]; NaN when the switch does not rest open. If all values are 0 the result is the frequency
 /// of the undeflected switch, Switch::angular_frequencies().
 [[nodiscard]] double resonance(const Switch& model, std::size_t mode, std::span<const double> values);
-/// Returns the slopes of resonance() [rad/s per unit of the parameter].
+/// Returns the derivatives of resonance() by device parameters [rad/s per unit of the parameter].
 [[nodiscard]] std::vector<double> resonance_slopes(const Switch& model, SwitchSlopes& by, std::size_t mode,
                                                    std::span<const double> values);
 
 /// Returns the capacitance of an electrode of the open switch at rest under these values of all drives [F]; NaN when the switch
 /// does not rest open.
 [[nodiscard]] double open_capacitance(const Switch& model, std::size_t drive, std::span<const double> values);
-/// Returns the slopes of open_capacitance() [F per unit of the parameter].
+/// Returns the derivatives of open_capacitance() by device parameters [F per unit of the parameter].
 [[nodiscard]] std::vector<double> open_capacitance_slopes(const Switch& model, SwitchSlopes& by, std::size_t drive,
                                                           std::span<const double> values);
 /// Returns the derivative of open_capacitance() by the voltage of drive `moved` [F/V].

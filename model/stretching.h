@@ -22,7 +22,7 @@ namespace softland {
 template <class P>
 struct MidPlaneStretchingOf {
   std::size_t modes = 0;
-  std::vector<P> slopes = {};  ///< G [1/(kg m)], column by column
+  std::vector<P> slopes = {};  ///< integrals G_ij of phi_i' phi_j' [1/(kg m)], column by column
   P stiffness = P(0);          ///< EA/(2 L) [N/m]
 
   /// Adds the modal forces Q of stretching to `result`.

@@ -51,11 +51,11 @@ struct SwitchOptions {
   std::optional<int> modes = {};
 };
 
-/// The states of all contacts of a switch: either one state for each contact, or a state for the first contact alone. Each
-/// other contact is then on first loading wherever it is within its reach.
+/// The states of all contacts of a switch: either one state for each contact, or a state for the first contact alone. Every
+/// other contact then has the state of first loading while it is within its reach.
 struct ContactStates {
-  ContactStates(const ContactState& first_one) : first(first_one) {}  // NOLINT: most switches have one contact
-  ContactStates(std::same_as<bool> auto acts) : first(acts) {}        // NOLINT: most laws need nothing else
+  ContactStates(const ContactState& first_one) : first(first_one) {}  // NOLINT: implicit, as most switches have one contact
+  ContactStates(std::same_as<bool> auto acts) : first(acts) {}        // NOLINT: implicit; most laws need to know no more
   ContactStates(const ContactState& first_one, std::span<const ContactState> others) : first(first_one), further(others) {}
 
   ContactState first;
@@ -87,7 +87,7 @@ class Switch {
   /// Returns V0 [V], the voltage at which an electrode does not pull, which is not 0 when its dielectric is charged; 0 for the
   /// other drives.
   [[nodiscard]] double neutral_voltage(std::size_t drive) const { return drive < electrodes_ ? neutral_voltages_[drive] : 0; }
-  /// Returns the factor of a drive's law at this value: (V - V0)^2, or the force factor.
+  /// Returns the factor by which this value of the drive scales its force law: (V - V0)^2, or the force factor.
   [[nodiscard]] double strength(std::size_t drive, double value) const {
     if (drive >= electrodes_) return 1 + value;
     const double acting = value - neutral_voltages_[drive];
@@ -124,9 +124,9 @@ class Switch {
   /// Returns the rest distance of the contact point to the contact plane [m].
   [[nodiscard]] double contact_gap(std::size_t c = 0) const { return c == 0 ? contact_gap_ : further_[c - 1].gap; }
   /// Returns the gap below which every law is continued by its tangent and a run counts as having touched the electrode [m]: a
-  /// hundredth of d0. The gap is negative, below the face, for a switch that lands on a dielectric: minus half of the
-  /// dielectric's contribution to the gap of the field, or minus d0 for a wall, which no beam passes. The laws of a film are
-  /// continued from a hundredth of d0 in any case.
+  /// hundredth of d0. The gap is negative, below the face, for a switch that lands on a dielectric: minus half of
+  /// Dielectric::depth(), or minus d0 for a rigid face (wall), which no beam passes. The laws of a film are continued from a
+  /// hundredth of d0 in any case.
   [[nodiscard]] double gap_floor() const {
     if (const Landing* landing = device_.landing(); landing != nullptr && landing->is_wall()) return -device_.gap.electrode;
     return device_.lands_on_dielectric() ? -device_.dielectric_depth() / 2 : device_.gap.electrode / 100;
@@ -153,7 +153,7 @@ class Switch {
   /// doubles. `film` are the states of a compressible film; null stands for a film at rest.
   void accelerations(const double* q, const double* v, std::span<const double> volts, const ContactStates& contacts,
                      Workspace& work, double* result, const double* film = nullptr) const;
-  /// Computes the rates of a state (q, v, film) except q': accelerations, then the rates of the film.
+  /// Computes the time derivatives of a state (q, v, film) without q': accelerations, then the rates of the film.
   void rates(const double* state, std::span<const double> volts, const ContactStates& contacts, Workspace& work,
              double* result) const;
   /// Computes modal forces of the drives at unit strength (of the piezo: per volt) in the field that was last computed with
@@ -162,7 +162,8 @@ class Switch {
   /// Computes the derivatives of the accelerations with respect to q and v: modes x modes each.
   void jacobian(const double* q, const double* v, std::span<const double> volts, const ContactStates& contacts, Workspace& work,
                 Eigen::Ref<Eigen::MatrixXd> by_q, Eigen::Ref<Eigen::MatrixXd> by_v) const;
-  /// Adds the part of a compressible film to the derivatives of (v, rates) by the state (q, v, film), whose field is in `work`.
+  /// Adds the contribution of a compressible film to the derivatives of (q', rates()) by the state (q, v, film); `work` has the
+  /// gap field of this state.
   void add_film_derivatives(const double* state, const Workspace& work, Eigen::Ref<Eigen::MatrixXd> derivatives) const;
 
   /// The motion before the first touch, in which no contact and no compressible film acts. The accelerations are linear in the
@@ -180,18 +181,18 @@ class Switch {
   [[nodiscard]] Eigen::MatrixXd free_motion_curvature(const double* q, const double* v, std::span<const double> strengths,
                                                       const double* multipliers, Workspace& work) const;
 
-  /// Returns y(x_c) [m] from q, or the velocity of y from v, positive towards the plane of contact c.
+  /// Returns the deflection of contact c [m] from q, or its velocity [m/s] from v, positive towards its plane.
   [[nodiscard]] double contact_deflection(const double* q, std::size_t c = 0) const {
     return c == 0 ? basis_.contact_deflection(q) : basis_.at(q).dot(further_[c - 1].shape);
   }
-  /// Returns phi_i(x_c) [kg^(-1/2)], positive towards the plane of the contact.
+  /// Returns the mode shapes phi_i at a contact [kg^(-1/2)], positive towards the plane of the contact.
   [[nodiscard]] const Eigen::VectorXd& contact_shape(std::size_t c = 0) const {
     return c == 0 ? basis_.contact_shape() : further_[c - 1].shape;
   }
-  /// Returns the smallest local gap in the last field computed with `work` [m].
+  /// Returns the smallest local gap in the gap field last computed with `work` [m].
   [[nodiscard]] static double smallest_gap(const Workspace& work) { return work.field.smallest_gap; }
   /// Returns true when the beam is within a hundredth of the rest gap of an electrode or a film's wall on the far side, in the
-  /// field last computed with `work`.
+  /// gap field last computed with `work`.
   [[nodiscard]] bool at_far_side(const Workspace& work) const {
     return std::isfinite(most_gap_) && work.field.gap.head(quadrature_.points()).maxCoeff() > most_gap_;
   }
@@ -200,14 +201,15 @@ class Switch {
   /// collapses by itself, by the dispersion force or the charge on a dielectric, or rests on the contact plane.
   [[nodiscard]] const std::optional<Eigen::VectorXd>& rest() const { return rest_; }
   /// Returns the equilibrium under these values of all drives, reached from the straight beam as the values grow from 0; a run
-  /// starts from it.
+  /// starts from this equilibrium.
   [[nodiscard]] std::optional<Eigen::VectorXd> open_equilibrium(std::span<const double> values) const;
-  /// Returns the capacitance of drive k, its charge per volt of its own [F]; 0 unless the drive is an electrode.
+  /// Returns the capacitance of a drive, the derivative of its charge by its own voltage [F]; 0 unless the drive is an
+  /// electrode.
   [[nodiscard]] double capacitance(std::size_t drive, const double* q, Workspace& work) const;
   /// Returns the potential of a drive's law at unit strength [J]; 0 for the piezo.
   [[nodiscard]] double law_potential(std::size_t drive, const double* q, Workspace& work) const;
-  /// Returns minus the derivative of potential() with respect to the drive's value: for an electrode the charge less that at
-  /// V0, for the piezo its charge [C]; for the dispersion force minus the potential of its law [J].
+  /// Returns minus the derivative of potential() with respect to the drive's value: for an electrode its charge less the charge
+  /// at V0, for the piezo its charge [C]; for the dispersion force minus the potential of its law [J].
   [[nodiscard]] double charge(std::size_t drive, double value, const double* q, Workspace& work) const;
   [[nodiscard]] double elastic_energy(const double* q) const;  ///< energy of the beam, without piezo coupling and contact [J]
   /// Returns true when the motion always loses energy: by gas, modal damping, or a contact law that depends on the rate.
@@ -217,7 +219,7 @@ class Switch {
   [[nodiscard]] bool has_damped_contact() const;
   /// Returns the power dissipated by gas and modal damping [W]; without `film` a compressible film is taken as at rest.
   [[nodiscard]] double dissipated_power(const double* q, const double* v, Workspace& work, const double* film = nullptr) const;
-  /// Returns the dissipated power in the field last computed with `work`, whose velocities are `v` [W].
+  /// Returns the dissipated power in the gap field last computed with `work`, whose velocities are `v` [W].
   [[nodiscard]] double dissipated_power(const double* v, Workspace& work, const double* film = nullptr) const;
   /// Returns the energy stored in a compressible film in a state (q, v, film) [J]; 0 without such a film.
   [[nodiscard]] double film_energy(const double* state, Workspace& work) const;
@@ -240,7 +242,7 @@ class Switch {
   /// Calls f(xi, share, interference) for every point at which the first contact acts, with xi from x_c towards the clamp [m].
   template <class F>
   void for_contact_points(const double* q, F&& f) const;
-  /// Returns the velocity of the first contact's pad towards the plane at xi [m/s].
+  /// Returns the velocity of the first contact's pad towards the plane, at the distance xi from x_c [m/s].
   [[nodiscard]] double contact_rate(const double* v, double xi) const;
   /// A contact after the first one.
   struct FurtherContact {

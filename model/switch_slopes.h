@@ -4,11 +4,10 @@
 //   F_p = [F(q + h r, v; p + h) - F(q - h r, v; p - h)] / 2h - F_q r          at fixed q and v
 //
 // p is the parameter [its SI unit], h half the step between the two switches, F modal accelerations, F_q their derivative by q
-// in the switch itself. r is 0 when no contact acts. The depth of a contact that acts is nanometres and must not change because
-// the step moves its plane. r is then the motion along the contact's static deflection that leaves the interference as it is.
-// The effect of the plane's motion on the force comes from F_q, which is exact. So all properties of a device are included:
-// frequencies and shapes of the modes, which keep their normalisation and sign, places of electrodes and contact, laws of
-// forces and gas.
+// in the switch itself. r is 0 when no contact acts. An interference is nanometres: a step that moves the contact plane must
+// not change it. r is then the shift along the static deflection of the contact point that keeps the interference. The effect
+// of the plane's motion on the force comes from F_q, which is exact. So all properties of a device are included: frequencies
+// and shapes of the modes, which keep their normalisation and sign, places of electrodes and contact, laws of forces and gas.
 //
 // Steps of 3e-5 of a parameter give F_p with an error of about 1e-7: the truncation error grows with the square of the step,
 // and the effect of rounding errors of the modes with its inverse.
@@ -31,7 +30,7 @@ class SwitchSlopes {
 
   struct Neighbours {
     Switch above, below;
-    double distance = 0;         ///< difference of the parameter, from below to above [its SI unit]
+    double distance = 0;         ///< difference of the parameter between the two switches [its SI unit]
     bool acts_in_flight = true;  ///< true when accelerations depend on the parameter while no contact acts
   };
   /// `neighbours` are the two switches for each parameter; none for a parameter on which the switch does not depend. Keeps a
@@ -43,27 +42,28 @@ class SwitchSlopes {
   /// Returns the parameters on which the switch depends. The functions below take the index j in this list.
   [[nodiscard]] const std::vector<std::size_t>& moving() const { return moving_; }
 
-  /// Returns the slope of the interference of the contact point, y(x_c) - dt, at fixed q [m per unit].
+  /// Returns the derivative by parameter j of the interference of the contact point, y(x_c) - dt, at fixed q [m per unit].
   [[nodiscard]] double interference(std::size_t j, const double* q) const;
-  /// Returns the slope of the contact point's velocity at fixed v [m/s per unit].
+  /// Returns the derivative by parameter j of the contact point's velocity at fixed v [m/s per unit].
   [[nodiscard]] double velocity(std::size_t j, const double* v) const;
-  /// Returns the slope of the interference of an edge of the contact's phases [m per unit]: 0 for the plane and for edges of a
-  /// dent, at which no force sets in, else that of the law's reach or kink.
+  /// Returns the derivative by parameter j of the interference at which the contact changes its phase [m per unit]: 0 for the
+  /// plane and for the edge of a dent, where no force sets in; else that of the law's reach or kink.
   [[nodiscard]] double edge(std::size_t j, double interference) const;
-  /// Returns the slope of a function f(law) of the contact law by parameter j.
+  /// Returns the derivative by parameter j of a function f(law) of the contact law.
   template <class F>
   [[nodiscard]] double of_contact(std::size_t j, F&& f) const {
     const Neighbours& n = neighbours_[j];
     return (f(n.above.contact()) - f(n.below.contact())) / n.distance;
   }
-  /// Returns the slope of a figure of the whole switch, f(switch, step), by parameter j; `step` is the parameter of the switch
-  /// that f receives less the parameter of `model`.
+  /// Returns the derivative by parameter j of a figure of the whole switch, f(switch, step); `step` is the parameter of the
+  /// switch that f receives less the parameter of `model`.
   template <class F>
   [[nodiscard]] auto of_switch(std::size_t j, F&& f) const {
     const Neighbours& n = neighbours_[j];
     return decltype(f(n.above, n.distance))((f(n.above, n.distance / 2) - f(n.below, -n.distance / 2)) / n.distance);
   }
-  /// Computes the slope of the modal accelerations at fixed q and v, F_p. `by_q` is F_q in this state: modes x modes.
+  /// Computes the derivative F_p by parameter j of the modal accelerations at fixed q and v. `by_q` is F_q in this state: modes
+  /// x modes.
   void accelerations(std::size_t j, const double* q, const double* v, std::span<const double> volts, const ContactState& contact,
                      const Eigen::Ref<const Eigen::MatrixXd>& by_q, Eigen::Ref<Eigen::VectorXd> result);
 
@@ -71,8 +71,8 @@ class SwitchSlopes {
   const Switch& model_;
   std::size_t parameters_;
   std::vector<std::size_t> moving_;
-  std::vector<Neighbours> neighbours_;            // neighbours of the moving parameters
-  std::vector<Switch::Workspace> above_, below_;  // workspaces of the neighbours
+  std::vector<Neighbours> neighbours_;            // two switches for each moving parameter
+  std::vector<Switch::Workspace> above_, below_;  // workspaces of the two switches
   Eigen::VectorXd deflection_;  // static deflection under a force at the contact point that moves this point by 1 m
 };
 

@@ -23,7 +23,7 @@ namespace softland {
 /// missing Poisson's ratio counts as 0.3. The result is empty unless the beam is uniform and its ends are clamped or free.
 [[nodiscard]] std::vector<double> frequency_excess(const Structure& structure);
 
-/// Returns one sentence with the excess of every mode; empty when none reaches 2 %.
+/// Returns a warning with the frequency_excess() of every mode; empty when no excess reaches 2 %.
 [[nodiscard]] std::string slenderness_warning(const Structure& structure);
 
 }  // namespace softland

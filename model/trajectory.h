@@ -11,9 +11,9 @@
 
 namespace softland {
 
-/// One knot. Between knots the position is the quintic Hermite interpolant of (position, velocity, acceleration), so knots must
-/// not straddle a kink: every make and break of contact and every waveform breakpoint is a knot. Two knots of equal time are a
-/// jump of velocity or acceleration.
+/// One knot of the motion. Between knots the position is the quintic Hermite interpolant of (position, velocity, acceleration),
+/// so knots must not straddle a kink: every make and break of contact and every waveform breakpoint is a knot. Two knots of
+/// equal time are a jump of velocity or acceleration.
 struct TrajectoryPoint {
   double time = 0;           ///< [s]
   double position = 0;       ///< position of the contact point, from rest towards the contact [m]

@@ -58,7 +58,7 @@ namespace softland {
 /// The figures of a closing and those of the plain step, from which the cost of a target is computed.
 struct Shares {
   const Metrics &own, &step;
-  double lead = 0;    ///< cost of `bounce`
+  double lead = 0;    ///< cost of the target `bounce`
   double window = 0;  ///< time after the first touch over which the closing was simulated [s]
 
   /// Returns a ratio that stays finite when the figure of the plain step is 0; NaN when `value` is NaN.
@@ -77,16 +77,16 @@ struct Shares {
 };
 
 enum class Target { bounce, settling, rebound, count, impact, energy, force, drive, steady, electrical };
-/// A target of a search. A new target needs an enumerator and a row.
+/// A target of a search. A new target needs an enumerator and an entry in `targets`.
 struct TargetRow {
   using Form = double (*)(const Shares&);
 
   Target value;
   std::string_view name;
-  Figure::Member figure;         ///< figure that results are compared by, and that enters the cost when the form below is null
-  Figure::Member unit = figure;  ///< figure of the plain step by which the own figure is divided in a sum of targets
-  /// True when a search for the target continues with its own figure after the cost of `bounce`. It is false for figures that
-  /// cannot improve further once no rebound is significant.
+  Figure::Member figure;         ///< figure by which results are compared; it enters the cost when its Form below is null
+  Figure::Member unit = figure;  ///< figure of the plain step by which `figure` is divided in a sum of targets
+  /// True when a search for the target continues with `figure` after the cost of `bounce`; false for figures that cannot
+  /// improve further once no rebound is significant.
   bool has_own_cost = true;
   Form nominal = nullptr;             ///< function for the cost of a search on the nominal device
   Form robust = nullptr;              ///< function for the cost of a search under process variation
@@ -179,23 +179,24 @@ class Aim {
 
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
   [[nodiscard]] bool is_sum() const { return parts_.size() > 1; }
-  /// Returns true when a search for this aim first minimises the cost of `bounce` and then another cost. A single target
-  /// decides by TargetRow::has_own_cost, a single own objective by lands_first(); the answer for a sum is always true.
+  /// Returns true when a search for this aim first minimises the cost of `bounce` and then another cost. The result is
+  /// TargetRow::has_own_cost for a single target, lands_first() for a single own objective, and true for a sum.
   [[nodiscard]] bool has_own_cost() const;
   [[nodiscard]] bool is_about(Target target) const;
   /// Returns true when a part is an own objective.
   [[nodiscard]] bool has_own_objective() const;
   /// Returns true when the cost depends on the drive energy. The cost of a user's own objective may depend on it.
   [[nodiscard]] bool measures_drive_energy() const;
-  /// Returns the own objective that a search minimises from its first evaluation on; null when no part has one.
+  /// Returns the own objective that a search minimises from its first evaluation on; null when the search first minimises the
+  /// cost of `bounce`.
   [[nodiscard]] const OwnObjective* from_the_start() const;
-  /// Returns the same aim with the values of own objectives divided by their value for the plain step, if that value is below a
-  /// hundredth or above a hundred. Throws InvalidInput when that value is not finite.
+  /// Returns the same aim with the values of own objectives divided by their value for the plain step, if the value for the
+  /// plain step is below 0.01 or above 100. Throws InvalidInput when this value is not finite.
   [[nodiscard]] Aim in_units_of(const Metrics& step) const;
   /// Returns the aim as text, for example "bounce" or "0.7 bounce + 0.3 energy".
   [[nodiscard]] std::string text() const;
-  /// Returns the weighted mean of value(row) over the targets. A user's own objective contributes its value for this closing,
-  /// given the plain step; throws InvalidInput when an own objective's value is below 0.
+  /// Returns the weighted mean of value(row) over the targets, each with its TargetRow. A user's own objective contributes its
+  /// value for this closing, given the plain step; throws InvalidInput when an own objective's value is below 0.
   template <class Value>
   [[nodiscard]] double mean(const Metrics& closing, const Metrics& step, const Value& value) const {
     const auto of = [&](const Part& part) {
@@ -207,7 +208,8 @@ class Aim {
     return sum / weights;
   }
 
-  /// Returns mean() for each of many closings; calls a user's own objective once for all. `value` also receives the closing.
+  /// Returns mean() for each of many closings; calls a user's own objective once for all closings. `value` also receives the
+  /// closing.
   template <class Value>
   [[nodiscard]] std::vector<double> means(std::span<const Metrics> closings, const Metrics& step, const Value& value) const {
     std::vector<double> sums(closings.size(), 0), of_part(closings.size());
@@ -246,7 +248,7 @@ struct CostScale {
   double score_window = 0;      ///< time after first contact over which the cost is computed [s]
   double contact_gap = 0;       ///< distance from the rest position to the contact plane [m]
   double free_touch = 0;        ///< T_free, largest first contact time that costs little, over that of the plain step
-  bool judges_hardness = true;  ///< false when hard closings are not penalised: see excess_over_step()
+  bool judges_hardness = true;  ///< false when a closing harder than the plain step has no penalty: see excess_over_step()
 };
 /// Returns the cost of a closing; infinite for a run that could not be simulated to its end.
 [[nodiscard]] double cost(const Aim& aim, const Metrics& figures, const CostScale& scale, const MetricsOptions& options);

@@ -27,7 +27,7 @@ struct CostSlopes {
   /// small, a touch is about to begin or to vanish, and derivatives hold in a small neighbourhood only.
   double grazing = 1;
 };
-/// Returns the derivatives of the closing with these figures and this motion. The drive energy has no derivative here.
+/// Returns the derivatives of the figures of a closing by its motion. The drive energy has no derivative here.
 [[nodiscard]] CostSlopes cost_slopes(const Switch& model, std::span<const Signal> signals, const LinearizedClosing& motion,
                                      const MetricsOptions& options);
 

@@ -21,7 +21,8 @@ class CourseRecorder final : public ClosingObserver {
   /// `contact_gap` is in [m]; `most_knots` must be at least 32.
   explicit CourseRecorder(double contact_gap, const MetricsOptions& options = {}, std::size_t most_knots = most_recorded_knots);
 
-  /// Adds a contact, the next in order, of a switch with several contacts; its figures are recorded as well. `contact_gap` [m]
+  /// Adds a contact, the next in order, of a switch with several contacts; its figures are recorded as well. `contact_gap` is
+  /// in [m].
   void follow_contact(double contact_gap, const MetricsOptions& options) {
     contacts_.push_back(std::make_unique<CourseRecorder>(contact_gap, options, most_knots_));
   }
@@ -33,7 +34,8 @@ class CourseRecorder final : public ClosingObserver {
     return number < contacts_.size() ? contacts_[number].get() : nullptr;
   }
 
-  /// Returns the figures of the run, computed from all knots. Call it after the end of the run; see metrics() in metrics.h.
+  /// Returns the figures of the run, computed from all knots. Call this function after the end of the run; see metrics() in
+  /// metrics.h.
   [[nodiscard]] Metrics metrics(const Trajectory& end) { return figures_.metrics(end); }
   /// Returns the rebounds of the run before the command to open, computed from all knots.
   [[nodiscard]] std::vector<Rebound> rebounds() const;

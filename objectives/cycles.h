@@ -32,7 +32,7 @@ struct CycleFigures {
 
 class CycleRecorder final : public ClosingObserver {
  public:
-  /// `contact_gap` [m]; `options` define a significant rebound and, in MetricsOptions::opening, the open position.
+  /// `contact_gap` is in [m]; `options` define a significant rebound and, in MetricsOptions::opening, the open position.
   CycleRecorder(double contact_gap, const MetricsOptions& options, const CycleTimes& times);
 
   void knot(const TrajectoryPoint& point) override;
@@ -51,7 +51,7 @@ class CycleRecorder final : public ClosingObserver {
     MetricsObserver metrics;
     double source_work = Metrics::unset;  // energy from the sources in the cycle [J]
     bool began_open = false;
-    double swing = 0, on_time = 0;  // members of CycleFigures [m], [s]
+    double swing = 0, on_time = 0;  // see the members of CycleFigures [m], [s]
   };
 
   // Returns the time for which the switch has been closed in this cycle before `until` [s]; the switch must still be closed then.

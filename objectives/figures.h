@@ -42,7 +42,7 @@ struct Figure {
   Better better = Better::neither;
   Conditioning conditioning = Conditioning::first_touch;
   Member member;
-  /// Figure whose derivative this figure has; that of the permanent contact time is the end of the last rebound. Null when the
+  /// Figure whose derivative counts as that of this figure: last_rebound_end for the permanent contact time. Null when the
   /// figure has no derivative.
   double Metrics::*slope = nullptr;
   bool of_results = true, of_devices = false;  ///< true when results show the figure for one closing, or for varied devices
@@ -56,7 +56,7 @@ struct Figure {
     return conditioning == Conditioning::first_touch || conditioning == Conditioning::high_rebound ||
            conditioning == Conditioning::every_touch || conditioning == Conditioning::open;
   }
-  /// Returns true when results show the figure for a scene that requests `of_scene`.
+  /// Returns true when results show the figure for a scene with the requests `of_scene`.
   [[nodiscard]] constexpr bool is_asked(const AskedFigures& of_scene) const { return asked == nullptr || of_scene.*asked; }
   /// Returns true when certify() estimates an error of the figure.
   [[nodiscard]] constexpr bool has_error() const { return !is_yes_or_no() && conditioning != Conditioning::drives; }
@@ -69,8 +69,8 @@ struct Figure {
   }
   /// Returns the figure of a closing, 1 for yes and 0 for no; NaN when the figure is not known.
   [[nodiscard]] double value(const Metrics& metrics) const;
-  /// Returns the value for comparisons. A rebound height below the significant height counts as that height, and a least force
-  /// below the steady force as the steady force.
+  /// Returns the value of the figure with which closings are compared. A rebound height below the significant height counts as
+  /// that height, and a least force below the steady force as the steady force.
   [[nodiscard]] double counted(const Metrics& metrics, const MetricsOptions& options) const;
 };
 

@@ -82,7 +82,7 @@ Metrics MetricsObserver::metrics(const Trajectory& end) {
   result.release_settling_time = opening.settling_time;
   result.overshoot_open = opening.overshoot;
   result.least_gap_open = opening.least_gap;
-  const double apart = std::isfinite(result.separated) ? result.separated : 0;  // no value if the run began closed
+  const double apart = std::isfinite(result.separated) ? result.separated : 0;  // NaN if the run began closed
   result.closed_time = options_.opening.time - landing_->first_touch.time - apart + opening.opening_time - opening.separated;
   return result;
 }

@@ -96,7 +96,8 @@ struct Metrics {
   // The following figures enter costs; results do not show them.
   double closest = unset;    ///< smallest separation before the first touch [m]; known also without contact
   double separated = unset;  ///< time above the first-touch plane after the first touch [s]
-  /// End of the last significant rebound; end of the run when the last rebound has not ended; t_i without one [s].
+  /// End of the last significant rebound; end of the run when the last rebound has not ended; first contact without a
+  /// significant rebound [s].
   double last_rebound_end = unset;
   double landing_excess = unset;  ///< Trajectory::landing_excess, but not below 0 [J]
   double end = unset;             ///< end of the run [s]
@@ -141,7 +142,7 @@ class LandingFigures {
 /// Computes the figures of merit during a closing, without storing its motion.
 class MetricsObserver final : public ClosingObserver {
  public:
-  /// `contact_gap` [m]
+  /// `contact_gap` is in [m].
   explicit MetricsObserver(double contact_gap, const MetricsOptions& options = {})
       : options_(options),
         figures_(options),

@@ -18,14 +18,14 @@ struct OpeningBand {
 
 /// The settling of the contact point in a band about its open position.
 struct BandFigures {
-  /// Time from which the contact point stays in the band [s]; NaN when the point does not.
+  /// Time from which the contact point stays in the band [s]; NaN when the contact point is outside the band at the end.
   double settled_from = std::numeric_limits<double>::quiet_NaN();
-  double below = 0, above = 0;  ///< largest excursion, away from and towards the contact [m]; 0 without one
+  double below = 0, above = 0;  ///< largest excursion, away from and towards the contact [m]; 0 without an excursion
   double residual = std::numeric_limits<double>::quiet_NaN();  ///< OpeningFigures::residual_vibration
 };
 
-/// Computes the figures of a band from the distance to the open position, one turning point after another. The motion between
-/// knots is the quintic through the knots.
+/// Computes BandFigures from the distance of the contact point to the open position, one turning point after another. The
+/// motion between knots is the quintic through the knots.
 class BandFollower {
  public:
   explicit BandFollower(const OpeningBand& band) : band_(band) {}
@@ -90,7 +90,8 @@ class CommandedOpening {
   OpeningCommand command_;
   double contact_gap_, significant_;  // contact gap, and significant height of a bounce [m]
   BandFollower band_;
-  double nearest_ = std::numeric_limits<double>::quiet_NaN();  // smallest position after the turn back [m]
+  double nearest_ = std::numeric_limits<double>::quiet_NaN();  // position nearest to the contact since the point turned back
+                                                               // [m]
   double highest_ = 0, separated_ = 0;                         // highest bounce [m], and total time of separations [s]
   int bounces_ = 0;
 };
@@ -103,7 +104,7 @@ struct OpeningFigures {
   Status status = Status::not_run;
   /// Time at which the contact opens for the last time [s]; NaN when the contact is closed at the end of the run.
   double release_time = unset;
-  double settling_time = unset;  ///< time from which the contact point stays in the band [s]; NaN when the point does not
+  double settling_time = unset;  ///< time from which the contact point stays in the band [s]; NaN when it ends outside
   double overshoot = unset;      ///< largest excursion beyond the open position, away from the contact [m]; 0 without one
   /// Largest distance from the open position after OpeningBand::drives_end [m]; NaN when the run ends before, or closed.
   double residual_vibration = unset;

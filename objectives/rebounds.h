@@ -26,7 +26,7 @@ struct Rebound {
 /// integrator stops at the plane only to within rounding.
 class ReboundFinder {
  public:
-  /// `contact_gap` [m]
+  /// `contact_gap` is in [m].
   explicit ReboundFinder(double contact_gap) : gap_(contact_gap), usable_(std::isfinite(contact_gap)) {}
 
   /// Adds the next knot and calls found(rebound) for every rebound that ends before this knot. Ignores a knot that is not

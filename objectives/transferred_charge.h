@@ -31,7 +31,7 @@ struct TransferOptions {
 /// Computes the charge through a contact during a run.
 class TransferredCharge {
  public:
-  /// `contact_gap` [m]
+  /// `contact_gap` is in [m].
   TransferredCharge(const TransferOptions& options, double contact_gap) : options_(options), contact_gap_(contact_gap) {}
   /// Adds the motion between two knots, over which the contact is open or closed throughout. The contact force between the
   /// knots is taken as linear in time.

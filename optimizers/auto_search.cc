@@ -11,7 +11,7 @@
 namespace softland::internal {
 namespace {
 
-// Shares of the budget of an epoch.
+// Shares of the evaluation budget of an epoch, for its steps.
 constexpr double refining = 0.2;  // share of the given budget; with a gradient this share is spent twice
 constexpr double sampling = 0.15;
 constexpr double hopping = 0.6;  // share of the remaining budget for hops, with a gradient after an earlier search
@@ -31,7 +31,7 @@ constexpr std::size_t fewest_hopping = 16;  // [variables]; with fewer variables
 constexpr long iterations_of_hop = 8;       // [iterations]; plus one for each variable, for a model of the curvature
 constexpr long evaluations_of_iteration = 1 + evaluations_of_gradient;
 
-// Lengths as fractions of the box.
+// Distances of start points and first steps of local searches, as fractions of the box.
 constexpr double largest_separation = 0.15;
 constexpr double first_step = 0.25;
 constexpr double polishing_step = 0.02;
@@ -145,7 +145,7 @@ void search(EvaluationRecord& record, const std::array<const Method*, searches_a
     return LocalSearch(method, start, step, random_bits(record.seed(), Stream::library_seed, searches_begun++));
   };
   std::vector<Point> explored;
-  // Local searches with a gradient need fewer evaluations, and more searches find more valleys.
+  // Local searches with a gradient need fewer evaluations, and more searches find more local minima.
   const long longest = record.has_gradient()
                            ? std::clamp(record.remaining() / epochs_with_gradient, shortest_epoch, longest_epoch)
                            : longest_epoch;

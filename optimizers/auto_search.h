@@ -16,7 +16,7 @@
 
 namespace softland::internal {
 
-/// Runs until the record accepts no more evaluations (EvaluationRecord::over), or until an epoch makes no new evaluation.
+/// Searches until the record accepts no more evaluations (EvaluationRecord::over), or until an epoch makes no new evaluation.
 void search_auto(EvaluationRecord& record);
 /// Searches with a gradient method, which alone would end at the first kink: cma-es makes the first round of every search;
 /// `finisher` continues from the best points found, and then searches near the best one.

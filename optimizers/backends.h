@@ -23,7 +23,8 @@ struct Method {
   std::string_view description;
 };
 
-/// Throws InvalidInput for a name that is unknown or refused; the message gives the reason and the known names.
+/// Throws InvalidInput for the name of a method that is unknown or not supported; the message gives the reason and the known
+/// names.
 [[nodiscard]] const Method& find_method(std::string_view name);
 
 struct RunOptions {

@@ -88,8 +88,8 @@ struct ControlledCourse {
   [[nodiscard]] Eigen::VectorXd control_at(double fraction) const;
 };
 
-/// Solves the problem from a guess: states and controls of the same numbers, which need not fulfil any condition. Throws
-/// InvalidInput for a problem or a guess whose sizes or bounds do not fit; numerical trouble is in the result.
+/// Solves the problem from a guess with as many states and controls, which need not fulfil any condition. Throws InvalidInput
+/// for a problem or a guess whose sizes or bounds do not fit; numerical trouble is in the result.
 [[nodiscard]] ControlledCourse solve(const ControlProblem& problem, const ControlledCourse& guess);
 
 /// Returns the knots of `course` with further knots in the middle of some intervals: those in which a control is between its

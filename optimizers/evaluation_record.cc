@@ -131,7 +131,7 @@ Values BudgetedObjective::values(std::span<const double> point) {
   return {found->second, answer.feasible};
 }
 
-// Returns false when the problem has no gradients; an unknown gradient is NaN.
+// Writes the gradients that the problem gives at a point, NaN where unknown; returns false when the problem has none.
 bool BudgetedObjective::known_gradients(const Point& point, std::span<double> gradients) {
   if (!record_.has_gradient()) return false;
   const auto recall = [&](const Numbers& known) {
@@ -159,7 +159,7 @@ void BudgetedObjective::gradients(std::span<const double> point, std::span<doubl
     const auto of = [&](std::size_t value) -> double& { return gradients[value * n + i]; };
     const auto is_finite = [&](std::size_t value) { return std::isfinite(of(value)); };
     if (are_known && std::ranges::all_of(all, is_finite)) continue;
-    // Take two offsets, both to the same side if the point is next to a bound.
+    // Take two offsets for the difference, both to the same side if the point is next to a bound.
     double a = -difference_step;
     double b = difference_step;
     if (point[i] + a < 0) a = 2 * difference_step;

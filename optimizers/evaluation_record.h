@@ -1,9 +1,9 @@
 // The record of one minimisation: it makes, counts and stores every evaluation; libraries evaluate only through the record.
 //
 // Work comes in rounds of tasks. A task is sequential and has a fixed budget; the tasks of a round run in parallel. The order
-// of evaluations is (round, task, position within the task), whatever thread made them when. "First", "best so far" and
-// "already seen" refer to this order, so that results do not depend on the number of jobs. When a task reaches the target,
-// later tasks of the round are cut and left out, and earlier tasks complete. A run of the tasks one after the other would give
+// of evaluations is (round, task, position within the task), whichever thread makes an evaluation, and when. "First", "best so
+// far" and "already seen" refer to this order, so that results do not depend on the number of jobs. When a task reaches the
+// target, later tasks of the round are stopped and ignored, and earlier tasks complete. Tasks that run one after the other give
 // the same result.
 #pragma once
 
@@ -109,7 +109,8 @@ class EvaluationRecord {
  public:
   struct Task {
     long budget;
-    std::function<void(BudgetedObjective&)> body;  ///< work of the task; may leave by Cut; any other exception is a failure
+    std::function<void(BudgetedObjective&)> body;  ///< work of the task; may end by the exception Cut; any other exception is a
+                                                   ///< failure
   };
   struct Known {
     Point point;
@@ -132,7 +133,7 @@ class EvaluationRecord {
     return options_.max_evaluations - evaluations_ - evaluations_of_gradient * static_cast<long>(gradients_.size());
   }
   [[nodiscard]] bool over() const { return remaining() <= 0 || target_reached_ || outside_ != Termination::not_run; }
-  /// Returns all evaluations of the rounds so far, in order.
+  /// Returns all evaluations of the completed rounds, in order.
   [[nodiscard]] const std::vector<Known>& known() const { return known_; }
   /// Returns true when work on the current round should end early for a reason other than the evaluation budget. The function
   /// is cheap enough for waiting loops.

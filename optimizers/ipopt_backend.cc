@@ -118,7 +118,7 @@ RunReport run_ipopt(const RunOptions& run, BudgetedObjective& budgeted) {
   options->SetStringValue("sb", "yes");
   options->SetStringValue("hessian_approximation", "limited-memory");
   options->SetNumericValue("bound_relax_factor", 0.0);  // points outside the bounds are never evaluated
-  // Starts are good points, some of them near a bound: the usual barrier would first push them to the middle of the box.
+  // Starts are good points, some of them near a bound: Ipopt's default barrier would first push them to the middle of the box.
   options->SetNumericValue("mu_init", 1e-4);
   options->SetNumericValue("bound_push", 1e-6);
   options->SetNumericValue("bound_frac", 1e-6);

@@ -43,7 +43,7 @@ struct ParetoProblem {
 };
 
 struct ParetoEvaluation {
-  long index = 0;  ///< counted from 0, in the order of a run on one thread
+  long index = 0;  ///< number of the evaluation from 0, in the order of a run on one thread
   std::vector<double> x;
   ParetoValue value;
 };
@@ -55,7 +55,7 @@ struct ParetoOptions {
   std::uint64_t seed = 1;
   int jobs = 1;
   double crossover_probability = 0.9;
-  double crossover_index = 15;  ///< index of the distribution of children: the larger, the closer to their parents
+  double crossover_index = 15;  ///< index of the distribution of children: the larger, the closer children are to their parents
   double mutation_index = 20;   ///< index of the distribution of mutations; on average, one variable of each child mutates
   const std::atomic<bool>* stop = nullptr;  ///< set by another thread; ends the search with the front found so far
   /// Called under a lock after every evaluation, in the order in which evaluations end. Its exceptions end minimize_all().

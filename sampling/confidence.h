@@ -57,10 +57,11 @@ namespace internal {
 /// Throws what bootstrap_interval() throws for invalid options.
 void check(const BootstrapOptions& options);
 
-/// Returns the index, below `count`, of the row that repetition number `repetition` draws as its row number `place`.
+/// Returns the index, below `count`, of the row that bootstrap repetition number `repetition` draws as its row number `place`.
 [[nodiscard]] std::size_t bootstrap_row(std::uint64_t seed, std::size_t repetition, std::size_t place, std::size_t count);
 
-/// Returns the middle `confidence` of the values of a figure over the repetitions; NaN when a value is NaN.
+/// Returns the interval with the middle share `confidence` of the values of a figure over bootstrap repetitions; NaN when a
+/// value is NaN.
 [[nodiscard]] Interval percentile_interval(std::span<const double> values, double confidence);
 
 }  // namespace internal

@@ -23,9 +23,9 @@ class GaussianCopula {
   /// The least eigenvalue that a correlation matrix may have.
   static constexpr double least_eigenvalue = 1e-10;
 
-  /// Messages call the variables by `names`, or "variable 1", ... without names. Throws InvalidParameter, `correlation`, unless
-  /// the matrix is square and symmetric with a unit diagonal, all other elements are between -1 and 1, and all eigenvalues are
-  /// at least least_eigenvalue. The message names the variables whose correlations break the rule.
+  /// Messages call the variables by `names`, or "variable 1", ... without names. Throws InvalidParameter for `correlation`
+  /// unless the matrix is square and symmetric with a unit diagonal, all other elements are between -1 and 1, and all
+  /// eigenvalues are at least least_eigenvalue. The message names the variables whose correlations break the rule.
   explicit GaussianCopula(const Eigen::MatrixXd& correlation, const std::vector<std::string>& names = {});
 
   [[nodiscard]] std::size_t dimensions() const { return static_cast<std::size_t>(factor_.rows()); }

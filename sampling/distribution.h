@@ -77,7 +77,7 @@ class Distribution {
   /// show rounding errors.
   static constexpr double least_kept = 1e-6;
 
-  /// Throws InvalidParameter: `parameter()` is a key of distribution_kinds, or truncate_low or truncate_high.
+  /// Throws InvalidParameter, whose parameter() is a key of distribution_kinds, truncate_low or truncate_high.
   explicit Distribution(Parameters parameters, const Truncation& truncation = {});
 
   [[nodiscard]] DistributionKind kind() const { return static_cast<DistributionKind>(parameters_.index()); }

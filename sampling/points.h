@@ -49,7 +49,8 @@ class SamplePoints {
   static constexpr std::uint64_t largest_size = std::uint64_t{1} << 31;
   static constexpr std::size_t most_dimensions = 3667;  ///< largest number for which Boost.Random has direction numbers
 
-  /// Throws InvalidParameter, `dimensions` or `size`, unless 1 <= dimensions <= most_dimensions and 1 <= size <= largest_size.
+  /// Throws InvalidParameter for `dimensions` or `size` unless 1 <= dimensions <= most_dimensions and 1 <= size <=
+  /// largest_size.
   SamplePoints(PointSet kind, std::size_t dimensions, std::uint64_t seed, Stream stream, std::uint64_t size);
 
   [[nodiscard]] PointSet kind() const { return kind_; }

@@ -56,7 +56,7 @@ struct Value {
   std::vector<std::vector<double>> of_variable;
 };
 
-// The terms of a matching pursuit in their order.
+// The terms that a matching pursuit chooses, in the order of choice.
 struct Pursuit {
   std::vector<Eigen::Index> columns;
   std::vector<double> errors;    // squared prediction errors, summed over the held-back rows, with 1, 2, ... terms

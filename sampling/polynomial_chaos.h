@@ -54,7 +54,8 @@ class PolynomialChaos {
   [[nodiscard]] std::size_t terms() const { return terms_.size(); }  ///< number of terms, with the constant
   [[nodiscard]] double q2() const { return q2_; }  ///< q2 of the cross-validation; NaN when all figures are equal
 
-  /// Returns the sum at a point of the open unit cube. Throws InvalidInput unless it has dimensions() coordinates, all inside.
+  /// Returns the sum of the polynomials at a point of the open unit cube. Throws InvalidInput unless `u` has dimensions()
+  /// coordinates, all inside.
   [[nodiscard]] double operator()(std::span<const double> u) const;
 
   [[nodiscard]] double mean() const { return coefficients_[0]; }

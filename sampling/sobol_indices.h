@@ -38,7 +38,7 @@ namespace softland {
 /// Carlo points a design of fewer rows is the beginning of a larger one.
 class SobolDesign {
  public:
-  /// Takes points of 2 d dimensions, stream `indices`. Throws what SamplePoints throws.
+  /// Takes points of 2 d dimensions from the random stream `indices`. Throws what SamplePoints throws.
   SobolDesign(PointSet kind, std::size_t dimensions, std::uint64_t seed, std::uint64_t rows);
 
   [[nodiscard]] std::size_t dimensions() const { return points_.dimensions() / 2; }

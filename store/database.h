@@ -84,7 +84,7 @@ class Database {
 
   /// Returns true if the file at this path is still the open file, not removed, moved or replaced.
   [[nodiscard]] bool is_at(const std::filesystem::path& path) const;
-  /// Keeps the write-ahead log when the database is closed, because the file with its name belongs to another database by then.
+  /// Makes SQLite keep the write-ahead log on closing: the path of the log belongs to another database by now.
   void leave_log() const;
   /// Writes the whole content into a new file, which must be empty or missing.
   void copy_to(const std::filesystem::path& file) const;

@@ -6,7 +6,7 @@
 //   results  (plan, point) -> content, status, reason, extra, checksum of the row, and the columns
 //   tally    (plan, status) -> number of rows
 //
-// Stores of schema 1 have no checksums; they are read and continued without.
+// Stores of schema 1 have no checksums; they are read and continued without checksums.
 #pragma once
 
 #include <array>

@@ -9,7 +9,7 @@
 namespace softland::internal {
 namespace {
 
-/// A term whose polynomials may have the degree of its first four derivatives.
+/// A term of a piece whose polynomials are long enough for the first four derivatives.
 struct Differentiated {
   static constexpr std::size_t size = 8;  // a frequency sweep raises the degree by one for each derivative
   std::array<double, size> cosine = {}, sine = {};
@@ -50,7 +50,7 @@ struct Differentiated {
   }
 };
 
-/// A bound on a derivative of a piece, computed once for all intervals.
+/// A bound on a derivative of a piece's voltage over any interval; the terms are differentiated only once.
 class DerivativeBound {
  public:
   DerivativeBound(const SignalPieceOf<double>& piece, int order) : piece_(piece), order_(order) {

@@ -8,7 +8,7 @@
 namespace softland::internal {
 
 /// Returns a bound on the absolute value of a derivative of the voltage on [from, to], for `order` 2 to 4 [V/s^order]; for
-/// order 0 the bound of the terms and the sine alone.
+/// order 0 a bound on the sine and the terms, without the straight line.
 [[nodiscard]] double derivative_bound(const SignalPieceOf<double>& piece, int order, double from, double to);
 
 /// Appends times in [from, to] at which the voltage of a piece with terms (`of_rate`: its dV/dt) is within 1e-9 of its largest
@@ -17,7 +17,8 @@ namespace softland::internal {
 void append_extrema_of_terms(std::vector<double>& times, const SignalPieceOf<double>& piece, bool of_rate, double from,
                              double to);
 
-/// Returns the time [s] after which decaying terms vanish in double precision; infinity where a term does not decay.
+/// Returns the time [s] after which the decaying terms of a piece vanish in double precision; infinity if a term does not
+/// decay.
 [[nodiscard]] double duration_of_terms(const SignalPieceOf<double>& piece);
 
 }  // namespace softland::internal

@@ -44,7 +44,7 @@ namespace internal {
 /// Returns true if the knots around span j are evenly spaced; the B-splines of all such spans are equal.
 [[nodiscard]] constexpr bool has_even_knots(std::size_t j, std::size_t n) { return j >= 3 && j + 7 <= n; }
 
-/// Returns knot `i` of the n + 4 knots of a spline of n levels, in spans.
+/// Returns knot `i` of the n + 4 knots of a spline of n levels, in units of a span.
 [[nodiscard]] double bspline_knot(std::size_t i, std::size_t n);
 
 }  // namespace internal

@@ -54,7 +54,7 @@ struct DriverModel {
 
 namespace internal {
 
-/// The stages by which applied() computes the applied voltage.
+/// The stages by which applied() computes the applied voltage, in order: sampling with rounding, slew limit, filter.
 [[nodiscard]] Signal sampled(const Signal& commanded, double rate, std::optional<int> bits, const DriverLimits& limits,
                              double end);
 [[nodiscard]] Signal slewed(const Signal& held, double max_slew);

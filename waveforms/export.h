@@ -30,7 +30,7 @@ namespace softland {
 [[nodiscard]] std::string csv(const std::map<std::string, Signal>& signals, double end,
                               const std::map<std::string, double>& sample_rates = {});
 
-/// Samples as the integers of a converter.
+/// Samples of a drive that are written as integer codes of a converter.
 struct Coded {
   Signal held;                      ///< samples, each held until the next
   double sample_rate = 0;           ///< [Hz]
@@ -45,8 +45,8 @@ struct Coded {
 [[nodiscard]] std::string spice_name(const std::string& drive);
 /// Writes a SPICE file with one subcircuit `softland_<drive> plus minus` per drive, which holds one PWL voltage source; usable
 /// with .include in ngspice, LTspice, HSPICE. A jump takes 1 ps, or a ten-millionth of `end` or a thousandth of the interval
-/// after the jump if that is shorter; curves as in csv(). Names are those of spice_name(). `about` is in the first line. Throws
-/// InvalidInput as csv(), and when two drives get the same name.
+/// after the jump if that is shorter; curves as in csv(). Names are those of spice_name(). The text `about` is in the first
+/// line. Throws InvalidInput as csv(), and when two drives get the same name.
 [[nodiscard]] std::string spice_pwl(
     const std::map<std::string, Signal>& signals, double end,
     std::string_view about = "Drive waveforms, one subcircuit each: Xname plus minus softland_drive");

@@ -90,7 +90,7 @@ template <class P>
     const internal::Stretch<P>& straight = internal::stretch_at(straight_line, begin);
     const internal::Stretch<P>& swing = internal::stretch_at(envelope, begin);
     all.push_back({.begin = begin, .value = straight.at(begin), .slope = straight.slope});
-    // A stretch in which the envelope is 0 has no sine.
+    // The signal has no sine in a stretch in which the envelope is 0.
     if (!internal::decided(swing.value > 0) && !internal::decided(swing.slope > 0)) continue;
     all.back().amplitude = h.amplitude * swing.at(begin);
     all.back().amplitude_slope = h.amplitude * swing.slope;

@@ -20,7 +20,7 @@
 
 namespace softland {
 
-/// Largest error of the cubics of an own waveform, relative to its largest |V|.
+/// Largest error of the cubics that approximate an own waveform, relative to the largest |V| of the waveform.
 inline constexpr double own_waveform_accuracy = 1e-7;
 /// Largest number of cubics that approximate an own waveform.
 inline constexpr std::size_t most_own_pieces = 20'000;
@@ -42,21 +42,21 @@ class OwnWaveform {
   OwnWaveform& operator=(const OwnWaveform&) = default;
   virtual ~OwnWaveform() = default;
 
-  /// Returns the name in messages and results, and for requests of a search. The name must differ from those of the built-in
-  /// families, and not contain '+', ',', ':' and '='.
+  /// Returns the waveform's name in messages, results and the options of a search. The name must differ from the names of the
+  /// built-in waveform families, and not contain '+', ',', ':' and '='.
   [[nodiscard]] virtual std::string_view name() const = 0;
-  /// Returns the parameters that can be varied; none by default. Their values are the `x` of the other functions, in this
-  /// order.
+  /// Returns the parameters that can be varied; none by default. The argument `x` of the other functions has their values, in
+  /// this order.
   [[nodiscard]] virtual std::vector<OwnParameter> parameters() const { return {}; }
-  /// Returns the times at which the voltage kinks or jumps [s]: above 0 and increasing. The last one is the end: the voltage
-  /// stays constant from then on. A waveform without breakpoints must be constant, and not 0 V. Of two breakpoints that differ
-  /// by rounding only, the later one is used.
+  /// Returns the times at which the voltage kinks or jumps [s]: above 0 and increasing. The last time is the end: the voltage
+  /// is constant afterwards. A waveform without breakpoints must be constant, and not 0 V. Two breakpoints that differ by
+  /// rounding only count as the later one.
   [[nodiscard]] virtual std::vector<double> breakpoints(std::span<const double> x) const = 0;
   /// Returns the voltage [V] at a time [s] from 0 to the end; at a jump the voltage after the jump.
   [[nodiscard]] virtual double voltage(double time, std::span<const double> x) const = 0;
 };
 
-/// An own waveform with values of its parameters, as one of the waveforms of a drive: V(t) = volts f(t / time).
+/// An own waveform f with values x of its parameters, scaled: V(t) = volts f(t / time).
 struct Own {
   std::shared_ptr<const OwnWaveform> waveform;
   std::vector<double> x = {};

@@ -14,13 +14,13 @@ enum class ParameterKind {
   level,              ///< [V]
   swing,              ///< [V] about a level; a scene may give a percentage of that level
   time,               ///< [s]
-  end_time,           ///< [s], after 0; "never" where a scene leaves it out
+  end_time,           ///< [s], after 0; without this key in a scene there is no end
   angular_frequency,  ///< [rad/s]; a scene may give the frequency instead
   angle,              ///< [rad]
-  ratio,              ///< ratio of two quantities of the signal, above 0; 1 where a scene leaves it out
+  ratio,              ///< ratio of two quantities of the signal, above 0; default 1
 };
 
-/// One parameter of a family: a number, or several levels, swings or times. A parameter that is not required has the family's
+/// One parameter of a waveform family: a number, or several levels, swings or times. A parameter that is not required has a
 /// default.
 template <class Family>
 struct Parameter {
@@ -31,8 +31,8 @@ struct Parameter {
   std::string_view about = {};
 };
 
-/// Traits of a family, specialised beside it: its `name`, its `parameters`, and an `example` for the tests of all families;
-/// `from_file` where a file may hold the rows.
+/// Traits of a waveform family, specialised in its header: its `name`, its `parameters`, and an `example` for the tests of all
+/// families; `from_file` when a file may hold its rows.
 template <class Family>
 struct FamilyOf;
 

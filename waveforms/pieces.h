@@ -1,5 +1,5 @@
-// The smooth pieces that a signal is made of, over the scalar of its levels and times: a double, a dual number whose slopes are
-// those of a waveform's parameters, or a lane with one device to a number.
+// The smooth pieces that a signal is made of, templated over the scalar of its levels and times: a double, a dual number with
+// derivatives by the parameters of a waveform, or a vector lane with one number per device.
 //
 //   V(t) = value + slope s + [amplitude + amplitude_slope s] sin(angular_frequency t + phase) + terms,  s = t - begin
 //
@@ -137,7 +137,7 @@ struct SignalPieceOf {
   bool operator==(const SignalPieceOf&) const = default;
 
  private:
-  // Calls see(term, cosine, sine) for every term of a series.
+  // Calls see(term, cosine, sine) for every term of a Fourier series, with cosine and sine of its angle.
   template <class See>
   void turn_on(const P& elapsed, See&& see) const {
     using std::cos, std::sin;

@@ -23,7 +23,8 @@ double end_of_straight(const SignalPiece& piece, double end, double favourite) {
   if (has_the_slope(favourite)) return favourite;
   const double rise = piece.slope * duration;
   const double computed = piece.value + rise;
-  // The exact end value differs from `rise` by rounding, in 2e7 random ramps by at most one last-place unit. Two are tried.
+  // The exact end value differs from `rise` by rounding, in 2e7 random ramps by at most one unit of the last digit. Try two
+  // units.
   constexpr int reach = 2;
   double rise_up = rise, rise_down = rise, value_up = computed, value_down = computed;
   for (int i = 0; i <= reach; ++i) {
@@ -44,7 +45,7 @@ double rounding_at_end(const SignalPiece& piece, double end) {
   const double duration = end - piece.begin;
   const double straight = std::abs(piece.value) + std::abs(piece.slope * duration);
   const double swing = std::abs(piece.amplitude) + std::abs(piece.amplitude_slope * duration);
-  double of_terms = 0;  // size of the terms without decay: the rest of an exponential is not a jump
+  double of_terms = 0;  // size of the terms that do not decay: a decayed exponential is no jump
   double rate = std::abs(piece.slope);
   for (const SignalTerm& term : piece.terms) {
     double power = 1, before = 0, size = 0;

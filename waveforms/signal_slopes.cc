@@ -17,7 +17,7 @@ bool have_same_pieces(const std::vector<Signal>& a, const std::vector<Signal>& b
   });
 }
 
-// Two times or values are equal up to rounding, because a sum of durations has a rounding error.
+// Returns true if two times or values are equal up to rounding, as of a sum of durations.
 bool are_equal(double a, double b) {
   constexpr double roundings = 16 * std::numeric_limits<double>::epsilon();
   return std::abs(a - b) <= roundings * std::max(std::abs(a), std::abs(b));

@@ -18,10 +18,10 @@
 
 namespace softland {
 
-/// A group of parameters that change no common piece.
+/// A group of parameters of which no two change the same piece of a signal.
 struct ParameterGroup {
   std::vector<std::size_t> parameters;
-  std::vector<std::vector<std::optional<std::size_t>>> movers;  ///< parameter that changes a piece, by drive and piece
+  std::vector<std::vector<std::optional<std::size_t>>> movers;  ///< parameter that changes a piece; by drive and piece
 };
 
 class SignalSlopes {
@@ -41,7 +41,7 @@ class SignalSlopes {
     double origin = 0;                                     // time about which a polynomial piece is written: s = time - origin
     std::array<double, 4> cubic = {};                      // coefficients of the derivative of a polynomial piece
     std::shared_ptr<const SignalPiece> piece = nullptr;    // derivative of a piece in which only sizes of sines or terms change
-    const SignalPiece *above = nullptr, *below = nullptr;  // pieces of a difference whose times or angles change
+    const SignalPiece *above = nullptr, *below = nullptr;  // pieces above and below, for a piece whose times or angles change
     double per_step = 0;
   };
 
@@ -61,9 +61,9 @@ class SignalSlopes {
   [[nodiscard]] const std::vector<Slope>& at(std::size_t drive, std::size_t piece) const { return slopes_[drive][piece]; }
   /// Returns the parameters without a derivative: the signals have different pieces on either side of their value.
   [[nodiscard]] const std::vector<std::size_t>& kinks() const { return kinks_; }
-  /// Returns groups of all parameters; none if groups would not save signals.
+  /// Returns groups of all parameters; none if groups would not reduce the number of signals.
   [[nodiscard]] std::vector<ParameterGroup> groups() const;
-  /// Returns true if the given groups are valid at this point.
+  /// Returns true if the groups passed to the constructor are valid at this x.
   [[nodiscard]] bool are_grouped() const { return are_grouped_; }
 
  private:
@@ -74,15 +74,15 @@ class SignalSlopes {
   void find_one_by_one(const Neighbourhood& near, const Signals& here);
   [[nodiscard]] bool find_in_groups(const Neighbourhood& near, const Signals& here, const std::vector<ParameterGroup>& groups);
   [[nodiscard]] bool holds_along_all(const Neighbourhood& near, const Signals& here) const;
-  /// `mover` returns the parameter that changes a piece, and its step from below to above. Returns false if `mover` returns
-  /// none for a piece that has changed.
+  /// Adds the slopes of all pieces from the difference of two sets of signals. `mover` returns the parameter that changes a
+  /// piece, and its step from below to above. Returns false if a piece has changed for which `mover` returns none.
   template <class Mover>
   bool add(Mover&& mover, Signals above, Signals below);
 
   std::size_t parameters_;
   std::vector<std::vector<std::vector<Slope>>> slopes_;  // slopes by drive and piece
   std::vector<std::size_t> kinks_;
-  std::vector<Signals> kept_;  // signals whose pieces the slopes point to
+  std::vector<Signals> kept_;  // owners of the pieces to which the slopes point
   bool are_grouped_ = false;
 };
 

@@ -48,7 +48,7 @@ struct FamilyOf<Sines> {
 template <class P>
 [[nodiscard]] Pieces<P> pieces(const SinesOf<P>& sines, const P& before = P(0)) {
   const P end = sines.start + sines.duration;
-  // The base is that of a harmonic.
+  // A harmonic without a sine gives the rising base.
   Pieces<P> all = pieces(HarmonicOf<P>{.base = sines.base,
                                        .rise_time = sines.rise_time,
                                        .amplitude = P(1),

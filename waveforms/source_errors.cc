@@ -46,8 +46,8 @@ std::vector<double> begins(const std::vector<SignalPiece>& pieces, const std::ve
   return all;
 }
 
-/// Returns the piece between other times: the straight line and the envelope run from and to the same values, the sine is late
-/// by `late`, and the terms are stretched with the piece.
+/// Returns the piece between other times: the straight line and the envelope run from and to the same values, the sine is
+/// delayed by `late`, and the terms are stretched with the piece.
 SignalPiece moved(const Signal& signal, std::size_t i, double begin, double end, double offset, double late) {
   const SignalPiece& piece = signal.pieces()[i];
   SignalPiece own = piece;

@@ -27,7 +27,7 @@ void ConnectionCourse::Followed::touch(const Touch& touch) {
   if (connects_) connection_.touches_.take(touch);
 }
 
-// Between two knots the position is that of the quintic, and the force is linear in time.
+// The position between two knots is that of the quintic through both knots; the force is linear in time.
 TrajectoryPoint ConnectionCourse::Followed::at(double time) const {
   const TrajectoryPoint* from = &*last;
   for (const TrajectoryPoint& to : fresh) {
@@ -99,7 +99,7 @@ void ConnectionCourse::follow_to(double time) {
 }
 
 void ConnectionCourse::tell(double time) {
-  constexpr double on_the_plane = 1e-12;  // relative to the contact gap
+  constexpr double on_the_plane = 1e-12;  // height that counts as on the plane, relative to the contact gap
   const Followed& decisive = followed_[deciding_];
   TrajectoryPoint point = decisive.at(time);
   const double separation = decisive.gap() - point.position;

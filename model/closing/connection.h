@@ -24,9 +24,9 @@ class ConnectionTouches {
  public:
   /// Adds a touch of a contact that makes the connection.
   void take(const Touch& touch);
-  /// Closes the connection at this time [s], at this speed [m/s]; returns the previous touch of the connection, if any.
+  /// Begins a touch of the connection at this time [s], at this speed [m/s]; returns its previous touch, if any.
   [[nodiscard]] std::optional<Touch> close(double time, double speed);
-  /// Opens the connection at this time [s].
+  /// Ends the touch of the connection at this time [s].
   void open(double time) { touch_->end = time; }
   /// Returns the last touch of the connection, after all touches of contacts have been added.
   [[nodiscard]] std::optional<Touch> finish();
@@ -50,14 +50,15 @@ struct ForceOutcome {
 
 class ConnectionCourse {
  public:
-  /// Keeps references. `observer` receives the connection; the observers that observer.contact() returns receive the contacts.
+  /// Keeps references to both. `observer` receives the connection; the observers that observer.contact() returns receive the
+  /// contacts.
   ConnectionCourse(const Switch& model, ClosingObserver& observer);
   ConnectionCourse(const ConnectionCourse&) = delete;
   ConnectionCourse& operator=(const ConnectionCourse&) = delete;
 
   /// Returns the observer that receives the motion of a contact.
   [[nodiscard]] ClosingObserver& contact(std::size_t c) { return followed_[c]; }
-  /// Passes the motion of the connection on, up to the latest time to which the motion of every contact has been received.
+  /// Passes on the motion of the connection, up to the latest time for which the motion of every contact is known.
   void hand_over();
   /// Passes the last touch of the connection on, after every contact has passed on its last touch.
   void finish();
@@ -88,7 +89,7 @@ class ConnectionCourse {
     bool connects_;
   };
 
-  /// Returns the contact whose separation is that of the connection at a time; `present` when several separations are equal.
+  /// Returns the contact whose separation is that of the connection at a time; `present` when several contacts tie.
   [[nodiscard]] std::size_t decides(double time, std::size_t present) const;
   void follow_to(double time);
   void tell(double time);
@@ -98,7 +99,7 @@ class ConnectionCourse {
   double plane_;  // rest distance of the first contact to its plane [m]
   std::vector<Followed> followed_;
   std::size_t deciding_ = 0;
-  double here_ = 0;  // time up to which the connection has been passed on [s]
+  double here_ = 0;  // time up to which the motion of the connection has been passed on [s]
   ConnectionTouches touches_;
   bool is_closed_ = false;
   double last_closed_ = 0;  // last time at which the connection was closed [s]

@@ -24,7 +24,7 @@ namespace softland {
 
 enum class Phase { flight, near, loading, unloading, dent, rest };
 
-/// An end of a phase: side * (position - level) is positive inside the phase.
+/// The position at which a phase ends: side * (position - level) is positive inside the phase.
 struct Edge {
   double level = 0;  ///< [m]
   double side = 0;   ///< 1: the phase lies beyond the level, towards the contact; -1: before the level
@@ -47,11 +47,11 @@ class ContactPhase {
   [[nodiscard]] Phase above() const { return reach_ > 0 ? Phase::near : Phase::flight; }
   /// Returns true when the phase ends where the contact point turns back: loading of a law with memory.
   [[nodiscard]] bool ends_at_turn() const { return remembers_ && phase_ == Phase::loading; }
-  /// Returns the state of a law without memory at this position of the contact point [m], whatever the phase.
+  /// Returns the state that a law without memory has at this position of the contact point [m].
   [[nodiscard]] ContactState law_at(double position) const {
     return acts_along_pad_ || (has_contact_ && position > plane_ - reach_);
   }
-  /// Returns the energy lost to dents so far, with the contact point at this position [J].
+  /// Returns the energy lost to residual deformation (dents) so far, with the contact point at this position [J].
   [[nodiscard]] double lost(double position) const;
 
   void enter(Phase phase, std::size_t zone = 0);
@@ -74,7 +74,7 @@ class ContactPhase {
   std::size_t edge_count_ = 0;
   double deepest_ = 0;  // deepest interference, which a law with memory remembers [m]
   Dent dent_;           // dent that the law has left
-  double healed_ = 0;   // energy lost to dents that have healed [J]
+  double healed_ = 0;   // energy lost to dents that have vanished since [J]
 };
 
 /// The phases of all contacts of a switch; for a switch without contact, the phase of its contact point.

@@ -1,4 +1,4 @@
-// The drives of a closing, stretch by stretch: between two breakpoints every drive is on one smooth piece of its signal.
+// The drives of a closing, one stretch after the other. Within a stretch every drive is on one smooth piece of its signal.
 #pragma once
 
 #include <algorithm>
@@ -36,14 +36,14 @@ class DriveCourse {
   /// Selects the piece of drive k that is valid just after time t.
   void enter(std::size_t k, double t) { pieces_[k] = signals_[k].piece_at(t); }
   [[nodiscard]] const SignalPiece& piece(std::size_t k) const { return signals_[k].pieces()[pieces_[k]]; }
-  /// Returns the value of drive k by the formula of its present piece, also before and after the piece.
+  /// Returns the value of drive k by the formula of its present piece, which is extrapolated before and after the piece.
   [[nodiscard]] double value(std::size_t k, double t) const { return piece(k).voltage(t); }
   /// Returns the values of all drives; valid until the next call.
   std::span<const double> values(double t) {
     for (std::size_t k = 0; k < size(); ++k) values_[k] = value(k, t);
     return values_;
   }
-  /// Returns true when every drive is on its last piece.
+  /// Returns true when every drive is on its last piece, that of its hold level.
   [[nodiscard]] bool at_hold() const {
     for (std::size_t k = 0; k < size(); ++k) {
       if (pieces_[k] + 1 < signals_[k].pieces().size()) return false;

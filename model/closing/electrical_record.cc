@@ -104,7 +104,7 @@ void ElectricalRecord::take_rest(double begin, double end, const std::function<d
 template <class Margin>
 void ElectricalRecord::follow(Followed& followed, const Margin& at, double begin, double end) const {
   // Closer to the ends rounding would hide the change of a force that grows with a high power of the distance.
-  constexpr double beside = 1e-3;  // share of the time
+  constexpr double beside = 1e-3;  // share of the time of the step
   constexpr int bits = 30;
   const double from = at(begin), to = at(end);
   if ((from > 0) == (to > 0)) {

@@ -1,12 +1,11 @@
-// The times at which the connection of a switch is electrically closed: while its contact force is above a value, or its
-// resistance below one, or both (Device::electrical); while it is in contact when neither value is given.
+// The times at which the connection of a switch is electrically closed: while its contact force is above a bound, or its
+// resistance below a bound, or both (Device::electrical); while in contact when neither bound is given.
 //
 // The force of the connection is the least force of its contacts, or with Connection::any the largest. Its
-// resistance is that of the contacts in series, or side by side (model/contact/resistance.h). A margin that is positive while
-// the connection is closed is a continuous function of the motion within a step. Its changes of sign are located on this
-// motion, as the events of the contacts are. The margin is evaluated after every piece of the step, where a contact turns back,
-// and at an extremum in between that the slopes at both ends reveal. Along a pad the force is taken as linear between these
-// times.
+// resistance is that of the contacts in series, or side by side (model/contact/resistance.h). The margin to the bounds,
+// positive while the connection is closed, is a continuous function of the motion within a step. Its changes of sign are
+// located like contact events. The margin is evaluated after every piece of the step, where a contact turns back, and at an
+// extremum in between that the slopes at both ends reveal. Along a pad the force is taken as linear between these times.
 //
 // An opening counts when it is longer than ElectricalClosing::after; a shorter opening is ignored.
 #pragma once
@@ -38,7 +37,7 @@ struct ContactInStep {
 
 class ElectricalRecord {
  public:
-  /// Keeps references. An observer whose follows_state() is true receives every change of the state.
+  /// Keeps references to both. An observer whose follows_state() is true receives every change of the state.
   ElectricalRecord(const Switch& model, ClosingObserver& observer);
 
   /// Adds a step between two times [s] in which the state of every contact law stays the same.
@@ -49,7 +48,7 @@ class ElectricalRecord {
   void finish(double time);
 
   [[nodiscard]] const ElectricalOutcome& connection() const { return followed_.front().outcome; }
-  /// Returns the outcome of contact c, also when it is the only contact.
+  /// Returns the outcome of contact c; for a single contact that of the connection.
   [[nodiscard]] const ElectricalOutcome& contact(std::size_t c) const {
     return followed_[followed_.size() > 1 ? c + 1 : 0].outcome;
   }

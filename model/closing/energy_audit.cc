@@ -91,7 +91,8 @@ void EnergyAudit::step(const Knot& here, const Knot& next, double dissipation_at
 }
 
 // Returns the mean power over a step, at the end of which the power is `at_end`. Within a step the phases of the modes may
-// advance by two radians, and those of the power by four. With a compressible film no motion is exact for the modes.
+// advance by two radians, and those of the power by four. Simpson's rule serves whenever the motion within the step is not that
+// of the modes, as with a compressible film.
 double EnergyAudit::mean_dissipation(double at_end, StepMotion& motion, bool implicit) {
   const auto power = [&](const std::vector<double>& state) {
     return equations_.dissipation(state.data()) + contact_dissipation(state.data());

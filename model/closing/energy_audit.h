@@ -22,12 +22,12 @@ namespace softland {
 
 class EnergyAudit {
  public:
-  /// Keeps references. At `start` the switch is at rest, open under its drives' values before t = 0 or closed on its contact,
-  /// and the electrodes carry the charge of this state.
+  /// Keeps references to its arguments. At `start` the switch is at rest, open under its drives' values before t = 0 or closed
+  /// on its contact, and the electrodes carry the charge of this state.
   EnergyAudit(const Switch& model, DriveCourse& drives, ContactPhases& phases, ClosingEquations& equations, const Knot& start);
 
-  /// Moves all drives to the pieces that are valid after `here`. A jump of voltage charges the electrode at fixed deflection,
-  /// the limit of ever steeper edges.
+  /// Moves all drives to the pieces that are valid after `here`. A jump of the voltage charges the electrode at fixed
+  /// deflection, as an infinitely steep ramp does.
   void enter_stretch(const Knot& here, bool first);
   /// Adds a step between two knots.
   void step(const Knot& here, const Knot& next, double dissipation_at_end, StepMotion& motion, bool implicit);
@@ -53,7 +53,7 @@ class EnergyAudit {
   [[nodiscard]] double contact_dissipation(const double* state) const;
   /// Returns the energy stored in the contacts that act [J].
   [[nodiscard]] double stored_in_contacts(const double* q) const;
-  /// Returns the energy lost to dents so far [J].
+  /// Returns the energy lost to residual deformation of the contacts (dents) so far [J].
   [[nodiscard]] double lost_in_contacts(const double* q) const;
   void add_charges(const Knot& here, double sign);
   [[nodiscard]] double mean_dissipation(double at_end, StepMotion& motion, bool implicit);
@@ -64,7 +64,7 @@ class EnergyAudit {
   ClosingEquations& equations_;
   std::size_t modes_;
   double rest_energy_;      // energy stored at the start [J]
-  double source_work_ = 0;  // work of the sources without V Q of the charges that are on the electrodes at present [J]
+  double source_work_ = 0;  // work of the sources, without V Q of the present charges on the electrodes [J]
   double dissipated_ = 0;   // energy dissipated by gas, film, modal damping and contacts [J]
   double dissipation_ = 0;  // dissipation at the last knot [W]
   double impacts_ = 0;      // energy lost in impacts [J]

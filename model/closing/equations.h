@@ -11,17 +11,17 @@ namespace softland {
 
 class ClosingEquations {
  public:
-  /// Keeps references. If `phase_decides`, the state of a contact law follows from the contact phase; otherwise from the
-  /// position of the contact point alone.
+  /// Keeps references to its arguments. If `phase_decides`, the state of a contact law follows from the contact phase, else
+  /// from the position of the contact point alone.
   ClosingEquations(const Switch& model, DriveCourse& drives, ContactPhases& phases, bool phase_decides);
   ClosingEquations(const ClosingEquations&) = delete;
   ClosingEquations& operator=(const ClosingEquations&) = delete;
 
   [[nodiscard]] const OdeSystem& system() const { return system_; }
-  /// Computes the rates of a state except q' at time t, with every contact law in the state of its contact phase.
+  /// Computes the time derivatives of a state without q' at time t, with every contact law in the state of its contact phase.
   void rates(double t, const double* state, double* result) { rates(t, state, phases_.states(), result); }
   void rates(Knot& knot) { rates(knot.time, knot.state.data(), knot.rates.data()); }
-  /// Returns figures of the gap field of the last evaluation; `state` must be that evaluation's state up to rounding.
+  /// Returns figures of the gap field of the last evaluation of rates(), whose state must equal `state` up to rounding.
   [[nodiscard]] FieldFigures field(const double* state);
   /// Returns the dissipation by gas, film and modal damping in any state [W]; overwrites the gap field.
   [[nodiscard]] double dissipation(const double* state) {

@@ -1,4 +1,4 @@
-// Events of the contact point within a step at which the equations change.
+// Events of the contact point within a step: times at which the equations of motion change.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,8 @@
 
 namespace softland {
 
-/// The contact point leaves its phase through an edge, or, without an edge, turns back while loading a contact with memory.
+/// The contact point crosses the edge of its contact phase, or, without an edge, turns back while loading a contact with
+/// memory.
 struct Event {
   double time = 0;  ///< [s]
   std::optional<Edge> edge;

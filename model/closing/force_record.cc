@@ -29,7 +29,7 @@ ForceRecord::ForceRecord(const Switch& model, double threshold, std::size_t cont
 // The force has an extremum within the interval when it rises from both ends inwards, or falls from both ends.
 template <class Force>
 void ForceRecord::follow_path(const Force& force, double begin, double from, double end, double to) {
-  constexpr double beside = 1e-6;  // share of the time
+  constexpr double beside = 1e-6;  // share of the time of the interval
   constexpr int bits = 30;
   if (rises_with_depth_) return follow(force, begin, from, end, to);
   const double after = force(begin + beside * (end - begin)) - from, before = force(end - beside * (end - begin)) - to;

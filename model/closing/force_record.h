@@ -17,15 +17,15 @@ namespace softland {
 
 class ForceRecord {
  public:
-  /// Records the force of one contact. Keeps a reference. `threshold` [N]; NaN for none.
+  /// Records the force of one contact. Keeps a reference to `model`. `threshold` is that of a steady force [N], or NaN.
   ForceRecord(const Switch& model, double threshold, std::size_t contact = 0);
 
   /// Adds a piece of a step after the first touch, under a contact law in this state.
   void take(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to, const ContactState& law);
-  /// Adds an interval after the first touch over which the force changes linearly from one value to the other.
+  /// Adds an interval after the first touch over which the contact force changes linearly.
   void take_line(const TrajectoryPoint& from, const TrajectoryPoint& to);
 
-  /// Marks that a maximum of the force has passed: the contact has opened, or an impact on a rigid contact is over.
+  /// Records that a maximum of the force has passed: the contact has opened, or an impact on a rigid contact is over.
   void pass_maximum() { has_fallen_ = true; }
 
   /// Returns Trajectory::steady_force_time [s].

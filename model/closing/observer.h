@@ -27,7 +27,7 @@ struct PhaseChange {
 class ClosingObserver {
  public:
   virtual ~ClosingObserver() = default;
-  /// Receives the next knot, in order of time. A knot is passed on once no event can change it any more.
+  /// Receives the next knot, in order of time. A knot is final: no event can change it afterwards.
   virtual void knot(const TrajectoryPoint&) {}
   /// Receives a touch that is over, or, at the end of the run, a touch that has not ended, whose end is NaN.
   virtual void touch(const Touch&) {}
@@ -41,16 +41,16 @@ class ClosingObserver {
   /// continue after ClosingOptions::opens_at.
   virtual void state(std::optional<std::size_t> /*contact*/, bool /*is_closed*/, double /*time*/) {}
   /// Returns true when the observer needs the motion of all modes. The observer then receives every step and the events between
-  /// steps, in order of time. The state in a step is that of the first contact only, which does not describe all forces of
+  /// steps, in order of time. step() then has the state of the first contact only, which does not describe all forces of
   /// several contacts.
   [[nodiscard]] virtual bool follows_motion() const { return false; }
-  /// Receives a step under a contact law in this state.
+  /// Receives a step of the integrator, with the state of the contact law during the step.
   virtual void step(const Knot& /*begin*/, const Knot& /*end*/, const ContactState& /*contact*/) {}
-  /// Returns true when the observer needs the energies at the end of each stretch of the drives.
+  /// Returns true when the observer needs the energies at each breakpoint of the drives.
   [[nodiscard]] virtual bool takes_energies() const { return false; }
-  /// Receives the energy balance of the run so far, at a breakpoint of the drives before their values change there [s].
+  /// Receives the time of a breakpoint of the drives [s], and the energy balance of the run just before this breakpoint.
   virtual void energies(double /*time*/, const EnergyBalance& /*balance*/) {}
-  /// Receives an event at the knot from which the next step starts.
+  /// Receives an event of the contact point, and the knot from which the next step starts.
   virtual void on_phase(const Knot& /*here*/, const PhaseChange& /*change*/) {}
 
  protected:

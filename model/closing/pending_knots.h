@@ -1,4 +1,4 @@
-// The motion of one contact point during a run: knots of the present step wait until no event can change them any more.
+// The motion of one contact point during a run: knots of the present step are held back while an event can still change them.
 #pragma once
 
 #include <algorithm>
@@ -12,18 +12,18 @@ namespace softland {
 
 class PendingKnots {
  public:
-  /// Keeps references.
+  /// Keeps references to `device` and `observer`.
   PendingKnots(const Device& device, std::size_t contact, ClosingObserver& observer)
       : device_(device),
         rest_gap_(device.gap.electrode + device.rest_offset(device.contact_position(contact))),
         observer_(observer) {}
 
   void push(const TrajectoryPoint& point) { waiting_.push_back(point); }
-  /// Returns the last of all knots, whether it has been passed on or waits.
+  /// Returns the last knot, whether or not the observer has received it.
   [[nodiscard]] const TrajectoryPoint& last() const { return waiting_.empty() ? handed_over_ : waiting_.back(); }
-  /// Returns the last waiting knot, so that the caller can correct this knot.
+  /// Returns the last knot that the observer has not received, for the caller to correct.
   [[nodiscard]] TrajectoryPoint& last_waiting() { return waiting_.back(); }
-  /// Removes the waiting knots from the time `from` [s] on.
+  /// Removes the knots from the time `from` [s] on, which the observer has not received.
   void take_back(double from, double step_begin) {
     while (!waiting_.empty() && waiting_.back().time >= from && waiting_.back().time > step_begin) waiting_.pop_back();
   }

@@ -25,7 +25,7 @@ RestingPlate::Impact RestingPlate::strike(Knot& here) {
   double &q = here.state[0], &v = here.state[1];
   Impact impact{.energy = model_.basis().kinetic_energy(&v)};
   const double speed = contact.restitution * std::max(0.0, v * shape);
-  q = plane / shape;  // position errors of events would add up over many impacts
+  q = plane / shape;  // otherwise position errors would add up over many impacts
   v = 0;
   impact.rests = RigidContact::rests(speed, load(here, here.time) * shape * shape, plane);
   if (!impact.rests) v = -speed / shape;

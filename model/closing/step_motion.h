@@ -18,28 +18,29 @@ namespace softland {
 
 class StepMotion {
  public:
-  /// `tolerance` is that of the integrator. The quintic of a piece has an error of this share of the fastest mode's amplitude,
-  /// and at most 1e-5. The place of `contact` is the contact point.
+  /// `tolerance` is that of the integrator. The quintic of a piece has an error of `tolerance`, at most 1e-5, relative to the
+  /// fastest mode's amplitude. The place of `contact` is the contact point.
   StepMotion(const Switch& model, double tolerance, std::size_t contact = 0);
 
   /// Sets the step between two knots; `end` is the contact point at its end. Keeps references to the knots. `accurate_rates` is
-  /// true when accelerations at the knots may be used: those of an implicit method may be errors times the stiffness.
+  /// true when accelerations at the knots may be used: an implicit method may leave errors in them that the stiffness
+  /// magnifies.
   void set(const Knot& begin, const Knot& end_knot, const TrajectoryPoint& end, bool accurate_rates);
 
   [[nodiscard]] bool moves_by_modes() const { return moves_by_modes_; }
   [[nodiscard]] int pieces() const { return pieces_; }
   [[nodiscard]] double begin_time() const { return begin_->time; }
   [[nodiscard]] double length() const { return end_->time - begin_->time; }
-  /// Returns the contact point after k pieces, 1 <= k < pieces().
+  /// Returns the motion of the contact point at the end of piece k of the step, 1 <= k < pieces().
   [[nodiscard]] const ModalMotion::Sample& knot(int k) { return motion().knot(k); }
-  /// Returns the contact point at a time in the step [s]. Call this only if moves_by_modes().
+  /// Returns the motion of the contact point at a time in the step [s]. Call this only if moves_by_modes().
   [[nodiscard]] ModalMotion::Sample at(double time) { return motion().at(time - begin_->time); }
 
   /// Returns q, v and film halfway through the step by Hermite interpolation; valid until the next call of halfway() or
   /// state_at().
   const std::vector<double>& halfway();
-  /// Returns q and v after a share of the step, moved by the modes. Call this only if moves_by_modes(), and without a
-  /// compressible film.
+  /// Returns q and v after a share of the step, from the free motion of the modes and a quintic. Call this only if
+  /// moves_by_modes(), and without a compressible film.
   const std::vector<double>& state_at(double share);
 
  private:

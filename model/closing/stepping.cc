@@ -25,8 +25,8 @@ struct TakeOver {
   double tolerance = 0.01;
 };
 
-// A film that is squeezed out along the face of a dielectric remains stiff. The kinks of the face at one point after the other,
-// and not the tolerance, then limit the steps.
+// A film that is squeezed out along the face of a dielectric remains stiff. The steps are then limited not by the tolerance,
+// but by kinks of the contact pressure, at one point after the other.
 TakeOver take_over(const Device& device) {
   return device.lands_along_face() && device.gas ? TakeOver{.looks = 2, .tolerance = 1} : TakeOver{};
 }
@@ -100,8 +100,8 @@ bool Stepping::fail(const std::string& why) {
   return false;
 }
 
-// In the reach of a law that acts beyond the plane the tolerances are those of contact, since this law changes over such
-// lengths.
+// Within the reach of a contact law that acts before touch the tolerances are those of contact: the law changes over lengths as
+// short.
 const std::vector<double>& Stepping::tolerances() const {
   const bool touching = !parts_.options.restart_at_contact || std::ranges::any_of(parts_.contacts, [](const FollowedContact& c) {
     return c.phase.in_contact() || c.phase.phase() == Phase::near;

@@ -63,8 +63,8 @@ struct ClosingParts {
   ClosingEquations equations;
   RestingPlate plate;
   std::optional<ConnectionCourse> connection;  ///< connection of several contacts
-  std::vector<FollowedContact> contacts;       ///< contacts, at least one: see ContactPhases
-  std::optional<ElectricalRecord> electrical;  ///< electrical record, if the device or the observer asks for it
+  std::vector<FollowedContact> contacts;       ///< one per contact; without contacts, one for the contact point
+  std::optional<ElectricalRecord> electrical;  ///< electrical record, if the device or the observer requires this record
   ClosingObserver& observer;
   bool closing_is_over = false;  ///< true after ClosingOptions::opens_at
 
@@ -96,22 +96,22 @@ struct ClosingParts {
   ClosingParts& operator=(const ClosingParts&) = delete;
 
   [[nodiscard]] FollowedContact& first() { return contacts.front(); }
-  /// Returns true when the electrical state is computed: after the end of the closing only for an observer that asks for it.
+  /// Returns true when the electrical state is computed: after ClosingOptions::opens_at only for an observer that needs it.
   [[nodiscard]] bool follows_state() const { return electrical && (!closing_is_over || observer.follows_state()); }
   /// Ends the closing at this time [s]: the rest of the run is an opening.
   void end_closing(double time) {
     if (electrical && !closing_is_over) electrical->finish(time);
     closing_is_over = true;
   }
-  /// Records the peaks and the contact force in a piece of a step.
+  /// Records the contact force and the peaks of a touch in a piece of a step.
   void record(FollowedContact& contact, const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to);
-  /// Returns the place of a contact at a knot.
+  /// Returns position, velocity, acceleration and force of a contact at a knot.
   [[nodiscard]] TrajectoryPoint point(const FollowedContact& contact, const Knot& knot) const;
   /// Continues the motion of every contact up to a knot.
   void push(const Knot& knot) {
     for (FollowedContact& c : contacts) c.pending_knots.push(point(c, knot));
   }
-  /// Passes on the knots that no event can change any more.
+  /// Passes the knots that no event can change any more to the observers.
   void hand_over() {
     for (FollowedContact& c : contacts) c.pending_knots.hand_over();
     if (connection) connection->hand_over();
@@ -123,12 +123,12 @@ struct ClosingParts {
 
 class Stepping {
  public:
-  /// Starts at rest without contact, or on the contact. Keeps a reference.
+  /// Starts at rest, open or on the contact. Keeps a reference to `parts`.
   explicit Stepping(ClosingParts& parts);
 
   [[nodiscard]] Knot& here() { return here_; }
   [[nodiscard]] const Work& work() const { return work_; }
-  /// Counts an evaluation of the drives, while a plate rests on its contact, as a step.
+  /// Counts an evaluation of the drives while a plate rests on its contact: this evaluation is a step.
   void count_step() { ++work_.steps; }
   /// Returns the reason why the last call failed.
   [[nodiscard]] const std::string& message() const { return message_; }
@@ -136,7 +136,8 @@ class Stepping {
   /// Restarts the integrator from here(), in the present contact phase. Returns false when this failed.
   bool restart();
   /// Checks that the number of steps is within its limit. From time to time the function also checks whether the integration
-  /// method suits the equations, and changes to the other method if not. Returns false when the check failed.
+  /// method suits the equations, and changes to the other method if not. Returns false when the number of steps exceeds its
+  /// limit or the change failed.
   bool check_work();
 
   struct Step {
@@ -144,7 +145,7 @@ class Stepping {
     std::optional<Event> event;
   };
   /// Integrates from here() to the end of a step: to `stop` or the next event that needs a restart, at the latest. Peaks and
-  /// energies of the step are recorded, its knots wait in PendingKnots. Returns none when the step failed.
+  /// energies of the step are recorded; its knots stay in PendingKnots. Returns none when the step failed.
   std::optional<Step> advance(double stop, EnergyAudit& audit);
 
  private:

@@ -17,10 +17,11 @@ struct Tolerances {
 
   /// Derives the absolute tolerances from a relative tolerance.
   Tolerances(const Switch& model, double relative) {
-    // The tolerances are the relative tolerance times the two lengths below. Later touches magnify errors of the flight, so the
-    // length of the flight is shorter than the contact gap. With these lengths a tolerance of 1e-6 gives first contact time,
-    // impact velocity and highest rebound of the reference closing to four digits. Measured: a tenfold change of the second
-    // length changes the error of the highest rebound by less than a tenth of itself, one of the first length in proportion.
+    // The absolute tolerances are the relative tolerance times one of two lengths, for flight and for contact. Later touches
+    // magnify errors of the flight, so the length of the flight is shorter than the contact gap. With these lengths a tolerance
+    // of 1e-6 gives first contact time, impact velocity and highest rebound of the reference closing to four digits. Measured:
+    // a tenfold change of the contact's length changes the error of the highest rebound by less than a tenth of itself; with
+    // the length of the flight the error grows in proportion.
     constexpr double flight_fraction = 1.0 / 30;   // share of the contact gap
     constexpr double penetrations_in_contact = 1;  // multiple of the static interference that bends the beam by the contact gap
     const double gap = model.contact_gap();
@@ -31,7 +32,7 @@ struct Tolerances {
       std::vector<double> absolute(2 * n + model.film_states(), model.film_states() > 0 ? relative * model.film_scale() : 0);
       for (std::size_t i = 0; i < n; ++i) {
         const auto k = static_cast<Eigen::Index>(i);
-        // A mode that hardly moves the contact point still shakes the rest of the beam. Its tolerance is that of a mode that
+        // A mode that hardly moves the contact point still moves the rest of the beam. Its tolerance is that of a mode that
         // moves the contact point by a tenth of the largest motion.
         const double amplitude = std::max(std::abs(shape[k]), largest / 10);
         absolute[i] = relative * length / amplitude;

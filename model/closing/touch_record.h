@@ -13,7 +13,7 @@ namespace softland {
 
 class TouchRecord {
  public:
-  /// Keeps references. Every touch is passed to the observer when the touch is over.
+  /// Keeps references to its arguments. Every touch is passed to the observer when the touch is over.
   TouchRecord(const Switch& model, std::size_t contact, const ContactPhase& phase, ClosingObserver& observer);
 
   [[nodiscard]] long count() const { return count_; }
@@ -27,12 +27,13 @@ class TouchRecord {
   /// Adds an event that the contact point has reached, before its next phase begins; returns true when a touch begins.
   bool note(const Event& event, const TrajectoryPoint& at);
   void end(double time) { touch_.end = time; }
-  /// Adds the peaks of a piece of a step; does nothing outside of contact.
+  /// Updates the peaks of the present touch by a piece of a step; does nothing outside of contact.
   void take(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to);
-  /// Adds the peaks of a whole step of a damped contact, whose largest force comes before the deepest point, or of a contact
-  /// along a pad, whose largest force comes before or after the deepest point. Does nothing for other contacts.
+  /// Updates the peaks of the present touch by a whole step of a damped contact, whose largest force comes before the deepest
+  /// point, or of a contact along a pad, whose largest force comes before or after the deepest point. Does nothing for other
+  /// contacts.
   void take(const Knot& begin, const Knot& end, StepMotion& step);
-  /// Passes on the touch that lasts beyond the end of the run.
+  /// Passes the touch that lasts beyond the end of the run to the observer.
   void finish();
 
  private:

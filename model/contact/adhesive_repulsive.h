@@ -35,8 +35,8 @@ template <class P>
 class AdhesiveRepulsiveContactOf {
  public:
   AdhesiveRepulsiveContactOf() = default;
-  /// `area` is An [m^2], `touch` is x0 [m]. A step of Newton's method improves x0 for scalars other than double, so that x0 has
-  /// their derivatives.
+  /// `area` is that of the pad [m^2], `touch` the distance x0 of first touch [m]. A step of Newton's method improves x0 for
+  /// scalars other than double, so that x0 has their derivatives.
   AdhesiveRepulsiveContactOf(const SurfacePressureOf<P>& law, const P& area, const P& touch)
       : law_(law), area_(area), end_(far(DualOf<P>(law.reach, 1))), touch_(touch) {
     if constexpr (!std::same_as<P, double>) {
@@ -92,8 +92,8 @@ class AdhesiveRepulsiveContactOf {
 
   SurfacePressureOf<P> law_ = {};
   P area_ = 0;
-  DualOf<P> end_ = P(0);  // l at the reach xr, with its slope [Pa], [Pa/m]
-  P touch_ = 0;           // x0 [m]
+  DualOf<P> end_ = P(0);  // published pressure l at the reach xr, with its slope [Pa], [Pa/m]
+  P touch_ = 0;           // distance x0 of first touch [m]
 };
 using AdhesiveRepulsiveContact = AdhesiveRepulsiveContactOf<double>;
 

@@ -51,7 +51,7 @@ struct AdhesiveRepulsiveSurfaces {
   [[nodiscard]] static constexpr AdhesiveRepulsiveSurfaces example() { return {}; }
   /// Returns the interference at which the mean planes meet [m].
   [[nodiscard]] double largest_interference() const;
-  /// Returns the rule that these numbers break under a contact gap [m]; empty when they break none.
+  /// Returns the rule that the parameters break at this contact gap [m]; empty when they break none.
   [[nodiscard]] std::string why_invalid(double contact_gap) const;
   [[nodiscard]] AdhesiveRepulsiveContactOf<double> law(const ContactPad& pad) const;
 };

@@ -13,7 +13,7 @@ GaussianTail::GaussianTail() {
   constexpr double order = 1.5, start = 14;
   constexpr std::size_t terms = 24;
   std::array<double, terms> c{};
-  // Computes the Taylor series of the solution about h, which has the value c[0] and the slope c[1] there.
+  // Computes the Taylor series about h of the solution of y'' + h y' - n y = 0 with value c[0] and slope c[1].
   const auto expand = [&](double h) {
     for (std::size_t k = 0; k + 2 < terms; ++k) {
       const auto j = static_cast<double>(k);

@@ -45,7 +45,7 @@ class GaussianTail {
     using std::sqrt;
     if (h > last) return S(0);
     if (h < first) {
-      // Sum the moments of (s + |h|)^1.5 in powers of 1/h^2.
+      // The series in 1/h^2 of the mean of (s + |h|)^1.5 over the Gaussian density.
       const S m = -h, x = S(1) / (m * m);
       S sum(0);
       for (std::size_t k = moments.size(); k-- > 0;) sum = sum * x + S(moments[k]);
@@ -63,7 +63,7 @@ class GaussianTail {
   static constexpr std::size_t degree = 11;
   static constexpr std::size_t nodes = static_cast<std::size_t>((last - first) / spacing) + 1;
   using Series = std::array<double, degree + 1>;
-  // binom(1.5, 2k) (2k - 1)!!
+  // Element k is binom(1.5, 2k) (2k - 1)!!.
   static constexpr std::array<double, 10> moments = [] {
     std::array<double, 10> m{1};
     for (std::size_t k = 1; k < m.size(); ++k) {

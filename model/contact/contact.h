@@ -1,5 +1,5 @@
-// A contact of a device: the parameters of one of its laws, and its pad. A new law needs a header and a row here; a long force
-// function has a header of its own, which contact_law.h includes.
+// A contact of a device: the parameters of one of its laws, and its pad. A new law needs a header and an entry in ContactModel;
+// contact_law.h includes the header of a long force function.
 #pragma once
 
 #include <limits>

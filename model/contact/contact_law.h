@@ -22,7 +22,7 @@
 namespace softland {
 
 namespace internal {
-/// Extends a variant by those of the further alternatives that the variant does not have.
+/// Adds alternatives to a variant, except those that the variant already has.
 template <class Variant, class... More>
 struct WithKernels;
 template <class... Kernels>
@@ -83,8 +83,8 @@ concept HasMemory = requires(const Law& law) {
   law.shift(0.0);
 };
 
-/// Returns the force [N] of a law at interference d in a state in which it acts. `rate()` returns d' [m/s] and is called only
-/// if the law depends on the rate.
+/// Returns the force [N] of a contact law at interference d, in a state in which the law acts. `rate()` returns d' [m/s] and is
+/// called only if the law depends on the rate.
 template <class Law, class S, class Rate>
 S force_of(const Law& law, S d, const ContactState& state, Rate&& rate) {
   if constexpr (HasMemory<Law>) {
@@ -120,7 +120,7 @@ S force_of(const Law& law, S d, const ContactState& state, Rate&& rate) {
       },
       law);
 }
-/// The dent that a law with memory has left, from its deepest interference; zero for laws without memory.
+/// The residual deformation (dent) after unloading from the deepest interference; zero for laws without memory.
 struct Dent {
   double shift = 0;    ///< residual interference [m]
   double lost = 0;     ///< energy lost in making the dent [J]

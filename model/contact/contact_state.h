@@ -9,7 +9,7 @@ namespace softland {
 template <class S, class Yes>
 struct ContactStateOf {
   constexpr ContactStateOf() = default;
-  constexpr ContactStateOf(std::same_as<Yes> auto acts) : active(acts) {}  // NOLINT: most laws need nothing else
+  constexpr ContactStateOf(std::same_as<Yes> auto acts) : active(acts) {}  // NOLINT: implicit; most laws need to know no more
 
   Yes active = Yes(false);
   Yes unloading = Yes(false);  ///< true on the elastic curve of unloading

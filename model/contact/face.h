@@ -40,13 +40,15 @@ namespace softland {
   return eps0_square / (2 * sinks * depth * depth * depth);
 }
 
-/// Returns the least stiffness per area at which a linear bed keeps a beam off the electrode [Pa/m]; `depth` is H + b [m].
+/// Returns the least stiffness per area at which a linear bed keeps a beam off the electrode [Pa/m]; `depth` [m] is the height
+/// b at which the bed begins plus the least gap H of the field.
 [[nodiscard]] constexpr double least_face_stiffness(double voltage, double depth) {
   return 27.0 / 8 * vacuum_permittivity * voltage * voltage / (depth * depth * depth);
 }
 
-/// Returns the voltage up to which the face keeps parallel plates apart whose springs are relaxed where the pressure begins
-/// [V]. `pressure` is a law of elastic contact per area, `depth` is H + b [m].
+/// Returns the voltage up to which the face keeps parallel plates apart, if the springs of the plates are relaxed where the
+/// pressure begins [V]. `pressure` is a law of elastic contact per area, `depth` [m] is the height b at which the pressure
+/// begins plus the least gap H of the field.
 template <class Law>
 [[nodiscard]] double most_face_voltage(const Law& pressure, double depth) {
   double low = 0, high = depth;  // bounds of the depth at which p (H + b - d)^2 is largest
@@ -58,7 +60,7 @@ template <class Law>
   return (depth - low) * std::sqrt(2 * pressure.force(low) / vacuum_permittivity);
 }
 
-/// The pressure of a face with asperities on a beam of one width.
+/// The pressure of a face with asperities on a beam of constant width.
 struct RoughFacePressure {
   UniformAsperityContact asperities;  ///< law of the asperities, per length of the beam
   static constexpr bool drive_depends = false;
@@ -73,7 +75,7 @@ struct RoughFacePressure {
   [[nodiscard]] double potential(double gap) const { return asperities.energy(std::max(0.0, asperities.height - gap)); }
 };
 
-/// The pressure of a wall or a linear bed on a beam of one width.
+/// The pressure of a wall or a linear bed on a beam of constant width.
 struct FacePressure {
   double stiffness = 0;  ///< stiffness per length, a k [N/m^2]
   double from = 0;       ///< height b above the face at which the pressure begins [m]
@@ -92,7 +94,7 @@ struct FacePressure {
   }
 };
 
-/// A force law of a field that stays constant below the face, where a wall carries the beam.
+/// A force law of an electrode whose field stays constant below the face, where a wall carries the beam.
 template <class Law>
 struct StopsAtFace {
   Law law;

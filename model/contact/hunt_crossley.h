@@ -47,7 +47,7 @@ template <class Elastic>
 }
 
 // clang-format off
-/// Returns the scene's field of a law's member `damping`; 0 means no damping.
+// Returns the scene-file key of a contact law's member `damping`; 0 means no damping.
 template <class Law>
 [[nodiscard]] consteval auto damping_fields() {
   return std::to_array<Field<Law>>({

@@ -12,7 +12,7 @@ namespace softland {
 struct HystereticSpring {
   static constexpr std::string_view name = "hysteretic", not_along_pad = many_dents;
   double stiffness = 0;            ///< stiffness of loading [N/m]
-  double unloading_stiffness = 0;  ///< [N/m]
+  double unloading_stiffness = 0;  ///< stiffness of unloading [N/m]
 
   static consteval auto fields() {
     using Law = HystereticSpring;

@@ -1,4 +1,4 @@
-// Declares the names of contacts with memory, for code that only names them: see model/contact/memory.h.
+// Forward declarations of contact laws with memory: see model/contact/memory.h.
 #pragma once
 
 #include <string_view>
@@ -19,7 +19,7 @@ template <class Asperity>
 using PlasticAsperityContact =
     ContactWithMemory<PlasticAsperityLoading<Asperity, double>, UniformAsperityContactOf<double>, false>;
 
-/// Reason why a law with memory does not act along the pad.
+/// Reason why a contact law with memory does not act along the pad.
 inline constexpr std::string_view many_dents = "every point of the pad would keep a dent of its own";
 
 }  // namespace softland

@@ -94,7 +94,7 @@ struct OwnContactForce {
   [[nodiscard]] double energy(double d) const { return own->energy(d); }
 
  private:
-  static constexpr double least_depth = 1e-15, least_speed = 1e-5;  // [m], [m/s]
+  static constexpr double least_depth = 1e-15, least_speed = 1e-5;  // step at the argument 0: [m], [m/s]
 };
 
 }  // namespace internal

@@ -35,14 +35,14 @@ class PadQuadrature {
     }
   }
 
-  /// Calls f(xi, share, interference) for points in the part of the pad that is beyond the plane; the shares add up to the
-  /// length of this part over the pad's length.
+  /// Calls f(xi, share, interference) for points in the part of the pad that is beyond the contact plane; the shares add up to
+  /// the length of this part over the pad's length.
   template <class F>
   void over_contact(double end, double slope, F&& f) const {
     const double inner = end - slope * length_, deep = std::max(end, inner);
     if (!(deep > 0)) return;
     const double shallow = std::max(0.0, std::min(end, inner)), rise = deep - shallow;
-    // A pad that lies parallel to the plane is in touch over its whole length.
+    // A pad that lies parallel to the contact plane is in contact over its whole length.
     const double part = shallow > 0 || rise == 0 ? length_ : rise / std::abs(slope);
     for (std::size_t i = 0; i < count; ++i) {
       const double from_deep = part * (1 - places_[i]);

@@ -7,7 +7,7 @@
 //
 //   w1 = (pi K H / (2 E*))^2 R,   P1 = (2/3) pi K H R w1
 //
-// below which p is Hertz's load. R is the radius [m]; H hardness of the softer surface [Pa]; K the law's factor between largest
+// p is Hertz's load for w < w1. R is the radius [m]; H hardness of the softer surface [Pa]; K the law's factor between largest
 // pressure and hardness at first yield; E* effective modulus [Pa]; eta summits per area [1/m^2]; An = width x pad length [m^2];
 // W [J]. The integrals are in closed form. Below w1 it is the law asperity-uniform. One asperity's load is continuous with
 // kinks; the sum has a continuous slope. The law is odd in d. Validity: asperities that do not touch each other; quasi-static
@@ -57,7 +57,7 @@ class PlasticAsperityLoading {
 
  private:
   P height_ = 1;    // [m]
-  P yield_ = 1;     // w1 [m]
+  P yield_ = 1;     // interference w1 of first yield [m]
   P strength_ = 0;  // factor of the force, (eta An / Hm) P1 w1 [N]
 };
 

@@ -25,11 +25,11 @@ namespace softland {
 /// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
 template <class P>
 struct RigidContactOf {
-  P restitution = 0;  ///< e
+  P restitution = 0;  ///< coefficient of restitution e
 
   static constexpr double rest_height = 1e-6;  ///< height h_r over the contact gap: lower rebounds are not simulated
 
-  /// Returns true when a plate would rebound from the stop, at `speed` [m/s] against `acceleration` [m/s^2], less than
+  /// Returns true when a plate that leaves the stop at `speed` [m/s] against `acceleration` [m/s^2] would rise less than
   /// rest_height.
   [[nodiscard]] static bool rests(double speed, double acceleration, double contact_gap) {
     return acceleration > 0 && speed * speed < 2 * acceleration * rest_height * contact_gap;
@@ -48,7 +48,7 @@ using RigidContact = RigidContactOf<double>;
 /// The parameters of the law in a scene.
 struct RigidStop {
   static constexpr std::string_view name = "rigid", not_along_pad = "whose impacts have no force";
-  double restitution = 0;  ///< e
+  double restitution = 0;  ///< coefficient of restitution e
 
   static consteval auto fields() {
     using Law = RigidStop;

@@ -31,7 +31,7 @@ struct Summits {
 };
 
 // clang-format off
-/// Returns the scene's fields of radius and density of a law's member `summits`.
+// Returns the scene-file keys of radius and density of a contact law's member `summits`.
 template <class Law>
 [[nodiscard]] consteval auto summit_fields() {
   return std::to_array<Field<Law>>({
@@ -39,14 +39,14 @@ template <class Law>
       {.key = "asperity_density", .unit = "1/m^2", .about = "summits per area", .in = reach<Law, &Law::summits, &Summits::density>, .required = true, .such_as = "1e11 1/m^2"},
   });
 }
-/// Returns the scene's field of the effective modulus, which follows the fields of the heights.
+/// Returns the scene-file key of the effective modulus, which comes after the keys of the heights.
 template <class Law>
 [[nodiscard]] consteval auto modulus_fields() {
   return std::to_array<Field<Law>>({
       {.key = "effective_modulus", .unit = "Pa", .about = "E* of the pair of surfaces", .in = reach<Law, &Law::summits, &Summits::effective_modulus>, .required = true, .such_as = "48 GPa"},
   });
 }
-/// Returns the scene's field of the greatest height of summits, with heights uniform on [0, Hm].
+/// Returns the scene-file key of the greatest height of summits, with heights uniform on [0, Hm].
 template <class Law>
 [[nodiscard]] consteval auto height_fields() {
   return std::to_array<Field<Law>>({

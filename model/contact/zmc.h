@@ -43,7 +43,7 @@ class ZmcAsperity {
 
  private:
   static constexpr double k = 0.4;     // mean pressure at first yield over hardness
-  static constexpr double ratio = 54;  // w2 / w1
+  static constexpr double ratio = 54;  // w2 / w1: interference at full plasticity over that at first yield
 
   // The load of the middle part is the sum of a_j u^j (1 + beta ln u), j = 1 ... 4. Return its antiderivatives, first and
   // second.

@@ -140,7 +140,7 @@ std::vector<Segment> segments_between(const Switch& model, const LaneLayout& lay
   return segments;
 }
 
-/// Returns the segments of every pad with quadrature points: one for each side of the moving part with a face.
+/// Returns the segments of every pad with quadrature points: one for each side of the moving part that the electrode faces.
 std::vector<Segment> faces_of(const Switch& model) {
   const Eigen::ArrayXd& x = model.quadrature().positions();
   const auto first_at = [&](double place) { return to_int(std::lower_bound(x.begin(), x.end(), place) - x.begin()); };

@@ -31,7 +31,7 @@ enum class Vectors { none, avx2, avx512 };
 struct VectorsRow {
   Vectors value;
   std::string_view name;
-  int lanes;  ///< number of closings at once
+  int lanes;  ///< number of closings that run at once
 };
 inline constexpr auto vector_instructions =
     std::to_array<VectorsRow>({{Vectors::none, "none", 1}, {Vectors::avx2, "avx2", 4}, {Vectors::avx512, "avx512", 8}});
@@ -79,7 +79,7 @@ struct EnsembleClosing {
 struct EnsembleEnd {
   bool followed = false;
   double time = 0;  ///< [s]
-  /// Figures of the contact force, defined as in Trajectory: [s], [N].
+  /// Figures of the contact force [s], [N], as the members of Trajectory with the same names.
   double steady_force_time = std::numeric_limits<double>::quiet_NaN(),
          least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
   double drive_energy = std::numeric_limits<double>::quiet_NaN();  ///< EnergyBalance::source_work + Trajectory::layer_energy;
@@ -90,8 +90,8 @@ struct EnsembleEnd {
 /// Returns the reason why closings of this switch cannot be simulated in lanes; empty when they can.
 [[nodiscard]] std::string why_not_in_lanes(const Switch& model);
 
-/// Simulates all closings, in order; `tolerance` as in ClosingOptions. With Vectors::none no closing is simulated. A closing is
-/// also left out when its switch differs from the first switch in quadrature points or drives.
+/// Simulates all closings and returns their results in order; `tolerance` as in ClosingOptions. With Vectors::none no closing
+/// is simulated. A closing is also left out when its switch differs from the first switch in quadrature points or drives.
 [[nodiscard]] std::vector<EnsembleEnd> close_in_lanes(std::span<const EnsembleClosing> closings, double tolerance,
                                                       Vectors vectors);
 

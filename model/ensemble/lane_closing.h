@@ -24,12 +24,12 @@ struct Segment {
   int begin = 0, end = 0;
   int electrode = -1;  ///< number of the electrode; -1 without an electrode
   LaneFringing fringing = LaneFringing::none;
-  bool far = false;  ///< true on the far side
-  int stretch = 0;   ///< stretch that contains the segment's points; usual laws only
+  bool far = false;  ///< true for an electrode on the far side
+  int stretch = 0;   ///< index of the PointStretch that contains these points; only for UsualLaws
   [[nodiscard]] bool operator==(const Segment&) const = default;
 };
 
-/// Quadrature points from `begin` up to `end` under one width and thickness.
+/// Quadrature points from `begin` up to `end`, where the beam has one width and thickness.
 struct PointStretch {
   int begin = 0, end = 0;
   [[nodiscard]] bool operator==(const PointStretch&) const = default;
@@ -50,14 +50,14 @@ struct LaneLayout {
   bool usual = true;  ///< true for UsualLaws, with segments in sequence; else segments are pads, which may share points
   int modes = 0, points = 0, segments = 0, electrodes = 0, drives = 0;
   bool piezo = false, stretching = false;
-  LaneFringing fringing = LaneFringing::none;  ///< fringing law of all electrodes; usual laws only
+  LaneFringing fringing = LaneFringing::none;  ///< fringing law of all electrodes; only for UsualLaws
   LaneFilm film = LaneFilm::none;
   bool far_film = false;
   LaneDispersion dispersion = LaneDispersion::none;
   int contacts = 1;
   LaneContactKind contact[most_contacts];
   bool needs_all = true;       ///< true when the connection needs all of its contacts; false when any of them closes it
-  bool measures_work = false;  ///< true when the work of the drives is measured; not by UsualLaws
+  bool measures_work = false;  ///< true when the work of the drives is computed; UsualLaws do not compute this work
   Segment segment[most_segments];
   int stretches = 1;  ///< number of stretches: one unless the size changes along the structure; one per point for a width that
                       ///< changes all along
@@ -72,13 +72,13 @@ struct LaneContactNumbers {
   double strength = 0, height = 0;  // parameters of the law; strength of a linear law is its stiffness [N/m]
   double damping = 0;               // [s/m]
   double unloading_stiffness = 0;   // unloading stiffness of a law with a memory; `strength` is that of loading [N/m]
-  double negligible_depth = 0;      // depth within which a step ends at the plane accurately enough [m]
+  double negligible_depth = 0;      // distance to the plane at which a step counts as ending on the plane [m]
 };
 
 /// One switch as plain numbers. Entries of modes that the switch does not have are 0.
 struct LaneSwitch {
   int modes = 0;
-  double open = 0, floor = 0;                                            // the largest rest gap and the least gap [m]
+  double open = 0, floor = 0;                                            // largest rest gap; least gap, at which a run ends [m]
   double omega[most_modes] = {};                                         // [rad/s]
   double piezo[most_modes] = {}, friction[most_modes] = {};              // [N kg^(-1/2) / V], [1/s]
   double shape[most_points][most_modes] = {}, weight[most_points] = {};  // [kg^(-1/2)], [m]
@@ -88,10 +88,10 @@ struct LaneSwitch {
   double width[most_points] = {}, thickness[most_points] = {};           // sizes of each stretch [m]
   double viscosity[most_points] = {};                                    // viscosity over each stretch [Pa s]
   double mean_free_path = 0, slit_height = 0, slit_length = 0;           // [m]
-  double damping = 0;                                                    // damping of the film `linear` [N s/m^2]
-  double electrode_gaps[most_drives] = {}, film_gaps = 0;                // gaps of both sides together, with a far side [m]
-  double electrode_floor[most_drives] = {}, film_floor = 0;              // floor of the far gaps [m]
-  double most_gap = 0;                                                   // largest gap on the near side, with a far side [m]
+  double damping = 0;                                                    // damping of the gas law `linear` [N s/m^2]
+  double electrode_gaps[most_drives] = {}, film_gaps = 0;                // sum of the gaps on both sides [m]
+  double electrode_floor[most_drives] = {}, film_floor = 0;              // gap floor on the far side [m]
+  double most_gap = 0;                                                   // largest gap on the near side [m]
   double hamaker_constant = 0, equilibrium_distance = 0, crossover = 0;  // [J], [m], [m]
   double tension = 0;                                                    // tension of mid-plane stretching [N/m]
   double slopes[most_modes][most_modes] = {};                            // matrix of mid-plane stretching [1/(kg m)]
@@ -118,7 +118,7 @@ class LaneObserver {
   LaneObserver& operator=(const LaneObserver&) = default;
 };
 
-/// A piece of a drive, as waveforms/pieces.h has it; its terms are a cubic polynomial and exponentials:
+/// A piece of a drive's signal (waveforms/pieces.h); its terms are a cubic polynomial and exponentials:
 ///   value + slope s + square s^2 + cube s^3 + sum over tails of tail exp(-decay s)
 ///     + [amplitude + amplitude_slope s] sin(angular_frequency t + phase),  s = t - begin
 struct LanePiece {
@@ -134,18 +134,18 @@ struct LanePiece {
 struct LaneClosing {
   const LaneSwitch* numbers = nullptr;
   double start[most_modes] = {};              // modal coordinates at t = 0
-  double final[most_modes] = {};              // modal coordinates at the end
+  double final[most_modes] = {};              // modal coordinates at the end of the run
   double work = 0;                            // work of the drives on the modes, if measures_work [J]
   const LanePiece* pieces[most_drives] = {};  // pieces by drive
   int piece_count[most_drives] = {};
-  double gain[most_drives] = {};  // factors of the pieces
+  double gain[most_drives] = {};  // factor on the voltages of each drive
   double duration = 0, after_contact = 0, no_end_before = 0, no_contact_before = 0;
-  double steady_depth[most_contacts] = {};  // depth that carries the steady force [m]; infinite without a steady force
+  double steady_depth[most_contacts] = {};  // depth at which a contact carries the steady force [m]; infinite if none is given
   LaneObserver* observer = nullptr;
   bool followed = false;
   double end = 0;
-  /// Each contact has its own values, which are NaN when the contact has not touched, or its force is not steady at the end
-  /// [s], [m].
+  /// Time of steady force [s] and least depth [m] of each contact; NaN when the contact has not touched, or its force is not
+  /// steady at the end.
   double steady_from[most_contacts] = {}, least_depth[most_contacts] = {};
 };
 

@@ -1,4 +1,4 @@
-// Drives as pieces for vector lanes; a finely sampled and filtered signal is replaced by a smooth signal.
+// Converts the signals of drives to pieces for vector lanes; a smooth signal replaces a finely sampled and filtered signal.
 #pragma once
 
 #include <limits>

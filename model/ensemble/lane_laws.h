@@ -1,7 +1,7 @@
-// The laws of a closing over lanes, in two variants: forces from coordinates and velocities.
+// The force laws of closings in vector lanes, in two variants that compute forces from coordinates and velocities.
 //
 // UsualLaws: up to four modes, electrodes on the near side that do not overlap, a strip film or none, an undamped contact of
-// asperities. All choices are made at compile time, and each point is visited once, in registers. UsualLaws with a
+// asperities. The laws are chosen at compile time, and each point is visited once, in registers. UsualLaws with a
 // capacity for several stretches cover a beam of sections with several contacts of any law.
 //
 // AnyLaws: more modes, other laws and several contacts, chosen by the layout. The points are visited law by law.
@@ -89,7 +89,7 @@ template <class V, template <class> class FringingOf, bool has_film, int most_st
 class UsualLaws {
   using Force = ElectrostaticForce<FringingOf<V>>;
   using Film = StripSqueezeFilmOf<V>;
-  /// True when the fringing law is written in powers of h^(-1/4), which the law of a film can reuse.
+  /// True when the fringing law is written in powers of h^(-1/4), which the law of a gas film can reuse.
   static constexpr bool has_root = requires(const FringingOf<V>& law, V h) { law.factor_over_square(h); };
 
  public:
@@ -263,7 +263,7 @@ class AnyLaws {
       smallest = min(smallest, gap), largest = max(largest, gap);
       gap_[p] = max(gap, floor), velocity_[p] = velocity, load_[p] = 0;
     }
-    least = min(smallest, floor + (most_gap_ - largest));  // the sum is below the floor when the beam is near the far side
+    least = min(smallest, floor + (most_gap_ - largest));  // the second number is below the floor near the far side
   }
 
   void check_far_gap(int begin, int end, const V& both, const V& floor) {
@@ -284,7 +284,7 @@ class AnyLaws {
     }
   }
 
-  // Calls f(begin, end, k) for every stretch k that has points in [begin, end), with those points.
+  // Calls f(first, last, k) for every stretch k of constant size with the range of its points in [begin, end).
   template <class F>
   [[gnu::always_inline]] void on_stretches(int begin, int end, F&& f) const {
     for (int k = 0; k < layout_.stretches; ++k) {
@@ -294,7 +294,7 @@ class AnyLaws {
     }
   }
 
-  // Adds a film. A film on the far side has the opposite velocity and the opposite force.
+  // Adds the load of a gas film. A film on the far side has the opposite velocity and the opposite force.
   void add_film(const V* gap) {
     on_stretches(0, layout_.points, [&](int begin, int end, int k) { add_film(gap, begin, end, k); });
   }

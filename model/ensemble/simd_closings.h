@@ -74,15 +74,15 @@ class SimdClosings {
     double hardest = 0;                     // largest force of a damped contact since the last event [N]
     // Phase of a contact with a memory: see model/closing/contact_phase.h.
     bool unloading = false, in_dent = false;
-    bool to_turn = false;                   // true while the lane steps to the deepest point of the contact
-    double level = 0;                       // level of an event other than the deepest point, to which the lane steps [m]
+    bool to_turn = false;                   // true while the lane's step should end at the deepest point
+    double level = 0;                       // position of another event at which the lane's step should end [m]
     double low = 0, high = 0, deepest = 0;  // edges of the phase, and the deepest position of this touch [m]
-    double steady = nothing;                // time since which the contact has been at the steady depth [s]
+    double steady = nothing;                // time since which the contact has carried the steady force [s]
     double least = infinite;                // least depth after the first maximum [m]
   };
   // The state of the connection that several contacts make.
   struct Connected {
-    int touching = 0;  // number of touching contacts in the connection
+    int touching = 0;  // number of closed contacts of the connection
     bool closed = false, was_closed = false;
     double left = 0, highest = 0;  // start [s] and largest separation [m] of the present opening
   };
@@ -99,8 +99,8 @@ class SimdClosings {
     double stop = 0;                // next breakpoint, or the end of the window [s]
     double longest = 0;             // longest step that resolves the drives [s]
     double gain[most_drives] = {};  // factors of the drives
-    bool landed = false;            // true after the first touch of a contact of the near side
-    int at = 0;                     // contact whose event the lane steps to
+    bool landed = false;            // true after the first touch of a contact on the near side
+    int at = 0;                     // contact whose event ends the lane's step
     Followed contact[room];
     Connected connected;
   };
@@ -114,7 +114,7 @@ class SimdClosings {
     }
   }
 
-  // Adds the parts of a drive other than straight lines.
+  // Adds the parts of a drive's voltage other than straight lines.
   void add_curves(int k, V time) {
     const V s = time - begin_[k];
     volts_[k] += s * s * (bend_[k] + s * twist_[k]);
@@ -146,7 +146,7 @@ class SimdClosings {
     if (piece.tail[1] != 0) sum += piece.tail[1] * std::exp(-piece.decay[1] * elapsed);
     return sum;
   }
-  // Returns the value of drive k at a time within pieces that join, where steps may cross the ends of pieces.
+  // Returns the value of drive k at a time within pieces that join smoothly, whose ends a step may cross.
   [[nodiscard]] double running(int k, std::size_t l, double t) {
     find_piece(lane_[l], k, t);
     const LanePiece& piece = lane_[l].drive[k][lane_[l].piece[k]];
@@ -348,8 +348,8 @@ class SimdClosings {
   struct Reach {
     V least, most;
   };
-  // Returns bounds of the contact point's position in a piece, from the quintic's control points in Bernstein form; `g` is the
-  // duration of the piece.
+  // Returns bounds of the contact point's position in a piece, from the control points of its quintic in Bernstein form; `g` is
+  // the duration of the piece.
   [[nodiscard]] [[gnu::always_inline]] Reach reach(Number c, int k, V g) const {
     const V b0 = knot_p_[c][k], b5 = knot_p_[c][k + 1], s0 = g * knot_s_[c][k], s1 = g * knot_s_[c][k + 1];
     const V c0 = g * g * knot_c_[c][k], c1 = g * g * knot_c_[c][k + 1];
@@ -441,8 +441,8 @@ class SimdClosings {
     return 2;
   }
 
-  // Returns the share of the step at which a lane leaves its phase of a contact with a memory, and sets the event's level;
-  // above 1 when the contact stays in the phase.
+  // Returns the share of the step at which a lane leaves its phase of a contact with a memory, and sets Followed::level; above
+  // 1 when the contact stays in the phase.
   [[nodiscard]] double phase_end(Number c, std::size_t l, double length) {
     Followed& one = lane_[l].contact[c];
     const double by_low = one.low > -infinite ? crossing(c, l, length, 1, one.low) : 2;
@@ -499,7 +499,7 @@ class SimdClosings {
     return depth;
   }
 
-  // Finds the time at which a contact has last reached the steady depth, in the step that ends now.
+  // Finds the last time in the present step at which a contact reaches the depth of the steady force.
   [[gnu::noinline]] void rise(Number c, std::size_t l, double length) {
     const double level = steady_[c][l];
     const auto reach = [&](int k, double share) {
@@ -623,7 +623,7 @@ class SimdClosings {
   [[gnu::always_inline]] void settle(V h, V end, V error) {
     control(error);
     rounds_ += V(1);
-    // Most lanes take their step and continue; the other lanes are handled one by one.
+    // Most lanes accept their step and continue; the other lanes are treated one by one.
     const M plain = error <= V(1) && !special_ && !suspect_ && h < limit_ && end < until_ && smallest_ >= laws_.floor() &&
                     rounds_ < V(most_rounds);
     M rises[room];
@@ -785,7 +785,7 @@ class SimdClosings {
         const double v = trial_v_[i][l], a = trial_a_[i][l];
         trial_q_[i][l] = trial_q_[i][l] + later * (v + later / 2 * a);
         trial_v_[i][l] = v + later * a;
-        trial_a_[i][l] = a - later * square_[i][l] * v;  // other forces change less within `later`
+        trial_a_[i][l] = a - later * square_[i][l] * v;  // forces other than the stiffness hardly change within `later`
       }
       moved_[l] = later;
       if constexpr (has_several) move_others(at, l);
@@ -817,7 +817,7 @@ class SimdClosings {
     }
   }
 
-  // Handles a step that ends at a breakpoint or event, ends the closing, or leaves the laws' range.
+  // Handles a step that ends at a breakpoint or event, ends the closing, or leaves the range of the force laws.
   void go_on(std::size_t l, double h) {
     Lane& lane = lane_[l];
     if (smallest_[l] < laws_.floor()[l]) {
@@ -863,7 +863,7 @@ class SimdClosings {
       if (remembers(c)) enter_phase(c, l, false, false);
     }
   }
-  // Returns true when contact c, of which the step has not searched the events, has left its phase at the end of the step.
+  // Returns true when contact c, whose events were not searched in the step, has left its phase at the end of the step.
   bool is_beyond(int c, std::size_t l) {
     Followed& one = lane_[l].contact[c];
     const double low = remembers(c) ? one.low : one.touching ? plane_[c][l] : -infinite;

@@ -55,7 +55,7 @@ class GoldFactor {
 
  private:
   GoldFactor();
-  std::array<Piece, knots> pieces_;  // the last one begins at the last knot and has no cubic
+  std::array<Piece, knots> pieces_;  // the last piece begins at the last knot and has no cubic
 };
 
 struct GoldCasimir {

@@ -25,10 +25,10 @@ struct Film {
   double unit_quality;      ///< damping per length that gives the first mode a quality factor of one [N s/m^2]
 };
 
-/// Largest squeeze number of an incompressible strip film; the strip's cut-off is pi^2.
+/// Largest squeeze number at which a strip film counts as incompressible; its cut-off is at pi^2.
 inline constexpr double incompressible = 10;
 
-/// The range in which a law is valid.
+/// The range in which a gas law is valid.
 struct FilmLimits {
   double least_knudsen = 0;
   double most_knudsen = std::numeric_limits<double>::infinity();
@@ -37,7 +37,7 @@ struct FilmLimits {
 };
 
 // clang-format off
-/// Returns the scene's fields of the state of the gas, the member `film` of a law.
+// Returns the scene-file keys of the state of the gas, which is the member `film` of a gas law.
 template <class Law>
 [[nodiscard]] consteval auto film_fields() {
   return std::to_array<Field<Law>>({
@@ -47,12 +47,12 @@ template <class Law>
       {.key = "mean_free_path", .unit = "m", .about = "absent: from viscosity, pressure and temperature", .in = reach<Law, &Law::film, &FilmState::mean_free_path>, .range = {.least = 0, .most = 1e9, .least_open = true}, .such_as = "65 nm"},
   });
 }
-/// Returns the scene's field of the length of a single film with open ends.
+/// Returns the scene-file key of the length of a single film with open ends.
 template <class Law>
 [[nodiscard]] consteval auto end_fields() {
   return std::to_array<Field<Law>>({{.key = "film_length", .unit = "m", .about = "of one film whose ends are open; absent: much longer than wide", .in = reach<Law, &Law::film_length>, .such_as = "100 um"}});
 }
-/// Returns the scene's field of the rest thickness of a second film, on the far side.
+/// Returns the scene-file key of the rest thickness of a second film, on the far side.
 template <class Law>
 [[nodiscard]] consteval auto far_fields() {
   return std::to_array<Field<Law>>({{.key = "far_gap", .unit = "m", .about = "rest thickness of a second film on the far side; absent: none", .in = reach<Law, &Law::far_gap>}});

@@ -1,4 +1,4 @@
-// The gas of a device: the parameters of one of its laws. A new law needs a header and a row here.
+// The gas of a device: the parameters of one of its laws. A new law needs a header and an entry in the variant Gas.
 #pragma once
 
 #include <variant>
@@ -26,7 +26,7 @@ using Gas = std::variant<StripGas, StripSlitGas, VeijolaGas, GallisTorczynskiGas
       },
       gas);
 }
-/// Returns the rest thickness of a second film, on the far side [m]; NaN without one.
+/// Returns the rest thickness of a second gas film, on the far side [m]; NaN without a second film.
 [[nodiscard]] inline double far_gap(const Gas& gas) {
   return std::visit(
       [](const auto& law) {
@@ -35,7 +35,7 @@ using Gas = std::variant<StripGas, StripSlitGas, VeijolaGas, GallisTorczynskiGas
       },
       gas);
 }
-/// Returns the length of a single film with open ends [m]; NaN when the scene gives no length, for a film much longer than
+/// Returns the length of a single gas film with open ends [m]; NaN when no length is given: the film is then much longer than
 /// wide.
 [[nodiscard]] inline double film_length(const Gas& gas) {
   return std::visit(
@@ -45,7 +45,7 @@ using Gas = std::variant<StripGas, StripSlitGas, VeijolaGas, GallisTorczynskiGas
       },
       gas);
 }
-/// Returns true for a film that can be compressed, with pressures as states of their own: see model/gas/reynolds_film.h.
+/// Returns true for a compressible gas film, whose pressures are further states of the motion: see model/gas/reynolds_film.h.
 [[nodiscard]] inline bool is_compressible(const Gas& gas) {
   return std::visit(
       [](const auto& law) {

@@ -51,8 +51,8 @@ struct GasLaw : internal::LawsOf<Gas>::Type {
 /// no limit for squeeze numbers.
 [[nodiscard]] double squeeze_number(const Device& device, double rest_gap, const TrajectoryPoint& point);
 
-/// Returns one line per limit of the gas law that a closing exceeded, with law, limit and value. Knudsen numbers are taken
-/// between the rest gap and the smallest gap anywhere [m].
+/// Returns one line per limit of the gas law that a closing exceeded, with law, limit and value. The range of Knudsen numbers
+/// is from the rest gap to the smallest gap at any place [m].
 [[nodiscard]] std::vector<std::string> gas_warnings(const Device& device, double smallest_gap, double largest_squeeze);
 
 }  // namespace softland

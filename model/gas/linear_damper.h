@@ -28,7 +28,7 @@ struct LinearDamperOf {
 };
 using LinearDamper = LinearDamperOf<double>;
 
-/// The parameters of the law in a scene, which gives either the damping or the quality factor.
+/// The parameters of the law in a scene: either the damping or the quality factor.
 struct LinearGas {
   static constexpr std::string_view name = "linear";
   double damping = not_given, quality_factor = not_given;

@@ -25,8 +25,9 @@ struct NearContactFilmOf {
   P mean_free_path = 0;  ///< [m]
   P width = 0;           ///< [m]
   static constexpr bool drive_depends = false;
-  static constexpr double near = 0.015;       ///< h/a below which g is continued by its tangent
-  static constexpr double rarefied = 210.79;  ///< E is that of rarefied gas for Kn well above 1 / rarefied
+  static constexpr double near = 0.015;       ///< gap over width, h/a, below which the damping factor g is continued by its
+                                              ///< tangent
+  static constexpr double rarefied = 210.79;  ///< the coefficient E is for rarefied gas only: Kn well above 1 / rarefied
 
   /// Returns the load [N/m].
   template <class S>
@@ -38,7 +39,7 @@ struct NearContactFilmOf {
   }
 
  private:
-  /// Returns g(x) with z = 6 Z and e = 12 E.
+  /// Returns the damping factor g(x), x = h/a, with z = 6 Z and e = 12 E.
   template <class S>
   static S shape(S x, S z, S e) {
     constexpr double r = 1 / near;

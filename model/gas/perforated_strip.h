@@ -26,8 +26,8 @@ namespace softland {
 struct PerforatedStripFilm {
   double viscosity = 0;  ///< [Pa s]
   double width = 0;      ///< width with the holes [m]
-  double through = 0;    ///< R of the holes [Pa s/m]
-  double around = 0;     ///< h^3 times R of the film around a hole [Pa s m^2]
+  double through = 0;    ///< flow resistance R of the holes [Pa s/m]
+  double around = 0;     ///< h^3 times the flow resistance R of the film around a hole [Pa s m^2]
   static constexpr bool drive_depends = false;
 
   PerforatedStripFilm(double mu, double a, double thickness, const Holes& holes) : viscosity(mu), width(a) {

@@ -36,7 +36,7 @@ namespace internal {
 struct StripNodes {
   static constexpr int count = 4;
   Eigen::Matrix<double, count, 1> weights;       ///< weights over both halves, in units of a/2
-  Eigen::Matrix<double, count, count> exchange;  ///< flow into every node by P + P^2/2 of each, for a unit diffusion
+  Eigen::Matrix<double, count, count> exchange;  ///< flow into every node per P + P^2/2 of each node, for unit diffusion
 };
 [[nodiscard]] StripNodes strip_nodes();
 

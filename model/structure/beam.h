@@ -72,7 +72,8 @@ struct Beam {
 struct Cantilever : Beam {
   static constexpr std::string_view name = "cantilever";
 
-  double stress_gradient = 0;  ///< gradient over the thickness: positive curls the free end away from the near electrode [Pa/m]
+  double stress_gradient = 0;  ///< gradient of the stress over the thickness: positive curls the free end away from the near
+                               ///< electrode [Pa/m]
 
   template <class S>
   static consteval auto fields() {
@@ -115,7 +116,7 @@ struct Bridge : Beam {
       "line; a layer needs a cantilever";
 
   double residual_stress = 0;  ///< stress before the beam bends, positive in tension [Pa]
-  bool biaxial = false;        ///< true when residual_stress is that of a film: residual_stress (1 - nu) remains
+  bool biaxial = false;        ///< true for the equal biaxial stress of a film, of which (1 - nu) remains
   bool stretches = true;       ///< true when bending stretches the beam
 
   template <class S>

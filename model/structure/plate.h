@@ -22,7 +22,7 @@ namespace softland {
 
 class RigidPlate {
  public:
-  /// The one mode, normalised: 1 everywhere.
+  /// The single normalised mode of a rigid plate: 1 everywhere.
   struct FlatMode {
     [[nodiscard]] Eigen::VectorXd value(double) const { return Eigen::VectorXd::Ones(1); }
     [[nodiscard]] Eigen::VectorXd slope(double) const { return Eigen::VectorXd::Zero(1); }

@@ -1,5 +1,5 @@
 // The moving part: one of the kinds of structures, with their common properties. A new kind needs its own header
-// (model/structure/kind.h describes the header) and a row here.
+// (model/structure/kind.h describes the header) and an entry in StructureKind.
 #pragma once
 
 #include <concepts>
@@ -49,14 +49,15 @@ struct Structure {
   [[nodiscard]] constexpr const Part* find() const {
     return const_cast<Structure*>(this)->find<Part>();
   }
-  /// Returns the scene's field of the damping ratio, which every kind of structure has.
+  /// Returns the scene-file key of the damping ratio, which every kind of structure has.
   [[nodiscard]] static consteval Field<Structure> damping();
 
   /// Returns true when the structure moves as a rigid body: it has one mode, and all places along it are equal.
   [[nodiscard]] bool is_rigid() const;
   /// Returns true when the far end is held, by a clamp or by a compliant anchor.
   [[nodiscard]] bool has_far_clamp() const;
-  /// Return how the ends are held: as a beam's anchors say, otherwise as the kind of structure says.
+  /// Return the stiffnesses of the supports at the ends: from the anchors of a beam if given, otherwise by the kind of
+  /// structure.
   [[nodiscard]] Anchor near_hold() const;
   [[nodiscard]] Anchor far_hold() const;
   /// Returns true when the size changes along the structure: a beam with sections or layers, or a table of modes with widths.
@@ -64,8 +65,8 @@ struct Structure {
   /// Return the reason why the structure cannot have a piezo layer, or surface skins; empty when it can.
   [[nodiscard]] std::string_view why_no_layer() const;
   [[nodiscard]] std::string_view why_no_skins() const;
-  /// Returns the words, such as "on a plate", that end the message about a number that a scene must give for this kind. Empty
-  /// when a scene always gives all numbers.
+  /// Returns the last words of the message about a number that this kind of structure requires, such as "on a plate". Empty
+  /// when every number has a default.
   [[nodiscard]] std::string_view whose() const;
 };
 
@@ -80,10 +81,10 @@ consteval Field<Structure> Structure::damping() {
           .beyond = "for more give [gas] model = \"linear\" and quality_factor = 1 / (2 damping_ratio)"};
 }
 
-/// The scene's fields of a kind of structure, computed at compile time.
+/// The scene-file keys of a kind of structure, computed at compile time.
 template <class Kind>
 inline constexpr auto structure_fields = Kind::template fields<Structure>();
-/// Returns the scene's fields of the kind that the structure holds.
+/// Returns the scene-file keys of the kind that the structure holds.
 [[nodiscard]] inline std::span<const Field<Structure>> fields_in_force(const Structure& s) {
   return std::visit([]<class Kind>(const Kind&) -> std::span<const Field<Structure>> { return structure_fields<Kind>; }, s.kind);
 }

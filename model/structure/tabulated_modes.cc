@@ -69,7 +69,7 @@ double ModalTable::lowest_rest_offset() const {
 }
 
 bool ModalTable::is_held_at_both_ends() const {
-  constexpr double still = 1e-4;  // share of the largest motion
+  constexpr double still = 1e-4;  // motion that counts as 0, as a share of the largest motion
   return std::all_of(shapes_.begin(), shapes_.end(), [](const std::vector<double>& shape) {
     const auto [low, high] = std::minmax_element(shape.begin(), shape.end());
     return std::abs(shape.back()) <= still * std::max(-*low, *high);

@@ -118,7 +118,7 @@ struct ModalStructure {
   double frequency_factor = 1;         ///< factor of all natural frequencies, over those of the table
   double axial_stiffness = not_given;  ///< force per elongation between the clamps, E A / L of an even beam [N/m]
 
-  /// The scene's keys besides those of the table's file, which config/modal_table.h has.
+  /// The scene-file keys other than those of the file with the table (config/modal_table.h).
   template <class S>
   static consteval auto fields() {
     constexpr std::string_view follows_no_size = "the modes of a file do not follow it; vary structure.frequency_factor";
