@@ -26,7 +26,6 @@ using internal::hint;
 using internal::inline_text;
 
 constexpr std::size_t most_rows = 100'000;
-constexpr std::string_view of_contact = "contact";
 constexpr std::array of_threshold{"threshold", "hysteresis", "closed", "merge"};
 constexpr std::array of_file{"column", "time_column", "interval", "skip", "time_unit", "decimal", "shift", "unit"};
 
@@ -435,35 +434,6 @@ std::vector<std::string> changes_of(const toml::node& node, const std::string& n
 }
 
 }  // namespace
-
-const std::vector<BenchQuantity>& bench_quantities() {
-  static const std::vector<BenchQuantity> all{
-      {.name = "pull_in", .dimension = dimension::voltage},
-      {.name = "release", .dimension = dimension::voltage},
-      {.name = "frequency", .dimension = dimension::frequency, .has_level = true},
-      {.name = "capacitance", .dimension = dimension::capacitance, .has_level = true},
-      {.name = "closing_time", .dimension = dimension::time, .has_level = true, .has_waveform = true},
-      {.name = of_contact,
-       .dimension = dimension::time,
-       .has_level = true,
-       .has_waveform = true,
-       .is_over_time = true,
-       .is_positive = false},
-      {.name = "position",
-       .dimension = dimension::length,
-       .has_level = true,
-       .has_waveform = true,
-       .is_over_time = true,
-       .is_positive = false},
-      {.name = "velocity",
-       .dimension = dimension::velocity,
-       .has_level = true,
-       .has_waveform = true,
-       .is_over_time = true,
-       .is_positive = false},
-  };
-  return all;
-}
 
 ContactTraceKeys contact_trace_keys(const std::vector<std::string>& assignments) {
   std::string written = "[contact]\n";

@@ -53,6 +53,9 @@ struct BenchQuantity {
   bool is_positive = true;    ///< true when the measured values must be above 0
 };
 
+/// Name of the quantity that is a record of the state of the contact.
+inline constexpr std::string_view of_contact = "contact";
+
 struct BenchMeasurement {
   std::string quantity;                 ///< name among bench_quantities()
   std::string drive = {};               ///< name of the drive; empty where it is not given

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 
 #include "base/require.h"
@@ -398,25 +397,6 @@ double drive_energy(const EnsembleClosing& c, const LaneClosing& lane) {
 }
 
 }  // namespace
-
-Vectors vectors_in_use() {
-  constexpr const char* variable = "SOFTLAND_VECTORS";
-  const char* asked = std::getenv(variable);
-  if (asked == nullptr || *asked == '\0') {
-    for (const Vectors widest : {Vectors::avx512, Vectors::avx2})
-      if (has(widest)) return widest;
-    return Vectors::none;
-  }
-  for (const VectorsRow& row : vector_instructions) {
-    if (row.name != asked) continue;
-    require(has(row.value), [&] {
-      return fmt::format("{} = {}: this processor or this build does not have these instructions; choose none or narrower ones",
-                         variable, asked);
-    });
-    return row.value;
-  }
-  throw InvalidInput(fmt::format("{} = {}: must be none, avx2 or avx512", variable, asked));
-}
 
 std::string why_not_in_lanes(const Switch& model) {
   const Device& device = model.device();

@@ -1,4 +1,9 @@
 // The choice of vector instructions in this build; in a file of its own, so that another choice recompiles only this file.
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+#include "base/require.h"
 #include "model/ensemble/ensemble_closings.h"
 #include "model/ensemble/lane_closing.h"
 
@@ -27,6 +32,25 @@ bool has(Vectors vectors) {
 #else
   return false;
 #endif
+}
+
+Vectors vectors_in_use() {
+  constexpr const char* variable = "SOFTLAND_VECTORS";
+  const char* asked = std::getenv(variable);
+  if (asked == nullptr || *asked == '\0') {
+    for (const Vectors widest : {Vectors::avx512, Vectors::avx2})
+      if (has(widest)) return widest;
+    return Vectors::none;
+  }
+  for (const VectorsRow& row : vector_instructions) {
+    if (row.name != asked) continue;
+    require(has(row.value), [&] {
+      return fmt::format("{} = {}: this processor or this build does not have these instructions; choose none or narrower ones",
+                         variable, asked);
+    });
+    return row.value;
+  }
+  throw InvalidInput(fmt::format("{} = {}: must be none, avx2 or avx512", variable, asked));
 }
 
 }  // namespace softland

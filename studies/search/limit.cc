@@ -16,6 +16,7 @@
 #include "studies/closing/auto_settings.h"
 #include "studies/closing/plain_step.h"
 #include "studies/search/first_touch_problem.h"
+#include "studies/search/path_waveforms.h"
 #include "studies/search/search_setting.h"
 
 namespace softland {
@@ -43,71 +44,6 @@ std::vector<double> uniform_knots(int intervals) {
   std::vector<double> knots;
   for (int k = 0; k <= intervals; ++k) knots.push_back(static_cast<double>(k) / intervals);
   return knots;
-}
-
-// Returns the controls as tables of voltage against time, until first contact.
-DriveWaveforms tables_of(const FirstTouchProblem& flight, const ControlledCourse& course) {
-  const double end = course.time * flight.time_unit();
-  std::map<std::string, Table> tables;
-  const auto add = [&](double time, const std::map<std::string, double>& volts) {
-    for (const auto& [name, value] : volts) {
-      Table& table = tables[name];
-      table.time.push_back(time);
-      table.voltage.push_back(value);
-    }
-  };
-  const auto columns = course.controls.cols();
-  const auto at = [&](Index column) { return flight.volts(course.controls.col(column)); };
-  if (flight.ramps()) {
-    for (Index k = 0; k < columns; ++k) add(course.knots[static_cast<std::size_t>(k)] * end, at(k));
-  } else {
-    // Controls that differ by less than the solver's error are one level.
-    constexpr double same = 1e-9;
-    Index level = 0;
-    add(0, at(0));
-    for (Index k = 1; k < columns; ++k) {
-      if ((course.controls.col(k) - course.controls.col(level)).cwiseAbs().maxCoeff() < same) continue;
-      const double time = course.knots[static_cast<std::size_t>(k)] * end;
-      add(time, at(level));
-      add(time, at(k));
-      level = k;
-    }
-    add(end, at(level));
-  }
-  DriveWaveforms waveforms;
-  for (auto& [name, table] : tables) waveforms.emplace(name, std::move(table));
-  return waveforms;
-}
-
-// The waveform after first contact: full pull from `begin` to `end`, then the hold levels.
-struct Catch {
-  double begin = 0, end = 0;  // times after first contact [s]
-};
-
-DriveWaveforms with_catch(const FirstTouchProblem& flight, const LeastTime& found, const Catch& pulled,
-                          const DriveWaveforms& held) {
-  DriveWaveforms caught = found.waveforms;
-  const std::map<std::string, double> pull = flight.volts(flight.pull());
-  const double touch = found.course.time * flight.time_unit();
-  for (auto& [name, waveform] : caught) {
-    auto& table = std::get<Table>(waveform);
-    const auto hold_of = held.find(name);
-    const double hold = hold_of == held.end() ? 0 : signal(hold_of->second).hold_level();
-    const auto pass_to = [&](double time, double volts) {
-      const double begin = std::max(time, table.time.back()), from = table.voltage.back();
-      table.time.insert(table.time.end(), {begin, begin + std::abs(volts - from) / flight.max_slew(name)});
-      table.voltage.insert(table.voltage.end(), {from, volts});
-    };
-    if (pulled.end > pulled.begin) pass_to(touch + pulled.begin, pull.at(name));
-    pass_to(touch + pulled.end, hold);
-  }
-  return caught;
-}
-
-// Returns the signals of all drives: `searched`, for other drives `plain`, else the waveforms of the scene.
-std::vector<Signal> applied(const PreparedScene& prepared, DriveWaveforms searched, const DriveWaveforms& plain) {
-  searched.insert(plain.begin(), plain.end());
-  return prepared.applied(prepared.waveforms(searched));
 }
 
 struct Arrival {
