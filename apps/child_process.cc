@@ -29,7 +29,7 @@ void require_done(int error, const char* what) {
   if (error != 0) throw std::system_error(error, std::generic_category(), what);
 }
 
-// Creates a pipe whose ends are closed in every child process, except where a child gets one as its standard stream.
+// Creates a pipe whose ends are closed in every child process, except for an end that a child gets as its standard stream.
 std::array<int, 2> new_pipe() {
   std::array<int, 2> ends{};
   require_done(::pipe2(ends.data(), O_CLOEXEC) == 0 ? 0 : errno, "a pipe to a command");

@@ -1,4 +1,4 @@
-// A failure has the reason why a run did not succeed, as exit status and message.
+// Maps an exception that ends the program to an exit status and a message.
 #pragma once
 
 #include <exception>

@@ -12,7 +12,7 @@ using RunTold = int (*)(const Common&, const verbs::Arguments&);
 /// Runs a verb that is the same for the command line and Python; returns the exit status.
 [[nodiscard]] int run_study(const verbs::Study& study, const Common& common, const verbs::Arguments& arguments);
 
-/// Declares the options of the verb, and its action: `run` if the study has no computation of its own, otherwise run_study().
+/// Declares the options of the verb, and its action: `run` if the study describes no computation, otherwise run_study().
 /// Keeps a reference to `study`.
 void add_study(Verb& verb, const verbs::Study& study, RunTold run = nullptr);
 

@@ -40,9 +40,9 @@ struct HandLabRequest {
   std::string format = "csv";
   std::optional<ContactTraceKeys> contact = {};  ///< keys for reading recorded voltages of the contact, if there are records
 };
-/// Makes a laboratory of a person. The voltages of each shot are written to FOLDER/shot-N.csv, or to files of another format of
-/// the verb `export` (scene_export.h). The program asks for the observation on standard error until it reads a valid answer.
-/// Keeps a reference to the scene.
+/// Makes a laboratory in which a person applies the voltages and reports what the device did. The voltages of each shot are
+/// written to FOLDER/shot-N.csv, or in another format of the verb `export` (scene_export.h). The program asks for the
+/// observation on standard error until it reads a valid answer. Keeps a reference to the scene.
 [[nodiscard]] std::unique_ptr<TuningLab> hand_lab(HandLabRequest request, const PreparedScene& scene);
 
 /// Reads the times at which a contact closes and opens from a CSV file: a header time_s,closed and a row for each edge, with 1

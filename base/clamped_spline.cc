@@ -79,7 +79,7 @@ double ClampedSpline::integral_of_slopes(const ClampedSpline& other) const {
 }
 
 bool is_hinged(const std::vector<double>& x, const std::vector<double>& y) {
-  // Thick beams have exponents of 1.4 to 1.5: shear gives them a slope at the clamp.
+  // The deflection of thick beams grows with exponents of 1.4 to 1.5 near the clamp, where shear gives them a slope.
   constexpr double near = 0.2, between = 1.2;
   if (x.size() < 4 || !(x[2] < near * x.back()) || !(y[1] * y[2] > 0)) return false;
   return std::log(y[2] / y[1]) / std::log(x[2] / x[1]) < between;

@@ -39,7 +39,7 @@ struct Field {
   bool& (*flag)(Owner&) = nullptr;   ///< flag of the struct
   std::string_view or_word = {};     ///< word that may replace a whole number
   bool required = false;             ///< true when a scene must give this field; an absent field has the value of an Owner{}
-  Range range = positive;            ///< allowed range; in a scene the extent of the unit closes open ends
+  Range range = positive;            ///< allowed range; in a scene, the widest range of the unit bounds open ends
   std::string_view fallback = {};    ///< value of an Owner{} as a scene writes it; empty where an absent field means "none"
   std::string_view instead_of = {};  ///< key of another field of the law that excludes this field
   std::string_view unless = {};      ///< key whose presence makes this field optional
@@ -47,7 +47,7 @@ struct Field {
   std::string_view such_as = {};     ///< example value for messages, where the usual example of the unit does not fit
   std::string_view beyond = {};      ///< advice for a value outside the range; the range then applies to scenes only
   std::string_view why_fixed = {};   ///< reason why process variation cannot vary this field; empty where it can
-  std::string_view if_list = {};     ///< advice for a list in place of the number
+  std::string_view if_list = {};     ///< advice in the message when a scene gives a list instead of the number
   std::vector<std::string_view> (*words)() = nullptr;    ///< words that the field accepts
   void (*choose)(Owner&, std::string_view) = nullptr;    ///< sets the enumerator of a word
   std::string_view refused_word = {}, why_refused = {};  ///< word that users may expect for this field, and why it is refused

@@ -15,7 +15,7 @@ class MonotoneProgress {
  public:
   /// Returns the name to show, and the completed part, 0 to 1.
   [[nodiscard]] std::pair<std::string, double> updated(std::string_view what, double part) {
-    constexpr double begins_again = 0.5;  // largest share of the reported part at which a computation counts as begun again
+    constexpr double begins_again = 0.5;  // a part below this share of the reported part means a new beginning
     Round& round = rounds_[std::string(what)];
     if (part < begins_again * round.part) {
       ++round.number;

@@ -47,7 +47,7 @@ namespace softland {
 struct BenchQuantity {
   std::string_view name;
   Dimension dimension;
-  bool has_level = false;     ///< true when a measurement of this quantity may have a level
+  bool has_level = false;     ///< true when a measurement of this quantity may have a level (a commanded voltage)
   bool has_waveform = false;  ///< true when a measurement of this quantity may have a waveform instead of a level
   bool is_over_time = false;  ///< true for a quantity recorded against time
   bool is_positive = true;    ///< true when the measured values must be above 0

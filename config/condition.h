@@ -20,7 +20,7 @@ struct Condition {
   Figure figure;
   Comparison comparison = Comparison::below;
   double limit = 0;      ///< limit [SI unit of the figure, or a factor on the figure of an actuation by a plain step]
-  std::string text;      ///< the text as given
+  std::string text;      ///< the condition as the user wrote it
   bool of_step = false;  ///< true if the limit is a factor on the figure of an actuation by a plain step: see beside_step()
 
   /// Returns the violation relative to the limit (absolute if the limit is 0); 0 or less if the condition holds. Returns
@@ -41,7 +41,7 @@ struct Condition {
 struct RobustMeasure {
   Risk risk;  ///< statistic of the cost of a closing; with `yield`, over the devices that violate the condition `yield`
   std::optional<Condition> yield;  ///< condition that as many devices as possible shall fulfil
-  std::string text;                ///< the text as given
+  std::string text;                ///< the measure as the user wrote it
 };
 
 /// Reads cvar:LEVEL, quantile:LEVEL, mean+Ksigma, worst, yield:CONDITION, yield (no significant rebound). Throws InvalidInput

@@ -52,7 +52,7 @@ std::pair<double, double> extremes(const std::vector<double>& values, std::size_
 
 // Shifts the times. A row within rounding of t = 0 is set to 0.
 void shift_times(std::vector<double>& times, double shift) {
-  constexpr double rounding = 1e-6;  // share of the mean step
+  constexpr double rounding = 1e-6;  // rounding error of a time, as a share of the mean step
   const double step = (times.back() - times.front()) / static_cast<double>(times.size());
   for (double& time : times) {
     time += shift;
@@ -62,7 +62,7 @@ void shift_times(std::vector<double>& times, double shift) {
 
 // Returns the voltage before t = 0: the mean of the rows before t = 0, which must be constant up to noise.
 double level_before(const SectionReader& in, const Trace& trace, std::size_t count) {
-  constexpr double noise = 0.05;  // share of the range of the record
+  constexpr double noise = 0.05;  // permitted variation before t = 0, as a share of the range of the record
   const auto [least, most] = extremes(trace.values, count);
   const auto [smallest, largest] = extremes(trace.values, trace.values.size());
   if (most - least > noise * (largest - smallest)) {

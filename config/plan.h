@@ -1,4 +1,4 @@
-// The plan of a design-space exploration: a scene, its varied numbers and their values, and the study of every point.
+// The plan of a design-space exploration: a scene, its varied numbers and their values, and the study (a verb) of every point.
 //
 // A plan is identified by its text: the canonical scene, the variables in SI units, the study with all its options. Equal texts
 // give equal points, on any machine and in any part of the plan. A point is a function of its number:
@@ -36,8 +36,8 @@ struct PlanRequest {
   std::string sample = {};                          ///< point set: "sobol:128"; empty for a grid
   std::string pareto = {};                          ///< figures that a search for a Pareto front minimises
   std::vector<std::string> columns = {};            ///< columns of a list: "gap.contact [um]"; empty without a list
-  std::vector<std::vector<double>> rows = {};       ///< rows of a list
-  std::string study = "simulate";                   ///< study of every point
+  std::vector<std::vector<double>> rows = {};       ///< values of a list, by row and column
+  std::string study = "simulate";                   ///< study of every point: the verb that computes the point
   std::map<std::string, std::string> options = {};  ///< options of the study, by name
   std::uint64_t seed = 1;
   Place place = {};
@@ -69,9 +69,9 @@ struct PlanKey {
 struct PlanVariable {
   std::string name;  ///< "structure.length", "electrode.main.span[2]", "gap.electrode*gap.contact"
   std::vector<PlanKey> keys;
-  Dimension dimension = {};                ///< dimension of its values; none for a factor
-  bool is_factor = false;                  ///< true when it multiplies the scene's own numbers
-  bool is_whole = false;                   ///< true for a whole number
+  Dimension dimension = {};                ///< dimension of the values; none for a factor
+  bool is_factor = false;                  ///< true when the variable multiplies the scene's own numbers
+  bool is_whole = false;                   ///< true when the variable takes whole numbers only
   std::vector<std::string> words = {};     ///< words of a choice or a flag; the value is the number of a word, from 1
   std::vector<double> values = {};         ///< values on a grid [SI unit of `dimension`]
   double low = 0, high = 0;                ///< range of a sample [SI unit of `dimension`]
@@ -118,7 +118,7 @@ class Plan {
   std::uint64_t seed_;
   std::string pareto_;
   std::vector<PlanVariable> variables_;
-  std::vector<std::vector<double>> rows_;  // rows of a list [SI unit]
+  std::vector<std::vector<double>> rows_;  // values of a list, by row and variable [SI unit]
   std::optional<PointSet> sample_;         // point set of a sample; also set for a Pareto search, which reads ranges as a sample
   bool is_search_ = false;
   std::uint64_t points_ = 1;

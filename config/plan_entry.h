@@ -82,7 +82,7 @@ class KeyFinder {
     std::optional<Quantity> base = {};  ///< value of the key in the scene
   };
 
-  /// Finds the keys of an entry by its name. Throws InvalidInput with the rule only.
+  /// Finds the keys of an entry by its name. Throws InvalidInput whose message states the broken rule, without the entry.
   [[nodiscard]] Found find(const std::string& name) const {
     Found found{.key = {.path = name}};
     if (const std::size_t bracket = name.rfind('['); bracket != std::string::npos && name.ends_with(']')) {
@@ -239,7 +239,7 @@ class EntryReader {
   }
 
   /// Reads quantities of one of the dimensions that the key may have. If the key has a unit, plain numbers and percentages are
-  /// factors on its value.
+  /// factors on the value that the key has in the scene.
   std::vector<Quantity> read(const std::vector<std::string>& texts) {
     std::vector<Quantity> all;
     bool is_percent = false;

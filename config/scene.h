@@ -89,7 +89,7 @@ class SceneFile {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Values of the units Vsp and Vdp.
+/// The pull-in voltages of an electrode. Scenes may give voltages as multiples of these two: the units Vsp and Vdp.
 struct PullInVoltages {
   double static_pull_in = 0;   ///< Vsp [V]
   double dynamic_pull_in = 0;  ///< Vdp [V]
@@ -110,16 +110,17 @@ inline constexpr std::string_view piezo_drive = "piezo", dispersion_drive = "dis
 /// is the factor on the force minus 1, so that every drive is 0 at rest.
 struct Drive {
   std::string name = {};                    ///< name of the electrode, piezo_drive or dispersion_drive
-  std::optional<Waveform> waveform = {};    ///< waveform; 0 V without one
-  std::optional<double> before = {};        ///< value before t = 0 that the scene gives [V]; 0 V without one
-  bool begins_closed = false;               ///< true when its before_state is closed: see Scene::begins_closed
+  std::optional<Waveform> waveform = {};    ///< waveform; not set: 0 V
+  std::optional<double> before = {};        ///< value before t = 0 that the scene gives [V]; not set: 0 V
+  bool begins_closed = false;               ///< true when the drive's key before_state is closed: see Scene::begins_closed
   std::optional<DriverLimits> limits = {};  ///< none if unlimited; [0, default_limit()] for electrodes whose Vdp is known
-  DriverModel source = {};                  ///< source; ideal if the scene does not describe one; prepare() adds its load
+  DriverModel source = {};                  ///< voltage source; ideal if the scene does not describe it; prepare() adds the
+                                            ///< load of the source
   std::optional<double> amplifier =
       {};                    ///< gain: volts at the switch per volt of the source; all other voltages are those at the switch
   SourceErrors errors = {};  ///< gain, offset and delay of the source
 
-  [[nodiscard]] double hold_level() const;                                  ///< [V]
+  [[nodiscard]] double hold_level() const;                                  ///< level that the waveform keeps at its end [V]
   [[nodiscard]] double value_before() const { return before.value_or(0); }  ///< value before t = 0 [V]
 };
 
@@ -148,7 +149,7 @@ class Drives {
   [[nodiscard]] std::size_t place(std::string_view name) const;
   /// Returns the drives of these names, in the order of the names. Throws InvalidInput if the switch lacks one of the drives.
   [[nodiscard]] Drives of(const std::vector<std::string>& names) const;
-  /// Returns the waveforms of the drives that have one, by name of the drive.
+  /// Returns the waveforms by name of the drive; a drive without a waveform is left out.
   [[nodiscard]] DriveWaveforms waveforms() const;
   /// Returns the values before t = 0 that the scene gives, by name of the drive [V].
   [[nodiscard]] std::map<std::string, double> before() const;
@@ -159,11 +160,11 @@ class Drives {
 
 struct SimulateOptions {
   double duration = 0;     ///< simulated time [s]; 0: chosen (six periods of the first mode, or four closings by a step)
-  double accuracy = 1e-6;  ///< target relative error of t_i, v_i and B_H
+  double accuracy = 1e-6;  ///< target relative error of initial contact time, impact velocity and highest rebound
   double tolerance = 0;    ///< relative tolerance of the integrator; 0: derived from accuracy
   double open_at = std::numeric_limits<double>::quiet_NaN();  ///< time of the command to open [s]; NaN: derived from the drives
   bool automatic_effects = false;   ///< true to leave out effects that change no figure by more than effects_tolerance
-  double effects_tolerance = 1e-3;  ///< relative tolerance of t_i, v_i and B_H
+  double effects_tolerance = 1e-3;  ///< relative tolerance of initial contact time, impact velocity and highest rebound
 };
 
 /// The per-device calibration: figures measured on every device before actuation. The waveform is scaled by the figures of the
@@ -202,7 +203,7 @@ struct Scene {
   std::string title;
   Device device;
   SimulateOptions simulate;
-  /// True for modes = "auto": `device` has the default number of modes until studies/closing/auto_modes.h chooses it.
+  /// True for modes = "auto": `device` has a default number of modes until studies/closing/auto_modes.h chooses the number.
   bool auto_modes = false;
   MetricsOptions metrics;
   DeviceSpread spread;

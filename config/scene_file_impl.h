@@ -23,7 +23,7 @@ inline constexpr std::size_t deepest_path = 16;
 
 /// Returns a path of keys as text, parts quoted where TOML needs it: spread."structure.thickness".
 [[nodiscard]] std::string join_path(const std::string& path, std::string_view key);
-/// Splits the text of a path of keys into its parts. Throws InvalidInput with the rule only.
+/// Splits the text of a path of keys into its parts. Throws InvalidInput whose message states only the broken rule.
 [[nodiscard]] std::vector<std::string> split_path(std::string_view path);
 /// Splits "electrode.main.span[2]" into its path and 2. A name without a final number in brackets is returned as it is. Parts
 /// of the path may be elements of lists of tables: structure.sections[2].width.

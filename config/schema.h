@@ -50,7 +50,7 @@ struct Key {
   std::size_t count = 0;    ///< quantities: number of list elements; 0 for any number
   bool any_word = false;    ///< integer: true if any text may replace the number
   bool may_be_one = false;  ///< quantities: true if a single quantity may replace the list
-  bool is_nested = false;   ///< quantities: true if it may be a list of lists, which are read in sequence
+  bool is_nested = false;   ///< quantities: true if the value may be a list of lists, which are read in sequence
   std::vector<std::string_view> choices = {};
   /// Words that may replace an integer, a quantity, or an element of quantities.
   std::vector<std::string_view> words = {};
@@ -101,7 +101,7 @@ struct Section {
   std::string_view beside = {};  ///< key in [name] beside the sections [name.NAME]; separate code reads this key
   bool required = false;
   bool always_in_force = false;    ///< true if the defaults apply even without the section
-  bool may_vary = false;           ///< true when [spread] may name its numbers
+  bool may_vary = false;           ///< true when [spread] may vary numbers of this section
   std::string_view selector = {};  ///< key whose value decides which other keys the section has
   std::vector<Key> keys = {};
   std::string_view about = {};
@@ -112,7 +112,8 @@ struct Section {
   /// Checks rules between several keys, after all keys are set. Throws InvalidInput.
   void (*check)(Scene& scene, const SectionReader& in, std::size_t entry) = nullptr;
 
-  /// Returns a key by its name, or null. Of several keys of that name, the one for `choice` of the selector is returned.
+  /// Returns a key by its name, or null. If several keys have this name, returns the one that exists for `choice` of the
+  /// selector.
   [[nodiscard]] const Key* find(std::string_view key, std::string_view choice = {}) const;
 };
 

@@ -28,7 +28,7 @@ class SectionReader {
   /// or range. Keys that are not given take their defaults. `file` must outlive the reader.
   explicit SectionReader(const SceneFile::Impl& file, std::string_view section, std::string_view name = {});
 
-  /// Returns the tables of a key: one for a `table`, none if a word replaces it, all for `tables`.
+  /// Returns the tables in the value of a key: one for the type `table`, none if a word replaces the table, all for `tables`.
   [[nodiscard]] std::vector<SectionReader> parts(std::string_view key) const;
   /// Returns the table that holds the last key of a path below this section, such as {"sections[2]", "holes", "pitch"}, and the
   /// number of the table in its list; none if there is no such table.

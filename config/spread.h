@@ -1,5 +1,5 @@
-// Process variation: how manufactured devices differ from the nominal design. It gives the varied numbers of a scene, their
-// distributions, and their correlations.
+// Process variation: how manufactured devices differ from the nominal design. The section [spread] lists the varied numbers of
+// a scene, their distributions, and their correlations.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,7 +25,7 @@ enum class DriveError {
   gain,    ///< gain of the source, nominally 1
   offset,  ///< offset from t = 0 on [V]
   delay,   ///< delay of the whole waveform [s]
-  jitter,  ///< delay of every edge on its own [s]
+  jitter,  ///< random delay of every single edge [s]
 };
 
 struct VariedDrive {
@@ -38,7 +38,7 @@ struct VariedKey {
   std::string path;            ///< path of the key: "structure.thickness", "driver.main.gain"
   std::size_t element = 0;     ///< element of a list that varies, counted from 1; 0 for a key without a list
   std::string unit;            ///< SI unit
-  double nominal = 0;          ///< the scene's value
+  double nominal = 0;          ///< value of the key in the scene
   Dimension measured_in = {};  ///< dimension of the varied values, one of those that the key may have
   double weight = 1;           ///< weight of an amount that is added to the value
   /// Returns the number in a scene that the key sets. Null if the key does not set a single number; the scene must then be read
@@ -71,7 +71,7 @@ struct SpreadVariable {
 struct DeviceSpread {
   std::vector<SpreadVariable> variables;  ///< varied quantities, by name
   Eigen::MatrixXd correlation;            ///< correlation matrix of the normal variables of the copula, variables x variables
-  std::optional<GaussianCopula> copula;   ///< none where all variables are independent
+  std::optional<GaussianCopula> copula;   ///< copula of the variables; none where all are independent
 
   [[nodiscard]] bool empty() const { return variables.empty(); }
   /// True when errors of drives are among the variables.

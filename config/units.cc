@@ -18,7 +18,7 @@ namespace {
 struct Symbol {
   std::string_view name;
   Dimension dimension;
-  int exponent = 0;  ///< power of ten to SI
+  int exponent = 0;  ///< power of ten that converts the unit to SI
   bool takes_prefix = false;
   double factor = 1;  ///< factor that is not a power of ten
 };

@@ -49,7 +49,7 @@ struct Mark {
 };
 
 struct Chart {
-  std::string id;  ///< letters, digits and dashes only
+  std::string id;  ///< identifier: letters, digits and dashes only
   std::string title;
   std::string caption;
   std::string x_column;
@@ -69,7 +69,7 @@ struct Chart {
   int height = 300;              ///< height of the chart [px]
   std::vector<Series> series;
   std::vector<Mark> marks;
-  std::vector<Band> bands = {};  ///< drawn below the curves, on static pictures alone
+  std::vector<Band> bands = {};  ///< bands are drawn below the curves, and in static pictures only
   /// true: each series is a horizontal bar, one below the other: solid where its value is 1, pale where it is between 0 and 1.
   bool is_of_bars = false;
 };

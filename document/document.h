@@ -21,7 +21,7 @@ struct TableCell {
   std::string text;
   std::string style = {};                                   ///< class in the CSS of the page; may be empty
   std::size_t columns = 1;                                  ///< number of columns that the cell spans
-  std::string html = {};                                    ///< replaces the text on a page
+  std::string html = {};                                    ///< HTML that replaces the text on a page; empty: the text
   TableCell(std::string words) : text(std::move(words)) {}  // NOLINT(google-explicit-constructor): a cell is its text
   TableCell(const char* words) : text(words) {}             // NOLINT(google-explicit-constructor)
   TableCell(std::string_view words) : text(words) {}        // NOLINT(google-explicit-constructor)

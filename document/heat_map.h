@@ -13,7 +13,7 @@ namespace softland::internal {
 struct HeatMapAxis {
   std::string label;
   std::string unit;            ///< unit; empty: a number without unit
-  std::vector<double> values;  ///< ascending, at least one
+  std::vector<double> values;  ///< values of the variable, ascending, at least one
 };
 
 struct HeatMap {
@@ -23,7 +23,7 @@ struct HeatMap {
   std::vector<double> values;  ///< value of cell (i, j) at j * x.values.size() + i; NaN: no value
   /// Reason why a cell has no value, as an index into `reasons`; ignored where the cell has a value.
   std::vector<std::size_t> missing;
-  std::vector<std::string> reasons;  ///< "no contact", "not computed"
+  std::vector<std::string> reasons;  ///< texts of the reasons: "no contact", "not computed"
 };
 
 /// Returns the map with every n-th column and every m-th row, at most `most_cells` cells; the labels of the axes say so.

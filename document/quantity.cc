@@ -21,7 +21,7 @@ constexpr double beyond_prefixes = 1e15;
 constexpr const char* no_break_space = "\u00a0";
 constexpr const char* none = "—";
 constexpr double most_times = 1000;
-constexpr double most_percent = 10;  // ratio of a thousand per cent
+constexpr double most_percent = 10;  // ratio 10, which is a thousand per cent: larger ratios are factors
 
 /// Returns the decimal exponent of the first digit of a value that is not 0; for an infinite value, the exponent of the largest
 /// double.

@@ -13,7 +13,7 @@ namespace softland::internal {
 /// An SI prefix: value = shown number * factor.
 struct Prefix {
   double factor = 1;
-  std::string_view symbol;  ///< "n", "µ", "" ...
+  std::string_view symbol;  ///< symbol of the prefix: "n", "µ", "" ...
 };
 
 /// Returns the prefix with which `largest` (in absolute value) has one to three digits before the decimal point; no prefix for

@@ -154,7 +154,7 @@ std::vector<double> PythonWaveform::breakpoints(std::span<const double> x) const
 
 double PythonWaveform::voltage(double time, std::span<const double> x) const {
   const auto known = course(x);
-  if (known->arcs.empty()) {  // constant
+  if (known->arcs.empty()) {  // no breakpoints: the waveform is constant
     const py::gil_scoped_acquire held;
     return called({time}, x)[0];
   }

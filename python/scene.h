@@ -21,7 +21,7 @@ namespace softland::python {
 struct PyScene {
   SceneFile file;
   std::filesystem::path directory;                                ///< folder to which relative paths in the scene refer
-  std::shared_ptr<const PreparedScene> plain = {}, limited = {};  ///< prepare_and_choose() without and with default limits
+  std::shared_ptr<const PreparedScene> plain = {}, limited = {};  ///< prepared scene without and with default voltage limits
 
   /// Returns the prepared scene; the first call prepares the scene.
   [[nodiscard]] std::shared_ptr<const PreparedScene> ready(bool default_limits, InterruptibleRun& run);

@@ -43,7 +43,7 @@ void members(A& a, AccuracyRow& row) {
 
 namespace {
 
-// The error of the reference is only its own uncertainty.
+// In JSON, the errors of the reference are named "resolution": they are the uncertainty of the reference.
 json reference_json(const AccuracyStudy& study) {
   json reference = internal::record_json(study.reference);
   reference["resolution"] = reference["relative_errors"];

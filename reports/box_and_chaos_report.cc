@@ -101,7 +101,8 @@ std::string chaos_prose(const BoxAndChaosRecord& ways) {
   return words;
 }
 
-// Makes the record of a device at the worst point of the box, with the varying quantities as in robustness_report.h.
+// Makes the record of a device at the worst point in the box of varied quantities, with the varying quantities as in
+// robustness_report.h.
 BoxAndChaosRecord::InBox in_box(const BoxDevice& device, const PreparedScene& nominal) {
   BoxAndChaosRecord::InBox record{.figure = device.figure,
                                   .values = {},

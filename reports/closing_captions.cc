@@ -301,7 +301,7 @@ std::string search_caption(const ClosingRecord& result, const SearchRecord& sear
     if (!std::isfinite(first)) first = value;
     if (value >= last) continue;
     last = value;
-    // The winner may not have the lowest cost: a waveform that meets the goal is preferred.
+    // The best waveform may not have the lowest cost: a waveform that meets the goal is preferred.
     if (!(last < own)) found_at = index;
   }
   std::string words = capitalised(name) + " of every waveform tried (dots) and of the best so far (line)";

@@ -9,8 +9,9 @@
 
 namespace softland::internal {
 
-/// The result in one sentence, in two parts of different weight on a page. The part `main` is about the winner or the single
-/// run; `rest` is about the baseline (empty for a single run). main + rest is the complete sentence with its full stop.
+/// The result in one sentence, in two parts of different weight on a page. The part `main` is about the best waveform or the
+/// single run; `rest` is about the plain step (empty for a single run). main + rest is the complete sentence with its full
+/// stop.
 struct Headline {
   std::string main;
   std::string rest;
@@ -38,15 +39,15 @@ struct Headline {
 [[nodiscard]] std::string families_caption(const SearchRecord& search);
 /// States the result of a search under process variation; empty for any other search.
 [[nodiscard]] std::string robust_caption(const ClosingRecord& result);
-/// Compares the winner with the least closing time of any waveform; empty if that time is unknown.
+/// Compares the best waveform with the least closing time of any waveform; empty if that least time is unknown.
 [[nodiscard]] std::string limit_prose(const ClosingRecord& result);
-/// Returns false if the winner is bounce-free but bounces in a confirmation with another integrator tolerance or number of
-/// modes.
+/// Returns false if the best waveform closes without a bounce in the search, but bounces in a confirmation with another
+/// integrator tolerance or number of modes.
 [[nodiscard]] bool checks_agree(const ClosingRecord& result);
-/// Returns true if the winner closes without a bounce in all confirmations.
+/// Returns true if the best waveform closes without a bounce in all confirmations.
 [[nodiscard]] bool all_checks_land(const SearchRecord& search);
-/// Returns the worst closing: a switch that stays open, then the highest rebound, then the highest impact velocity. Returns
-/// null without confirmations.
+/// Returns the worst confirmation: one in which the switch stays open, then that of the highest rebound, then that of the
+/// highest impact velocity. Returns null without confirmations.
 [[nodiscard]] const ConfirmationRecord* worst_check(const std::vector<ConfirmationRecord>& checks);
 /// Returns the key of the figure by which this confirmation is the worst.
 [[nodiscard]] std::string_view worst_figure(const ConfirmationRecord& check);

@@ -17,7 +17,7 @@
 namespace softland::internal {
 namespace {
 
-// A run of a record: name of its table of curves, and role in charts.
+// A run of a record: the name of the table with its curves, and the role of the curves in charts.
 struct Drawn {
   const char* name;
   Role role;
@@ -99,8 +99,8 @@ std::vector<Mark> rebound_marks(const ClosingRecord& result) {
   return marks;
 }
 
-/// Returns the end of the time range to enlarge: it covers the winner's landing, the changes of its drives, and the baseline's
-/// highest rebound.
+/// Returns the end of the time range to enlarge: it covers the landing and the changes of the drives under the best waveform,
+/// and the highest rebound under the plain step.
 double landing_end(const ClosingRecord& result, const CurveTables& tables, double window) {
   double end = std::numeric_limits<double>::quiet_NaN();
   const auto cover = [&](double time) {
@@ -147,7 +147,7 @@ double largest(const CurveTables& tables, const char* name) {
 }
 
 /// Returns the range of gaps around the contact plane to enlarge [m]: below the plane, the deepest indentation before `end`;
-/// above the plane, the winner's rebounds or twice that depth. Not set if no run touches.
+/// above the plane, the rebounds under the best waveform or twice that depth. Not set if no run touches.
 std::optional<std::array<double, 2>> plane_band(const ClosingRecord& result, const CurveTables& tables, double end) {
   double lowest = 0;
   for (const Drawn& drawn : runs) {
@@ -198,7 +198,7 @@ class TimeCharts {
     gap.height = 320;
     add_series(gap, "", "tip_gap_m");
     Chart near = gap;
-    constexpr double readable = 0.05;  // least share of the gap: labels do not fit above lower rebounds
+    constexpr double readable = 0.05;  // least share of the gap: labels need this height
     for (Mark& mark : gap.marks) {
       if (mark.y < readable * largest(out_.tables, "tip_gap_m")) mark.text.clear();
     }

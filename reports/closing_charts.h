@@ -9,8 +9,8 @@
 
 namespace softland {
 
-/// Returns a static SVG document, 900 px wide: the result in words, the gap against time of baseline and winner (the whole
-/// closing, and the landing enlarged), and the drive waveforms below. Parts that the record lacks are left out.
+/// Returns a static SVG document, 900 px wide: the result in words, the gap against time under the plain step and under the
+/// best waveform (the whole closing, and the landing enlarged), and the drive waveforms below. Parts without data are left out.
 [[nodiscard]] std::string svg_gap_chart(const ClosingRecord& result);
 /// Returns the charts of svg_gap_chart().
 [[nodiscard]] internal::Picture gap_and_drives(const ClosingRecord& result);

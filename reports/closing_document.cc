@@ -215,7 +215,7 @@ std::string drawn_switch(const ClosingRecord& result) {
 
 ReportSection checks_section(const ClosingRecord& result) {
   ReportSection section{.id = "checks", .heading = "Confirmation by re-runs", .parts = {}};
-  // A terminal does not show the confirmations of a winner that bounces: there is nothing to confirm.
+  // A terminal shows no confirmations of a best waveform that bounces: there is nothing to confirm.
   if (figure_of_run(result.best, &Metrics::bounce_count) != 0) section.shown = ShownIn::page;
   if (!result.search || result.search->checks.empty()) return section;
   ReportTable table{.head = {"Simulated with"}, .rows = {}};
@@ -268,7 +268,7 @@ TableCell searched_cell(const ClosingRecord& result, const std::string& paramete
   if (box == result.search->bounds.end()) return "";
   const auto [low, high] = box->second;
   const double value = result.search->parameters.at(parameter);
-  constexpr double near = 0.01;  // share of the searched range
+  constexpr double near = 0.01;  // largest distance of a value "at" a bound, as a share of the searched range
   const char* bound = value - low <= near * (high - low)    ? "at its lower bound"
                       : high - value <= near * (high - low) ? "at its upper bound"
                                                             : "";

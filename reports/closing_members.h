@@ -24,7 +24,7 @@ inline bool figure_of_contact(const Figure& figure) {
 }
 inline bool figure_of_number(const Figure& figure) { return !figure.is_yes_or_no(); }
 
-// In JSON, the status stands among the figures.
+// In JSON, the status is a member of the object that holds the figures.
 template <class A, class Asked>
 void figures_and_status(A& a, FigureValues& figures, std::string& status, const Asked& asked) {
   a.object("metrics", [&](auto& metrics) {
@@ -69,7 +69,7 @@ void figure_errors(A& a, FigureValues& errors) {
 [[nodiscard]] nlohmann::json voltages_json(const std::map<std::string, ByModes>& of_electrodes);
 [[nodiscard]] std::map<std::string, ByModes> read_voltages(const nlohmann::json& of_electrodes);
 [[nodiscard]] HoldWindows read_windows(const nlohmann::json& windows);
-/// Writes each choice with the quantiles of its row.
+/// Writes each choice of a waveform with the quantiles of its row in the table of results.
 [[nodiscard]] nlohmann::json choices_json(const DevicesFindings& devices);
 /// Writes the outcome of the searches with several seeds together.
 [[nodiscard]] nlohmann::json seeds_summary(const SeedsFindings& seeds);
@@ -378,7 +378,7 @@ void members(A& a, SeedsFindings& seeds) {
   }
 }
 
-/// The members of a search stand at the same level of the JSON as the members of the closing that the search found.
+/// The members of a search are at the same level of the JSON as the members of the closing that the search found.
 template <class A>
 void members_of_search(A& a, SearchRecord& search, ClosingRecord& closing) {
   a("target", search.target);

@@ -11,13 +11,13 @@ namespace softland::internal {
 
 [[nodiscard]] bool touches(const FigureValues& figures);
 [[nodiscard]] bool settles(const FigureValues& figures);
-/// Returns true if a run touched but nothing later is known: the scene has no contact, or the run stopped.
+/// Returns true if a run reaches the contact plane but gives no later figures: the scene has no contact, or the run stopped.
 [[nodiscard]] bool ends_at_touch(const FigureValues& figures);
 /// Returns true if one contact of several has touched, but the contacts that make the connection were never closed together.
 [[nodiscard]] bool touches_in_part(const RunRecord& run);
 /// Returns true if a run began closed: the run was complete, but without a first touch.
 [[nodiscard]] bool began_closed(const RunRecord& run);
-/// Returns true for a run that touched and settled without a significant rebound.
+/// Returns true for a run in which the switch touches its contact and settles without a significant rebound.
 [[nodiscard]] bool is_clean(const FigureValues& figures);
 /// Returns the height of the highest rebound [m]; 0 if the rebound is too low to be significant.
 [[nodiscard]] double rebound_height(const FigureValues& figures);
@@ -31,8 +31,8 @@ struct Actor {
 };
 /// Describes how a run closes, as a clause without full stop; `window` is the simulated time [s].
 [[nodiscard]] std::string closing_clause(const Actor& actor, const RunRecord& run, double window);
-/// Describes how a run touches and what follows, as a clause about `subject`, such as "with the plain step the switch"; empty
-/// if the run has no figures.
+/// Describes how the switch touches its contact in a run, and what follows, as a clause about `subject`, such as "with the
+/// plain step the switch"; empty if the run has no figures.
 [[nodiscard]] std::string landing_clause(const std::string& subject, const RunRecord& run);
 
 inline constexpr const char* own_subject = "softland's waveform";

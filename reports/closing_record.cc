@@ -249,7 +249,7 @@ ClosingRecord record_of(const OptimizeResult& found, const OptimizeOptions& opti
   s.baseline.cost = found.baseline_cost;
   s.course.value_name = "cost";
   for (const Evaluation& e : found.search.improvements) s.course.best_so_far.push_back({static_cast<double>(e.index), e.value});
-  // All closings have the warnings of the scene: take them from one closing.
+  // All closings have the warnings of the scene: add these warnings from one closing only.
   r.warnings = found.best ? found.best->warnings : found.baseline.warnings;
   if (!found.best) return r;
   r.best = run(*found.best_scene, *found.best, metrics_options);

@@ -1,5 +1,5 @@
-// The record of a closing by `simulate`, or of a search by `optimize` with the closing that it found. Every output is made from
-// the record, JSON too. record_of() makes it, and read_closing() reads it again from JSON. A member that is not available is
+// The record of a closing by `simulate`, or of a search by `optimize` with the closing that it found. Every output, also JSON,
+// is made from the record. record_of() makes the record; read_closing() reads it from JSON. A member that is not available is
 // NaN, empty or not set.
 #pragma once
 
@@ -33,25 +33,26 @@ struct EffectsLeftOut {
 };
 
 struct PullInOfElectrode {
-  double static_pull_in = Metrics::unset, dynamic_pull_in = Metrics::unset;  ///< voltages [V]
+  double static_pull_in = Metrics::unset, dynamic_pull_in = Metrics::unset;  ///< pull-in voltages [V]
   std::optional<ByModes> static_by_modes = {};  ///< static pull-in; none if there are no more modes than in the scene
 };
 
 struct ClosingRecord {
   Origin origin;  ///< origin with the kind "simulate" or "optimize"
   std::string status, message, title;
-  RunRecord best;                                  ///< the single run, or the winner of the search
-  std::map<std::string, ContactFigures> contacts;  ///< by name, if there are several; `best` has the figures of the connection
+  RunRecord best;                                  ///< the single run, or the run under the best waveform of a search
+  std::map<std::string, ContactFigures> contacts;  ///< figures by contact, if there are several; `best` has the figures of the
+                                                   ///< connection
   std::optional<Certificate> certificate;
   std::optional<ClosedState> closed_state;           ///< closed state under the hold levels; none without a contact
-  std::map<std::string, PullInOfElectrode> pull_in;  ///< voltages by electrode
+  std::map<std::string, PullInOfElectrode> pull_in;  ///< pull-in voltages by electrode
   std::vector<double> natural_frequencies;           ///< natural angular frequencies [rad/s]
   std::optional<Work> work;                          ///< numerical work of the shown run
   std::vector<std::string> warnings;
   DrawnScene scene;
   std::optional<EffectsLeftOut> effects;
   double tolerance = Metrics::unset;   ///< tolerance of the integrator in the shown run
-  std::optional<SearchRecord> search;  ///< none for a single run
+  std::optional<SearchRecord> search;  ///< the search that found the run; none for a single run
 
   /// Returns the run under the plain step, for a search; an empty run otherwise.
   [[nodiscard]] const RunRecord& baseline() const;
@@ -85,7 +86,7 @@ struct ClosingRecord {
 /// Makes the record of a search under process variation.
 [[nodiscard]] ClosingRecord record_of(const RobustResult& found, const OptimizeOptions& options, const std::string& command);
 
-/// Makes the record of a search over devices, with the waveform that wins.
+/// Makes the record of a search over devices, with the best waveform of the search.
 [[nodiscard]] ClosingRecord record_of(const RobustSearchResult& found, const OptimizeOptions& options, std::string next_command,
                                       const std::string& command);
 

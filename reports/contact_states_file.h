@@ -1,7 +1,7 @@
 // Writes the states of contacts for simulators of circuits and firmware: CSV, value change dump (VCD), or sources of SPICE
 // (PWL).
 //
-// A channel is named "closed"; "left_closed" for one of several contacts, "device_12_closed" for a device. The channel is 1
+// A channel is named "closed"; "left_closed" for one of several contacts, "device_12_closed" for a device. A channel is 1
 // while the contact is closed, 0 while it is open. The resistance of the contact, if known, is the channel "resistance_ohm".
 //
 // CSV: two rows of the same time are a jump. The resistance is linear between rows, and empty while the contact is open.

@@ -21,20 +21,21 @@ struct CycleRecord {
   /// Largest steady cycle rates under process variation, and the share of devices that are steady at the reported rate.
   struct Devices {
     std::uint64_t count = 0;
-    double at_5 = Metrics::unset, at_50 = Metrics::unset, at_95 = Metrics::unset;  ///< percentiles [Hz]
+    double at_5 = Metrics::unset, at_50 = Metrics::unset, at_95 = Metrics::unset;  ///< percentiles of the largest rate over the
+                                                                                   ///< devices [Hz]
     double steady = Metrics::unset;
   };
   struct Course {
-    std::vector<double> time, gap;                     ///< time [s] and gap [m]
+    std::vector<double> time, gap;                     ///< time [s], and gap of the contact [m]
     std::optional<std::vector<ClosedStretch>> closed;  ///< times in which the contact touches
   };
   struct Cycle {
     Metrics metrics;                  ///< figures of the cycle, see CycleFigures
-    double on_time = Metrics::unset;  ///< CycleFigures::on_time [s]
+    double on_time = Metrics::unset;  ///< time in which the switch is electrically closed in the cycle [s]
   };
   struct Drive {
     std::string name;
-    double largest = Metrics::unset;                ///< largest steady rate [Hz]
+    double largest = Metrics::unset;                ///< largest rate at which the cycles are steady [Hz]
     std::vector<std::array<double, 2>> windows;     ///< ranges above `largest` in which cycles are steady again [Hz]
     std::vector<double> steady_rates, other_rates;  ///< rates of the scan with steady cycles, and with others [Hz]
     std::optional<Devices> devices;
@@ -54,11 +55,11 @@ struct CycleRecord {
   double rate = Metrics::unset, duty = Metrics::unset;  ///< rate [Hz]; duty [1]
   std::uint64_t cycles = 0, seed = 1;
   double contact_gap = Metrics::unset;  ///< rest gap of the contact [m]
-  std::vector<Drive> drives;            ///< pairs of waveforms; the plain one comes first
-  std::optional<Search> search;         ///< none if the waveforms were given
+  std::vector<Drive> drives;            ///< results by pair of a closing and an opening waveform; plain steps come first
+  std::optional<Search> search;         ///< search for the waveforms; none if the waveforms were given
   std::vector<std::string> warnings;    ///< warnings of the scene
 
-  std::map<std::string, Course> curves;  ///< gap over time by name of Drive; only files have it
+  std::map<std::string, Course> curves;  ///< gap over time by name of Drive; only in files
 };
 [[nodiscard]] CycleRecord record_of(const PreparedScene& given, const Cycling& cycling, const std::string& command);
 [[nodiscard]] CycleRecord record_of(const CycleSearchResult& found, const CycleSearchOptions& options,

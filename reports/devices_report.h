@@ -18,7 +18,7 @@ namespace internal {
 /// Describes in a sentence how the devices close with the waveform of best.toml.
 [[nodiscard]] std::string devices_headline(const ClosingRecord& result);
 /// Returns the key numbers at the top of a page: shares and 95th percentiles of the devices, under the plain step and under the
-/// winner.
+/// best waveform.
 [[nodiscard]] std::vector<KeyNumber> devices_keys(const DevicesFindings& devices);
 /// Returns a section for a terminal: the choices of waveforms beside the plain step, the gain by per-device calibration, and
 /// the nominal design.

@@ -21,10 +21,10 @@ struct DriveLimits {
 
 /// A kind of structure for a drawing from the side.
 enum class SideOfStructure {
-  unknown,            ///< shape unknown
-  held_at_one_end,    ///< a beam
-  held_at_both_ends,  ///< a beam
-  on_springs,         ///< a plate
+  unknown,            ///< a structure of unknown shape
+  held_at_one_end,    ///< a beam clamped at one end
+  held_at_both_ends,  ///< a beam clamped at both ends
+  on_springs,         ///< a rigid plate on springs
 };
 /// Returns the kind of a structure with this name in scenes.
 [[nodiscard]] SideOfStructure side_of_structure(std::string_view kind);
@@ -49,8 +49,8 @@ struct DrawnScene {
   };
   struct Waveform {
     std::string family;
-    std::vector<double> times;                                                   ///< [s]
-    double edge = Metrics::unset, start = Metrics::unset, end = Metrics::unset;  ///< [s]
+    std::vector<double> times;                                                   ///< times of the waveform [s]
+    double edge = Metrics::unset, start = Metrics::unset, end = Metrics::unset;  ///< duration of its edges, start and end [s]
   };
 
   SideOfStructure structure = SideOfStructure::unknown;

@@ -339,7 +339,7 @@ std::vector<EffectBin> effect_of(const ExplorationReport& report, std::size_t va
       pairs.emplace_back(point.values[variable], point.values[figure]);
   }
   std::sort(pairs.begin(), pairs.end());
-  // Points with equal values stay in one group.
+  // Points with equal values belong to one group.
   std::vector<std::pair<std::size_t, std::size_t>> groups;
   for (std::size_t begin = 0; begin < pairs.size();) {
     std::size_t end = begin;

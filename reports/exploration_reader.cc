@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t most_waveforms = 400;  // largest number of waveforms of a front
+constexpr std::size_t most_waveforms = 400;  // largest number of waveforms of a Pareto front
 
 Plan plan_of(const StudyReader& store) { return Plan(exploration_in(store)); }
 

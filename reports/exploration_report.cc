@@ -31,7 +31,7 @@ using internal::explored_text;
 using internal::json_number;
 using nlohmann::json;
 
-constexpr std::size_t most_front_rows = 40;  // largest number of rows of the table of the front
+constexpr std::size_t most_front_rows = 40;  // largest number of rows of the table of the Pareto front
 
 /// Returns the factor that makes an aim one to minimise: -1 for an aim to maximise.
 double sign_of(const ExploredAim& aim) { return aim.is_largest ? -1 : 1; }

@@ -11,8 +11,8 @@ namespace softland::internal {
 
 enum class Verdict { better, worse, same, neutral };
 
-/// The change of a figure from baseline to winner: "8.4 times lower" (a time: shorter, a count: fewer), "none left" when the
-/// figure became 0, "unchanged"; empty when either value is missing.
+/// The change of a figure from the plain step to the best waveform: "8.4 times lower" (a time: shorter, a count: fewer), "none
+/// left" when the figure became 0, "unchanged"; empty when either value is missing.
 struct Change {
   std::string words;
   Verdict verdict = Verdict::neutral;

@@ -45,7 +45,7 @@ std::string nominal_text(const FittedUnknown& u) {
 }
 
 std::string fitted_error_text(const FittedUnknown& u) {
-  constexpr double nothing = 100;  // least standard error of an unknown value, in scales
+  constexpr double nothing = 100;  // least standard error, in scales of the unknown, of a value that is not known
   if (!(u.standard_error < nothing * u.scale)) return "not known";
   if (u.unit.empty()) return plain_number(100 * u.standard_error, 2) + "\u00a0%";
   const std::string share =

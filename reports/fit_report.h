@@ -24,7 +24,7 @@ struct FitRecord {
   };
   Origin origin;
   std::string status;
-  std::vector<std::string> doubts;  ///< Fit::doubts
+  std::vector<std::string> doubts;  ///< reasons to doubt the fit, see Fit::doubts
   std::string title;
   std::vector<FittedUnknown> unknowns;
   Matrix correlation;
@@ -33,7 +33,8 @@ struct FitRecord {
   std::size_t minima = 0, starts = 0, converged = 0;
   std::vector<FitResidual> residuals;
   std::vector<FittedTrace> traces;
-  double chi_squared = Metrics::unset, chi_squared_before = Metrics::unset;  ///< NaN if the fit failed
+  double chi_squared = Metrics::unset, chi_squared_before = Metrics::unset;  ///< after and before the fit; NaN if the fit
+                                                                             ///< failed
   /// Sentences on the residuals as a whole, data that contradict each other, indistinguishable unknowns, and minima.
   std::vector<std::string> words;
   bool spread_assumed = false;

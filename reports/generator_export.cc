@@ -30,8 +30,8 @@ std::string clause(const PreparedScene& p, const Closing& closing) {
   return internal::closing_clause({.subject = "the switch"}, record_of(p, closing, {}).best, p.duration);
 }
 
-// Returns true if the closing with samples fails to settle although that of the scene settles, or bounces more often and
-// higher.
+// Returns true if the closing with samples does not settle although the closing under the scene's waveform settles, or if it
+// bounces more often and higher.
 bool is_worse(const Metrics& sampled, const Metrics& drawn) {
   if (drawn.settled && !sampled.settled) return true;
   constexpr double noticeable = 1.05;

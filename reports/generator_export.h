@@ -21,7 +21,7 @@ struct Sampling {
   std::optional<std::string> rate, bits;  ///< replace sample rate and bits in [driver]
   std::string drive = {};                 ///< the only drive that is exported; empty: all
   std::optional<std::string> amplifier;   ///< volts at the switch per volt at the generator; not set: the value in [driver]
-  std::optional<std::string> marker;      ///< time of the marker
+  std::optional<std::string> marker;      ///< time at which the sync output of the generator falls, as text
 };
 
 /// Returns the voltage drives to export: the drive `named`, or all drives that are not always at 0 V. Throws InvalidInput for a
@@ -40,8 +40,8 @@ void set_sampling(SceneFile& file, const std::vector<std::string>& drives, const
 /// Throws InvalidRequest if the source has no sample rate, which a file of this format needs.
 void require_samples(std::string_view format, const std::string& drive, const DriverModel& source);
 
-/// Returns the samples of a drive as a file of this format; `told` is the signal that its source is commanded, from t = 0 on.
-/// Throws InvalidInput if the source does not use samples, and what generator_file() throws.
+/// Returns the samples of a drive as a file of this format; `told` is the signal commanded to the source of the drive, from t =
+/// 0 on. Throws InvalidInput if the source does not use samples, and what generator_file() throws.
 [[nodiscard]] std::string generator_text(const GeneratorFormat& format, const PreparedScene& prepared, const std::string& drive,
                                          const Signal& told, const Sampling& sampling);
 

@@ -115,7 +115,7 @@ void add_curve(internal::CurveTables& tables, const std::string& name, const std
 
 internal::Chart curve(const std::string& table, const std::string& title, const std::string& x_label, const std::string& x_unit,
                       const internal::CurveTable& columns) {
-  constexpr double beside = 0.1;  // margin beside a curve with a single x, as a share of x
+  constexpr double beside = 0.1;  // space beside a curve that has a single x, as a share of x
   const auto [low, high] = std::minmax_element(columns.at("x").begin(), columns.at("x").end());
   const double around = *low < *high ? 0 : beside * *low;
   internal::Chart chart{

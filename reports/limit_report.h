@@ -26,7 +26,8 @@ struct LimitRecord {
   struct Landing {
     LeastTime path;
     bool at_rest = false;
-    double catch_delay = Metrics::unset, catch_time = Metrics::unset;  ///< [s]
+    double catch_delay = Metrics::unset, catch_time = Metrics::unset;  ///< times from first contact to the pull, and to the
+                                                                       ///< hold levels [s]
     bool bounce_free = false;
     Metrics metrics;
     std::vector<Check> checks;  ///< confirmations with a tighter integrator and a beam with more modes

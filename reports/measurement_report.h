@@ -34,7 +34,7 @@ struct MeasurementsRecord {
 
 [[nodiscard]] nlohmann::json json_of(const MeasurementsRecord& record);
 [[nodiscard]] MeasurementsRecord read_measurements(const nlohmann::json& from);
-/// Returns a table of at most `most` rows, without pairs of figures that predict no better than the better one of the two.
+/// Returns a table of at most `most` rows, without pairs of figures that predict no better than one of the two alone.
 [[nodiscard]] std::string text_of(const MeasurementsRecord& record, std::size_t most = 24);
 
 }  // namespace softland

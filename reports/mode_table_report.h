@@ -45,7 +45,7 @@ struct ModesRecord {
 
 /// Returns a static SVG document with a chart per mode. The chart of a mode in the table has dots at the positions in the file,
 /// and a line for the interpolation in a closing, clamped at the first position. The chart of a mode that is left out has the
-/// displacements of the sections along and across the direction of motion and their twist, over the largest of these.
+/// displacements of the sections along and across the direction of motion and their twist, divided by the largest.
 [[nodiscard]] std::string mode_table_svg(const ModeTable& table);
 
 }  // namespace softland

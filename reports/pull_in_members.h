@@ -14,7 +14,7 @@ namespace softland {
 
 namespace internal {
 
-/// Writes the voltages by number of modes; JSON is null if there are none.
+/// Writes pull-in voltages by the number of modes; JSON is null if there are none.
 [[nodiscard]] nlohmann::json voltages_by_modes_json(const std::optional<VoltagesByModes>& found);
 [[nodiscard]] std::optional<VoltagesByModes> read_voltages_by_modes(const nlohmann::json& from);
 

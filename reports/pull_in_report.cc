@@ -162,7 +162,7 @@ void members(A& a, SweepPoint& point) {
 template <class A>
 void members(A& a, PullInsRecord& record) {
   a("electrodes", record.electrodes);
-  // In JSON, the members of a single electrode also stand at the top level.
+  // In JSON, the members of a single electrode are repeated at the top level.
   if (!A::reads && record.electrodes.size() == 1) members(a, record.electrodes.begin()->second);
   std::map<std::string, PullInRecord> voltages;
   for (const auto& [name, one] : record.electrodes) voltages[name] = one.volts;

@@ -19,7 +19,7 @@ namespace softland {
 
 inline constexpr const char* no_open_state = "no pull-in voltage: the switch has no open state";
 
-/// The voltages of an electrode while the other drives have the levels of bias_of() [V].
+/// The pull-in and release voltages of an electrode while the other drives have the levels of bias_of() [V].
 struct PullInRecord {
   double static_pull_in = Metrics::unset, dynamic_pull_in = Metrics::unset, release = Metrics::unset,
          pulled_through = Metrics::unset;
@@ -41,8 +41,8 @@ struct ElectrodeRecord {
 [[nodiscard]] std::string volts(double value);
 /// Returns the levels of other drives that are not at 0, such as "piezo -1.5 V"; empty if all are at 0.
 [[nodiscard]] std::string bias_prose(const ElectrodeRecord& electrode);
-/// Describes the dynamic pull-in voltage. It equals the static pull-in voltage if damping prevents an overshoot, or if no lower
-/// step moves the beam.
+/// Describes the dynamic pull-in voltage. This voltage equals the static pull-in voltage if damping prevents an overshoot, or
+/// if no lower step moves the beam.
 [[nodiscard]] std::string dynamic_prose(const PullInRecord& found);
 
 /// Returns true if the charge of the dielectric keeps a closed switch closed at 0 V.
@@ -67,7 +67,7 @@ struct PullInsRecord {
   std::map<std::string, ElectrodeRecord> electrodes;
   std::optional<StablePathRecord> stable_path;
   std::string swept;                  ///< electrode whose voltage was swept; empty without a sweep
-  std::vector<SweepPoint> sweep;      ///< points of the sweep
+  std::vector<SweepPoint> sweep;      ///< points of the voltage sweep
   std::vector<std::string> left_out;  ///< names of results that are missing after an interruption
 };
 /// Name in left_out for a stable path that is missing after an interruption.

@@ -13,7 +13,7 @@ namespace softland {
 void internal::require_same(const json& written, const json& read) {
   const json changes = json::diff(read, written);
   if (changes.empty()) return;
-  std::string key = changes[0]["path"].get<std::string>();  // "/touch/least_time_s"
+  std::string key = changes[0]["path"].get<std::string>();  // JSON pointer of the first difference: "/touch/least_time_s"
   for (char& letter : key) {
     if (letter == '/') letter = '.';
   }

@@ -27,7 +27,7 @@ namespace softland::internal {
 
 using nlohmann::json;
 
-/// A count in a double, which JSON has as a whole number.
+/// A count in a double, which becomes a whole number in JSON.
 struct Count {
   double& value;
 };
@@ -45,11 +45,11 @@ struct OrNull {
 };
 template <class T>
 OrNull(T&) -> OrNull<T>;
-/// The status of a study that is either done or interrupted.
+/// The status of a study: "interrupted" in JSON if the flag is set, otherwise "done".
 struct Stopped {
   bool& interrupted;
 };
-/// A choice, which JSON has by its name in the table `rows`.
+/// An enumerator, which is in JSON its name in the table `rows`.
 template <class Rows>
 struct Chosen {
   decltype(Rows::value_type::value)& value;
@@ -80,7 +80,7 @@ class JsonWriter {
   }
   /// Writes two numbers as a list.
   void pair(std::string_view key, double low, double high) { json_[std::string(key)] = {json_number(low), json_number(high)}; }
-  /// Writes a value with a conversion to JSON of its own.
+  /// Writes a value by a separate conversion to JSON.
   template <class T, class Write, class Read>
   void custom(std::string_view key, const T& value, const Write& write, const Read&) {
     json_[std::string(key)] = write(value);
@@ -168,7 +168,7 @@ class JsonReader {
   static constexpr bool reads = true;
   [[nodiscard]] static bool has(bool) { return true; }
 
-  /// The reader keeps a reference to `json`, which must outlive it.
+  /// The reader keeps a reference to `json`, which must outlive the reader.
   explicit JsonReader(const json& json) : json_(&json) {}
 
   template <class T>
@@ -270,7 +270,7 @@ class JsonReader {
     if (from.is_null() || (std::is_class_v<T> && !from.is_object() && !std::is_same_v<T, std::string>)) return;
     value = read<T>(from);
   }
-  // Reads a list of numbers with its length: an entry that is not a number becomes NaN.
+  // Reads a list of numbers and keeps its length: an entry that is not a number becomes NaN.
   template <class T>
   static void take(const json& from, std::vector<T>& all) {
     if (!from.is_array()) return;
@@ -329,7 +329,7 @@ json record_json(const Record& record) {
   return std::move(archive).take();
 }
 
-/// Returns the record in this JSON. Throws InvalidInput if any part is missing, unknown or not as it would be written.
+/// Returns the record in this JSON. Throws InvalidInput if any part is missing, unknown, or not as json_of() would write it.
 template <class Record>
 [[nodiscard]] Record whole_record(const json& from) {
   Record record = JsonReader::read<Record>(from);

@@ -21,7 +21,7 @@ struct ReleaseRecord {
     std::map<std::string, Points> waveforms;  ///< waveforms by drive, beginning at the hold levels: time [s] and level [V]
   };
   struct Gap {
-    std::vector<double> time, gap;  ///< time [s] and gap [m]
+    std::vector<double> time, gap;  ///< time [s], and gap of the contact [m]
   };
   /// The openings of simulated devices, and the process variation in words.
   struct Devices {
@@ -33,9 +33,10 @@ struct ReleaseRecord {
   Origin origin;
   std::string status;
   Actuator actuator = Actuator::electrostatic;
-  std::map<std::string, double> hold_levels;                                                     ///< hold levels by drive [V]
-  double contact_force = Metrics::unset, open_position = Metrics::unset, band = Metrics::unset;  ///< [N], [m], [m]
-  double band_share = Metrics::unset;                                                            ///< share of the contact gap
+  std::map<std::string, double> hold_levels;  ///< hold levels by drive [V]
+  double contact_force = Metrics::unset, open_position = Metrics::unset,
+         band = Metrics::unset;        ///< force before opening [N]; [m]
+  double band_share = Metrics::unset;  ///< the band as a share of the contact gap
   Run plain;
   std::optional<Run> best;
   std::map<std::string, double> parameters;
@@ -46,7 +47,7 @@ struct ReleaseRecord {
   std::uint64_t seed = 1;
   std::string termination;
   std::vector<std::string> warnings;  ///< warnings of the scene, and on a contact force that few asperities carry
-  std::map<std::string, Gap> gaps;    ///< by opening, "plain" or "best"; only files have gaps
+  std::map<std::string, Gap> gaps;    ///< gap over time by opening, "plain" or "best"; only in files
 };
 [[nodiscard]] ReleaseRecord record_of(const OpeningResult& release, const std::string& command);
 

@@ -87,7 +87,7 @@ void ResultFolder::remove_abandoned() const {
   for (int k = 1; k <= most_stages; ++k) {
     const fs::path stage = staged(folder_, k);
     if (!fs::is_directory(stage, error)) continue;
-    // Adopt only files of this kind of run: a simulation must not discard the unfinished search in its folder.
+    // Adopt only files of this verb's kind of run: a simulation must not discard the unfinished search in its folder.
     bool ours = true;
     for (const auto& entry : fs::directory_iterator(stage, error)) {
       std::string name = name_to_be(entry.path().filename());
@@ -144,7 +144,7 @@ void ResultFolder::publish(bool interrupted) {
     if (error)
       throw OutputLost(
           fmt::format("{}: cannot be replaced by {}: {}", (folder_ / name).string(), (stage_ / name).string(), error.message()));
-    // While another program reads a database file, the log of the database remains: move it too.
+    // While another program reads a database file, the write-ahead log of the database remains: move this log too.
     const fs::path log = stage_ / (name + "-wal");
     if (fs::exists(log, error)) fs::rename(log, folder_ / (name + "-wal"), error);
   }

@@ -1,5 +1,5 @@
-// The folder in which a run leaves its results. The folder is always complete: a run writes into a subfolder. Its results
-// replace the results of an earlier run only when all of them are complete.
+// The folder in which a run leaves its results. A run writes into a subfolder. When all results are complete, they replace the
+// results of an earlier run in the folder, so that the folder is always complete.
 #pragma once
 
 #include <filesystem>
@@ -14,9 +14,9 @@ namespace softland {
 
 class ResultFolder {
  public:
-  /// Creates and locks the folder for a run with the command line `command`, which will write `files` to it. The run continues
-  /// the files `kept` of an earlier run, which stay in place. Messages begin with `called`, such as "--out run1". Throws
-  /// InvalidInput, before any change, if that is impossible or if one of the other files is an input of this run.
+  /// Creates and locks the folder for a run with the command line `command`, which will write `files` to the folder. The run
+  /// continues the files `kept` of an earlier run, which stay in place. Messages begin with `called`, such as "--out run1".
+  /// Throws InvalidInput, before any change, if the run cannot write there, or if another of `files` is an input of this run.
   ResultFolder(const std::filesystem::path& folder, const std::string& called, const std::string& command,
                const std::vector<std::string>& files, const std::vector<std::string>& kept = {});
 
@@ -32,8 +32,8 @@ class ResultFolder {
   /// Returns the final folder of the results of this run: the folder itself. Results of an interrupted run stay in their
   /// subfolder if the folder has results of an earlier run.
   [[nodiscard]] std::filesystem::path destination(bool interrupted) const;
-  /// Moves the results to destination(). In the folder, the results replace those of earlier runs of the same kind: all of
-  /// `files`, and unfinished results.
+  /// Moves the results to destination(). In the folder, they replace results of earlier runs of the same kind: all of `files`,
+  /// and unfinished results.
   void publish(bool interrupted);
 
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }

@@ -56,7 +56,7 @@ std::string label_of(const Figure& f) {
   return fmt::format("{}{}{}", f.name, has_index ? ", " : "", has_index ? f.symbol : "");
 }
 
-// Returns the role of drive i in charts: the last drive is `best`, the plain step `baseline`.
+// Returns the role of set of waveforms number i in charts: the last set is `best`, the plain step `baseline`.
 internal::Role role_of(std::size_t i, std::size_t count) {
   if (i + 1 == count && i > 0) return internal::Role::best;
   if (i == 0) return internal::Role::baseline;
@@ -95,7 +95,7 @@ internal::Chart distribution_chart(const RobustnessReport& report, std::string_v
       table["x"].push_back(values[k]);
       table["y"].push_back(100 * static_cast<double>(k + 1) / all);
     }
-    // Choose the range of x so that it covers 99 % of the devices for every drive.
+    // Choose the range of x so that it covers 99 % of the devices under every set of waveforms.
     most = std::max(most, values[std::min(values.size() - 1, values.size() * 99 / 100)]);
     chart.series.push_back(
         {.table = name, .column = "y", .label = shown_drive(drives[i].name), .role = role_of(i, drives.size())});
@@ -107,8 +107,8 @@ internal::Chart distribution_chart(const RobustnessReport& report, std::string_v
   return chart;
 }
 
-// Draws a histogram of a figure over the devices. All drives share the bins, over the range of the cumulative curves. Two kinds
-// of closings appear as two peaks.
+// Draws a histogram of a figure over the devices. All sets of waveforms share the bins, over the range of the cumulative
+// curves. Two kinds of closings appear as two peaks.
 internal::Chart histogram_chart(const RobustnessReport& report, std::string_view key, const internal::Chart& cumulative,
                                 internal::CurveTables& tables) {
   const Figure& f = figure_of(key);
@@ -202,13 +202,13 @@ internal::Picture picture_of(const RobustnessReport& report) {
   return drawn;
 }
 
-// Returns the end of a name, which says more than its beginning: the last folder of a path, for example.
+// Returns the end of a name, which is more telling than its beginning: the last folder of a path, for example.
 std::string end_of(const std::string& name, std::size_t columns) {
   if (internal::display_width(name) <= columns) return name;
   std::string end = name;
   while (internal::display_width(end) >= columns) {
     std::size_t first = 1;
-    while (first < end.size() && (static_cast<unsigned char>(end[first]) & 0xC0U) == 0x80U) ++first;  // UTF-8 tails
+    while (first < end.size() && (static_cast<unsigned char>(end[first]) & 0xC0U) == 0x80U) ++first;  // bytes of one letter
     end.erase(0, first);
   }
   return "…" + end;
@@ -250,7 +250,7 @@ ReportSection statistics_section(const RobustnessRecord& found) {
                     Paragraph{.text = internal::window_prose(found.windows), .is_note = true}}};
 }
 
-// Shows the value of per-device calibration: the last drive, with more and more quantities measured on every device.
+// Shows the value of per-device calibration: the last set of waveforms, with more and more quantities measured on every device.
 ReportSection knowledge_section(const RobustnessRecord& found) {
   ReportSection section{.id = "knowledge", .heading = "Value of per-device calibration", .parts = {}};
   if (found.by_knowledge.empty()) return section;

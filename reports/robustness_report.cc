@@ -57,7 +57,8 @@ std::map<std::string, Points> waveforms_of(const PreparedScene& nominal, const D
   return all;
 }
 
-// Returns the warnings of the nominal scene, and the reason why the last drive does not hold the nominal device closed.
+// Returns the warnings of the nominal scene, and the reason why the last set of waveforms does not keep the nominal device
+// closed.
 std::vector<std::string> warnings(const RobustnessReport& report) {
   std::vector<std::string> all = report.nominal.scene.warnings;
   if (!report.unheld.empty()) all.push_back(report.unheld);
@@ -411,7 +412,8 @@ RobustnessRecord record_of(const RobustnessReport& report) {
 
 json json_of(const RobustnessRecord& record) { return internal::record_json(record); }
 
-// Null in JSON stands for any non-finite number: figures over the box become infinite, as for a device that does not close.
+// Null in JSON stands for any non-finite number: figures over the box of varied quantities become infinite, as for a device
+// that does not close.
 RobustnessRecord read_robustness(const json& from) {
   RobustnessRecord record = internal::whole_record<RobustnessRecord>(from);
   require(!record.drives.empty(), "\"drives\" is empty");

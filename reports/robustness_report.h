@@ -21,7 +21,7 @@
 
 namespace softland {
 
-/// The input of a report. `sensitivity`, `derivatives` and `courses` belong to the last drive, and may be empty.
+/// The input of a report. `sensitivity`, `derivatives` and `courses` are for the last set of waveforms, and may be empty.
 struct RobustnessReport {
   const PreparedScene& nominal;
   const Robustness& found;
@@ -31,14 +31,14 @@ struct RobustnessReport {
   Sensitivity sensitivity = {};
   Derivatives derivatives = {};
   std::vector<DeviceCourse> courses = {};
-  std::optional<BoxAndChaos> box_and_chaos = {};  ///< worst cases and polynomial chaos, for the last drive
-  HoldWindows windows = {};                       ///< ranges of hold voltages
-  std::string unheld = {};                        ///< hold_warning() for the last drive
+  std::optional<BoxAndChaos> box_and_chaos = {};  ///< worst cases and polynomial chaos, for the last set of waveforms
+  HoldWindows windows = {};                       ///< hold voltages that keep devices closed, by electrode
+  std::string unheld = {};                        ///< hold_warning() for the last set of waveforms
   bool interrupted = found.interrupted;           ///< true when the study or add_details() was interrupted
 };
 
-/// Adds sensitivity, derivatives, hold voltages and courses for the last drive; with `other_ways_too` also worst cases and
-/// polynomial chaos, which take further searches. Adds nothing after an interruption.
+/// Adds sensitivity, derivatives, hold voltages and courses for the last set of waveforms; with `other_ways_too` also worst
+/// cases and polynomial chaos, which take further searches. Adds nothing after an interruption.
 void add_details(RobustnessReport& report, bool other_ways_too, const Progress& progress);
 
 /// The record from which JSON, text and tables are made.
@@ -47,7 +47,7 @@ struct RobustnessRecord {
   struct Varied {
     std::string name;
     std::vector<std::string> keys;
-    std::string distribution, unit;  ///< distribution; unit of its first key
+    std::string distribution, unit;  ///< distribution; unit of the quantity's first key
     bool is_factor = true;
     double mean = Metrics::unset, deviation = Metrics::unset;
   };
@@ -74,7 +74,7 @@ struct RobustnessRecord {
     };
     std::string_view key;
     std::size_t rows = 0, failed_rows = 0;
-    std::map<std::string, Indices> variables;  ///< indices by variable; none where too many rows failed
+    std::map<std::string, Indices> variables;  ///< Sobol' indices by variable; none where too many rows failed
   };
   struct Derived {
     struct Variable {
@@ -83,14 +83,15 @@ struct RobustnessRecord {
     };
     struct Slope {
       double derivative = Metrics::unset;
-      double relative = Metrics::unset;  ///< relative change of figure over that of quantity; NaN if one of them is 0
-      double step = Metrics::unset;      ///< change of the figure for one standard deviation
+      double relative = Metrics::unset;  ///< relative change of the figure over that of the quantity; NaN if one of these
+                                         ///< values is 0
+      double step = Metrics::unset;      ///< change of the figure for one standard deviation of the quantity
     };
     struct Of {
       std::string_view key;
       double nominal = Metrics::unset, deviation = Metrics::unset, error = Metrics::unset;
       std::map<std::string, Slope> by;
-      bool agrees = false;  ///< true if the sample varies as much as the derivatives predict, or if that is unknown
+      bool agrees = false;  ///< true if the sample varies as much as the derivatives predict, or if the variation is unknown
       std::string why_none;
     };
     std::string drive, why_none;
@@ -123,7 +124,7 @@ struct RobustnessRecord {
   std::uint64_t seed = 1;
   PointSet points = PointSet::sobol;
   double duration = Metrics::unset, tolerance = Metrics::unset;  ///< window [s]; tolerance of the integrator
-  std::vector<std::string> about;                                ///< paragraphs that describe the devices
+  std::vector<std::string> about;                                ///< paragraphs of the report that describe the devices
   std::vector<Varied> spread;
   HoldWindows windows;
   std::vector<Drive> drives, by_knowledge;
@@ -139,8 +140,8 @@ struct RobustnessRecord {
 /// Returns the report without diagrams: the text for a terminal, and the worst devices.
 [[nodiscard]] Document document_of(const RobustnessRecord& record);
 
-/// Returns CSV with a line per device: its number, the varying quantities, and status and figures under every drive. A quantity
-/// is in SI units or a factor; jitter is the time of the first edge. A figure that a device does not have is empty.
+/// Returns CSV with a line per device: its number, the varying quantities, and status and figures under every set of waveforms.
+/// A quantity is in SI units or a factor; jitter is the time of the first edge. A figure that a device does not have is empty.
 [[nodiscard]] std::string robustness_csv(const RobustnessReport& report);
 
 /// Returns a document with statistics, cumulative distributions and histograms, the closings of typical devices, and every
@@ -150,8 +151,8 @@ struct RobustnessRecord {
 
 namespace internal {
 
-/// Returns [lower, upper] by electrode [V]. The pair is null if no level holds as many devices closed; an end that does not
-/// exist is null.
+/// Returns the lower and upper hold voltage by electrode [V]. The pair is null if no voltage keeps that many devices closed; a
+/// voltage that does not exist is null.
 [[nodiscard]] nlohmann::json windows_json(const HoldWindows& windows);
 
 }  // namespace internal

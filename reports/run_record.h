@@ -19,8 +19,8 @@ namespace softland {
 
 /// A time span in which a contact is closed.
 struct ClosedStretch {
-  double begin = 0;                                       ///< begin [s]
-  double end = std::numeric_limits<double>::quiet_NaN();  ///< end [s]; NaN: the contact is closed at the end of the window
+  double begin = 0;                                       ///< time at which the contact closes [s]
+  double end = std::numeric_limits<double>::quiet_NaN();  ///< time at which it opens [s]; NaN: closed at the end of the window
   std::uint64_t touches = 1;  ///< number of touches; openings between several touches are not recorded
 };
 
@@ -33,15 +33,16 @@ struct CurveRecord {
   /// Resistance of the connection, NaN while the connection is open [Ohm]; empty if the contacts have no resistivity.
   std::vector<double> resistance = {};
   std::vector<Rebound> rebounds;
-  std::optional<std::vector<ClosedStretch>> closed = {};  ///< times with closed contact, or connection of several
-  std::map<std::string, std::vector<ClosedStretch>> closed_contacts = {};  ///< times with closed contact, by its name
+  std::optional<std::vector<ClosedStretch>> closed = {};  ///< times in which the contact, or the connection of several
+                                                          ///< contacts, is closed
+  std::map<std::string, std::vector<ClosedStretch>> closed_contacts = {};  ///< times in which each contact is closed, by name
   std::optional<ShownMotion> motion = {};  ///< motion of the whole structure; none if the run stopped early
 };
 
-/// A run with the waveforms of the winner, of the baseline, or of a single run.
+/// A run with the best waveform of a search, with the plain step, or of a single simulation.
 struct RunRecord {
   std::string status;
-  std::optional<FigureValues> figures;  ///< none: there was no such run
+  std::optional<FigureValues> figures;  ///< figures of merit; none if there was no such run
   FigureValues errors;
   CurveRecord curve;
   std::map<std::string, Points> waveforms;  ///< time [s] and level [V] by drive; for the dispersion force, its factor
@@ -49,14 +50,14 @@ struct RunRecord {
   double collapse_time = Metrics::unset;  ///< time at which the beam touched the electrode [s]
 };
 
-/// Figures of one of several contacts, for the winner or the single run.
+/// Figures of one of several contacts, in the run with the best waveform or in the single run.
 struct ContactFigures {
   double gap = Metrics::unset;  ///< rest distance from the contact's position to its contact plane [m]
   FigureValues figures;
 };
 
-/// Largest numbers of rows of a curve, of rebounds, of evaluations of a search and of times with a closed contact in a result:
-/// its file stays readable (base/read_file.h) for a run of any length.
+/// Limits of the numbers of curve rows, rebounds, evaluations of a search and closed time spans in a result, so that the file
+/// of a run of any length can be read (base/read_file.h).
 inline constexpr std::size_t most_curve_rows = 20'000, most_rebounds = 20'000, most_evaluations = 100'000,
                              most_closed_stretches = 1000;
 

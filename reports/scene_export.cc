@@ -60,7 +60,7 @@ static_assert(is_complete<sent_names>());
 struct Measured {
   std::string_view name;
   Dimension due;
-  std::string said = {};  // text in which the user gave the quantity
+  std::string said = {};  // text of the quantity as the user gave it
   std::optional<double> value = {};
 
   void read(const std::string& option, const std::string& text) {
@@ -123,7 +123,7 @@ double error_of(const Measured& measured, const std::optional<double>& given, co
   return usual_error;
 }
 
-// Warns of a device that is unlike nearly all devices of [spread], whose standard deviation is `deviation`. The argument
+// Warns about a device that is unlike nearly all devices of [spread], whose standard deviation is `deviation`. The argument
 // `ratio` is the measured unit over that of the nominal device; `own` is the measured value over the nominal value.
 void warn_if_strange(const Measured& measured, double own, double ratio, double deviation, const std::optional<double>& error,
                      const NoteSink& note) {
@@ -142,7 +142,7 @@ PreparedScene with_spread(const PreparedScene& p) {
   return assume_spread(file) ? prepare(file) : p;
 }
 
-// Returns the voltage and time units of the device with these measurements.
+// Returns the factors of voltages and times for the device with these measurements.
 DeviceUnits units_of(const PreparedScene& p, const Measurements& measured, int jobs, const Progress& progress,
                      const NoteSink& note) {
   const PullInMeter meter(p, {.pull_in = measured.pull_in.value.has_value(),
@@ -223,7 +223,7 @@ double last_breakpoint(const std::map<std::string, Signal>& signals) {
 // The exported scene, with the samples that the request specifies.
 struct Exported {
   PreparedScene sampled;
-  std::optional<PreparedScene> drawn;  // scene without these samples; set if the request specifies samples
+  std::optional<PreparedScene> drawn;  // scene without the samples of the request; set if the request specifies samples
   std::vector<std::string> drives;
 };
 Exported exported(SceneFile file, const ExportRequest& request, bool need_pull_in, const Progress& progress) {

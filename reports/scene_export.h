@@ -16,9 +16,9 @@ namespace softland {
 
 struct ExportRequest {
   std::string format = "csv";
-  std::string signal = "told";  ///< "told" or "output"
+  std::string signal = "told";  ///< signal: "told" (commanded voltages) or "output" (applied voltages)
   std::string measured = {};    ///< measured quantities: "Vdp=54.2 V,frequency=10.2 kHz,piezo=1.6 %/V"
-  std::optional<std::string> device_pull_in, device_frequency;  ///< the same two quantities, each as an option of its own
+  std::optional<std::string> device_pull_in, device_frequency;  ///< the first two of `measured`, each as a separate option
   Sampling sampling = {};
   int jobs = 1;
 };

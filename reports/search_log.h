@@ -37,7 +37,7 @@ class SearchLog {
   ResultFolder& folder_;
   FamilyColumns columns_;
   std::mutex mutex_;                        // guards the members below
-  std::map<long, Evaluation> evaluations_;  // by index: this order is the same for any number of threads
+  std::map<long, Evaluation> evaluations_;  // evaluations by index: the order is the same for any number of threads
   std::string best_;
   bool pending_ = false;
   std::chrono::steady_clock::time_point written_{};

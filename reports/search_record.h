@@ -17,7 +17,7 @@
 
 namespace softland {
 
-/// A simulation of the winner with other settings.
+/// A simulation of the best waveform with other settings.
 struct ConfirmationRecord {
   std::string name, status;
   std::optional<FigureValues> figures;
@@ -27,13 +27,14 @@ struct ConfirmationRecord {
 
 struct SearchCourse {
   std::string value_name;  ///< name of the value that the search minimises
-  Points best_so_far;      ///< index of an evaluation, value
+  Points best_so_far;      ///< index of an evaluation, least value until then
   Points evaluations;      ///< index of every evaluation, value; a value is NaN for an infeasible candidate
 };
 
-/// The least closing time of any waveform for the same drives and limits, at no more than the impact velocity of the winner.
+/// The least closing time of any waveform for the same drives and limits, with at most the impact velocity of the best
+/// waveform.
 struct TouchLimit {
-  double least_time = Metrics::unset, impact_velocity = Metrics::unset;  ///< time [s] and velocity [m/s]
+  double least_time = Metrics::unset, impact_velocity = Metrics::unset;  ///< least time [s], permitted impact velocity [m/s]
 };
 
 /// Searches that differ only in their seeds; the result is that of the best search.
@@ -49,13 +50,13 @@ struct SearchRecord {
   std::vector<SearchedFamilyResult> families;  ///< empty unless several families were searched
   std::optional<std::uint64_t> seed;
   std::optional<bool> goal_met, better_than_baseline, plain_step_wins;
-  double harder_than_step = Metrics::unset;  ///< see OptimizeResult
+  double harder_than_step = Metrics::unset;  ///< voltage or slew rate over that of the plain step, see OptimizeResult
   double evaluations = Metrics::unset;
   RunRecord baseline;                                   ///< run of the plain step
-  std::map<std::string, double> parameters;             ///< parameters of the winner, by "drive.name"
+  std::map<std::string, double> parameters;             ///< parameters of the best waveform, by "drive.name"
   std::map<std::string, std::array<double, 2>> bounds;  ///< lower and upper bound of each parameter
   std::vector<ConfirmationRecord> checks;
-  double evaluations_of_modes = Metrics::unset;  ///< see OptimizeResult
+  double evaluations_of_modes = Metrics::unset;  ///< evaluations with more modes, see OptimizeResult
   SearchCourse course;
   std::optional<RobustFindings> robust;
   std::optional<DevicesFindings> devices;

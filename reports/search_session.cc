@@ -36,7 +36,7 @@ ResultFolder claimed(const SearchOutput& output, const StoredSearch& search, con
   if (stays) kept = {evaluations_file};
   if (stays && search.seeds > 1) kept.emplace_back(seeds_file);
   ResultFolder folder = output.claim(files_of_searches(), kept);
-  // Another run may have moved the database file before this run had locked the folder.
+  // Another run may have moved the database file before the current run locked the folder.
   require_request(!known || is_store(known->place / evaluations_file), [&] {
     return fmt::format("{}: {} was removed; try again", requested("resume"), (known->place / evaluations_file).string());
   });

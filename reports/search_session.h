@@ -1,5 +1,5 @@
-// A session runs a search from its first evaluation to its files. It owns the folder, the log, and the database file of the
-// evaluations, from which the search can be resumed.
+// A session runs a search from its first evaluation to its files. The session owns the folder, the log, and the database file
+// of evaluations, from which the search can be resumed.
 //
 //   SearchSession session(search, known, output);
 //   search.options.on_start = [&](const auto& columns) { session.begin(columns); };
@@ -75,8 +75,8 @@ class SearchSession {
   [[nodiscard]] std::filesystem::path destination(const SearchReport& report) const;
   /// Adds the costs of all evaluations, and the command lines that reproduce the result.
   void add_log(SearchRecord& search, const SearchReport& report) const;
-  /// Writes the files, moves them to their final folder, and returns their names, with the names of files written during the
-  /// search.
+  /// Writes the files and moves them to their final folder. Returns the names of these files, and of the files written during
+  /// the search.
   std::vector<std::string> leave(const SearchReport& report);
 
  private:

@@ -13,10 +13,10 @@
 
 namespace softland {
 
-/// Sets SeedsFindings::best. On the nominal device, a confirmed search is best, then a search that meets the goal, then one
-/// that settles. Further criteria are the figure of the target, then the cost; a rebound below `significant` [m] counts as
-/// `significant`, and for a sum of targets only the cost counts. Under process variation, a search that fulfils its conditions
-/// is best, then one with a lower cost. The lower seed wins a tie.
+/// Sets SeedsFindings::best. On the nominal device, a confirmed search is best, then a search that meets the goal, then a
+/// search whose switch settles. Further criteria are the figure of the target, then the cost; a rebound below `significant` [m]
+/// counts as `significant`, and for a sum of targets only the cost counts. Under process variation, a search that fulfils its
+/// conditions is best, then one with a lower cost. In a tie the lower seed is best.
 void rank(SeedsFindings& seeds, const Aim& target, double significant, bool over_devices);
 
 /// The record of an interrupted study of several seeds.

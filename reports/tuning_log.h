@@ -10,7 +10,7 @@
 
 namespace softland {
 
-/// Key of a file whose values distinguish tunings that cannot continue each other.
+/// Key of the log file; its values distinguish tunings that cannot continue each other.
 inline constexpr const char* origin_key = "tuning";
 
 /// The log file closings.jsonl: a line on the tuned device, a line with the candidate waveforms from which the tuning begins,

@@ -116,7 +116,7 @@ std::pair<std::string, std::string> headline_of(const TuningReport& report) {
   return {fmt::format("After {} none was bounce-free.", after), ""};
 }
 
-// ---- the web page
+// ---- web page
 
 // Width of the canvas of the bars; a page scales the canvas.
 constexpr double strip_width = 1000;
@@ -219,7 +219,7 @@ std::string record_bars(const ContactRecord& record, const Shown& shown) {
     }
   }
   if (std::isfinite(closed_since)) bars += bar(shown.place(closed_since), strip_width, 7, 10, "seen");
-  // A closing time without edges says nothing about the time after the closing.
+  // A closing time without edges gives no information about the time after the closing.
   if (record.edges.empty() && record.closing_time) bars += bar(shown.place(*record.closing_time), 0, 3, 18, "seen");
   return bars;
 }
@@ -242,7 +242,7 @@ TableRow record_row(const TuningReport::Closing& one, const Shown& shown) {
 
 // Describes the delay between drives and records; empty if the delay may be 0.
 std::string delay_prose(const BeliefSummary& belief) {
-  constexpr double certain = 2;  // least number of standard errors
+  constexpr double certain = 2;  // least delay that is described, in standard errors
   const auto delay = std::find_if(belief.quantities.begin(), belief.quantities.end(),
                                   [](const BelievedQuantity& one) { return one.name == trigger_delay_name; });
   if (delay == belief.quantities.end() || !(std::abs(delay->mean) > certain * delay->deviation)) return {};

@@ -36,7 +36,7 @@ struct TuningReport {
   struct Shot {
     int number = 0;
     std::map<std::string, Points> waveforms = {};  ///< commanded voltages by drive: time [s] and voltage [V]
-    double hold_time = 0, expected_cost = 0;       ///< see TunerShot
+    double hold_time = 0, expected_cost = 0;       ///< hold time [s] and expected cost, see TunerShot
     PredictedRecord predicted = {};
   };
   struct Closing {
@@ -50,7 +50,8 @@ struct TuningReport {
   std::optional<std::string> broken_assumption = {};
   double step_closing_time = 0;  ///< time of first touch under the plain step on the nominal device [s]
   Approach approach = Approach::fast;
-  double step_permanent_contact = Metrics::unset;  ///< set if the approach to the contact is quasi-static [s]
+  double step_permanent_contact = Metrics::unset;  ///< time to permanent contact under the plain step [s]; set if the approach
+                                                   ///< to the contact is quasi-static
   int bounce_free_in_a_row = 0;
   bool spread_assumed = false;
   std::uint64_t seed = 1;
@@ -62,11 +63,11 @@ struct TuningReport {
   [[nodiscard]] bool was_bounce_free(int shot) const;
   /// Returns true if any shot was recorded without a bounce.
   [[nodiscard]] bool ever_bounce_free() const;
-  /// Returns true if the last closing was with the waveform `kept`, and without a bounce.
+  /// Returns true if the last closing used the waveform `kept` and had no bounce.
   [[nodiscard]] bool lands() const;
 };
-/// Returns the waveform that a tuning in this state keeps: after its end, the waveform of the last closing if that was
-/// bounce-free.
+/// Returns the waveform that a tuning keeps as its best. After the end of the tuning, this is the waveform of the last closing
+/// if that closing was bounce-free.
 [[nodiscard]] TunerShot kept_shot(const Tuner& tuner, const std::vector<TunedClosing>& closings, TuningEnd end);
 [[nodiscard]] TuningReport::Shot shot_of(const PreparedScene& scene, const TunerShot& shot);
 [[nodiscard]] TuningReport tuning_report(const Tuner& tuner, const std::vector<TunedClosing>& closings,
@@ -75,13 +76,13 @@ struct TuningReport {
 [[nodiscard]] nlohmann::json json_of(const TuningReport& report);
 [[nodiscard]] TuningReport read_tuning(const nlohmann::json& from);
 [[nodiscard]] nlohmann::json belief_json(const TunedBelief& belief);
-/// Reads the belief about the device, mean and deviation of its quantities, from the JSON of a tuning. Throws InvalidInput with
-/// the rule: "holds no belief ...".
+/// Reads the estimate of the device, means and deviations of its quantities, from the JSON of a tuning. Throws InvalidInput
+/// with the rule: "holds no belief ...".
 [[nodiscard]] TunedBelief tuned_belief(const nlohmann::json& written);
 /// Returns one line on the last closing and the prediction for the next closing.
 [[nodiscard]] std::string closing_prose(const TuningReport& report);
-/// Returns a document with the knowledge of the device, the record of every closing under the predicted record, and the
-/// voltages of the kept and the proposed waveform.
+/// Returns a document with the estimate of the device, the measured and the predicted record of every closing, and the voltages
+/// of the kept and the proposed waveform.
 [[nodiscard]] Document tuning_document(const TuningReport& report);
 
 }  // namespace softland

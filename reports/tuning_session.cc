@@ -63,7 +63,7 @@ struct TuningSession::State {
   std::filesystem::path log_file = {};
   std::unique_ptr<TuningLog> log = {};
   std::size_t behind = 0;     // number of closings of the log that were learned
-  bool is_on_record = false;  // true while the log has the record of the next shot, but this record is not yet learned
+  bool is_on_record = false;  // true while the log has the record of the next shot, but the tuner has not learned it yet
   std::optional<Tuner> tuner = {};
   std::vector<TunedClosing> closings = {};
 
@@ -109,8 +109,8 @@ void TuningSession::begin(const Progress& progress) {
   if (s.log && s.log->recipes().empty()) s.log->append(s.tuner->recipes());
 }
 
-// Check that the tuning proposes the logged shot again, or that the shot repeated the kept waveform; otherwise the log belongs
-// to another tuning.
+// Check that the tuning proposes the logged shot again, or that the logged shot repeats the best waveform; otherwise the log
+// belongs to another tuning.
 bool TuningSession::learn_kept(const Progress& progress) {
   State& s = *state_;
   if (!s.log || s.behind == s.log->closings().size()) return false;

@@ -1,5 +1,5 @@
-// A session runs a tuning from its first shot to its last: it proposes the next shot, reads the record of the shot, and stores
-// both. Instruments, a person or a function apply the shots to the device.
+// A session runs a tuning from its first shot to its last: it proposes the next shot, reads the record of that shot, and stores
+// shot and record. Instruments, a person or a function apply the shots to the device.
 //
 //   TuningSession tuning(scene, options);
 // each closing is on the disk before the next shot
@@ -36,8 +36,8 @@ class TuningSession {
   std::filesystem::path keep(const std::filesystem::path& log, bool resume);
   /// Searches the candidate waveforms of the tuning, or reads them from the log. Throws as Tuner.
   void begin(const Progress& progress = {});
-  /// Learns from the next closing that the log had when it was opened; returns false after the last closing. Throws
-  /// InvalidInput if the tuning would have proposed another shot.
+  /// Learns from the next closing in the log as it was when opened; returns false after the last one. Throws InvalidInput if
+  /// the tuning would have proposed another shot.
   bool learn_kept(const Progress& progress = {});
 
   [[nodiscard]] const Tuner& tuner() const;
@@ -48,8 +48,8 @@ class TuningSession {
   /// and OutputLost. Throws Interrupted after the record is on the disk but before it is learned: then call learn() with the
   /// record again.
   void learn(const ContactRecord& record, const Progress& progress = {});
-  /// Returns how the tuning ends at this shot, with success or because `most` closings are used; none if it continues. The best
-  /// waveform becomes the next shot when that is the last shot, or when other waveforms have closed the switch bounce-free
+  /// Returns how the tuning ends at this shot, with success or because `most` closings are used; none if the tuning continues.
+  /// The best waveform becomes the next shot if that is the last shot, or if other waveforms have closed the switch bounce-free
   /// often enough.
   [[nodiscard]] std::optional<TuningEnd> ends(int most);
   /// Throws InvalidInput if the last three shots gave no record.

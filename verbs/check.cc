@@ -228,7 +228,7 @@ Outcome run(const Setting& setting, const CheckRequest&) {
   add("natural frequencies", fmt::format("{}", fmt::join(frequencies, ", ")));
   if (p.model.has_contact()) add("in-contact period", quantity(p.model.basis().in_contact_period(), "s", 4));
   std::map<std::string, PullInVoltages>
-      searched_to;  // pull-in voltages by electrode, from which a search takes missing voltage limits
+      searched_to;  // pull-in voltages by electrode, from which a search computes missing voltage limits
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
     const std::string& name = p.scene.device.electrodes[k].name;
     if (!pulls_in(p.scene.device, k)) {

@@ -80,8 +80,8 @@ void options(Archive& a, CycleRequest& r) {
   jobs_option(a, o.jobs);
 }
 
-// Takes from a scene the opening waveform if the scene begins closed, both waveforms if it opens on command, else the closing
-// waveform.
+// Reads waveforms from a scene: the opening waveform if the scene begins closed, both waveforms if it opens on command, else
+// the closing waveform.
 void take(CycleWaveforms& waveforms, const PreparedScene& scene) {
   std::vector<Signal> commanded = scene.commanded(scene.waveforms());
   if (scene.start() == StartState::closed) {

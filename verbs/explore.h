@@ -24,7 +24,7 @@ struct ExploreRequest {
 
   /// Returns the given options that are part of a plan, by name.
   [[nodiscard]] std::map<std::string, std::string> of_plan() const;
-  /// Returns the plan of these options and a scene. Messages name an option in its `spelling`. Throws InvalidInput.
+  /// Returns the plan of these options and a scene. Messages spell option names by `spelling`. Throws InvalidInput.
   [[nodiscard]] PlanRequest plan(SceneFile scene, const Spelling& spelling) const;
   /// Returns the part of the points that --shard selects. Throws InvalidRequest.
   [[nodiscard]] Shard part() const;

@@ -9,12 +9,13 @@
 
 namespace softland::verbs {
 
-/// Errors of the instruments; an error that is not given has a default, which depends on the scene.
+/// Errors of the instruments; an error that the user does not give has a default, which depends on the scene.
 struct ToldErrors {
   std::optional<double> edge_error = {}, unseen = {}, gain_error = {}, shot_error = {};
   std::optional<double> trigger_delay =
       {};  ///< standard deviation of the delay between drives and records; an option of `tune` only
-  std::optional<double> capacitance = {};  ///< threshold, for an instrument that measures the capacitance [F]
+  std::optional<double> capacitance = {};  ///< threshold of the capacitance, for an instrument that measures the capacitance
+                                           ///< [F]
 
   /// Returns the given errors, and the defaults of all other errors. Throws InvalidInput for a scene that cannot be read.
   [[nodiscard]] LaboratoryErrors errors(const SceneFile& file) const;

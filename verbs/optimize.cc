@@ -16,7 +16,7 @@
 namespace softland::verbs {
 namespace {
 
-// Returns the names of the targets with a cost function of their own: "settling, impact and energy".
+// Returns the names of the targets with a separate cost function: "settling, impact and energy".
 std::string targets_with_own_cost() {
   std::vector<std::string_view> names;
   for (const TargetRow& row : targets) {

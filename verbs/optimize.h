@@ -20,7 +20,8 @@ struct OptimizeRequest : SearchRequest {
   std::string cycle = {};  ///< rate for which closing and opening waveforms are searched, "2 kHz"; see the verb `cycle`
   std::string duty = {};   ///< duty of the cycle, the commanded share of closed time
   bool resume = false;
-  bool limit = false;  ///< true: compare the winner with the least closing time of any waveform, even if that takes minutes
+  bool limit = false;  ///< true: compare the best waveform with the least closing time of any waveform, even if that takes
+                       ///< minutes
 };
 /// Reads the request. Throws InvalidRequest for invalid options; options of SearchRequest are checked later (search_request.h).
 [[nodiscard]] OptimizeRequest optimize_request(const Arguments& arguments);

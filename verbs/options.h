@@ -58,14 +58,14 @@ struct OptionRow {
   // The members from here on are for Python.
   std::string keyword = {};  ///< name in Python, "impact_velocity"
   std::string type = {};     ///< type in Python, "float | str | None"
-  std::string value = {};    ///< default, "None"
+  std::string value = {};    ///< default value in Python, "None"
   std::string note = {};     ///< text in front of `about`, such as the unit of a number
   std::string told = {};  ///< Python expression that returns the texts of Arguments, such as "_quantity(impact_velocity, 'm/s')"
   bool is_positional = false;
 };
 
-/// The form of an option in Python. Members that are not set follow from the kind of the option. An option without a default
-/// value is required.
+/// The form of an option in Python. Members that are not set are derived from the kind of the option. An option without a
+/// default value is required.
 struct InPython {
   std::optional<std::string> keyword = {}, type = {}, value = {}, told = {};
   bool is_positional = false;
@@ -88,7 +88,7 @@ struct Held<std::optional<T>> {
   using type = T;
 };
 
-/// An archive that lists the options of a verb.
+/// An archive (the argument of the function template options()) that lists the options of a verb.
 class OptionList {
  public:
   /// Makes the next option an option of the program only.
@@ -224,7 +224,7 @@ template <class Number>
   return value;
 }
 
-/// An archive that reads the given texts into the members of a request; all other members keep their values. Throws
+/// An archive that reads the texts given by the user into the members of a request; all other members keep their values. Throws
 /// InvalidRequest with option, value and rule.
 class OptionReader {
  public:

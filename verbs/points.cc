@@ -38,7 +38,7 @@ void add_numbers(Numbers& numbers, const std::string& key, const json& value) {
   if (!value.is_array() || value.size() > longest_list) return;
   for (std::size_t i = 0; i < value.size(); ++i) {
     const json& one = value[i];
-    const bool is_choice = one.is_object() && one.contains("section") && one.contains("choice");  // is an effect
+    const bool is_choice = one.is_object() && one.contains("section") && one.contains("choice");  // true for an effect
     if (one.is_number() || is_choice)
       add_numbers(numbers, key + "." + (is_choice ? text(one["section"]) + "." + text(one["choice"]) : std::to_string(i + 1)),
                   one);

@@ -178,8 +178,8 @@ Outcome run(const Setting& setting, const PullInRequest& request) {
   const Progress& progress = setting.progress;
   PullInMemory remembered;
   const PullInFinder find_pull_in = remembered.finder(file);
-  // Find the pull-in voltages first, since a waveform in units of Vdp needs them: an interruption of the rest does not lose
-  // them.
+  // Find the pull-in voltages first, since a waveform in units of Vdp needs them; if the rest is interrupted, they are not
+  // lost.
   const Scene scene = read_scene(file);
   const bool leaves_choices = scene.auto_modes || scene.simulate.automatic_effects;
   PreparedScene prepared = leaves_choices ? prepare_and_choose(file, false, progress) : prepare_statics(file);

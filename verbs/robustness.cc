@@ -26,7 +26,7 @@ namespace {
 constexpr std::size_t most_worst = 3;
 
 std::string worst_file(std::size_t i) { return fmt::format("worst-{}.toml", i + 1); }
-// Returns the name of the file with the scene of the worst device of the box.
+// Returns the name of the file with the scene of the worst device in the box of varied quantities, for a figure.
 std::string box_file(std::string_view key) { return fmt::format("box-{}.toml", figure_of(key).symbol); }
 
 Outcome shown(const RobustnessRecord& record) {
@@ -54,7 +54,7 @@ struct RobustnessRequest : Usual {
     return all;
   }
 
-  // The diagrams need all devices, which only devices.csv has.
+  // The diagrams need the figures of all devices, which only devices.csv has.
   static Outcome shown_again(const nlohmann::json& json) { return shown(read_robustness(json)); }
 
   RobustnessOptions options{.jobs = one_per_core(), .worth_of_measuring = true, .opens_on_command = true};

@@ -1,6 +1,6 @@
 // A study is a verb that computes something from one scene. Options, computation and files of a study are described once, for
-// the command line and for Python. Some verbs, such as the tuning on instruments, run differently in the two: their description
-// has name, options and help, but no computation.
+// the command line and for Python. Some verbs, such as the tuning on instruments, run differently on the command line and in
+// Python: their description has name, options and help, but no computation.
 #pragma once
 
 #include <functional>
@@ -34,7 +34,8 @@ struct Outcome {
   nlohmann::json json;
   std::string text;  ///< text for a terminal
   std::vector<File> files = {};
-  std::string next = {};   ///< text below the list of files; "{}" stands for the path of the scene, for a command `export`
+  std::string next = {};   ///< text below the list of files; "{}" stands for the path of the scene, for a command line of the
+                           ///< verb `export`
   std::string last = {};   ///< text at the end of the output
   std::string fault = {};  ///< reason why the verb did not succeed, printed to standard error even with --quiet
   Ending ending = Ending::done;
@@ -63,7 +64,8 @@ struct Setting {
 /// The general options of a verb.
 struct Takes {
   bool scene = true;                           ///< true if a scene is required
-  bool set = true, quiet = true, json = true;  ///< options of the program
+  bool set = true, quiet = true, json = true;  ///< true for the options of the program --set, --quiet and --json that the verb
+                                               ///< has
 };
 
 struct Study {
@@ -76,7 +78,7 @@ struct Study {
   bool is_explorable;   ///< true if an exploration may run the verb at its points
   const char* leaves;   ///< description of the files in --out; null: no files
   const char* place;    ///< default folder of the files; null: without --out no files are written
-  const char* leaving;  ///< option that must be given together with --out; null: none
+  const char* leaving;  ///< option that the user must give together with --out; null: none
   const char* changes;  ///< example of --set
   std::string remarks;
   std::vector<std::string> files;  ///< names of files that --out may hold
@@ -97,7 +99,7 @@ inline constexpr auto varied_scene = "scene file with [spread], result folder (t
 inline constexpr auto scene_alone = "scene file (TOML)";
 inline constexpr auto usual_change = "change one key of the scene, such as --set gap.contact=\"1.8 um\"";
 
-/// Defaults for the members of a request that describe its verb.
+/// Defaults for members of a request type that describe its verb.
 struct Usual {
   static constexpr const char *returns = "Outcome", *progress = "None", *in_python = "", *subject = "SCENE",
                               *scene = scene_or_result, *leaves = nullptr, *place = nullptr, *leaving = nullptr,
@@ -150,7 +152,7 @@ template <class Request>
   return study;
 }
 
-/// Returns the description of a verb whose request also has a function run(setting, request).
+/// Returns the description of a verb for whose request a function run(setting, request) exists.
 template <class Request>
 [[nodiscard]] Study study_of() {
   Study study = described<Request>();
@@ -160,7 +162,7 @@ template <class Request>
   return study;
 }
 
-// Each study is defined in a file of its own.
+// Each study is defined in a separate file.
 [[nodiscard]] Study accuracy_study();
 [[nodiscard]] Study calibrate_study();
 [[nodiscard]] Study check_study();

@@ -46,7 +46,7 @@ Key conduction_key(std::string_view name, const Dimension& dimension, Range rang
 }
 
 // Returns the keys of the resistance of the closed contact (model/contact/resistance.h). A contact law that needs a hardness
-// has a key of its own for the hardness.
+// has a separate key for the hardness.
 std::vector<Key> conduction_keys() {
   Key hardness = conduction_key<&Conduction::hardness>(
       "hardness", dimension::pressure, positive, "hardness of the softer metal; conducting spots are plastic at this pressure");
@@ -109,7 +109,7 @@ void check_named(const Device& d, std::size_t k, const SectionReader& in) {
   if (!in.is_given("gap")) in.fail(R"(missing key 'gap' (a length such as "2 um"))");
   const double own = in.number("gap");
   const SectionReader gap(in.file(), "gap");
-  constexpr double most = 0.99;  // see check_gap()
+  constexpr double most = 0.99;  // largest contact gap over electrode gap: see check_gap()
   in.require(c.side == Side::far || own < most * d.gap.electrode, "gap",
              fmt::format("must be less than {:g} times {}", most, gap.written("electrode")));
 }

@@ -97,7 +97,7 @@ void check(Beam& beam, Structure& s, Scene& scene, const SectionReader& in) {
     if (!in.has_value(key)) continue;
     in.require(!in.flag(key) || in.is_given("poissons_ratio"), key, "needs structure.poissons_ratio");
   }
-  if (!in.has_value("residual_stress") || in.file().find({"surface"})) return;  // the load is defined by [surface]
+  if (!in.has_value("residual_stress") || in.file().find({"surface"})) return;  // [surface] gives the load instead
   const std::string buckled = why_buckled(s);
   in.require(buckled.empty(), "residual_stress", buckled);
 }

@@ -6,7 +6,7 @@
 namespace softland::internal {
 namespace {
 
-/// Returns the keys of one parameter of a waveform family: two keys if the parameter may be given in two ways.
+/// Returns the keys of one parameter of a waveform family: two keys if a scene may give the parameter in two forms.
 template <class Family>
 std::vector<Key> keys_of(const Parameter<Family>& parameter, const std::vector<Dimension>& level, bool factor) {
   Key key = std::holds_alternative<double Family::*>(parameter.member) ? number(parameter.name, level, any, parameter.about)
@@ -82,7 +82,7 @@ std::vector<Key> keys_beside_file() {
   return keys;
 }
 
-/// Returns the section for waveforms of the drive `entry`, or of all drives without a section of their own. `level` holds the
+/// Returns the section for waveforms of the drive `entry`, or of all drives without a specific section. `level` holds the
 /// permitted dimensions of a level.
 Section section_of(std::string_view entry, const std::vector<Dimension>& level, std::string_view about) {
   std::vector<std::string_view> names;

@@ -147,7 +147,7 @@ class Study {
     progress();
   }
 
-  // Measures a setting at every tolerance.
+  // Measures a setting at every tolerance of the study.
   void sweep(const Switch& model, const AccuracyRow& given, std::vector<AccuracyRow>& rows) {
     bool cut = false;
     for (const double tolerance : options_.tolerances) {
@@ -278,7 +278,8 @@ class Study {
     }
   }
 
-  // True if the errors of a row, and of the following rows of the same setting with tighter tolerances, are within an accuracy.
+  // True if the errors of a row, and those of the following rows with the same setting and tighter tolerances, are within an
+  // accuracy.
   [[nodiscard]] bool within(std::size_t index, double accuracy) const {
     const AccuracyRow& first = found_.rows[index];
     if (!first.missing.empty()) return false;

@@ -2,8 +2,8 @@
 // single integration step) against computing time and evaluations of the right-hand side, for every integrator, tolerance,
 // number of quadrature points and number of modes.
 //
-// The reference run has a ten-thousandth of the tightest tolerance and twice the largest number of quadrature points, or values
-// as near to these as its time limit allows. Settings that are as tight as the reference, or tighter, are skipped.
+// The reference run has a ten-thousandth of the tightest tolerance and twice the largest number of quadrature points, or the
+// nearest values that its time limit allows. Settings that are as tight as the reference, or tighter, are skipped.
 // - A rigid plate has the same gap everywhere, so the study varies no quadrature for it.
 // - The applied voltages stay the same for every number of modes.
 // - The effect of another number of modes is a property of the model, not an integration error, and is reported separately.
@@ -44,7 +44,7 @@ struct AccuracyOptions {
   double all_seconds = 15;        ///< limit for all other runs [s]; later settings are skipped
   std::function<void(std::size_t done, std::size_t of)> on_progress = {};
   const std::atomic<bool>* stop = nullptr;
-  std::function<double()> clock = wall_clock;  ///< clock for all these limits [s]; read once in 64 steps of the integrator
+  std::function<double()> clock = wall_clock;  ///< clock for the time limits [s]; read once in 64 steps of the integrator
 };
 
 /// One setting of the integrator and the discretisation, with its results.
@@ -62,8 +62,8 @@ struct AccuracyRow {
   int runs = 0;                     ///< number of timed runs
 };
 
-/// The fastest setting whose errors are within an accuracy. The errors at the tighter tolerances of the same setting must be
-/// within this accuracy as well, which excludes settings that are accurate by chance.
+/// The fastest setting whose errors are within an accuracy. Its errors at tighter tolerances must be within this accuracy as
+/// well, which excludes settings that are accurate by chance.
 struct Recommendation {
   double accuracy = 0;
   std::optional<std::size_t> row;  ///< index of AccuracyStudy::rows; none if no simulated setting is accurate enough
@@ -73,18 +73,19 @@ struct AccuracyStudy {
   Status status = Status::not_run;  ///< status of the reference run; a scene without contact cannot be studied
   std::string message = {};         ///< reason for a missing reference, or for a reference that is looser than planned
   AccuracyRow reference;
-  /// Relative difference of the figures between the reference and a second reference, with a hundred times its tolerance and
-  /// half its quadrature points. Smaller errors are not resolved.
+  /// Relative difference of the figures between the reference and a second reference, with a hundred times the tolerance and
+  /// half the quadrature points. Errors below this difference are not resolved.
   FigureErrors resolution = {};
   /// Runs with the integrator that simulate() uses, for every tolerance and number of quadrature points, beginning with the
-  /// number that simulate() uses. The other integrators run with that number alone, for every tolerance.
+  /// number that simulate() uses. Other integrators run with this number of quadrature points only, for every tolerance.
   std::vector<AccuracyRow> rows;
   std::vector<AccuracyRow> modes;    ///< runs with other numbers of modes, at the tightest tolerance
   std::vector<AccuracyRow> through;  ///< runs without restart at make and break of contact, for every integrator and tolerance
   std::string why_always_restarted;  ///< reason for missing runs without restart of the integrator
-  std::array<Spread, studied_figures.size()> cloud;      ///< spreads of studied_figures over perturbed runs
-  Spread permanent_contact_time, bounce_count;           ///< spreads of these figures over the same runs as `cloud`
-  std::array<bool, studied_figures.size()> conditioned;  ///< true for a well-conditioned figure, whose error is meaningful
+  std::array<Spread, studied_figures.size()> cloud;      ///< spreads of the figures in studied_figures over perturbed runs
+  Spread permanent_contact_time, bounce_count;           ///< spreads of the named figures over the same runs as `cloud`
+  std::array<bool, studied_figures.size()> conditioned;  ///< for each of studied_figures, true if it is well-conditioned, so
+                                                         ///< that its error is meaningful
   std::vector<Recommendation> recommendations;
 
   /// Returns the largest error of the well-conditioned figures; NaN if the row lacks one of these figures.

@@ -99,7 +99,7 @@ double statics_moved(const Scene& scene, int modes) {
   return most;
 }
 
-// True if the stability of the closed state under the hold levels is the same with more modes as with those of the scene.
+// True if the stability of the closed state under the hold levels is the same with more modes as with the scene's number.
 bool agrees_on_stability(const PreparedScene& p) {
   const ModeLadder ladder(p);
   const auto closed = closed_equilibria(ladder, hold_levels(p.signals()));

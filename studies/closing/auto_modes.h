@@ -1,7 +1,7 @@
 // Chooses the number of modes that the closing of a scene needs, for modes = "auto".
 //
-// The chosen number is the smallest one for which three further modes change no figure by more than the tolerance. The figures,
-// under the scene's own waveforms, are
+// The chosen number is the smallest one for which three further modes change no figure by more than the tolerance. The compared
+// figures, under the scene's own waveforms, are
 // - initial contact time, impact velocity, and the highest rebound within one period of the first mode after first contact;
 // - the static and dynamic pull-in voltages that the scene uses;
 // - the static pull-in, release and collapse voltages, which are compared at twice and four times as many modes (by_modes.h).
@@ -31,8 +31,8 @@ struct AutoModes {
   [[nodiscard]] std::string note() const;
 };
 
-/// Returns the smallest number of modes that suffices. If the figures change at every number, returns the largest number that
-/// can be compared with more modes. Throws the exceptions of prepare().
+/// Returns the smallest number of modes that suffices. If more modes change the figures at every number, returns the largest
+/// number that can be compared with more modes. Throws the exceptions of prepare().
 [[nodiscard]] AutoModes choose_modes(const SceneFile& file, const Progress& progress = {});
 
 }  // namespace softland

@@ -17,7 +17,7 @@ constexpr double found_to = 1e-5;  // relative precision of a voltage with more 
 
 // Returns the limit of values as the number of modes grows. Values at three successively doubled numbers of modes are
 // extrapolated as a geometric series (Aitken). The last value is the limit if it hardly differs from the previous value, or if
-// it has the largest number of modes and changed little.
+// it belongs to the largest number of modes and changed little.
 double extrapolated(const std::map<int, double>& values) {
   constexpr double rounding = 3 * found_to, fastest = 0.5,
                    left = 0.02;  // upper limits of the relative changes of the last value, and of the ratio of changes

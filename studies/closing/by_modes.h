@@ -1,9 +1,9 @@
-// The effect of more modes on the statics of a switch: its equilibria, their stability, and its voltages.
+// The effect of more modes on the statics of a switch: equilibria, their stability, and pull-in, release and collapse voltages.
 //
-// The stability of a switch may depend on the number of modes in its scene, and so may a voltage. For a bridge that collapses
-// onto its electrode on one side, the closed state is the less stable, the more modes the model has. A bridge that is bent by
-// many of its thicknesses acts like a membrane, for which few bending modes are too stiff. Statics are cheap, so they are
-// computed with the modes of the scene, with twice and with four times as many, up to most_static_modes, symmetric and
+// The stability of a switch, and its static voltages, may depend on the number of modes in the scene. For a bridge that
+// collapses onto its electrode on one side, the closed state is the less stable, the more modes the model has. A bridge that is
+// bent by many of its thicknesses acts like a membrane, for which few bending modes are too stiff. Statics are cheap, so they
+// are computed with the modes of the scene, with twice and with four times as many, up to most_static_modes, symmetric and
 // antisymmetric.
 #pragma once
 
@@ -19,7 +19,7 @@
 
 namespace softland {
 
-/// Smallest relative change of a voltage by more modes that is reported, with the converged voltage.
+/// Smallest relative change of a voltage by more modes that is reported, together with the converged voltage.
 inline constexpr double mode_shift_worth_telling = 0.01;
 
 /// A number, such as a voltage or an eigenvalue, computed with several numbers of modes.
@@ -29,7 +29,7 @@ struct ByModes {
   /// most modes. NaN if the values do not converge.
   double converged = std::numeric_limits<double>::quiet_NaN();
   /// Relative change from the first value to the limit, or to the value with the most modes if the limit is not known. Infinite
-  /// if a value exists with some numbers of modes only, NaN without values.
+  /// if the number exists with some numbers of modes only, NaN without values.
   [[nodiscard]] double moved() const;
   [[nodiscard]] bool is_worth_telling() const;
 };
@@ -44,7 +44,8 @@ class ModeLadder {
   explicit ModeLadder(const PreparedScene& prepared) : ModeLadder(prepared.scene, prepared.model) {}
   /// True if more modes than the scene's are possible.
   [[nodiscard]] bool exists() const { return !richer_.empty(); }
-  /// Returns the switches, that of the scene first. The pointers are valid as long as `this`, the scene and its switch exist.
+  /// Returns the switches in rising number of modes, that of the scene first. The pointers are valid as long as `this`, the
+  /// scene and its switch exist.
   [[nodiscard]] std::vector<const Switch*> switches() const;
   /// Returns the switch with most_static_modes, built at the first call.
   [[nodiscard]] const Switch& finest() const;
@@ -58,8 +59,8 @@ class ModeLadder {
   mutable std::optional<Switch> finest_;
 };
 
-/// Returns the closed equilibria under constant voltages, that of the scene's switch first. Each search starts from the
-/// previous equilibrium.
+/// Returns the closed equilibria under constant voltages for all switches, the scene's own switch first. Each search starts
+/// from the previous equilibrium.
 [[nodiscard]] std::vector<std::optional<ClosedEquilibrium>> closed_equilibria(const ModeLadder& ladder,
                                                                               std::span<const double> volts);
 
@@ -67,8 +68,8 @@ class ModeLadder {
 /// stable.
 struct StabilityByModes {
   ByModes eigenvalues;         ///< smallest eigenvalue of each equilibrium [rad^2/s^2]
-  std::optional<bool> stable;  ///< true if stable with every number of modes that suffices to decide, and in the limit
-  bool flips = false;          ///< true if stable with some of these numbers of modes and unstable with others
+  std::optional<bool> stable;  ///< true if stable with every number of modes that is large enough to decide, and in the limit
+  bool flips = false;          ///< true if stable with some of the computed numbers of modes and unstable with others
 };
 [[nodiscard]] StabilityByModes stability(const ModeLadder& ladder, std::span<const std::optional<ClosedEquilibrium>> closed);
 /// Returns the stability of the open equilibrium under constant voltages.
@@ -78,24 +79,24 @@ struct StabilityByModes {
 struct VoltagesByModes {
   ByModes static_pull_in, release, pulled_through;  ///< without values if there is no contact
 };
-/// Returns the voltages of an electrode. `pulled_through` is the collapse voltage of the scene's own switch, above its release
-/// voltage.
+/// Returns the pull-in, release and collapse voltages of an electrode. `pulled_through` is the collapse voltage of the scene's
+/// own switch, above its release voltage.
 [[nodiscard]] VoltagesByModes voltages_by_modes(const ModeLadder& ladder, const Scene& scene, std::size_t electrode,
                                                 double pulled_through);
 [[nodiscard]] ByModes static_pull_in_by_modes(const ModeLadder& ladder, const Scene& scene, std::size_t electrode);
-/// Returns pull_through_voltage() with several numbers of modes; `own` is that of the scene's switch, NaN without one [V].
+/// Returns pull_through_voltage() with several numbers of modes; `own` is the value of the scene's switch, NaN without one [V].
 [[nodiscard]] ByModes pulled_through_by_modes(const ModeLadder& ladder, std::size_t electrode, std::vector<double> volts,
                                               double own);
 
-/// Returns the capacitance of the searched electrode in the closed state under these voltages [F], for a switch that closes
-/// onto the face of a dielectric. Includes the most modes that a closing uses, if more modes change the capacitance by a
-/// reported amount.
+/// Returns the capacitance of the electrode that closes the switch, in the closed state under these voltages [F], for a switch
+/// that closes onto a dielectric. Adds a value with the most modes that a closing uses, if more modes change the capacitance by
+/// at least mode_shift_worth_telling.
 [[nodiscard]] ByModes closed_capacitance_by_modes(const ModeLadder& ladder, std::span<const double> volts);
 /// Returns the smallest computed number of modes from which on values stay within mode_shift_worth_telling of the limit. None
-/// if the value with the most modes does not, or if the values do not converge.
+/// if the value with the most modes differs by more, or if the values do not converge.
 [[nodiscard]] std::optional<int> modes_needed(const ByModes& found);
 
-/// Returns the change of a value by more modes as text, with its limit if that is reported: "−6.1 %, to 142.7 V".
+/// Returns the change of a value by more modes as text, with the limit if the change is reported: "−6.1 %, to 142.7 V".
 [[nodiscard]] std::string shift_prose(const ByModes& value, std::string_view unit = "V");
 
 /// Returns warnings about changes by more modes in the static pull-in voltages and in the capacitance of the closed state.

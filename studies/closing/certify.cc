@@ -14,7 +14,7 @@
 namespace softland {
 namespace {
 
-constexpr double shared = 0.01;  // common error of both runs, relative to the figure, over the tolerance
+constexpr double shared = 0.01;  // error that both runs share, relative to the figure, over the tolerance
 constexpr double parted = 0.1;   // relative difference of a rebound's height above which two runs have diverged
 
 // True if the last digits of the drives change a figure visibly, or decide its existence, in the closing or in the better run.
@@ -30,8 +30,8 @@ bool ill_conditioned(const Figure& figure, const std::vector<Metrics>& cloud, co
   return have < static_cast<std::ptrdiff_t>(cloud.size() + 2) || ill_conditioned(spread(std::move(values)));
 }
 
-// Returns the figures of the closing after an increase, and a decrease, by its error of each pull-in voltage that is a unit of
-// the drives. The error is a multiple of the change with a finer quadrature, plus the width of the bracket of the voltage.
+// Returns the figures of the closing after each pull-in voltage that is a unit of the drives is increased, and decreased, by
+// its error. The error is a multiple of the change with a finer quadrature, plus the width of the bracket of the voltage.
 std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switch& fine, const SwitchOptions& quadrature,
                                       const ClosingOptions& options, const MetricsOptions& figures, const Progress& progress) {
   const Scene& written = prepared.effects ? prepared.effects->described : prepared.scene;
@@ -57,7 +57,7 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
       PreparedScene moved = prepared;
       try {
         moved.drives = written.drives(units).of(prepared.drive_names());
-        for (std::size_t i = 0; i < moved.drives.size(); ++i)  // the sources charge the same switch as in `prepared`
+        for (std::size_t i = 0; i < moved.drives.size(); ++i)  // the capacitance that loads a source stays as in `prepared`
           moved.drives[i].source.load = prepared.drives[i].source.load;
       } catch (const InvalidInput&) {  // no figures: a drive is at a limit of its driver, or no better pull-in voltage exists
         found.emplace_back();
@@ -110,7 +110,7 @@ std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, 
                           .impact_velocity = first.impacts[k],
                           .at_threshold = at_threshold};
   };
-  // The touch with the smallest impact velocity is assumed to be the one that tiny changes add or remove.
+  // The touch with the smallest impact velocity is assumed to be the touch that tiny changes add or remove.
   const auto gentlest = [&](std::size_t count) {
     const auto found = std::min_element(first.impacts.begin(), first.impacts.begin() + static_cast<std::ptrdiff_t>(count));
     return named(static_cast<std::size_t>(found - first.impacts.begin()), false);

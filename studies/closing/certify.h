@@ -1,12 +1,12 @@
 // Figures of merit with reliable errors, and ranges for figures that have no error.
 //
 // The figures are those of simulate(). The error of a figure is a multiple of its difference to a more accurate run, the judge,
-// plus a hundredth of the tolerance for the common error of both runs. The errors are calibrated on random scenes
+// plus a hundredth of the tolerance for the error that both runs share. The errors are calibrated on random scenes
 // (bench/certify_coverage.cc). Pull-in voltages that serve as units of the drives are computed again with the judge's
 // quadrature, and their errors are propagated to the figures.
 //
 // A figure is ill-conditioned if imperceptible changes of the drives change it visibly. Such a figure is then given as median
-// and range over a cloud of perturbed runs, and its error reaches to the end of that range.
+// and range over a cloud of perturbed runs, and its error reaches to the end of the range.
 #pragma once
 
 #include <optional>
@@ -24,8 +24,8 @@ struct GrazingRebound {
   double time = 0;             ///< beginning of the rebound [s]
   double height = 0;           ///< height of the rebound in the first run [m]
   double impact_velocity = 0;  ///< impact velocity of the touch before the rebound [m/s]
-  bool at_threshold = false;   ///< true if the rebound is significant in some runs only; false if the touch before it has the
-                               ///< smallest impact velocity so far
+  bool at_threshold = false;   ///< true if the rebound is significant in some runs only; false if the touch before the rebound
+                               ///< has the smallest impact velocity so far
 };
 
 struct IllConditioned {
@@ -39,7 +39,7 @@ struct Certificate {
   int runs = 0;
 };
 
-/// Ratio of a stated error to the difference between a run and the more accurate run.
+/// Ratio of the stated error of a figure to the difference between a run and its more accurate judge.
 inline constexpr double error_safety = 3;
 
 /// Returns the first rebound in which the runs differ, with the cause of the difference; none if the runs do not differ.

@@ -17,7 +17,7 @@ enum class Varied { integrator, modes, gas };
 
 /// A switch and a tolerance with which a closing is simulated again.
 struct OtherWay {
-  std::string name;  ///< "tolerance 1e-9", "modes 6", "gas veijola"
+  std::string name;  ///< name of the setting: "tolerance 1e-9", "modes 6", "gas veijola"
   Varied varied = Varied::integrator;
   Device device;
   double tolerance = 0;
@@ -29,18 +29,19 @@ struct CheckingRun {
   Metrics metrics;
 };
 
-/// Returns the device with two, four and six more modes, up to the limit of modes; none for a plate, which has one mode.
+/// Returns the device with two, four and six more modes, up to the largest number of modes; none for a plate, which has one
+/// mode.
 [[nodiscard]] std::vector<Device> with_more_modes(const Device& device);
 /// Returns the quadrature for `device`, which has more modes than the device for which `quadrature` was chosen.
 [[nodiscard]] SwitchOptions quadrature_of_richer(SwitchOptions quadrature, const Device& device);
 
-/// Returns a setting with a tighter integrator, then a setting with each larger number of modes.
+/// Returns settings for repeating a closing: first a tighter integrator, then each larger number of modes.
 [[nodiscard]] std::vector<OtherWay> other_numerics(const PreparedScene& closing);
 /// Returns a setting for each of the gas laws strip, veijola and gallis-torczynski, without the scene's own law and the laws
-/// that are impossible for the scene. None if the gas is a linear damper, and without gas.
+/// that are impossible for the scene. None if the gas is a linear damper, or if there is no gas.
 [[nodiscard]] std::vector<OtherWay> other_gas_laws(const PreparedScene& closing);
 
-/// Simulates the closing with this switch and tolerance.
+/// Simulates the closing with the switch and the tolerance of `way`.
 [[nodiscard]] CheckingRun simulated(const PreparedScene& closing, const OtherWay& way);
 /// Simulates the closing with every other setting. A run is left out if it leaves the limits of its gas law.
 [[nodiscard]] std::vector<CheckingRun> run_checks(const PreparedScene& closing);

@@ -163,7 +163,8 @@ void add_omissible_fringing(const PreparedScene& prepared, std::vector<Omissible
   }
 }
 
-// Adds the dielectrics that can be omitted. A face onto which the beam closes stays; only its roughness can be omitted.
+// Adds the dielectrics that can be omitted. A dielectric on which the beam closes stays; only the roughness of its face can be
+// omitted.
 void add_omissible_dielectrics(const PreparedScene& prepared, std::vector<OmissibleEffect>& list) {
   const Device& d = prepared.scene.device;
   for (const Electrode& e : d.electrodes) {
@@ -295,7 +296,7 @@ PreparedScene copy_without(const PreparedScene& prepared, const std::vector<Omis
   PreparedScene p = prepare(file);
   p.scene.warnings = prepared.scene.warnings;
   p.pull_in = prepared.pull_in;
-  p.drives = prepared.drives.of(p.drive_names());  // the sources charge the same electrodes as in `prepared`
+  p.drives = prepared.drives.of(p.drive_names());  // the loads of the sources stay as in `prepared`
   p.duration = prepared.duration;
   p.held_from = prepared.held_from;
   p.tolerance = prepared.tolerance;

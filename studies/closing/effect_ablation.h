@@ -29,29 +29,30 @@ struct OmissibleEffect {
   NamedNumber group;  ///< the dimensionless group that measures the size of the effect
   /// Value of the key in a scene without the effect; none if the key or section is removed.
   std::optional<SceneValue> instead;
-  bool automatic = true;  ///< true if effects = "auto" may leave it out
+  bool automatic = true;  ///< true if effects = "auto" may leave out this effect
 };
 
-/// The results of a closing that ends with the window, or earlier if it exceeds the bound on its cost.
+/// The results of a closing that ends with the window, or earlier if its cost exceeds a bound.
 struct BoundedClosing {
   Metrics metrics;
   long steps = 0;
-  double seconds = 0;              ///< processor time of the thread that ran it [s]
-  std::optional<double> end = {};  ///< time at which the bound ended the closing [s]; none if it ran to the end of the window
+  double seconds = 0;              ///< processor time of the thread that ran the closing [s]
+  std::optional<double> end = {};  ///< time at which the bound ended the closing [s]; none if the closing ran to the end of the
+                                   ///< window
   std::vector<std::string> warnings = {};
   std::vector<double> states = {};  ///< states at which a right-hand side is timed (timing.h)
 };
 
-/// The largest cost of a closing without an effect. Without the effect that stops the rebounds, such as the film over a rigid
-/// face, a closing takes up to a thousand times as many steps. A law with states of its own takes up to a hundred times as long
-/// per step.
+/// The largest cost of a closing without one effect. Without the effect that stops the rebounds, such as the gas film over a
+/// rigid plate, a closing takes up to a thousand times as many steps. A law with further state variables takes up to a hundred
+/// times as long per step.
 struct ClosingBound {
   static constexpr long fewest_steps = 100'000, steps_over_own = 10;
   static constexpr double least_seconds = 10, seconds_over_own = 100;
 
   long steps = std::numeric_limits<long>::max();
   double seconds = std::numeric_limits<double>::infinity();  ///< processor time [s]
-  /// Returns the bound on the cost of other closings that follows from the cost of the scene's own closing.
+  /// Returns the bound on the cost of other closings, computed from the cost of the scene's own closing.
   [[nodiscard]] static ClosingBound after(const BoundedClosing& own) {
     return {.steps = std::max(fewest_steps, steps_over_own * own.steps),
             .seconds = std::max(least_seconds, seconds_over_own * own.seconds)};
@@ -69,7 +70,8 @@ struct EffectAblation {
   Metrics metrics;
   double influence = 0;            ///< largest relative change of a figure: see the function influence()
   double rhs_seconds = 0;          ///< time per evaluation of the right-hand side [s]; NaN if not measured
-  std::optional<double> end = {};  ///< time at which the bound ended the closing [s]; none if it ran to the end of the window
+  std::optional<double> end = {};  ///< time at which the bound ended the closing [s]; none if the closing ran to the end of the
+                                   ///< window
 };
 
 /// Returns all described effects that the scene could omit, in the order of the scene's sections. Drives with a waveform do not
@@ -80,7 +82,7 @@ struct EffectAblation {
 [[nodiscard]] PreparedScene copy_without(const PreparedScene& prepared, const std::vector<OmissibleEffect>& effects);
 
 /// Returns the largest relative difference of t_i, v_i and B_H (initial contact time, impact velocity, highest rebound), by
-/// Figure::counted(). Infinite if one of them exists in one closing only, and if the scene's own closing reaches no contact.
+/// Figure::counted(). Infinite if a figure exists in one closing only, and if the scene's own closing reaches no contact.
 [[nodiscard]] double influence(const Metrics& own, const Metrics& other, const MetricsOptions& options);
 
 /// Leaves out one effect after another. If `progress` asks to stop, the list ends with the last complete closing. No closing
@@ -96,13 +98,14 @@ struct EffectsChoice {
 };
 
 struct DescribedEffects {
-  Scene described;  ///< scene with every effect, and its drives as written
+  Scene described;  ///< scene with every effect, and its drives as in the file
   EffectsChoice choice;
 };
 
 /// Returns the effects that the scene can omit. Each effect alone, and all together, have an influence of at most `tolerance`,
-/// and the closing without each effect is complete. While all together exceed the tolerance, the most influential effect is
-/// restored. No effect is left out of a scene whose closing reaches no contact. Throws Interrupted if `progress` asks to stop.
+/// and the closing without each effect is complete. While the effects together exceed the tolerance, the most influential one
+/// is restored. No effect is left out of a scene whose closing reaches no contact. Throws Interrupted if `progress` asks to
+/// stop.
 [[nodiscard]] EffectsChoice negligible_effects(const PreparedScene& prepared, double tolerance, const Progress& progress = {});
 
 }  // namespace softland

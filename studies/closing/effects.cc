@@ -13,7 +13,7 @@
 namespace softland {
 namespace {
 
-// Returns the reason why this gas cannot surround the device; empty if it can.
+// Returns the reason why this gas cannot surround the device; empty if this is possible.
 std::string refusal(Device device, const Gas& gas) {
   device.gas = gas;
   try {

@@ -27,22 +27,22 @@ struct Effect {
       {};  ///< time at which the bound ended the closing [s] (BoundedClosing); none for the scene's own closing
 };
 
-/// A law that cannot replace the scene's own.
+/// A law that cannot replace the law of the scene in the comparison.
 struct NotCompared {
   std::string choice;
   std::string reason;
 };
 
 struct Effects {
-  std::vector<Effect> list;               ///< results of the gas laws
+  std::vector<Effect> list;               ///< results of the closing with each gas law
   std::vector<NotCompared> not_compared;  ///< laws that are impossible for the scene
   std::vector<EffectAblation> ablations;
   double window = 0;         ///< window of every closing [s]
-  bool interrupted = false;  ///< true if interrupted: the lists then have complete closings only, at least the scene's own
+  bool interrupted = false;  ///< true if interrupted: both lists then have complete closings only, at least the scene's own
 
   /// Returns the results of the scene's own law in this section.
   [[nodiscard]] const Effect& own(const std::string& section) const;
-  /// Returns the largest less the smallest value of a figure over the laws of a section, except "none", relative to the figure
+  /// Returns the largest less the smallest value of a figure over the laws of a section, except "none", divided by the figure
   /// of the scene's own closing. NaN if the figure is missing in any of the compared closings.
   [[nodiscard]] double spread(const std::string& section, const Figure& figure) const;
 };

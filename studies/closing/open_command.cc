@@ -27,8 +27,8 @@ std::vector<double> levels_at(const std::vector<Signal>& signals, const Instant&
   return levels;
 }
 
-// Returns the number of parts into which a piece of a signal is divided, so short that no term of the piece turns twice in one
-// part; 1 for a straight piece.
+// Returns the number of parts into which a piece of a signal is divided. In one part, no term of the piece has two extrema; 1
+// for a straight piece.
 int parts_of(const Signal& signal, double begin, double end) {
   const double step = signal.resolving_step(begin);
   return std::isfinite(step) ? std::clamp(static_cast<int>(std::ceil((end - begin) / step)), 1, most_samples) : 1;
@@ -75,7 +75,8 @@ class Holding {
     std::vector<double> levels = levels_at(signals_, instant);
     if (is_weaker(levels, last_) || is_weaker(levels, lost_)) return false;
     if (hold_under(model_, levels).is_held) return true;
-    lost_ = std::move(levels);  // the levels at the next instants are probably no higher
+    lost_ = std::move(levels);  // levels under which the closed state was lost; those of the next instants are probably no
+                                // higher
     return false;
   }
 

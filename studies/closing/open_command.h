@@ -12,14 +12,15 @@ namespace softland {
 
 struct OpenCommand {
   double time = 0;           ///< time of the command to open [s]
-  std::vector<Signal> held;  ///< drives until the command, and constant at their levels just before it from then on
+  std::vector<Signal> held;  ///< drives unchanged until the command; from then on constant at their levels just before the
+                             ///< command
 };
 
-/// Finds the command to open that these drives give, one per drive of the switch. The command is the beginning of their last
-/// fall to levels under which no closed state is stable and the open state is stable. The levels up to the end of the waveforms
-/// count. A switch that starts closed is commanded to open by the first such fall. A fall is the time in which the voltages of
-/// the electrodes that cause the opening only approach 0 V. A downward jump is a fall that begins at the jump. None if the hold
-/// levels keep the switch closed or collapse it, and if the drives never kept it closed.
+/// Finds the command to open that these drives give, one per drive of the switch. The command is the beginning of the last fall
+/// of the drives to levels under which no closed state is stable and the open state is stable. The levels up to the end of the
+/// waveforms count. If the switch starts closed, the first such fall is the command. A fall is a time in which the voltages of
+/// the electrodes that cause the opening only approach 0 V; a downward jump begins a fall. None if the hold levels keep the
+/// switch closed or collapse it, and if the drives never kept it closed.
 [[nodiscard]] std::optional<OpenCommand> open_command(const Switch& model, const std::vector<Signal>& signals, StartState start);
 
 /// Finds the command to open of these drives: simulate.open_at if the scene has this key. The command may come after the

@@ -17,14 +17,14 @@ namespace softland {
 inline constexpr double settled_share = 0.02;
 
 /// Sets static_deflection, overshoot and open_settling_time of a run that ended without contact, or that began closed and has
-/// opened. These figures need a stable open equilibrium under the hold levels of these drives, and stay unset without one. The
-/// run has not settled if it came near the equilibrium less than a period of the first mode before the end. A run that began
-/// closed is done if it has settled.
+/// opened. The figures need a stable open equilibrium under the hold levels of the drives, and stay unset without one. The run
+/// has not settled if it came near the equilibrium less than a period of the first mode before the end. A run that began closed
+/// is done if it has settled.
 void set_open_figures(Metrics& metrics, const Trajectory& run, const Switch& model, const std::vector<Signal>& signals);
 
-/// True if these drives are not meant to close the switch. Their hold levels must have a stable open equilibrium, and so must
-/// the least and the largest value of each drive in the window [s], with the others at their hold levels. No step of an
-/// electrode, or of the dispersion force, to its largest value may reach the contact plane, so that none is at its dynamic
+/// True if these drives are not meant to close the switch: a stable open equilibrium exists under the hold levels, and under
+/// the least and the largest value of each drive in the window [s], with the others at their hold levels. Moreover, no step of
+/// an electrode, or of the dispersion force, to its largest value may reach the contact plane, since it would be at its dynamic
 /// pull-in voltage.
 [[nodiscard]] bool stays_open(const Switch& model, const std::vector<Signal>& signals, double duration,
                               const Progress& progress = {});

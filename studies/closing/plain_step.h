@@ -10,10 +10,10 @@
 
 namespace softland {
 
-/// Returns the waveforms [V] that replace those of the scene. An actuator with electrodes steps to the hold levels that the
-/// scene describes, as steep as the driver permits; electrodes that brake stay at 0 V. The piezo stays at 0 V unless it is the
-/// only drive of the actuator, and then steps to its own level. Throws InvalidInput if an electrode is needed and none pulls
-/// in.
+/// Returns the waveforms [V] of the plain step, which replace those of the scene. An actuator with electrodes steps to the hold
+/// levels of the scene, as steep as the driver permits; electrodes that brake stay at 0 V. The piezo stays at 0 V unless it is
+/// the only drive of the actuator, and then steps to its own hold level. Throws InvalidInput if no electrode pulls in and one
+/// is needed.
 [[nodiscard]] DriveWaveforms plain_step(const PreparedScene& prepared, Actuator actuator);
 
 /// Returns the step of a drive from one level to another [V], as steep as its driver permits.

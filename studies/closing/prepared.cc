@@ -163,8 +163,8 @@ double periods_of(const Waveform& waveform, double window) {
 }
 
 /// Returns the default window [s] of a scene that closes. The window contains the closing under steps to the hold levels, which
-/// gas may slow down, and a time after it. A damped switch creeps just above pull-in, so the search for first contact ends
-/// after ten such windows, or a thousand if the levels leave no open equilibrium.
+/// gas may slow down, and some time after contact. A damped switch moves slowly just above pull-in, so the search for first
+/// contact ends after ten such windows, or a thousand if no open equilibrium exists under the levels.
 double default_window(const Switch& model, const std::vector<Signal>& signals) {
   constexpr double periods = 6, closings = 4, loose = 1e-4;
   constexpr long most_steps = 100'000;
@@ -198,7 +198,7 @@ double default_window_of_opening(const Switch& model, const std::vector<Signal>&
   return std::clamp(since + margin * period, begin + usual, begin + longest * usual);
 }
 
-/// Returns the drives without the effects of sampling and filters.
+/// Returns the drive signals without the effects of sampling and filters.
 std::vector<Signal> without_sources(const PreparedScene& p) {
   std::vector<Signal> signals = p.commanded(p.waveforms());
   for (std::size_t k = 0; k < signals.size(); ++k) {
@@ -259,7 +259,7 @@ void load_sources(PreparedScene& p) {
   }
 }
 
-/// Throws InvalidInput for a dielectric face that is so soft that the electric field pulls the beam through it.
+/// Throws InvalidInput for a dielectric with such a soft face that the electric field pulls the beam through the face.
 void check_landing(const PreparedScene& p) {
   const Landing* landing = p.scene.device.landing();
   if (landing == nullptr || landing->is_wall()) return;
@@ -346,9 +346,9 @@ ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, Bi
 
 namespace {
 
-// Computes the pull-in voltages of limits with the other drives at 0 V, if the switch has no open state under the levels of
-// these drives. A limit belongs to the source, at any level of the other drives. A waveform in units of these pull-in voltages
-// has no voltage in this case.
+// Computes the pull-in voltages of limits with the other drives at 0 V, if the switch has no open state under the levels of the
+// other drives. A limit belongs to the source, at any level of the other drives. A waveform in units of these pull-in voltages
+// is not defined in this case.
 bool take_limits_at_rest(PreparedScene& p, std::size_t electrode, const PullInFinder& find_pull_in, const Progress& progress) {
   const std::vector<std::string> names = p.drive_names();
   if (std::ranges::find(p.scene.limits_in_pull_in, names[electrode]) == p.scene.limits_in_pull_in.end()) return false;

@@ -26,7 +26,8 @@ struct ElectrodePullIn {
   DynamicPullIn dynamically;
 };
 
-/// Returns the bias [V] of the other drives for the pull-in voltages of this drive: Scene::standing, with this drive at 0 V.
+/// Returns the bias [V] of the other drives for the pull-in voltages of drive number `drive`: Scene::standing, with this drive
+/// at 0 V.
 [[nodiscard]] std::vector<double> bias_of(const Scene& scene, std::size_t drive);
 
 /// Note about an electrode with a face on either side of the beam that pulls the switch at rest away from the contact.
@@ -48,8 +49,8 @@ struct PreparedScene {
   double held_from = std::numeric_limits<double>::infinity();
   SwitchOptions quadrature = {};
   double quadrature_accuracy = 0;  ///< accuracy for which the quadrature was chosen
-  /// The scene with all described effects, and the effects that effects = "auto" left out; null without that choice. The member
-  /// `scene` is without these effects.
+  /// The scene with all described effects, and the effects that effects = "auto" left out; null without effects = "auto". The
+  /// member `scene` lacks the effects that were left out.
   std::shared_ptr<const DescribedEffects> effects = {};
 
   /// Returns the names of the drives in the order of Switch::drives().
@@ -92,8 +93,8 @@ struct PreparedScene {
   [[nodiscard]] SceneFile resolved() const { return softland::resolved(scene, voltage_units()); }
 };
 
-/// Returns the reason why the waveforms of another scene begin at other levels than those of `scene`; empty if the levels are
-/// the same. `before` has the level of each drive of the other scene before t = 0; a missing drive is at 0 V.
+/// Returns the reason why the waveforms of another scene begin at other levels than the waveforms of `scene`; empty if the
+/// levels are the same. `before` has the level of each drive of the other scene before t = 0; a missing drive is at 0 V.
 [[nodiscard]] std::string initial_state_difference(const DriveWaveforms& waveforms, const std::map<std::string, double>& before,
                                                    const PreparedScene& scene);
 
@@ -101,19 +102,21 @@ struct PreparedScene {
 /// function. `study` says in the third person what the study does: "accuracy closes the switch".
 void require_open_start(const Scene& scene, std::string_view study);
 
-/// Returns the key of the state in which a run begins, such as "waveform.main.before_state". The key belongs to the first drive
-/// that has it or is not at 0 V before t = 0, else to the first drive that has a waveform.
+/// Returns the key of the state in which a run begins, such as "waveform.main.before_state": of the first drive that has this
+/// key or is not at 0 V before t = 0, else of the first drive that has a waveform.
 [[nodiscard]] std::string before_state_path(const PreparedScene& scene);
 
-/// Returns a hint at the other start state, for messages: "; waveform.main.before_state = "closed" begins there".
+/// Returns a hint for messages at the other state in which runs may start: "; waveform.main.before_state = "closed" begins
+/// there".
 [[nodiscard]] std::string other_start_hint(const PreparedScene& scene);
 
-/// Describes the state in which runs begin, or the other start state if that one does not exist. Empty if runs begin open and
-/// at 0 V.
+/// Describes the state in which runs begin, or the other start state if the requested state does not exist. Empty if runs begin
+/// open and at 0 V.
 [[nodiscard]] std::string start_prose(const PreparedScene& scene);
 
-/// Returns the integrator tolerance that gives t_i, v_i, B_H and the peak force a relative `accuracy`.
-[[nodiscard]] double tolerance_for(double accuracy, bool stiff = false);  ///< `stiff`: with a compressible film
+/// Returns the integrator tolerance for a relative `accuracy` of t_i, v_i, B_H (contact time, velocity, rebound) and peak
+/// force.
+[[nodiscard]] double tolerance_for(double accuracy, bool stiff = false);  ///< `stiff`: the scene has a compressible gas film
 
 /// Finds the pull-in voltages of an electrode of a switch, by its number, under a bias of the other drives. The function is
 /// electrode_pull_in(), or one that remembers its results.
@@ -127,10 +130,10 @@ using PullInFinder =
 [[nodiscard]] PreparedScene prepare_statics(const SceneFile& file);
 
 /// Reads, composes and resolves a scene. Pull-in voltages are computed for the electrodes that need them, and with
-/// `default_limits` for all electrodes that have no written limit. The choices of the scene are not made yet (auto_settings.h):
-/// modes = "auto" stands for the default number, and effects = "auto" for all effects.
-/// Throws InvalidInput for an invalid scene, and for a scene whose pull-in voltage is needed and does not exist. Throws
-/// Interrupted if `progress` asks to stop.
+/// `default_limits` for all electrodes that have no written limit. Choices that the scene leaves open are not made yet
+/// (auto_settings.h): modes = "auto" stands for a default number, and effects = "auto" for all effects. Throws InvalidInput for
+/// an invalid scene, and for a scene whose pull-in voltage is needed and does not exist. Throws Interrupted if `progress` asks
+/// to stop.
 [[nodiscard]] PreparedScene prepare(const SceneFile& file, bool default_limits = false, const Progress& progress = {},
                                     const PullInFinder& find_pull_in = electrode_pull_in);
 

@@ -9,8 +9,8 @@
 namespace softland {
 namespace {
 
-// Returns the modal forces of every drive at unit strength, then those of the gas on the moving beam. Each modal force is
-// divided by the frequency of its mode.
+// Returns the modal forces of every drive at unit strength, then the modal forces of the gas on the moving beam. Each modal
+// force is divided by the frequency of its mode.
 Eigen::MatrixXd loads_at(const Switch& model, const Eigen::VectorXd& q) {
   const Eigen::Index n = model.modes(), drives = static_cast<Eigen::Index>(model.drives());
   Switch::Workspace work = model.workspace();
@@ -27,7 +27,7 @@ Eigen::MatrixXd loads_at(const Switch& model, const Eigen::VectorXd& q) {
   return model.basis().angular_frequencies().cwiseInverse().asDiagonal() * loads;
 }
 
-// Returns the states of the beam at first contact: held at the contact plane by each drive that can do so, else by a force at
+// Returns the states of the beam at first contact: moved to the contact plane by each drive that can do so, else by a force at
 // the contact.
 std::vector<Eigen::VectorXd> at_touch(const Switch& model) {
   const double plane = model.contact_gap();

@@ -11,7 +11,7 @@
 
 namespace softland {
 
-/// Returns the quadrature with which smooth loads have a relative accuracy.
+/// Returns the quadrature with which smooth loads have the relative `accuracy`.
 [[nodiscard]] SwitchOptions quadrature_for(double accuracy, int modes);
 /// Returns a quadrature with twice as many points.
 [[nodiscard]] SwitchOptions finer_than(const SwitchOptions& quadrature);
@@ -27,8 +27,8 @@ struct ResolvedSwitch {
   double error = 0;  ///< relative error of the loads at contact
 };
 /// Returns a switch with a small number of points that delivers the accuracy, beginning with quadrature_for(accuracy, modes).
-/// If more points do not help, since the loads are not smooth, `error` is above `accuracy`. `modes` replaces the structure's
-/// number of modes.
+/// If more points do not help, because the loads are not smooth, ResolvedSwitch::error is above `accuracy`. `modes` replaces
+/// the structure's number of modes.
 [[nodiscard]] ResolvedSwitch resolved_switch(const Device& device, double accuracy, std::optional<int> modes = {});
 /// Returns the switch of a varied device. `quadrature` delivers `accuracy` for the nominal switch. A varied device whose
 /// contact is nearer to the electrode gets a finer quadrature.

@@ -18,13 +18,13 @@ enum class Sent { commanded, output };
 struct SentSignals {
   std::map<std::string, Signal> signals;
   std::map<std::string, double> sample_rates = {};  ///< rates of sampled signals [Hz]
-  /// Gains of the amplifiers. `signals` are voltages at the switch; an amplifier makes them from the voltages of its source.
+  /// Gains of the amplifiers between sources and switch. `signals` are voltages at the switch, behind the amplifiers.
   std::map<std::string, double> amplifiers = {};
 };
 /// Returns the exported signals for one waveform per drive, in the order of Switch::drives().
 [[nodiscard]] SentSignals sent_signals(const PreparedScene& prepared, const std::vector<Waveform>& waveforms,
                                        Sent sent = Sent::commanded);
-/// Returns the commanded signals of the scene's sources as CSV. A scene that plays this file with the same drivers has the same
+/// Returns the commanded signals of the scene's sources as CSV. A scene with the same drivers that plays this file has the same
 /// closing.
 [[nodiscard]] std::string told_csv(const PreparedScene& prepared);
 

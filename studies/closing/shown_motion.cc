@@ -118,7 +118,7 @@ class LineError {
   std::size_t columns_;
 };
 
-// Adds rows to the retained rows (at least two), each time the row at which linear interpolation has the largest error, until
+// Adds rows to the retained rows (at least two), each time the row where linear interpolation has the largest error, until
 // there are `most` rows.
 std::vector<std::size_t> with_worst(std::vector<std::size_t> kept, const LineError& lines, double tolerance, std::size_t most) {
   std::priority_queue<LineError::Stretch> stretches;

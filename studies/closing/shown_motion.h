@@ -11,7 +11,7 @@
 namespace softland {
 
 /// At position x and time t the lower face of the beam is at the height rest(x) - sum over modes of amplitude_i(t) shape_i(x).
-/// Heights are measured from the face of a straight structure at rest. Deflection towards the near electrode is positive.
+/// Heights are measured from the lower face of a straight structure at rest. Deflection towards the near side is positive.
 struct ShownMotion {
   struct Contact {
     std::string name;  ///< may be empty if there is one contact
@@ -28,7 +28,7 @@ struct ShownMotion {
   std::vector<double> time;                     ///< increasing times [s]
   std::vector<std::vector<double>> amplitudes;  ///< largest deflection of each mode at these times [m]
   std::vector<double> places;                   ///< positions x along the structure, contacts included [m]
-  std::vector<double> rest;                     ///< height of the face at rest at each position [m]
+  std::vector<double> rest;                     ///< height of the lower face at rest at each position [m]
   std::vector<std::vector<double>> shapes;      ///< shape of each mode at these positions, scaled to a largest size of 1
   std::vector<Contact> contacts;
   std::vector<Pad> electrodes;

@@ -19,10 +19,10 @@
 namespace softland {
 namespace {
 
-// Returns the difference of two runs of one closing, plus their common rounding. certify() estimates the errors of t_p, t_b and
-// N_B instead.
+// Returns the difference of two runs of one closing, plus rounding that both share. For permanent contact time, bounce time and
+// bounce count, certify() estimates the errors instead.
 FigureValues difference(const Metrics& a, const Metrics& b, double tolerance, double contact_gap) {
-  constexpr double shared = 0.01;              // common error over the tolerance, relative to a figure
+  constexpr double shared = 0.01;              // error that both runs share, over the tolerance, relative to a figure
   constexpr double lowest_separation = 1e-12;  // over the contact gap; metrics() ignores rebounds below this separation
   FigureValues d;
   for (const Figure& figure : all_figures) {
@@ -49,8 +49,8 @@ struct EvaluatedRun {
   SwitchOptions quadrature;
 };
 
-// Returns the time at which two runs diverge: the first rebound above a height whose heights differ by a tenth. Infinite if the
-// runs do not diverge.
+// Returns the time at which two runs diverge: the first rebound above `lowest` whose heights in the two runs differ by a tenth.
+// Infinite if the runs do not diverge.
 double parting_time(const EvaluatedRun& a, const EvaluatedRun& b, double lowest) {
   constexpr double parted = 0.1;
   const std::vector<Rebound>&one = a.rebounds, &two = b.rebounds;
@@ -64,8 +64,8 @@ double parting_time(const EvaluatedRun& a, const EvaluatedRun& b, double lowest)
   return std::numeric_limits<double>::infinity();
 }
 
-// True if one of the parts after the runs diverge might be the largest of all parts in another run. Two runs are only two
-// samples of a chaotic closing.
+// True if chance decides which part (touch, rebound) is the largest: a part after the runs diverge might be larger in another
+// run. Two runs are only two samples of a chaotic closing.
 template <class Part, class Size>
 bool chance_decides(const std::vector<Part>& parts, double parting, Size&& size) {
   constexpr double margin = 2;
@@ -94,7 +94,7 @@ void forget_what_is_chaotic(FigureValues& errors, const EvaluatedRun& best, cons
     if (figure.conditioning != Conditioning::every_touch) continue;
     if (errors[figure] > visible * std::abs(figure.value(best.metrics))) errors[figure] = Metrics::unset;
   }
-  // Runs may diverge in insignificant rebounds as well: the energy of the later impacts bounds the difference.
+  // Runs may diverge in insignificant rebounds as well; the energy of the later impacts is an upper bound of the difference.
   for (const EvaluatedRun* run : {&best, &other}) {
     double& energy = errors[&Metrics::impact_energy];
     energy = std::max(energy, energy_after(run->trajectory.touches, parting_time(best, other, 0)));
@@ -110,8 +110,8 @@ void forget_what_is_chaotic(FigureValues& errors, const EvaluatedRun& best, cons
   }
 }
 
-// Returns the largest relative difference of t_i, v_i, B_H and the peak force, the figures for which the scene requests an
-// accuracy.
+// Returns the largest relative difference of initial contact time, impact velocity, highest rebound and peak force, the figures
+// for which the scene requests an accuracy.
 double error(const EvaluatedRun& run, const EvaluatedRun& other, const PreparedScene& prepared) {
   FigureValues least;
   least[&Metrics::major_bounce_height] = prepared.scene.metrics.significant_rebound;
@@ -255,16 +255,17 @@ class ClosingRuns {
   bool was_interrupted_ = false;
 };
 
-// A run, its more accurate judge, and the largest relative difference of t_i, v_i, B_H and the peak force between the two.
+// A run, its more accurate judge, and their largest relative difference in contact time, impact velocity, rebound and peak
+// force.
 struct JudgedRun {
   EvaluatedRun own, judge;
   double error;
   const char* why;  // reason why the error cannot be reduced further
 };
 
-// Returns a run with its judge. If runs may be tightened, the judge replaces the run and gets a judge of its own, until the
-// error is within the requested accuracy or tightening no longer helps. In the latter case the tightest run is returned, and a
-// looser run is its judge. If rounding forbids a tighter integrator, only the quadrature is refined.
+// Returns a run with its judge. If runs may be tightened, the judge replaces the run and gets its own judge, until the error is
+// within the requested accuracy or tightening no longer helps. In the latter case the tightest run is returned, and a looser
+// run is its judge. If rounding forbids a tighter integrator, only the quadrature is refined.
 JudgedRun with_judge(EvaluatedRun own, ClosingRuns& runs, const PreparedScene& prepared, bool may_tighten) {
   const double accuracy = prepared.scene.simulate.accuracy;
   EvaluatedRun judge = runs.judge_of(own);

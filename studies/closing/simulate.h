@@ -44,24 +44,24 @@ struct Closing {
   std::vector<ContactClosing> contacts = {};  ///< ordered as Trajectory::contacts; empty for a single contact
   /// Absolute error estimates: the difference to the judge's figures plus rounding, or the errors of certify(). The error of
   /// the drive energy is at least the residual of the energy balance. NaN if not estimated. Two runs do not give the range of a
-  /// chaotic figure, so only certify() estimates the errors of t_p, t_b and N_B, and of figures that depend on the motion after
-  /// the height of a rebound differs between the two runs.
+  /// chaotic figure. So only certify() estimates the errors of permanent contact time, bounce time and bounce count, and of
+  /// figures of the motion after the two runs differ in the height of a rebound.
   FigureValues errors;
-  double tolerance = 0;        ///< tolerance of the integrator in the run from which the figures are
-  SwitchOptions quadrature;    ///< quadrature of the run from which the figures are
-  std::optional<Judge> judge;  ///< judge of the run from which the figures are; none if errors are not estimated
+  double tolerance = 0;        ///< tolerance of the integrator in the run that gave the figures
+  SwitchOptions quadrature;    ///< quadrature of the run that gave the figures
+  std::optional<Judge> judge;  ///< judge of the run that gave the figures; none if errors are not estimated
   /// True for a contact that does not last: under the hold levels the switch has neither a stable closed equilibrium nor an
   /// open equilibrium to which it can return.
   bool is_pulled_through = false;
   std::vector<std::string> warnings;                    ///< warnings of the scene, of the laws, and of ill-conditioned figures
-  std::shared_ptr<const Certificate> certificate = {};  ///< set by certify() only
+  std::shared_ptr<const Certificate> certificate = {};  ///< ill-conditioned figures; set by certify() only
 };
 
 /// Ratio of a stated error to the difference of two runs. The ratio is above 1 because the tighter run has an error as well.
 inline constexpr double stated_safety = 2;
 
 /// True if the figures of a run can be compared with those of another run: the run is complete, or the beam collapsed onto the
-/// electrode after contact, so that t_i and v_i are known.
+/// electrode after contact, so that contact time and impact velocity are known.
 [[nodiscard]] bool came_to_its_end(const Trajectory& run);
 
 /// Raises the error of the drive energy to the residual of the energy balance, since the whole residual may be an error of the
@@ -75,10 +75,10 @@ void allow_for_residual(FigureValues& errors, const Trajectory& run);
 void set_drive_figures(Metrics& metrics, const PreparedScene& prepared, const std::vector<Signal>& signals);
 
 /// Simulates the scene's own waveforms. With `estimate_errors` a second, tighter run gives the error of each figure.
-/// - Accuracy: if t_i, v_i, B_H or the peak force miss the accuracy that the scene requests, tolerance and quadrature are
-///   tightened until all reach it or until tightening no longer helps. The figures are those of the tightest run. Errors are
-///   relative; that of B_H is relative to at least the significant rebound, that of the force to at least least_peak_force().
-///   No run is its own judge, and no error is 0.
+/// - Accuracy: if contact time, impact velocity, highest rebound or peak force miss the accuracy that the scene requests,
+///   tolerance and quadrature are tightened until all reach it or until tightening no longer helps. The figures are those of
+///   the tightest run. Errors are relative; that of the rebound is relative to at least the significant rebound, that of the
+///   force to at least least_peak_force(). No run is its own judge, and no error is 0.
 /// - Interruption: the status of the figures is interrupted. The figures are those of the last complete run, without errors, or
 ///   of the finished part of the first run.
 /// - Hold: a switch that its hold levels do not keep closed has not settled, even if it is at rest at the end of the window.

@@ -8,7 +8,7 @@
 namespace softland {
 namespace {
 
-// A switch in equilibrium at slowly varied voltages. Its state depends on the voltages before.
+// A switch in equilibrium at slowly varied voltages. Its state depends on earlier voltages (hysteresis).
 class SlowSwitch {
  public:
   SlowSwitch(const Switch& model, std::size_t drive, Bias bias)

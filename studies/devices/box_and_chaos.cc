@@ -20,7 +20,7 @@ constexpr double no_bound = std::numeric_limits<double>::infinity();
 constexpr double not_closed =
     std::numeric_limits<double>::lowest();  // value of the minimised function for a device that does not close
 
-/// Points of the box: standard normal numbers, one per varied quantity.
+/// Points of the box of varied quantities: standard normal numbers, one per quantity.
 class Box {
  public:
   Box(const Ensemble& ensemble, const EnsembleDrive& drive, const EnsembleRun& run, const std::atomic<bool>* stop)
@@ -43,11 +43,11 @@ class Box {
   }
 
   const Ensemble* ensemble_;
-  std::vector<EnsembleDrive> drives_;  // `closer_` keeps a reference to it
+  std::vector<EnsembleDrive> drives_;  // drives of the closings; `closer_` keeps a reference to this member
   DeviceCloser closer_;
 };
 
-/// The sampled devices that lie in the box.
+/// The sampled devices in the box of varied quantities.
 struct SampledInside {
   std::vector<std::size_t> devices;
   std::vector<std::vector<double>> z;
@@ -65,7 +65,7 @@ SampledInside sampled_inside(const Ensemble& ensemble, std::size_t sampled, doub
   return inside;
 }
 
-/// Returns the middle of the box, and all corners of the box if these take at most a fifth of the evaluations.
+/// Returns the middle of the box of varied quantities, and all its corners if these take at most a fifth of the evaluations.
 std::vector<std::vector<double>> corners(std::size_t d, double half_width, std::size_t evaluations) {
   std::vector<std::vector<double>> points{std::vector<double>(d, 0)};
   constexpr std::size_t most_bits = 16;

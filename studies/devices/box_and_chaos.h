@@ -19,7 +19,7 @@
 // over the fitted devices, and on the other devices of the sample. Both errors are large for a figure that jumps, since no sum
 // of few polynomials describes such a figure.
 //
-// Errors of measurement are left out of the box. Polynomial chaos cannot predict their part of the figures.
+// Errors of measurement are left out of the box. Polynomial chaos cannot predict the variation that measurement errors cause.
 #pragma once
 
 #include <cstddef>
@@ -33,13 +33,13 @@
 
 namespace softland {
 
-/// Share of all devices that the box holds.
+/// Share of all devices that the box of varied quantities contains.
 inline constexpr double box_share = 0.95;
 
 /// Returns the half width b of the box for d varied quantities, at least one [standard deviations of a normal number].
 [[nodiscard]] double box_half_width(std::size_t d);
 
-/// A device at an end of the range of a figure over the box.
+/// A device at an end of the range of a figure over the box of varied quantities.
 struct BoxDevice {
   std::vector<double> values;  ///< values of the device's varied quantities [SI unit, or factor]
   double figure = Metrics::unset;
@@ -69,8 +69,8 @@ struct BoxAndChaosOptions {
 };
 
 struct BoxAndChaos {
-  double half_width = Metrics::unset;  ///< half width b of the box
-  std::size_t sampled_inside = 0;      ///< number of sampled devices in the box
+  double half_width = Metrics::unset;  ///< half width b of the box of varied quantities, in standard deviations
+  std::size_t sampled_inside = 0;      ///< number of sampled devices in the box of varied quantities
   long closings = 0;                   ///< number of closings of all searches
   std::vector<FigureRange> ranges = {};
   std::vector<FigureChaos> chaos = {};
@@ -78,13 +78,13 @@ struct BoxAndChaos {
   std::string why_none = {};  ///< reason for missing ranges; empty if there are ranges
 };
 
-/// Finds the box ranges and the polynomial chaos of explained_figures for this drive, which was simulated on the devices of
-/// `options`. The results depend on nothing but the arguments.
+/// Finds the box ranges and the polynomial chaos of explained_figures under the waveforms of `drive`, which were simulated on
+/// the devices of `options`. The results depend on nothing but the arguments.
 [[nodiscard]] BoxAndChaos box_and_chaos(const PreparedScene& nominal, const DriveRobustness& drive,
                                         const RobustnessOptions& options, const BoxAndChaosOptions& effort = {},
                                         const Progress& progress = {});
 
-/// Returns the scene of a device at an end of a range. `simulate` runs this scene to the same closing.
+/// Returns the scene of a device at an end of the range of a figure. `simulate` runs this scene to the same closing.
 [[nodiscard]] SceneFile scene_of_device(const PreparedScene& nominal, const DriveRobustness& drive, const BoxDevice& device,
                                         const RobustnessOptions& options);
 

@@ -66,7 +66,7 @@ void join(std::vector<ClosedSpan>& spans, double shortest_opening) {
   spans = std::move(joined);
 }
 
-// Leaves out the points that linear interpolation between the others reproduces.
+// Leaves out the points that linear interpolation between the remaining points reproduces.
 ResistanceLine on_lines(const ResistanceLine& points) {
   constexpr double near = 1e-3;  // permitted relative error of the resistance
   constexpr double any = std::numeric_limits<double>::infinity();
@@ -141,8 +141,8 @@ std::vector<ResistanceSample> resistance_samples(const std::vector<ClosedSpan>& 
   return samples;
 }
 
-// Adds the resistance to the closed spans. An edge of a span without a reported resistance gets the resistance of the nearest
-// time with one.
+// Adds the resistance to the closed spans. If the resistance at an edge of a span is not reported, the edge gets the resistance
+// at the nearest time with a reported value.
 void add_resistance(std::vector<ClosedSpan>& spans, const ResistanceCourse& course, const std::vector<double>& knots,
                     double end) {
   auto span = spans.begin();
@@ -220,7 +220,7 @@ StateRecord contact_states(const PreparedScene& prepared, const Progress& progre
   require_contact(prepared);
   const Closing closing = simulate(prepared, true, progress);
   progress.throw_if_stopped();
-  // Repeat the run from which the figures are, with an observer of the contact states.
+  // Repeat the run that gave the figures, with an observer of the contact states.
   const bool is_tighter = closing.tolerance != prepared.tolerance;
   const Switch tighter = is_tighter ? Switch(prepared.scene.device, closing.quadrature) : prepared.model;
   constexpr double never = std::numeric_limits<double>::infinity();

@@ -30,7 +30,8 @@ using ResistanceLine = std::vector<std::pair<double, double>>;
 /// A time span in which a contact is closed.
 struct ClosedSpan {
   double begin = 0;                                      ///< start of the span [s]
-  double end = std::numeric_limits<double>::infinity();  ///< [s]; infinite if the contact is closed when the run ends
+  double end = std::numeric_limits<double>::infinity();  ///< end of the span [s]; infinite if the contact is closed when the
+                                                         ///< run ends
   ResistanceLine resistance = {};                        ///< resistance from `begin` to `end`; empty if unknown
 };
 

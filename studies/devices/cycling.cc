@@ -122,8 +122,8 @@ Cycles CycledSwitch::run(const CycleTimes& times, bool is_told, const Progress& 
   return found;
 }
 
-// Returns true if all cycles are steady. A touch is reported only when the next touch begins, so a cycle is checked when the
-// next cycle has ended.
+// Returns true if all cycles are steady. A touch is reported only at the beginning of the next touch, so a cycle is checked
+// when the next cycle has ended.
 bool CycledSwitch::is_steady(const CycleTimes& times, const CycleTolerances& tolerances, const Progress& progress) const {
   CycleRecorder recorder(model_.contact_gap(), options_, times);
   Trajectory so_far;

@@ -1,5 +1,5 @@
-// A switch that is closed and opened periodically: the figures of its cycles, and the largest rate at which the switch closes
-// as it does from rest. At higher rates the beam has not come to rest before the next cycle, or the closing is cut short.
+// A switch that is closed and opened periodically: the figures of its cycles, and the largest rate at which it closes as from
+// rest. At higher rates the beam is not at rest before the next cycle, or the closing is cut short.
 #pragma once
 
 #include <cstddef>
@@ -53,14 +53,14 @@ class CycledSwitch {
   /// Keeps references. `driven` is the scene whose sources apply the waveforms to `model`.
   CycledSwitch(const PreparedScene& driven, const Switch& model, const CycleWaveforms& waveforms);
 
-  /// Runs cycles. With `is_told` the result also has the course of the gap and the touches, and the figures include those of a
-  /// load and of the electrical state.
+  /// Runs cycles. With `is_told` the result also has the gap over time and the touches, and the figures include those of a load
+  /// and of the electrical state.
   [[nodiscard]] Cycles run(const CycleTimes& times, bool is_told, const Progress& progress = {}) const;
   /// True if the switch closes in every cycle as in the first cycle. The run ends at the first cycle that differs.
   [[nodiscard]] bool is_steady(const CycleTimes& times, const CycleTolerances& tolerances, const Progress& progress = {}) const;
-  /// Times that a cycle needs for its closing and for its opening [s]. `rest` is the time until the switch is at rest,
-  /// simulated in windows that are long enough for it. `least` is the time until the first contact or the end of the waveform.
-  /// A time is infinite if the switch does not reach that state.
+  /// Times that a cycle needs for its closing (`on`) and for its opening (`off`) [s]: `rest` until the switch is at rest,
+  /// simulated in windows that are long enough; `least` until the first contact or the end of the waveform. A time is infinite
+  /// if the switch does not reach that state.
   struct PartTimes {
     double rest_on = std::numeric_limits<double>::infinity(), rest_off = std::numeric_limits<double>::infinity();
     double least_on = std::numeric_limits<double>::infinity(), least_off = std::numeric_limits<double>::infinity();
@@ -84,7 +84,7 @@ struct RateScan {
     bool is_steady = false;
   };
   std::vector<Rate> rates;  ///< simulated rates, in increasing order
-  /// Largest rate up to which every simulated rate is steady [Hz]; NaN without one.
+  /// Largest rate up to which the cycles at every simulated rate are steady [Hz]; NaN if there is no such rate.
   double largest = std::numeric_limits<double>::quiet_NaN();
   /// Ranges of steady rates above `largest` [Hz].
   std::vector<std::pair<double, double>> windows = {};
@@ -94,12 +94,12 @@ struct ScanOptions {
   double duty = 0.5;         ///< share of a cycle that lies before its command to open
   double step = 0.05;        ///< relative step from one rate to the next
   std::size_t cycles = 10;   ///< number of cycles of a run; the first is the reference for the others
-  bool beyond_first = true;  ///< true to continue above the first rate that is not steady
+  bool beyond_first = true;  ///< true to continue above the first rate at which the cycles are not steady
   CycleTolerances tolerances = {};
 };
 
-/// Scans rates. At the first rate every cycle begins and ends at rest; this rate is lowered until it is steady. At the last
-/// rate the closing or the opening is too short for its waveform.
+/// Scans rates. At the first rate every cycle begins and ends at rest; the first rate is lowered until its cycles are steady.
+/// At the last rate the closing or the opening is too short for its waveform.
 [[nodiscard]] RateScan scan_rates(const CycledSwitch& cycled, const ScanOptions& options, const Progress& progress = {});
 
 struct CyclingOptions {
@@ -116,26 +116,27 @@ struct CyclingOptions {
 struct CycledDrive {
   CycleWaveforms waveforms;
   RateScan scan;                        ///< rates of the nominal design
-  std::vector<double> of_devices = {};  ///< RateScan::largest of each device [Hz]; 0 without a steady rate
+  std::vector<double> of_devices = {};  ///< RateScan::largest of each device [Hz]; 0 if no rate is steady
   std::optional<Cycles> cycles = {};    ///< cycles of the nominal design at the reported rate
 };
 
 struct Cycling {
   CyclingOptions options;
   double rate = std::numeric_limits<double>::quiet_NaN();  ///< rate of the reported cycles [Hz]; NaN without reported cycles
-  std::vector<CycledDrive> drives;                         ///< results of the plain waveforms, then of the given ones
+  std::vector<CycledDrive> drives;                         ///< results under the plain waveforms, then under the given
+                                                           ///< waveforms
   bool interrupted = false;
 };
 
 /// Completes the waveforms of a cycle: a missing closing steps to the start of the opening, a missing opening to 0 V.
 void complete(CycleWaveforms& waveforms, const PreparedScene& given);
-/// Returns the plain cycle. Every drive goes at once, as fast as its driver permits, to the last level of its closing waveform,
-/// and on command to the last level of its opening waveform.
+/// Returns a cycle of plain steps. Every drive goes at once, as fast as its driver permits, to the last level of its closing
+/// waveform, and on the command to open to the last level of its opening waveform.
 [[nodiscard]] CycleWaveforms plain_cycle(const PreparedScene& given, const CycleWaveforms& waveforms);
 
 /// Scans the rates of the plain waveforms and of the given waveforms, and runs the cycles at one rate. Devices have the drives
 /// of the nominal design, without errors of the sources. Throws InvalidInput for a scene without contact, and for waveforms
-/// that are longer than their part of a cycle at the requested rate.
+/// that are longer than the closing or opening part of a cycle at the requested rate.
 [[nodiscard]] Cycling cycling(const PreparedScene& given, const CycleWaveforms& waveforms, const CyclingOptions& options,
                               const Progress& progress = {});
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double no_derivative = Metrics::unset;
 constexpr double usual_tolerance = 1e-8;
-constexpr double largest_disagreement = 0.05;  // permitted relative change with the tolerance
+constexpr double largest_disagreement = 0.05;  // permitted relative change of derivatives with the tolerance
 constexpr double no_change =
     1e-5;  // a derivative counts as 0 if its error, times the standard deviation, is below this share of the figure
 

@@ -9,8 +9,8 @@
 // 100:2008, eq. 13.
 //
 // The derivatives contain make and break of contact, impacts and dents (model/linearized_closing.h), and all parts of a device
-// (model/switch_slopes.h). The voltages are those of the nominal device or, with a per-device calibration, scale with each
-// device's own units, which count as exact. Errors of sources are included.
+// (model/switch_slopes.h). The voltages are those of the nominal device. With a per-device calibration they are scaled by each
+// device's measured factors, which count as exact. Errors of sources are included.
 //
 // Derivatives are valid as long as no touch is added or removed: a further rebound is not a small change. If a touch is nearly
 // added or removed (grazing), derivatives are valid only for much smaller changes than those of a [spread]. After many rebounds
@@ -31,10 +31,11 @@ namespace softland {
 struct FigureDerivatives {
   std::string_view key;               ///< key of device_figures
   double value = Metrics::unset;      ///< value of the figure for the nominal device
-  std::vector<double> by_variable;    ///< derivative by each variable [unit of figure over unit of variable]; NaN if none exists
+  std::vector<double> by_variable;    ///< derivative by each variable [unit of figure over unit of variable]; NaN if it does
+                                      ///< not exist
   double deviation = Metrics::unset;  ///< sigma_f, standard deviation of the figure, from the variables with derivatives
-  double error = Metrics::unset;  ///< largest change of the derivatives against a looser tolerance, over the largest derivative
-  std::string why_none = {};      ///< reason for missing derivatives of the figure; empty if they exist
+  double error = Metrics::unset;      ///< largest change of derivatives with a looser tolerance, over the largest derivative
+  std::string why_none = {};          ///< reason for missing derivatives of the figure; empty if they exist
 
   [[nodiscard]] bool is_known() const { return !by_variable.empty(); }
 };
@@ -55,12 +56,12 @@ struct Derivatives {
 };
 
 struct DerivativeOptions {
-  double tolerance = 0;  ///< relative tolerance of the integrator; 0: that of the scene, but at most 1e-8
+  double tolerance = 0;  ///< relative tolerance of the integrator; 0: the scene's tolerance, but at most 1e-8
   int refinement = 4;    ///< number of parts into which an integrator step is divided (LinearizedClosing)
 };
 
-/// Returns derivatives under the waveforms of this drive, in the known units of each device, which count as exact. None for a
-/// compressible film, for devices that are sorted into classes, if the nominal device does not close, and if interrupted.
+/// Returns derivatives under the waveforms of this drive, with each device's scale factors as exact. None for a compressible
+/// film, for devices that are sorted into classes, if the nominal device does not close, and if interrupted.
 [[nodiscard]] Derivatives derivatives(const PreparedScene& scene, const EnsembleDrive& drive,
                                       const DerivativeOptions& options = {}, const Progress& progress = {});
 
@@ -68,11 +69,11 @@ struct DerivativeOptions {
 struct WaveformParameter {
   std::string name;
   double value = 0;
-  double size = 0;  ///< scale of the number, for example its range; must be above 0
+  double size = 0;  ///< scale of the parameter, for example the width of its range; must be above 0
 };
 /// Returns derivatives by these parameters, for the nominal device under the signals that the parameters determine. Each
-/// parameter is a variable whose standard deviation is a hundredth of its size. A parameter has no derivatives if the signals
-/// have other pieces at slightly smaller and larger values.
+/// parameter is a variable whose standard deviation is a hundredth of its `size`. A parameter has no derivatives if the signals
+/// consist of other pieces at slightly smaller and larger values of the parameter.
 [[nodiscard]] Derivatives derivatives_by_waveforms(const PreparedScene& scene, const std::vector<WaveformParameter>& parameters,
                                                    const SignalSlopes::SignalsOf& signals, const DerivativeOptions& options = {},
                                                    const Progress& progress = {});

@@ -61,9 +61,9 @@ struct DeviceDrives::Driven {
   std::vector<Waveform> waveforms;
   std::vector<Signal> signals;  // commanded voltages
   std::vector<SourceErrors> errors;
-  double origin = 0;  // start of the device's clock [s]
+  double origin = 0;  // start of the device's time axis, at the first edge [s]
 
-  // Returns the commanded signal with jitter, and the start of the signal on the clock of the waveform [s].
+  // Returns the commanded signal with jitter, and the start of the signal on the time axis of the waveform [s].
   [[nodiscard]] std::pair<Signal, double> jittered(std::size_t k) const {
     const SourceErrors jitter{.edges = errors[k].edges};
     const double begin = std::min(0.0, first_edge(signals[k], jitter));
@@ -182,10 +182,10 @@ std::optional<std::vector<double>> DeviceDrives::gains(const DeviceUnits& units,
   for (std::size_t k = 0; k < sources_.size(); ++k) {
     const SourceErrors own = errors(k, values);
     all.push_back(own.gain);
-    if (own.delay < 0) return std::nullopt;  // a delay below 0 shifts the start of the clock of all drives
+    if (own.delay < 0) return std::nullopt;  // a delay below 0 shifts the start of the time axis of all drives
     if (sources_[k].empty() && own.gain == 1) continue;
     const bool is_gain = std::ranges::all_of(sources_[k], [](const Source& one) { return one.error == DriveError::gain; });
-    // A gain does not scale the voltage before t = 0 or an offset: the result is then more than a factor.
+    // A gain scales neither the voltage before t = 0 nor an offset: the signals then differ by more than a factor.
     if (!is_gain || own.offset != 0 || nominal_->values_before()[k] != 0) return std::nullopt;
   }
   return all;

@@ -1,6 +1,6 @@
-// The drives of one device: the waveforms of the nominal device, scaled by the units of the device, with the errors of the
-// device's sources (waveforms/source_errors.h). All drives of a device have one clock. The clock starts at the first edge of
-// any drive if jitter moves this edge before t = 0.
+// The drives of one device: the waveforms of the nominal device, scaled by factors that are measured on the device, with the
+// errors of the device's sources (waveforms/source_errors.h). All drives of a device share one time axis. It begins at the
+// first edge of any drive if jitter moves this edge before t = 0.
 #pragma once
 
 #include <cmath>
@@ -14,20 +14,20 @@
 
 namespace softland {
 
-/// Measured units of a device over those of the nominal device: factors for the voltages and the times of its drives.
+/// Scale factors of a device relative to the nominal device: for the voltages and the times of the device's drives.
 struct DeviceUnits {
   double volts = 1, time = 1;
   double piezo = 1;  ///< factor for the voltages of a piezo, which do not scale with the pull-in voltage Vdp
-  /// Relative change of `volts` with the measured closing time from which `volts` is computed [1/s].
+  /// Derivative of the relative change of `volts` by the measured closing time from which `volts` is computed [1/s].
   double volts_by_time = 0;
 
   /// True if the voltage factors are finite numbers.
   [[nodiscard]] bool are_known() const { return std::isfinite(volts) && std::isfinite(piezo); }
 };
 
-/// Returns the waveforms, in the order of Switch::drives(), scaled by the units of one device. Voltages before t = 0 are not
-/// scaled. The voltages of a piezo have a factor of their own, since they do not scale with the pull-in voltage. The factor of
-/// a dispersion force is not scaled.
+/// Returns the waveforms, in the order of Switch::drives(), scaled by the factors of one device. Voltages before t = 0 are not
+/// scaled. The voltages of a piezo have a separate factor, since they do not scale with the pull-in voltage. The factor of a
+/// dispersion force is not scaled.
 [[nodiscard]] std::vector<Waveform> in_units(const std::vector<Waveform>& waveforms, const Device& device,
                                              const DeviceUnits& units);
 
@@ -36,7 +36,7 @@ class DeviceDrives {
   /// Keeps a reference to `nominal`, whose [spread] lists the errors of the sources.
   explicit DeviceDrives(const PreparedScene& nominal);
 
-  /// True if a device with these units has drives that differ from those of the nominal device.
+  /// True if a device with these scale factors has drives that differ from those of the nominal device.
   [[nodiscard]] bool differ(const DeviceUnits& units) const {
     return has_errors_ || units.volts != 1 || units.piezo != 1 || units.time != 1;
   }
@@ -44,10 +44,10 @@ class DeviceDrives {
   /// nominal device, in the order of Switch::drives() [V].
   [[nodiscard]] std::vector<Signal> signals(const std::vector<Waveform>& nominal, const DeviceUnits& units,
                                             const std::vector<double>& values) const;
-  /// Returns the factors between signals() and without_gains(), one per drive. None if the signals differ by more than factors,
-  /// as with measured units, offsets, delays and jitter.
+  /// Returns the factors between signals() and without_gains(), one per drive. None if the two differ by more than factors, as
+  /// with scale factors of the device, offsets, delays and jitter.
   [[nodiscard]] std::optional<std::vector<double>> gains(const DeviceUnits& units, const std::vector<double>& values) const;
-  /// Returns the drives of a device in the units of the nominal device, with sources whose gain is 1; `nominal` as in
+  /// Returns the drives of a device as for the nominal device (unscaled), with sources whose gain is 1; `nominal` as in
   /// signals().
   [[nodiscard]] std::vector<Signal> without_gains(const std::vector<Waveform>& nominal) const;
   /// Returns the errors of the source of drive k for these values of the varied quantities, except its jitter.

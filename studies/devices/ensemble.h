@@ -1,4 +1,4 @@
-// An ensemble of devices with process variation: the switches of a scene's [spread]. Each switch depends on its number alone.
+// An ensemble of devices with process variation: the switches of a scene's [spread]. Each switch depends only on its number.
 #pragma once
 
 #include <atomic>
@@ -50,7 +50,7 @@ class Ensemble {
   /// True if a varied key may change other members of a scene. The scene of each device is then read again from its keys.
   [[nodiscard]] bool reads_anew() const { return reads_anew_; }
   /// Returns the scene of the device with these values, in volts and without [spread]. `simulate` runs this scene to the same
-  /// figures. The figures differ within the tolerance if the ensemble is closed in SIMD lanes
+  /// figures. They differ within the tolerance if the ensemble is closed in SIMD lanes
   /// (model/ensemble/ensemble_closings.h).
   [[nodiscard]] SceneFile scene(const std::vector<double>& values) const;
 
@@ -64,7 +64,7 @@ class Ensemble {
   bool reads_anew_ = false;  // true if a varied key may change other members of the scene
 };
 
-/// Builds devices one after another. Each thread has its own builder. A device does not depend on those built before it.
+/// Builds devices one after another. Each thread has its own builder. A device does not depend on devices built before it.
 class DeviceBuilder {
  public:
   /// Keeps a reference to `ensemble`.
@@ -100,7 +100,7 @@ struct DeviceOutcome {
 /// Number of periods of the first mode within which a step must close a switch.
 inline constexpr double periods_to_close = 20;
 
-/// The measurements on each device, except that of its frequency.
+/// The quantities that are measured on each device, besides its frequency.
 struct MeasuredQuantities {
   bool pull_in = false, closing_time = false, piezo = false;
   [[nodiscard]] static MeasuredQuantities of(const Calibration& calibration) {
@@ -112,7 +112,7 @@ struct MeasuredQuantities {
   }
 };
 
-/// Reason for missing units of a device, for messages.
+/// Reason, for messages, why the scale factors of a device are not known.
 inline constexpr const char* not_measured = "its pull-in voltage, or what its piezo does, cannot be measured";
 
 /// Measures devices relative to the nominal device, with the errors of a calibration. A closing time gives the factor s of a
@@ -124,20 +124,23 @@ class PullInMeter {
   /// voltages; that of the nominal device is at least dynamic_pull_in_precision. Throws InvalidInput if a measurement needs an
   /// electrode, a pull-in voltage or a piezo that the switch lacks, or if the piezo does not move the contact point.
   PullInMeter(const PreparedScene& nominal, const MeasuredQuantities& quantities, double precision = dynamic_pull_in_precision);
-  /// Return the pull-in voltage [V] and the frequency [Hz] of the nominal device.
+  /// Return the pull-in voltage [V] and the first frequency [Hz] of the nominal device.
   [[nodiscard]] double pull_in() const { return pull_in_; }
   [[nodiscard]] double frequency() const;
   /// Returns the displacement of the contact point per volt at the piezo, over the contact gap; 0 without a piezo [1/V].
   [[nodiscard]] static double piezo_unit(const Switch& model);
   /// Returns the index of the measured electrode in Switch::drives().
   [[nodiscard]] std::size_t electrode() const { return electrode_; }
-  /// Returns the closing time of the nominal device under the measuring step [s]; NaN if closing times are not measured.
+  /// Returns the closing time of the nominal device under the step whose closing time is measured [s]; NaN if closing times are
+  /// not measured.
   [[nodiscard]] double closing_time() const;
-  /// Returns the units that follow from the closing time of a device [s]; the voltages are NaN if the device does not close.
+  /// Returns the scale factors computed from the closing time of a device [s]; the factor of the voltages is NaN if the device
+  /// does not close.
   [[nodiscard]] DeviceUnits units_by_time(double time) const;
-  /// Returns the exact units. The voltages are NaN for a device that has no pull-in voltage, or that does not close.
+  /// Returns the exact scale factors. The factor of the voltages is NaN for a device that has no pull-in voltage, or that does
+  /// not close.
   [[nodiscard]] DeviceUnits exact(const Switch& model) const;
-  /// Returns the measured units of device k, before sorting into classes; the errors depend on `seed` and k alone.
+  /// Returns the measured scale factors of device k, before sorting into classes; the errors depend on `seed` and k alone.
   [[nodiscard]] static DeviceUnits measured(const DeviceUnits& exact, const Calibration& calibration, std::uint64_t seed,
                                             std::uint64_t k);
 
@@ -147,7 +150,7 @@ class PullInMeter {
   [[nodiscard]] double time_of(const Switch& model, double step) const;
 
   struct ToldVolts {
-    double time, volts;  // [s], over the voltages of the nominal device
+    double time, volts;  // closing time [s]; factor of the step's voltages over those of the nominal step
   };
 
   const PreparedScene* nominal_;
@@ -158,44 +161,44 @@ class PullInMeter {
   double pull_in_ = Metrics::unset;
 };
 
-/// The units that a calibration assigns to devices: the measured units or, if devices are sorted into classes, the units at the
-/// centre of a device's class.
+/// The scale factors that a calibration assigns to devices: the measured ones or, if devices are sorted into classes, those at
+/// the centre of a device's class.
 class MeasuredUnits {
  public:
-  /// Makes the classes from `reference`: the exact units of devices that represent [spread], as in measured_units(). Throws
-  /// InvalidInput if classes are needed and none of these devices can be measured.
+  /// Makes the classes from `reference`: the exact scale factors of devices that represent [spread], as in measured_units().
+  /// Throws InvalidInput if classes are needed and none of these devices can be measured.
   MeasuredUnits(const Calibration& calibration = {}, std::span<const DeviceUnits> reference = {});
   [[nodiscard]] const Calibration& calibration() const { return calibration_; }
   /// Returns a copy with exact measurements and the same classes.
   [[nodiscard]] MeasuredUnits without_errors() const;
-  /// Returns the units of device k from its exact units; the errors depend on `seed` and k alone.
+  /// Returns the assigned scale factors of device k, given its exact ones; the errors depend on `seed` and k alone.
   [[nodiscard]] DeviceUnits of(const DeviceUnits& exact, std::uint64_t seed, std::uint64_t k) const;
-  /// Returns the units that are assigned to a device with these measured units.
+  /// Returns the scale factors that the calibration assigns to a device with these measured ones.
   [[nodiscard]] DeviceUnits of(const DeviceUnits& measured) const;
 
   struct Class {
     DeviceUnits centre;
-    double share = 0;  ///< share of the devices of the spread in this class
+    double share = 0;  ///< share of the devices of [spread] in this class
   };
-  /// Returns the classes, ordered by the voltage of their centre; none if every device has its own units.
+  /// Returns the classes, ordered by the voltage of their centre; none if every device has its own scale factors.
   [[nodiscard]] std::vector<Class> classes() const;
 
  private:
   Calibration calibration_;
-  Classes classes_;  // classes in the logarithms of voltages, time and the piezo's voltages
+  Classes classes_;  // classes in the logarithms of the factors of voltages, time and piezo voltages
 };
-/// Returns the assigned units for each of these calibrations. The classes depend on [spread] alone, so that a device belongs to
-/// the same class in every study. Throws Interrupted if `progress` asks to stop.
+/// Returns the assigned scale factors for each of these calibrations. The classes depend on [spread] alone, so that a device
+/// belongs to the same class in every study. Throws Interrupted if `progress` asks to stop.
 [[nodiscard]] std::vector<MeasuredUnits> measured_units(const PreparedScene& nominal, std::span<const Calibration> calibrations,
                                                         int jobs, const Progress& progress = {});
 
-/// Returns the relative standard deviations of the units of the devices of the spread. Throws Interrupted if `progress` asks to
-/// stop.
+/// Returns the relative standard deviations of the exact scale factors over the devices of [spread]. Throws Interrupted if
+/// `progress` asks to stop.
 [[nodiscard]] DeviceUnits deviation_of_units(const PreparedScene& nominal, bool need_pull_in, int jobs,
                                              const Progress& progress = {});
 
 /// The drives of every device: the waveforms of the nominal device or, with a per-device calibration, these waveforms scaled by
-/// the units of each device. The drives have the errors of the device's sources if these errors vary.
+/// the factors of each device. The drives have the errors of the device's sources if these errors vary.
 struct EnsembleDrive {
   std::vector<Waveform> waveforms;  ///< waveforms in the order of Switch::drives() [V]
   MeasuredUnits known = {};
@@ -212,7 +215,7 @@ struct EnsembleRun {
   bool opens_on_command = false;
 };
 
-/// Closes one device. The figures are those of the run, which `run` may end before the window does.
+/// Closes one device. The figures are those of the run; the options `run` may end it before the end of the window.
 [[nodiscard]] DeviceOutcome close_device(const SampledDevice& device, const std::vector<Signal>& signals,
                                          const MetricsOptions& options, const ClosingOptions& run);
 
@@ -221,7 +224,8 @@ struct DeviceClosing {
   const std::vector<Signal>* signals = nullptr;
   std::vector<double> gains = {};  ///< gain of each signal; empty if all gains are 1
   ClosingOptions run;
-  bool measures_drive_energy = false;  ///< true to measure the drive energy in SIMD lanes as well; single closings always do
+  bool measures_drive_energy = false;  ///< true to measure the drive energy in SIMD lanes as well; closings one by one always
+                                       ///< measure the energy
 };
 /// Closes several devices. Devices whose laws are available in SIMD lanes (model/ensemble/ensemble_closings.h) are closed
 /// together, the others one by one. All have the tolerance of the first device. An outcome does not depend on the other
@@ -236,19 +240,19 @@ struct DrivenDevice {
   double duration = 0;                           ///< time to simulate [s]
 };
 /// Closes devices as close_devices() does, and finds whether their hold levels keep them closed. Each device has its own window
-/// and steady force; `run` has the other options. `near` is the closed equilibrium of a similar switch under similar drives.
+/// and steady force; `run` has the other options. `near` is the closed equilibrium of a similar switch under similar drives,
+/// for use as a starting point.
 [[nodiscard]] std::vector<DeviceOutcome> close_driven(std::span<const DrivenDevice> devices, const MetricsOptions& options,
                                                       const ClosingOptions& run, const std::optional<ClosedEquilibrium>& near,
                                                       bool measures_drive_energy, Vectors vectors);
 
-/// Closes devices under several drives. The drives are scaled by the units of each device if they have a calibration.
+/// Closes devices under several drives. Drives with a calibration are scaled by the factors of each device.
 class DeviceCloser {
  public:
   /// Keeps references to `nominal` and `drives`. Throws the exceptions of the constructor of PullInMeter.
   DeviceCloser(const PreparedScene& nominal, const std::vector<EnsembleDrive>& drives, const EnsembleRun& run,
                const std::atomic<bool>* stop = nullptr);
-  /// Returns the outcomes of devices `first`, first + 1, ..., by drive. If interrupted, the outcomes that are missing are
-  /// unset.
+  /// Returns the outcomes of devices `first`, first + 1, ..., by drive. After an interruption, missing outcomes are unset.
   [[nodiscard]] std::vector<std::vector<DeviceOutcome>> operator()(std::span<const SampledDevice> devices,
                                                                    std::uint64_t first) const;
 
@@ -267,8 +271,8 @@ class DeviceCloser {
       nominal_closed_;  // closed equilibrium of the nominal device under the hold levels of each drive
 };
 
-/// Closes all devices under each of these drives. Returns the outcomes by drive, then by device. If interrupted, the outcomes
-/// are those of the first devices only.
+/// Closes all devices under each of these drives. Returns the outcomes by drive, then by device. After an interruption, the
+/// outcomes are those of the first devices only.
 [[nodiscard]] std::vector<std::vector<DeviceOutcome>> close_all(const Ensemble& ensemble,
                                                                 const std::vector<EnsembleDrive>& drives, const EnsembleRun& run,
                                                                 const Progress& progress = {});

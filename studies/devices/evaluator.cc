@@ -70,7 +70,7 @@ Evaluator::Evaluator(const SceneFile& file, std::vector<std::string> keys, std::
   drives_ = std::make_unique<DeviceDrives>(*nominal_);
 }
 
-// Finds the columns of the device, and prepares the scene with them in [spread].
+// Finds the columns that vary the device, and prepares the scene with these columns in [spread].
 void Evaluator::vary_device(const SceneFile& file, const Progress& progress) {
   if (options_.volts == VoltsOf::each) {
     SceneFile scene = file;
@@ -329,10 +329,10 @@ void require_derived(const Derivatives::Variable& variable) {
 
 // The scene of a row, in volts, with the data that its derivatives by the columns need.
 struct Evaluator::Place {
-  PreparedScene scene;                 ///< scene whose [spread] has the columns of the device
-  std::vector<std::size_t> of_device;  ///< index of the column for each variable of that [spread]
+  PreparedScene scene;                 ///< scene whose [spread] has the columns that vary the device
+  std::vector<std::size_t> of_device;  ///< index of the column for each variable of the [spread] of `scene`
   std::vector<WaveformKey> of_waveforms;
-  MeasuredUnits known;  ///< units by which the voltages scale with the device
+  MeasuredUnits known;  ///< scale factors of the voltages on the device
 };
 
 Evaluator::Place Evaluator::place_of(std::span<const double> row, const Progress& progress) const {

@@ -1,12 +1,12 @@
 // Figures of merit as a function of numbers of a scene: evaluates many rows at once, in SIMD lanes and on all cores, with a
-// scene that is prepared once. Serves optimizers, samplers and surrogates outside of softland.
+// scene that is prepared once. For optimizers, samplers and surrogate models outside of softland.
 //
 // A column of the input is a number of the scene, and a row is a set of values for all columns.
-// - A column of the device, or of an error of a drive, has a name as in [spread]: "gap.contact", "electrode.main.span[2]",
-//   "driver.main.gain". A row describes the device that [spread] would give with these values. The figures are bit for bit
-//   those of `robustness`.
-// - A column of a waveform is one of its parameters: "waveform.main.level", "waveform.main.times[1]" [V], [s], [rad/s], [rad].
-// Voltages are those of the nominal scene, or scale with the pull-in voltages of each row (VoltsOf).
+// - A column that varies the device, or an error of a drive, has a name as in [spread]: "gap.contact",
+// "electrode.main.span[2]", "driver.main.gain". A row describes the device that [spread] would give with these values. The
+// figures are bit for bit those of `robustness`.
+// - A column that varies a waveform is one of its parameters: "waveform.main.level", "waveform.main.times[1]" [V], [s],
+// [rad/s], [rad]. Voltages are those of the nominal scene, or scale with the pull-in voltages of each row (VoltsOf).
 #pragma once
 
 #include <Eigen/Core>
@@ -45,13 +45,13 @@ struct RowEnd {
 class Evaluator {
  public:
   /// Throws InvalidInput for a scene that cannot be run, for a key that cannot vary or occurs twice, and for a figure that
-  /// closings in SIMD lanes do not give: see measured().
+  /// closings in SIMD lanes do not compute: see measured().
   Evaluator(const SceneFile& file, std::vector<std::string> keys, std::vector<Figure> figures,
             const EvaluatorOptions& options = {}, const Progress& progress = {});
   Evaluator(const Evaluator&) = delete;
   Evaluator& operator=(const Evaluator&) = delete;
 
-  /// True if closings in SIMD lanes give this figure.
+  /// True if closings in SIMD lanes compute this figure.
   [[nodiscard]] static bool measured(const Figure& figure);
 
   [[nodiscard]] const std::vector<std::string>& keys() const { return keys_; }
@@ -68,8 +68,8 @@ class Evaluator {
                 const Progress& progress = {}) const;
 
   /// Returns the derivatives of the figures by the keys at a row, figures x keys [unit of the figure over that of the key]. The
-  /// matrix contains exact derivatives of the closing (studies/devices/derivatives.h). With VoltsOf::each all voltages must be
-  /// written in Vdp of one electrode, or none may be. Throws InvalidInput with the reason if a derivative is missing.
+  /// derivatives are exact (studies/devices/derivatives.h). With VoltsOf::each, either all voltages or no voltages must be
+  /// written as multiples of Vdp of one electrode. Throws InvalidInput with the reason if a derivative is missing.
   [[nodiscard]] Eigen::MatrixXd jacobian(std::span<const double> row, const Progress& progress = {}) const;
 
  private:
@@ -101,12 +101,13 @@ class Evaluator {
   std::vector<Figure> figures_;
   EvaluatorOptions options_;
   std::vector<WaveformKey> of_waveforms_;
-  std::vector<std::size_t> of_device_;      ///< indices of the columns of the device, in the order of the variables of [spread]
-  std::unique_ptr<PreparedScene> nominal_;  ///< prepared scene, whose [spread] has the columns of the device
-  std::unique_ptr<Ensemble> ensemble_;      ///< devices of the rows; none if no column is one of the device
+  std::vector<std::size_t> of_device_;      ///< indices of the columns that vary the device, in the order of the variables of
+                                            ///< [spread]
+  std::unique_ptr<PreparedScene> nominal_;  ///< prepared scene, whose [spread] has the columns that vary the device
+  std::unique_ptr<Ensemble> ensemble_;      ///< devices of the rows; none if no column varies the device
   std::unique_ptr<DeviceDrives> drives_;
   std::vector<Waveform> waveforms_;  ///< waveforms of the scene, in the order of the drives
-  std::vector<Signal> signals_;      ///< applied voltages of these waveforms
+  std::vector<Signal> signals_;      ///< applied voltages of the scene's waveforms
   std::optional<ClosedEquilibrium> closed_;
   mutable std::mutex builders_lock_;
   mutable std::vector<std::unique_ptr<DeviceBuilder>> builders_;  ///< builders that no thread uses at present, for later rows

@@ -50,8 +50,8 @@ HoldWindow hold_window(std::span<const ClosedRange> devices) {
     const auto lost = std::ranges::count_if(devices, [&](const ClosedRange& one) { return !is_held(one, level); });
     return static_cast<double>(lost) <= most_lost;
   };
-  // The range of levels that hold enough devices begins at the release voltage of one device, and ends at the collapse voltage
-  // of another device.
+  // The range of levels that keep enough devices closed begins at the release voltage of one device, and ends at the collapse
+  // voltage of another device.
   HoldWindow window;
   double beyond_all = 0;
   for (const ClosedRange& one : devices) {

@@ -16,7 +16,7 @@ namespace softland {
 
 /// Share of the devices that a window of hold levels must keep closed.
 inline constexpr double held_share = 0.99;
-/// Largest number of devices for a window: computing the collapse voltage of a device takes long.
+/// Largest number of devices for a window of hold levels: computing the collapse voltage of a device takes long.
 inline constexpr std::uint64_t most_held_devices = 200;
 
 struct HoldWindow {
@@ -30,13 +30,13 @@ struct HoldWindows {
   std::size_t devices = 0;                          ///< number of devices from which the windows are computed
 };
 
-/// Returns the window of hold levels for devices with these closed ranges. No level holds a device without a release voltage. A
-/// device without a collapse voltage has no upper limit.
+/// Returns the window of hold levels for devices with these closed ranges. No level keeps a device without a release voltage
+/// closed. A device without a collapse voltage has no upper limit.
 [[nodiscard]] HoldWindow hold_window(std::span<const ClosedRange> devices);
 
-/// Returns the windows of hold levels for the first devices of robustness() under the same options, in volts, whatever their
-/// calibration. Each other drive is at its level for pull-in voltages. No level holds a device that cannot be described.
-/// Returns no windows if the scene has no contact, or if `progress` asks to stop.
+/// Returns the windows of hold levels [V] for the first devices of robustness() under the same options; calibrations are
+/// ignored. Every other drive is at its bias for pull-in voltages. A device that cannot be described counts as not held at any
+/// level. Returns no windows if the scene has no contact, or if `progress` asks to stop.
 [[nodiscard]] HoldWindows hold_windows(const PreparedScene& nominal, const RobustnessOptions& options,
                                        const Progress& progress = {});
 

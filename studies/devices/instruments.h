@@ -13,8 +13,8 @@
 // gain * commanded + offset. The other drives are at their bias (bias_of()), or at 0 V for frequencies and capacitances. `fit`
 // and `calibrate` use the same readings.
 //
-// Derivatives of the first four readings come from model/static_slopes.h, those of first contact from
-// model/linearized_closing.h. The other readings have no exact derivatives: finite differences between closings on either side
+// Derivatives of the first four readings come from model/static_slopes.h, those of the closing time from
+// model/linearized_closing.h. The other readings have no exact derivatives; finite differences between neighbouring closings
 // replace them.
 #pragma once
 
@@ -64,9 +64,9 @@ struct Instrument {
   [[nodiscard]] std::size_t size() const;
 };
 
-/// Reads one figure of a switch, with `level` as the applied voltage. The instrument must read a single number, without
-/// waveforms. Returns NaN if the switch does not have the figure. `duration` is the time within which a step must close the
-/// switch [s].
+/// Reads one figure of a switch; `level` of the instrument is the applied voltage. The instrument must read a single number,
+/// without waveforms. Returns NaN if the switch does not have the figure. `duration` is the time within which a step must close
+/// the switch [s].
 [[nodiscard]] double read(const Instrument& instrument, const Switch& model, Bias bias, double duration);
 
 /// Reads the devices of a scene, each given by the values of its varied quantities.

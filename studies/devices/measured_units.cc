@@ -20,14 +20,14 @@
 namespace softland {
 namespace {
 
-// Seed of the devices from which classes are made.
+// Seed of the reference devices, from which the classes of a calibration are made.
 constexpr std::uint64_t reference_seed = random_bits(0, Stream::classes, 0);
 std::size_t reference_size(const Calibration& calibration) {
   constexpr std::size_t fewest = 512, of_a_class = 8;
   return calibration.classes ? std::max(fewest, of_a_class * static_cast<std::size_t>(*calibration.classes)) : 0;
 }
 
-// Returns the units of each reference device, without measurement error.
+// Returns the scale factors of each reference device, without measurement error.
 std::vector<DeviceUnits> reference_units(const PreparedScene& nominal, const MeasuredQuantities& quantities, std::size_t size,
                                          int jobs, const Progress& progress) {
   const PullInMeter meter(nominal, quantities);
@@ -109,7 +109,7 @@ double PullInMeter::closing_time() const {
   return quantities_.closing_time ? time_of(nominal_->model, closing_step * pull_in_) : Metrics::unset;
 }
 
-// Interpolates linearly between the two nearest steps of the nominal device, and extrapolates beyond the first and the last.
+// Interpolates the voltage factor linearly over the closing times of the nominal device under several steps; extrapolates too.
 DeviceUnits PullInMeter::units_by_time(double time) const {
   if (!std::isfinite(time)) return {.volts = Metrics::unset, .time = 1};
   const auto above = std::ranges::upper_bound(told_, time, {}, &ToldVolts::time);
@@ -193,7 +193,7 @@ MeasuredUnits MeasuredUnits::without_errors() const {
 
 std::vector<MeasuredUnits> measured_units(const PreparedScene& nominal, std::span<const Calibration> calibrations, int jobs,
                                           const Progress& progress) {
-  // Voltages from a measured closing time differ from those from a measured Vdp.
+  // Voltage factors from a measured closing time differ from those from a measured Vdp.
   std::map<bool, std::vector<DeviceUnits>> references;  // key: true if a closing time gives the voltages
   for (const bool by_time : {false, true}) {
     std::size_t size = 0;

@@ -53,7 +53,7 @@ bool NearbyDevices::changes_switch(std::size_t i) const {
 SwitchSlopes::Neighbours NearbyDevices::neighbours(std::size_t i) {
   Switch above = device_beside(i, 1), below = device_beside(i, -1);
   SwitchOptions finer = nominal_.quadrature;
-  // Both neighbours need the same number of quadrature points: a further point would look like a change of the device.
+  // Both neighbours need the same number of quadrature points: an additional point would look like a change of the device.
   while (above.quadrature().points() != below.quadrature().points()) {
     constexpr double little = 1.01;
     finer.points_per_length *= little;
@@ -89,8 +89,8 @@ bool NearbyDevices::changes_signals(std::size_t i) const {
   return meter_ || std::any_of(keys.begin(), keys.end(), [](const VariedKey& key) { return key.drive.has_value(); });
 }
 
-// True if the signals at a smaller and at a larger value have the same pieces. A step of a waveform that appears, disappears or
-// begins the clock is not a small change.
+// True if the signals at a smaller and at a larger value have the same pieces. It is not a small change if a step of a waveform
+// appears, disappears or becomes the first edge of the time axis.
 bool NearbyDevices::keeps_pieces(std::size_t i) {
   const auto pieces = [&](double side) {
     std::vector<std::size_t> counts;

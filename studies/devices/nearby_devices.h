@@ -1,4 +1,4 @@
-// The neighbours of a device: each is a small step away from the device in one varied quantity. Derivatives by the varied
+// The neighbours of a device: each differs from the device by a small step in one varied quantity. Derivatives by the varied
 // quantities are computed from these neighbours.
 #pragma once
 
@@ -24,7 +24,7 @@ class NearbyDevices {
  public:
   static constexpr const char* other_pieces = "the waveforms have other pieces on either side of its nominal value";
 
-  /// Starts at the nominal device of a scene under this drive. The scene's [spread] must have no jitter. Keeps references.
+  /// Starts at the nominal device of a scene under this drive. The scene's [spread] must not vary jitter. Keeps references.
   NearbyDevices(const PreparedScene& nominal, const EnsembleDrive& drive);
 
   /// Starts at the nominal device without a drive: call drive_by() before a function that returns signals.
@@ -43,7 +43,7 @@ class NearbyDevices {
   [[nodiscard]] double step(std::size_t i) const { return steps_[i]; }
   /// Returns the device one step above the current device in quantity i (`side` 1) or below it (-1). Throws as device() does.
   [[nodiscard]] Switch device_beside(std::size_t i, double side) { return device_at(beside(i, side)); }
-  /// Return the signals of the current device, and of the device one step beside it in quantity i.
+  /// Return the signals of the current device, and of the device that differs by one step in quantity i.
   [[nodiscard]] std::vector<Signal> signals() { return signals_of(values_); }
   [[nodiscard]] std::vector<Signal> signals_beside(std::size_t i, double side) { return signals_of(beside(i, side)); }
 

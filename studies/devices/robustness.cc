@@ -100,8 +100,8 @@ std::vector<Waveform> waveforms_of(const PreparedScene& nominal, const NamedDriv
   return nominal.in_drive_order(drive.waveforms);
 }
 
-// Widens the limits of a driver for the signal of a device whose units or errors are larger than nominal, so that the signal is
-// within the limits.
+// Widens the limits of a driver for the signal of a device whose scale factors or errors are larger than nominal, so that the
+// limits permit the signal.
 void allow(SceneFile& file, const std::string& driver, const Signal& signal, const DriverLimits& limits) {
   if (violation(signal, limits).empty()) return;
   if (signal.maximum() > limits.max_voltage) file.assign(driver + ".max_voltage", signal.maximum());
@@ -132,8 +132,8 @@ constexpr std::array all_measurements{
     Measurement{measured_pull_in, &Calibration::pull_in_error}, Measurement{"closing time", &Calibration::time_error},
     Measurement{measured_frequency, &Calibration::frequency_error}, Measurement{measured_piezo, &Calibration::piezo_error}};
 
-// Returns the drive with each calibration of interest: without measurements, with each measurement alone, and with all
-// measurements, without error. With all measurements devices are sorted into classes first, then have their own units.
+// Returns the drive with each calibration to compare: no measurements, each measurement alone, and all measurements, without
+// error. With all measurements devices are first sorted into classes, then have their own scale factors.
 std::vector<NamedDrive> by_knowledge(const NamedDrive& drive) {
   std::vector<NamedDrive> all;
   const auto add = [&](const std::string& name, const Calibration& calibration) {

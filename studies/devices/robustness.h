@@ -1,5 +1,5 @@
-// Performance of drives on devices with process variation: statistics of every figure of merit over one ensemble. All drives
-// are simulated on the same devices.
+// Performance of sets of waveforms on devices with process variation: statistics of every figure of merit over one ensemble.
+// All sets are simulated on the same devices.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ inline constexpr std::array robustness_quantiles{0.05, 0.5, 0.95, 0.99};
 
 struct EstimatedQuantile {
   double value = Metrics::unset;
-  Interval interval = {};  ///< 95 % confidence interval, from order statistics; a side is infinite if there are too few devices
+  Interval interval = {};  ///< 95 % confidence interval, from order statistics; an end is infinite if there are too few devices
 };
 
 /// Estimates a quantile; a device that does not close counts as +infinity.
@@ -47,7 +47,7 @@ struct Yield {
 struct DriveRobustness {
   std::string name;
   DriveWaveforms waveforms;             ///< waveforms of the nominal device, in volts
-  MeasuredUnits known = {};             ///< units that the calibration assigns to the devices
+  MeasuredUnits known = {};             ///< scale factors that the calibration assigns to the devices
   std::vector<DeviceOutcome> outcomes;  ///< outcomes of the closings, by device
   PerFigure<FigureStatistics> figures;  ///< statistics of the figures in device_figures
   Yield closing;                        ///< share of devices that touch and are simulated to the end of the window
@@ -63,20 +63,20 @@ struct RobustnessOptions {
   int jobs = 1;  ///< number of threads; does not change the result
   Vectors vectors = vectors_in_use();
   bool measures_drive_energy = false;  ///< true to measure the drive energy on every device
-  /// True to repeat the last drive, if it has a calibration, with other calibrations: without one, with each measurement alone,
-  /// and with all measurements without error. The calibration without error is simulated with the devices sorted into classes,
-  /// and with each device in its own units.
+  /// True to repeat the last drive, if it has a calibration, with other calibrations: with no measurement, with each
+  /// measurement alone, and with all measurements without error. The last is simulated with the devices sorted into classes,
+  /// and with each device's own scale factors.
   bool worth_of_measuring = false;
-  bool opens_on_command = false;  ///< EnsembleRun::opens_on_command
+  bool opens_on_command = false;  ///< true if drives may command devices to open, EnsembleRun::opens_on_command
 };
 
 struct Robustness {
   std::vector<DriveRobustness> drives;  ///< results of the drives, the plain step first
   std::vector<DriveRobustness> by_knowledge =
-      {};                   ///< results of the last drive with other calibrations, which give the value of its measurements
+      {};                   ///< results of the last drive with other calibrations: the value of its measurements
   std::size_t devices = 0;  ///< number of devices; fewer than requested if interrupted
   bool interrupted = false;
-  double duration = 0;   ///< window [s]
+  double duration = 0;   ///< simulated time [s]
   double tolerance = 0;  ///< tolerance of the integrator
 };
 
@@ -95,7 +95,7 @@ struct Sensitivity {
   std::string why_none;                    ///< reason for missing Sobol' indices; empty if the indices exist
 };
 
-/// The closing of the device at a quantile (`probability`) of the highest rebound.
+/// The simulated motion of the device at a quantile (`probability`) of the highest rebound.
 struct DeviceCourse {
   double probability = 0;
   std::size_t device = 0;
@@ -108,25 +108,25 @@ struct GapCourses {
   std::vector<std::vector<double>> gaps = {};  ///< gaps by device, then by instant [m]; below 0 in contact
 };
 
-/// A drive whose performance robustness() computes.
+/// A set of waveforms whose performance robustness() computes.
 struct NamedDrive {
   std::string name;
   DriveWaveforms waveforms;      ///< waveforms in volts
   Calibration calibration = {};  ///< calibration; empty if every device has the voltages of the nominal device
 };
 
-/// Closes the devices of the [spread] of `nominal` under the plain step to the same hold levels, then under each drive. Throws
-/// InvalidInput for a scene without [spread] or without contact, and for a drive that the scene lacks or whose limits are
-/// exceeded.
+/// Closes the devices of the [spread] of `nominal` under the plain step to the same hold levels, then under each set of
+/// waveforms. Throws InvalidInput for a scene without [spread] or without contact, for a drive that the scene lacks, and for
+/// exceeded limits of a drive.
 [[nodiscard]] Robustness robustness(const PreparedScene& nominal, const std::vector<NamedDrive>& drives,
                                     const RobustnessOptions& options, const Progress& progress = {});
 
-/// Computes Sobol' indices of the figures under this drive, from `rows` rows of a design. None for correlated variables, whose
-/// shares of the variance cannot be separated, and for a single variable. Measurements count as exact.
+/// Computes Sobol' indices of the figures under this drive, from `rows` rows of a Sobol' design. None for correlated variables,
+/// whose shares of the variance cannot be separated, and for a single variable. Measurements count as exact.
 [[nodiscard]] Sensitivity sensitivity(const PreparedScene& nominal, const DriveRobustness& drive, std::uint64_t rows,
                                       const RobustnessOptions& options, const Progress& progress = {});
 
-/// Returns the devices at the 5th, 50th and 95th percentile of the highest rebound, and their closings.
+/// Returns the devices at the 5th, 50th and 95th percentile of the highest rebound, with their motion.
 [[nodiscard]] std::vector<DeviceCourse> device_courses(const PreparedScene& nominal, const DriveRobustness& drive,
                                                        const Robustness& found, const RobustnessOptions& options);
 
@@ -146,9 +146,9 @@ namespace internal {
 
 /// Returns the statistics of a drive from the outcomes of the devices, which are ordered by device.
 [[nodiscard]] DriveRobustness summarised(NamedDrive drive, MeasuredUnits known, std::vector<DeviceOutcome> outcomes);
-/// Returns the options for further runs of a drive of a Robustness.
+/// Returns the options for further closings of a drive that robustness() has simulated.
 [[nodiscard]] EnsembleRun run_of(const PreparedScene& nominal, const RobustnessOptions& options);
-/// Returns the drive with exact measurements of its calibration.
+/// Returns the drive with its calibration as if measured without error.
 [[nodiscard]] EnsembleDrive exactly_measured(const PreparedScene& nominal, const DriveRobustness& drive);
 /// Returns the scene of the device with these values of the varied quantities. `device` is the number that determines the
 /// errors of the device's measurements.

@@ -49,8 +49,8 @@ class Finder {
     if (!nominal.scene.spread.empty()) ensemble_.emplace(nominal, 1);
   }
 
-  // Returns the approach by this drive; none if the nominal design has no stable path to contact within the limits of the
-  // driver.
+  // Returns the stable approach by this drive; none if the nominal design has no stable path to contact within the limits of
+  // the driver.
   [[nodiscard]] std::optional<StableApproach> along(const std::string& drive, const std::string& holder, double low) const {
     const Drive& carries = nominal_.drives.at(drive);
     if (!carries.limits) return std::nullopt;
@@ -82,8 +82,8 @@ class Finder {
         return touching_voltage(nominal_, builder.device(std::move(u)), found);
       };
       const std::optional<double> above = at(one_above), below = at(one_below);
-      // If the device to one side has no stable path to contact, use the difference to the other side, or else to the driver's
-      // limit.
+      // If the device on one side has no stable path to contact, use the difference to the device on the other side, or else to
+      // the driver's limit.
       const double slope = above && below ? (*above - *below) / 2
                            : above        ? *above - found.reaches
                            : below        ? found.reaches - *below

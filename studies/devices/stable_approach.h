@@ -1,10 +1,11 @@
-// The stable approach: a drive moves the contact point to the contact through stable equilibria. These functions find the
-// drive, and the share of devices on which this drive has such a path.
+// The stable approach: a drive moves the contact point to the contact through stable equilibria. The functions below find the
+// drive, and the share of devices that this drive can move so.
 //
 // A drive has a path of stable equilibria if all static equilibria from rest to the contact plane are stable and within the
-// limits of its driver. A piezo has such a path, and so has an electrode whose contact plane comes before the pull-in
+// limits of its driver. A piezo may have such a path, and so may an electrode whose contact plane comes before the pull-in
 // instability. The other drives are constant. An electrode that holds the closed switch is at a low level until contact. A slow
-// waveform along the path closes every device, at a speed that is the spread of the touching voltages over the available time.
+// waveform along the path closes every device, with an impact velocity that is the spread of the touching voltages over the
+// available time.
 #pragma once
 
 #include <cstdint>
@@ -26,23 +27,24 @@ struct StableApproach {
   double slope = 0;      ///< derivative of the contact point's deflection by the voltage of `drive`, nominal design [m/V]
   double limit = 0;      ///< limit of the driver in the direction of `reaches` [V]
 
-  /// Returns the length of the range of positions at which 90 % of the devices close, from the 5th to the 95th percentile, to
+  /// Returns the width of the range of positions, from the 5th to the 95th percentile, at which 90 % of the devices touch, to
   /// first order [m]. Positions are those of the nominal design at the touching voltages of the devices.
   [[nodiscard]] double touch_places() const;
 };
 
-/// Returns the time in which a two-impulse input shaper brings the switch near its contact without vibration [s].
+/// Returns the shortest time in which a two-impulse input shaper brings the switch near its contact without vibration [s].
 [[nodiscard]] double shortest_rise(const PreparedScene& nominal);
 /// Returns a reference speed for slow approaches that close every device without a bounce with one waveform [m/s]:
-/// touch_places() over the time that the shortest rise leaves until `steady` [s]. The contact point passes these positions at
-/// this constant speed. Infinite if no time is left.
+/// touch_places() over the time that the shortest rise leaves until `steady` [s]. The contact point passes the touching
+/// positions at this constant speed. Infinite if no time is left.
 [[nodiscard]] double quasi_static_speed(const StableApproach& approach, const PreparedScene& nominal, double steady);
 
-/// Finds the approach by a drive that a search with this actuator may vary; none if no drive has a path of stable equilibria to
-/// contact on the nominal design. Drives without limits are not considered.
+/// Finds a stable approach by a drive that a search with this actuator may vary; none if no drive has a path of stable
+/// equilibria to contact on the nominal design. Drives without limits are not considered.
 [[nodiscard]] std::optional<StableApproach> stable_approach(const PreparedScene& nominal, Actuator actuator);
 
-/// Returns the commanded voltage at which the nominal design closes while the holder is at `low` [V]; NaN without a path.
+/// Returns the commanded voltage of `approach.drive` at which the nominal design touches while the holder is at `low` [V]; NaN
+/// if it has no stable path.
 [[nodiscard]] double touching_voltage(const PreparedScene& nominal, const StableApproach& approach, double low);
 
 /// Returns the share of the devices of [spread] that have a stable path to contact within the limits of the driver.

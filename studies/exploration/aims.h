@@ -34,7 +34,7 @@ inline constexpr std::string_view largest_mark = "max:";
 /// name that is not a figure or occurs twice, and for fewer than two aims.
 [[nodiscard]] std::vector<ExploredAim> explored_aims(const std::vector<ExploredColumn>& columns, const std::string& list);
 
-/// True if a point with this status may be on a Pareto front. A closing that still bounces when its window ends may not.
+/// True if a point with this status may be on a Pareto front. A closing that still bounces at the end of its window may not.
 [[nodiscard]] bool may_lead(std::string_view status);
 
 }  // namespace softland

@@ -97,7 +97,8 @@ std::vector<std::size_t> pulling_drives(const Device& device) {
   return drives;
 }
 
-/// Returns the drives as straight lines: exact for steps and pulses, within a thousandth of the voltage range for sines.
+/// Returns the drive voltages as straight lines: exact for steps and pulses, within a thousandth of the voltage range for
+/// sines.
 std::map<std::string, std::vector<std::pair<double, double>>> lines_of(const PreparedScene& p) {
   std::map<std::string, std::vector<std::pair<double, double>>> all;
   const std::vector<std::string> names = p.drive_names();

@@ -1,5 +1,5 @@
 // The computation of an exploration at one point of its plan: a row of figures, and a status. The row depends only on the scene
-// of the point and on the options of the study. The row is bit for bit the result of the verb of the same name for that scene.
+// of the point and on the options of the study. It is bit for bit the result of the verb of the same name for that scene.
 //
 //   simulate    every figure of merit of the closing under the scene's waveforms, with `certify` also the errors of the
 //               figures. Closings run one at a time: in SIMD lanes (model/ensemble/ensemble_closings.h) their last digits would
@@ -14,7 +14,7 @@
 //               figures of the plain step. Unlike the verb it does not begin with half its budget.
 //
 // A point whose scene fails throws no exception: an impossible scene has the status `infeasible` with the reason, a numerical
-// failure its own status.
+// failure the status of that failure.
 #pragma once
 
 #include <cstdint>
@@ -45,7 +45,7 @@ static_assert(is_complete<point_studies>());
 /// A study that is registered from outside of this file: a verb that takes one scene.
 struct OtherStudy {
   using Options = std::map<std::string, std::string>;
-  /// The numbers of a record, such as "touch.least_time_s", and the status. True is 1, false is 0.
+  /// The numbers of a record, such as "touch.least_time_s", and the status. Flags are 1 for true and 0 for false.
   struct Record {
     std::string status;
     std::vector<std::pair<std::string, double>> numbers;
@@ -75,9 +75,9 @@ void complete(PlanRequest& request, const OtherStudies& others = {});
 
 class Exploration {
  public:
-  /// The plan's study must be complete: see complete(). `columns` are the columns of another study's record, if known;
-  /// otherwise the record of the plan's own scene is computed to find them. Throws InvalidInput if the scene of the plan lacks
-  /// something that the study needs.
+  /// The plan's study must be complete: see complete(). `columns` are the columns of the record of a registered study, if
+  /// known; otherwise the record of the plan's own scene is computed to find them. Throws InvalidInput if the scene of the plan
+  /// lacks something that the study needs.
   explicit Exploration(Plan plan, const Progress& progress = {}, const OtherStudies& others = {},
                        std::vector<PointFigure> columns = {});
 

@@ -16,7 +16,7 @@ namespace softland {
 
 /// The progress of an exploration.
 struct ExplorationProgress {
-  std::int64_t points = 0;  ///< number of points in the part of the plan
+  std::int64_t points = 0;  ///< number of points in this part of the plan
   std::int64_t known = 0;   ///< number of points in the database file at the beginning
   std::int64_t computed = 0;
   std::int64_t reused = 0;     ///< number of rows copied from earlier plans

@@ -15,7 +15,8 @@
 namespace softland {
 namespace {
 
-// Number of points of a generation, for any total number, so that a longer search begins with the points of a shorter one.
+// Number of points of a generation, the same for any total number, so that a longer search begins with the points of a shorter
+// one.
 constexpr std::size_t population = 60;
 
 // Constraint violations of points with an incomplete closing, and of impossible points. NSGA-II prefers the smaller violation.
@@ -102,7 +103,8 @@ class FrontSearch {
   const FrontOptions& options_;
   Progress progress_;
   std::mutex mutex_;
-  std::map<std::vector<double>, StoredRow> fresh_;  // rows by position in the search box, until their number is known
+  std::map<std::vector<double>, StoredRow> fresh_;  // rows by position in the search box, until the number of their point is
+                                                    // known
   FrontFound found_;
 };
 

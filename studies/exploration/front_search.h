@@ -13,7 +13,7 @@
 
 namespace softland {
 
-/// Default `sample` of a plan that searches a Pareto front.
+/// Default value of `sample` for a plan that searches a Pareto front.
 inline constexpr std::string_view usual_front_sample = "nsga2:2000";
 
 /// Returns the aims of a plan that searches a Pareto front. Throws the exceptions of explored_aims().
@@ -35,8 +35,8 @@ struct FrontOptions {
 };
 
 /// Searches the Pareto front of an exploration whose plan requests such a search. Point k is the k-th point that the search
-/// requests. A point in `known`, or of an earlier plan in `store`, is not computed again, so that an interrupted and repeated
-/// search ends with the same rows. Throws the exceptions of StudyStore::add().
+/// requests. A point in `known`, or of an earlier plan in `store`, is not computed again: a repeated search after an
+/// interruption ends with the same rows. Throws the exceptions of StudyStore::add().
 [[nodiscard]] FrontFound search_front(Exploration& exploration, StudyStore& store, KnownRows known,
                                       const std::vector<ExploredAim>& aims, const FrontOptions& options);
 

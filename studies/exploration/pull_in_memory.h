@@ -13,10 +13,10 @@ namespace softland {
 
 class PullInMemory {
  public:
-  /// Returns a finder of the pull-in voltages of the switch of `scene`; it must be called for that switch only. The finder
-  /// reuses voltages that were found for a scene with the same switch. Such a scene may differ in waveforms (except the
-  /// voltages of the other drives), limits of the drivers, window and reported figures. May be called on any thread: a thread
-  /// waits while another thread computes the same voltages. The finder must not outlive this object.
+  /// Returns a finder of the pull-in voltages of the switch of `scene`, for that switch only. The finder reuses voltages that
+  /// were found for a scene with the same switch. The two scenes may differ in waveforms (except voltages of the other drives),
+  /// limits of the drivers, window and reported figures. May be called on any thread: a thread waits while another thread
+  /// computes the same voltages. The finder must not outlive this object.
   [[nodiscard]] PullInFinder finder(const SceneFile& scene);
 
  private:

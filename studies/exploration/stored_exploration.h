@@ -13,12 +13,12 @@ namespace softland {
 
 /// Returns the part of the plan that a database file stores.
 [[nodiscard]] StoredPlan stored_plan(const Exploration& exploration, const Shard& shard);
-/// Returns the exploration of `plan` for the database file `store`. If the file has this exploration already, the columns are
-/// those in the file.
+/// Returns the exploration of `plan` for the database file `store`. If the file already stores this exploration, the columns
+/// are those in the file.
 [[nodiscard]] Exploration exploration_for(Plan plan, const std::filesystem::path& store, const Progress& progress = {},
                                           const OtherStudies& others = {});
-/// Throws InvalidRequest about the field `shard` if the exploration has no such part: a search for a Pareto front cannot be
-/// divided.
+/// Throws InvalidRequest about the field `shard` if the exploration cannot have this part: a search for a Pareto front cannot
+/// be divided.
 void require_part(const Exploration& exploration, const Shard& shard);
 /// Returns the plan of the exploration in a database file. Throws InvalidInput if the file contains a search instead.
 [[nodiscard]] PlanRequest exploration_in(const StudyReader& store);

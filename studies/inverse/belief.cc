@@ -156,7 +156,7 @@ class BeliefUpdate {
     return misfits(std::vector<VectorXd>{fitted(start).first}).front();
   }
   [[nodiscard]] double misfit_of(const VectorXd& z) const { return misfits(std::vector<VectorXd>{z}).front(); }
-  /// Returns the least misfit of all searches. They end when the misfit is at most `enough`.
+  /// Returns the least misfit of all searches. The searches end when the misfit is at most `enough`.
   [[nodiscard]] double least_misfit(const Belief& belief, double enough);
 
  private:
@@ -270,7 +270,7 @@ std::pair<VectorXd, MatrixXd> BeliefUpdate::fitted(VectorXd z) const {
   return {best, curvature};
 }
 
-// Searches from the `most` likeliest of these starts, until the end of a search is as likely as `enough`.
+// Searches from the `most` likeliest of these starts, until the end of a search has at least the log posterior `enough`.
 void BeliefUpdate::climb_from(const std::vector<VectorXd>& starts, std::size_t most, double enough) {
   const std::vector<double> before = log_posteriors(starts);
   std::vector<std::size_t> order(starts.size());

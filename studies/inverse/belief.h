@@ -1,9 +1,9 @@
-// The belief about a device after its records: a set of devices with weights, in the standard normal coordinates z of
-// TuningModel. The belief is the posterior of studies/inverse/posterior.h with these terms:
+// The belief about a device, a probability distribution after its records: a set of devices with weights, in the standard
+// normal coordinates z of TuningModel. The belief is the posterior of studies/inverse/posterior.h with these terms:
 //
 //   -ln p(z | records) = |z|^2 / 2 + sum over records L(record, closing of the device z in the same shot) + const
 //
-//   first touch  r = (t - t_record) / s,  s^2 = edge_error^2 + (g / 2000 v)^2 + (T_0 / 3400)^2,  L = r^2 / 2, linear beyond 6;
+// first touch r = (t - t_record) / s, s^2 = edge_error^2 + (g / 2000 v)^2 + (T_0 / 3400)^2, L = r^2 / 2, linear beyond 6;
 //                v impact velocity of the first touch: g / 2000 is the error of the model in position, T_0 / 3400 that in time
 //   edges        open time u within 0.09, 0.3 and 0.9 T_0 of the first touch,
 //                L = 1.2 ln(1 + q^2 / 3),  q = (u - u_record) / (0.0045 T_0 + 0.2 max(u, u_record)): the closing is chaotic after
@@ -45,7 +45,7 @@ class Draws {
   std::uint64_t seed_, next_;
 };
 
-/// The likelihood of the records of a device, by the terms at the top of this file.
+/// The likelihood of the records of a device, by the terms at the top of belief.h.
 class Likelihood {
  public:
   /// Keeps references to `scene` and `shots`.
@@ -74,32 +74,32 @@ struct Belief {
   double effective_devices = 0;         ///< 1 / (sum of the squared weights), with weights from the likelihood
   double log_posterior = 0;             ///< log posterior of the mode, without its constant
 
-  /// Returns the prior, the belief without records: samples of the standard normal distribution.
+  /// Returns the prior (the belief before any record): samples of the standard normal distribution.
   [[nodiscard]] static Belief prior(Eigen::Index size, Draws& draws);
   /// Returns `count` points, sampled in proportion to their weights (systematic resampling, Kitagawa 1996), in random order.
   [[nodiscard]] std::vector<Eigen::VectorXd> resampled(std::size_t count, Draws& draws) const;
 };
 
 /// Fits the times of first contact in these shots alone, starting from the belief and from devices all over [spread], until the
-/// misfit of a device is within the bound. If exactly one record has a contact that stayed open, this record is left out: a
-/// loose wire says nothing about the device.
+/// misfit of a device is within the bound. If the contact stayed open in exactly one record, this record is left out: a loose
+/// wire says nothing about the device.
 ///
 /// If closings are linear in z, the first contact times y are normal, with the covariance J J^T + I in units of their errors.
 /// The least |z|^2 + |r|^2 is then y^T (J J^T + I)^-1 y, which is chi-square distributed with as many degrees of freedom as
 /// records. The bound is the 0.999 quantile of this distribution by E. B. Wilson & M. M. Hilferty, Proc. Natl. Acad. Sci. 17
-/// (1931) 684. The search for the least covers all peaks of the posterior. Throws Interrupted if `progress` asks to stop.
+/// (1931) 684. The minimum is searched at all peaks of the posterior. Throws Interrupted if `progress` asks to stop.
 [[nodiscard]] TouchMisfit touch_misfit(const TuningModel& scene, std::span<const LearnedShot> shots, const Belief& belief,
                                        Draws& draws, const Progress& progress = {});
 
-/// Returns the increase of the least |z|^2 + sum of r^2 if the ratio of contact to electrode gap is fixed at that of the scene;
-/// 0 if [spread] has no such ratio. For devices of [spread] the increase is chi-square distributed with one degree of freedom.
-/// The search over all peaks of the posterior ends when the increase is below `enough`. Throws Interrupted if `progress` asks
-/// to stop.
+/// Returns the increase of the least |z|^2 + sum of r^2 if the ratio of contact gap to electrode gap is fixed at that of the
+/// scene; 0 if [spread] does not vary this ratio. For devices of [spread] the increase is chi-square distributed with one
+/// degree of freedom. The search over all peaks of the posterior ends when the increase is below `enough`. Throws Interrupted
+/// if `progress` asks to stop.
 [[nodiscard]] double gap_ratio_misfit(const TuningModel& scene, std::span<const LearnedShot> shots, const Belief& belief,
                                       double enough, Draws& draws, const Progress& progress = {});
 
-/// Returns the belief after these shots, at least one. Some of the searches for it start from the belief `last`. Throws
-/// Interrupted if `progress` asks to stop.
+/// Returns the belief after these shots, at least one. Some of the searches for the new belief start from the belief `last`.
+/// Throws Interrupted if `progress` asks to stop.
 [[nodiscard]] Belief updated_belief(const TuningModel& scene, std::span<const LearnedShot> shots, const Belief& last,
                                     Draws& draws, const Progress& progress = {});
 

@@ -8,8 +8,8 @@
 
 namespace softland {
 
-/// Returns the instrument that reads row `i` of a measurement, or all rows of a trace or record. Throws InvalidInput for
-/// a measurement that is impossible for the scene.
+/// Returns the instrument that reads row `i` of a measurement, or all rows of a trace or contact record. Throws InvalidInput
+/// for a measurement that is impossible for the scene.
 [[nodiscard]] Instrument instrument_of(const PreparedScene& scene, const BenchMeasurement& measurement, std::size_t i);
 
 }  // namespace softland

@@ -44,7 +44,7 @@ class CapacitanceEdges final : public ClosingObserver {
 };
 
 /// Returns the capacitance of the nominal design in its closed state less that in its open state [F]. Throws InvalidInput if
-/// the threshold is not between the two, and if the closed state, the open state or a pulling electrode is missing.
+/// the threshold is not between these capacitances, and if the closed state, the open state or a pulling electrode is missing.
 [[nodiscard]] double capacitance_rise(const PreparedScene& nominal, double threshold);
 
 }  // namespace softland

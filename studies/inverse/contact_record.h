@@ -1,5 +1,5 @@
-// A record of one closing: the times at which a laboratory saw the contact open and close. If the laboratory records the
-// capacitance instead, the contact counts as closed while the capacitance is above a threshold.
+// A record of one closing: the times at which a laboratory measured that the contact opens and closes. If the laboratory
+// records the capacitance instead, the contact counts as closed while the capacitance is above a threshold.
 #pragma once
 
 #include <cmath>
@@ -17,8 +17,8 @@ struct LaboratoryErrors {
   double unseen = 100e-9;     ///< openings shorter than this time are not recorded [s]
   double gain_error = 0.005;  ///< relative error of the gain of a source: constant but unknown
   double shot_error = 2e-4;   ///< relative scatter of the gain from shot to shot
-  /// Standard deviation of the delay of records behind the drives, which is constant but unknown [s]; 0 if records begin with
-  /// the drives. A simulated laboratory has PracticeOptions::trigger_delay instead.
+  /// Standard deviation of the delay between drives and record, which is constant but unknown [s]; 0 if records begin with the
+  /// drives. A simulated laboratory has PracticeOptions::trigger_delay instead.
   double trigger_delay = 2e-6;
   /// Threshold of the capacitance of the closing electrode [F]. Records contain the times at which the capacitance is above
   /// this threshold; if NaN, the times at which the contact is closed.
@@ -38,7 +38,7 @@ struct ContactEdge {
   bool closed = false;  ///< true if the contact is closed after this edge
 };
 
-/// The record of one shot: edges, or closing time and number of openings, or an error. A record without these members means
+/// The record of one shot: edges, or closing time and number of openings, or an error. A record in which no member is set means
 /// that the contact stayed open.
 struct ContactRecord {
   std::vector<ContactEdge> edges = {};      ///< edges in order of time; the first one closes the contact
@@ -53,7 +53,7 @@ struct ContactOpening {
   double begin = 0, end = 0;  ///< [s]; the end is infinite if the contact is open at the end of the record
 };
 
-/// Returns the rule that a record of a shot of `duration` [s] violates, with the key at fault; empty if the record is valid.
+/// Returns the rule that the record of a shot of `duration` [s] violates, with the invalid key; empty if the record is valid.
 /// Times must be above 0, within the record, and in order. Edges must alternate, with a closed contact after the first edge. A
 /// record must not have both edges and a closing time.
 [[nodiscard]] std::string record_fault(const ContactRecord& record, double duration = std::numeric_limits<double>::infinity());

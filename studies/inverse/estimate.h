@@ -4,7 +4,7 @@
 //   H = J^T W J,  W the weights of the robust loss       information of the data
 //   C = (H + P)^-1,  P the information of the prior       covariance of the estimate
 //
-// A direction of z is weak if the data have less information about it than the prior, that is, if its eigenvalue of H is below
+// A direction of z is weak if the data have less information about it than the prior, that is, if the eigenvalue of H is below
 // 1. The data cannot separate the unknowns along a weak direction.
 #pragma once
 
@@ -30,8 +30,8 @@ struct Estimate {
   std::vector<WeakDirection> weak;  ///< weak directions in order of increasing information
 
   [[nodiscard]] double deviation(std::size_t i) const;
-  /// Returns the relative decrease of the root mean square of all standard deviations by a further measurement. `slopes` are
-  /// the derivatives of this measurement by z, in units of its error.
+  /// Returns the relative decrease of the root mean square of all standard deviations if one more measurement is made. `slopes`
+  /// are the derivatives of this measurement by z, in units of its error.
   [[nodiscard]] double reduction(const std::vector<Eigen::VectorXd>& slopes) const;
 };
 
@@ -39,9 +39,9 @@ struct Estimate {
 [[nodiscard]] std::vector<WeakDirection> weak_directions(const Eigen::MatrixXd& data);
 [[nodiscard]] Estimate estimate(const Eigen::MatrixXd& data, const Eigen::MatrixXd& prior);
 
-/// A device of a population, with the information H_k that its data have about its z.
+/// A device of a population, with the information H_k of its data about z.
 struct KnownDevice {
-  Eigen::MatrixXd data;    ///< H_k
+  Eigen::MatrixXd data;    ///< H_k, information of the data of this device about z
   Eigen::VectorXd target;  ///< H_k m_k, where m_k is the estimate from the data alone
 };
 /// Returns mean and covariance of z over a population with the largest likelihood, by expectation and maximisation (Dempster,

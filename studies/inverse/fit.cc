@@ -88,7 +88,7 @@ std::vector<std::string> doubts_of(const Fit& fit, const ManyEnds& all, const Le
   return doubts;
 }
 
-// One stage of a fit: the data that it uses, and the ends of the searches from several starts.
+// One stage of a fit: the problem with the data of this stage, and the ends of the searches from several starts.
 struct Stage {
   std::unique_ptr<const FitProblem> problem;
   ManyEnds all = {};
@@ -109,7 +109,7 @@ Stage solved(FitProblem problem, const std::vector<std::vector<double>>& starts,
   return stage;
 }
 
-// Returns distinct ends, the best first. With more rows of the traces another of these ends may become the best.
+// Returns distinct ends, the best first. When more rows of the traces are fitted, another of these ends may become the best.
 std::vector<std::vector<double>> best_ends(const ManyEnds& all) {
   constexpr std::size_t most = 5;
   std::vector<const LeastSquaresEnd*> ranked;
@@ -167,7 +167,7 @@ TraceMisfit misfit(const Stage& stage, std::size_t measurements, const TraceWind
   return of;
 }
 
-// Returns for each measurement whether the model describes the rows added last as well as the earlier rows, within chance.
+// For each measurement, returns whether the model describes the rows added last as well as the earlier rows, within chance.
 std::vector<bool> described(const TraceMisfit& newest, const TraceMisfit& before) {
   constexpr double least = 0.15, deviations = 3;
   std::vector<bool> all;

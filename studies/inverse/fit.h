@@ -9,8 +9,8 @@
 //
 // An unknown belongs to one device, or is shared by all. Searches start at the nominal device and at points of low discrepancy
 // over the prior; the result is the end of the best search. Standard errors are those of the problem linearised at this end. At
-// first only the rows of traces up to first contact are used. The best ends are then fitted to more rows, as long as the model
-// describes these rows (trace_windows.h).
+// first, only rows of traces up to first contact are fitted. Then more rows are added, as long as the model describes them
+// (trace_windows.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -45,9 +45,10 @@ struct FittedUnknown {
   std::string device;                    ///< name of the device; empty if shared by all, or for the only device
   std::string unit;                      ///< SI unit; empty for a factor of the scene's values
   double nominal = 0;                    ///< value of the scene [unit]
-  double value = 0, standard_error = 0;  ///< NaN if the fit is in doubt
-  double low = 0, high = 0;              ///< 95 % interval; NaN if the fit is in doubt
-  double prior_mean = Metrics::unset, prior_deviation = Metrics::unset;  ///< NaN without a prior
+  double value = 0, standard_error = 0;  ///< value and standard error [unit]; NaN if the fit is in doubt
+  double low = 0, high = 0;              ///< ends of the 95 % interval [unit]; NaN if the fit is in doubt
+  double prior_mean = Metrics::unset, prior_deviation = Metrics::unset;  ///< mean and standard deviation of the prior [unit];
+                                                                         ///< NaN without a prior
   double scale = 0;                                                      ///< change of the value when z changes by 1
 };
 
@@ -66,7 +67,7 @@ struct FitResidual {
 struct FittedTrace {
   std::size_t measurement = 0;  ///< number of the measurement in the bench file
   Measurable what = Measurable::velocity;
-  double until = 0, recorded = 0;  ///< times of the last used row, and of the last row [s]
+  double until = 0, recorded = 0;  ///< times of the last row that the fit uses, and of the last recorded row [s]
 };
 
 struct NextMeasurement {
@@ -90,7 +91,7 @@ struct Fit {
   bool spread_assumed = false;
   std::vector<std::string> devices;
   std::vector<FittedUnknown> unknowns;
-  Estimate estimate;  ///< weak directions are those of the mean device, in the unknowns of the first device
+  Estimate estimate;  ///< its weak directions are those of the mean device, in the unknowns of the first device
   std::vector<FitResidual> residuals;
   std::vector<FittedTrace> traces = {};
   std::vector<NextMeasurement> next;  ///< possible further measurements, the most useful first
@@ -104,10 +105,10 @@ struct Fit {
   /// another minimum describes the data as well. A result in doubt has no standard errors.
   std::vector<std::string> doubts = {};
 
-  /// Return the sum of the squared normalized residuals, without weights, after and before the fit.
+  /// Return the sum of the squared normalized residuals, without robust weights, after and before the fit.
   [[nodiscard]] double chi_squared() const;
   [[nodiscard]] double chi_squared_before() const;
-  /// A key and its fitted value, which replaces that of the scene in the fitted scene of a device.
+  /// A key and its fitted value, which replaces the value of the scene in the fitted scene of a device.
   struct FittedKey {
     std::string path;
     std::size_t element = 0;

@@ -15,10 +15,11 @@ class EndOfFit {
   /// Computes residuals, estimate and unknowns and stores them in `fit`. Keeps references.
   EndOfFit(const FitProblem& problem, const LeastSquaresEnd& end, Fit& fit);
 
-  /// Throws InvalidRequest for an unknown without a prior on which no datum depends: its fitted value would be the start of its
-  /// search.
+  /// Throws InvalidRequest for an unknown that has no prior and that changes no prediction: its fitted value would be the start
+  /// of its search.
   void require_all_seen(const std::string& bench) const;
-  /// Adds the population of the unknowns that belong to single devices. Shared unknowns have their fitted values.
+  /// Adds the population of the devices, over the unknowns that each device has for itself. Shared unknowns have their fitted
+  /// values.
   void add_population();
   /// Adds the possible further measurements, the most useful first.
   void add_next(const Progress& progress);

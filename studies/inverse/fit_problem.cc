@@ -33,8 +33,8 @@ std::string entry_of(const DeviceSpread& spread, const std::string& name) {
   return name;
 }
 
-// Returns the scene in volts, whose [spread] has the unknowns alone. Unknowns without an entry in [spread] get an entry, which
-// does not act as a prior.
+// Returns the scene in volts, whose [spread] contains only the unknowns. Unknowns without an entry in [spread] get an entry,
+// which does not act as a prior.
 PreparedScene with_unknowns(const PreparedScene& given, std::vector<std::string>& unknowns,
                             std::vector<std::string>& without_prior) {
   const DeviceSpread& spread = given.scene.spread;

@@ -12,9 +12,8 @@ namespace softland {
 /// scene's values.
 void set_spread(SceneFile& file, const Fit& fit);
 
-/// Returns the text of a scene, which is that of the file `path`, with the fitted values of a device; for several devices, with
-/// the mean of their population and its spread. Comments, sources and units stay. Throws InvalidInput for a text that is not a
-/// scene.
+/// Returns `text`, the scene in the file `path`, with the fitted values of a device; for several devices, with the mean of
+/// their population and its spread. Comments, sources and units stay. Throws InvalidInput for a text that is not a scene.
 [[nodiscard]] std::string fitted_text(const Fit& fit, std::string_view text, const std::string& path, const std::string& device);
 
 }  // namespace softland

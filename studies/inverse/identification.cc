@@ -83,7 +83,7 @@ std::vector<FigureMeter> instruments(const PreparedScene& nominal, const PullInM
   return all;
 }
 
-// False for a figure that is equal for all devices, or that the nominal device does not have.
+// False for a figure that is equal for all devices, or that does not exist on the nominal device.
 bool tells(const MeasurableFigure& figure) {
   if (!(figure.nominal > 0)) return false;
   return std::any_of(figure.values.begin(), figure.values.end(),

@@ -3,17 +3,18 @@
 //
 //   best factors   (s_V, s_t) of device k minimise  s_k + (ln s_V)^2 + (ln s_t)^2,   s_k its score for `bounce` (robust_cost.h)
 //                  under V(t) = s_V V_0(t / s_t), the recipe V_0 being the scene's own drive; searched by Nelder and Mead's
-//                  simplex from the device's own units (its Vdp, its period). If the recipe drives a piezo, its voltages have
-//                  a factor s_p of their own, from the device's own unit: the deflection by a volt over the contact gap.
+//                  simplex from the factors of its Vdp and its period. If the recipe drives a piezo, its voltages have
+//                  a separate factor s_p, from the device's own unit: the deflection by a volt over the contact gap.
 //   predicted      ln s = a + sum_i b_i ln x_i, the figures of the device being x_i. Least squares over one half of the devices
 //   factors        give a and b_i for the other half, and vice versa.
 //
-// The score is flat if a device already closes without a bounce, and the best factors would be arbitrary. The squares select
-// the smallest change of the waveform that closes it without a bounce, and are too small to spoil a soft closing. All factors
-// are fitted by the same figures, so that the fit does not depend on the weight of either error. Closings alone rate the fit:
-// figures are ranked by the 95th percentile of the scores of all devices, each with factors fitted to the other half.
+// The score is flat if a device already closes without a bounce, and the best factors would be arbitrary. The squared
+// logarithms select the smallest change of the waveform that closes it without a bounce, and are too small to spoil a soft
+// closing. All factors are fitted by the same figures, so that the fit does not depend on the weight of either error. Only
+// closings rate the fit: figures are ranked by the 95th percentile of the scores of all devices, each with factors fitted to
+// the other half.
 //
-// Closing times are measured under steps to multiples of the nominal device's Vdp, with the same volts for all devices. Each
+// Closing times are measured under steps to multiples of the nominal device's Vdp, with the same voltages for all devices. Each
 // measured figure has its error, both in the fit and in the prediction.
 #pragma once
 
@@ -45,7 +46,8 @@ struct Prediction {
   /// also if it is not driven.
   double volts_miss = Metrics::unset, time_miss = Metrics::unset, piezo_miss = Metrics::unset;
   double volts_unexplained = Metrics::unset, time_unexplained = Metrics::unset, piezo_unexplained = Metrics::unset;
-  bool is_judged = false;         ///< true if closings gave the members below
+  bool is_judged = false;         ///< true if closings with the predicted factors were simulated; only then are the members
+                                  ///< below set
   double score = Metrics::unset;  ///< 95th percentile of the score
   Yield bounce_free;
   EstimatedQuantile impact_speed;    ///< 95th percentile of the largest impact velocity of all touches [m/s]
@@ -56,18 +58,20 @@ struct IdentificationOptions {
   std::uint64_t samples = 256;
   std::uint64_t seed = 1;
   int jobs = 1;                               ///< number of threads; does not change the result
-  std::vector<double> steps{1.1, 1.25, 1.5};  ///< steps whose closing times are measured, over the nominal Vdp
+  std::vector<double> steps{1.1, 1.25, 1.5};  ///< levels of the steps whose closing times are measured, over the nominal Vdp
   double pull_in_error = 0, static_pull_in_error = 0, release_error = 0, frequency_error = 0, piezo_error = 0, time_error = 0;
 };
 
 struct IdentificationStudy {
   std::vector<MeasurableFigure> figures;
-  std::vector<DeviceUnits> best;        ///< best factors by device; NaN if the device closes with none
-  std::vector<Prediction> references;   ///< results with no figures, own units, all figures, best factors
-  std::vector<Prediction> predictions;  ///< results of single figures and pairs, the best first; those without closings last
+  std::vector<DeviceUnits> best;        ///< best factors by device; NaN if the device closes with no factors
+  std::vector<Prediction> references;   ///< results with no figures, with Vdp and period, with all figures, and with
+                                        ///< the best factors
+  std::vector<Prediction> predictions;  ///< results of single figures and pairs, the best first; predictions without closings
+                                        ///< last
   std::size_t devices = 0;
   bool spread_assumed = false;  ///< true if the scene does not describe the process variation
-  bool drives_piezo = false;    ///< true if piezo voltages have a factor of their own
+  bool drives_piezo = false;    ///< true if piezo voltages have a separate factor
   bool interrupted = false;
 };
 

@@ -46,7 +46,7 @@ struct LeastSquares {
 
 struct LeastSquaresEnd {
   bool converged = false;      ///< true if the search ended at a minimum
-  std::vector<double> x = {};  ///< x at the end of the search; empty if the residuals do not exist at the start
+  std::vector<double> x = {};  ///< x at the end of the search; empty if the residuals do not exist at its start
   double cost = 0;             ///< half of the minimised sum
   long evaluations = 0, with_jacobian = 0;
   std::string message = {};  ///< message of Ceres about the end of the search
@@ -62,11 +62,12 @@ struct LeastSquaresEnd {
 /// The ends of least-squares searches from several starts. They do not depend on the number of threads.
 struct ManyEnds {
   std::vector<LeastSquaresEnd> ends;  ///< ends in the order of the starts
-  std::size_t best = 0;               ///< index of the end with the least cost among the ends with an x
+  std::size_t best = 0;               ///< index of the end with the least cost, among the ends whose x is not empty
   std::size_t minima = 0;             ///< number of distinct minima among the converged ends
   [[nodiscard]] bool found() const { return !ends.empty() && !ends[best].x.empty(); }
 };
-/// Solves from all starts. `make` gives each search its own problem. `same` returns true if two ends are the same minimum.
+/// Solves from all starts. `make` makes a separate problem for each search. `same` returns true if two ends are the same
+/// minimum.
 [[nodiscard]] ManyEnds solve_from(const std::function<LeastSquares()>& make, const std::vector<std::vector<double>>& starts,
                                   int jobs, const std::function<bool(const LeastSquaresEnd&, const LeastSquaresEnd&)>& same,
                                   const Progress& progress = {});

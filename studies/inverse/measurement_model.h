@@ -11,7 +11,7 @@
 
 namespace softland {
 
-/// Predicts measurements. Each search has its own model, since a reader represents one device at a time.
+/// Predicts measurements. Each search has its own model, since a DeviceReader represents one device at a time.
 class MeasurementModel {
  public:
   /// Keeps a reference to `problem`.
@@ -23,9 +23,9 @@ class MeasurementModel {
 
   struct Prediction {
     double value = 0;
-    Eigen::VectorXd slopes;  ///< derivatives by z
+    Eigen::VectorXd slopes;  ///< derivatives of the value by z
   };
-  /// Predicts the reading of one further instrument on a device; none if the instrument cannot read the device.
+  /// Predicts the reading of an instrument that is not among the data; none if it cannot read the device.
   [[nodiscard]] std::optional<Prediction> predict(std::size_t device, std::span<const double> z, const Instrument& instrument);
 
  private:

@@ -2,9 +2,8 @@
 // coordinates z, in which one standard deviation of the prior is 1:
 //
 //   -ln p(z | data) = z^T P z / 2 + sum over data of L(r_i(z)) + const,   r_i = (y_i(z) - m_i) / s_i
-//
 // The symbols are: y_i prediction, m_i measured value, s_i its standard deviation, L = rho(r^2) / 2 with the robust loss rho
-// (least_squares.h), P inverse correlation of the prior. `fit` and `tune` differ in the rest:
+// (least_squares.h), P inverse correlation of the prior. `fit` and `tune` differ as follows:
 //
 //   fit    y: readings of instruments with exact derivatives (studies/devices/instruments.h); s: from the bench file; value of
 //          an unknown: mean + deviation z; P: correlations of [spread]. One normal distribution at the minimum.
@@ -12,8 +11,7 @@
 //          the switch slows down; further terms for openings and sound; value of an unknown: exact quantile of its
 //          distribution, so that P = I. The posterior has several peaks: a normal distribution at the best peak, then weighted
 //          points.
-//
-// `calibrate` uses the instruments of `fit`, without derivatives, on known devices. It has no such posterior: it finds the
+// `calibrate` uses the instruments of `fit`, without derivatives, on known devices. It has no posterior of z: it finds the
 // figures that predict the factors of a waveform, and fits these factors themselves.
 #pragma once
 

@@ -64,7 +64,7 @@ void stiffen(SceneFile& file, const Scene& scene, double factor) {
           [&] { return fmt::format("stiffness={}: {}: its contact has no stiffness", number_text(factor), scene.file.name()); });
 }
 
-// Returns the scene with this model, in volts, so that a change of the pull-in voltage by the model does not change waveforms.
+// Returns the scene with this model, in volts, so that waveforms stay the same if the model changes the pull-in voltage.
 PreparedScene with_model(const PreparedScene& nominal, const PracticeModel& model) {
   SceneFile file = nominal.resolved();
   if (model.more_modes != 0) add_modes(file, nominal.scene, model.more_modes);

@@ -1,4 +1,4 @@
-// A simulated device in a simulated laboratory, for practice. The device is one of those of [spread]. For each shot the
+// A simulated device in a simulated laboratory, for practice. The device is one of the devices of [spread]. For each shot the
 // simulated laboratory returns the record that a real laboratory would make of the closing.
 //
 //   commanded f(t)  ->  the scene's source  ->  V(t) = (1 + g) (1 + s_n) (1 + d (n - 1)) f(t)  ->  the device  ->  the record
@@ -12,8 +12,8 @@
 // while the capacitance is above a threshold.
 //
 // The device differs from the scene as [spread], or the assumed spread (config/assumed_spread.h), describes. Its model may
-// differ as well, which a belief based on the scene cannot know. The device's random numbers have their own streams, which no
-// ensemble uses.
+// differ as well, which a belief based on the scene does not include. The device's random numbers have their own streams, which
+// no ensemble uses.
 #pragma once
 
 #include <cstdint>
@@ -61,7 +61,7 @@ class PracticeDevice {
   /// Throws InvalidInput for a scene that cannot be simulated or has no contact, and for a model that the scene cannot have.
   explicit PracticeDevice(SceneFile file, const PracticeOptions& options = {});
 
-  /// Returns the scene, with the limits of its drivers in volts. This is all that a user knows about the device.
+  /// Returns the scene, with the limits of its drivers in volts. A user knows only this scene about the device.
   [[nodiscard]] const PreparedScene& nominal() const { return nominal_; }
   /// Returns the device with the values of its varied quantities. A user does not know these values.
   [[nodiscard]] const SampledDevice& device() const { return device_; }

@@ -3,12 +3,12 @@
 //
 // Shapes. The electrode that closes the switch has the waveform family catch of search_space.h: three levels with durations
 // that accelerate the beam, let it coast and brake it, then the hold level. Every other varied drive has the family pulse.
-// Edges are as short as these families allow. The quasi-static approach uses the shapes of quasi_static.h.
+// Edges are as short as the families allow. The quasi-static approach uses the waveforms of quasi_static.h.
 //
-// Recipes are waveforms that are searched once per scene, by CMA-ES on devices whose remaining uncertainty is that after one
-// recorded closing. One recipe is for the nominal device. On request there are further recipes for devices whose unit of
-// voltage is one and two standard deviations away. Scaled by the units of a device, recipes are starts of the searches for this
-// device, beside the waveforms of earlier shots.
+// Recipes are candidate waveforms that are searched once per scene, by CMA-ES on devices whose remaining uncertainty is that
+// after one recorded closing. One recipe is for the nominal device. On request there are further recipes for devices whose unit
+// of voltage is one and two standard deviations away. Scaled by the factors of a device, recipes are starting points of the
+// searches for this device, beside the waveforms of earlier shots.
 #pragma once
 
 #include <cstdint>
@@ -20,22 +20,22 @@
 
 namespace softland {
 
-/// The cost of a closing: a part for impact and rebounds, and a part for the time of first contact.
+/// The cost of a closing, as the sum of a part for impact and rebounds, and a part for the time of first contact.
 struct LandingCost {
   double landing = 0, time = 0;
   [[nodiscard]] double total() const { return landing + time; }
 };
 [[nodiscard]] LandingCost landing_cost(const PredictedClosing& closing, const TuningScales& scales);
-/// Cost of a switch that does not close.
+/// Landing cost of a switch that does not close.
 inline constexpr double not_landed = 3;
 
 /// The waveforms that a search may propose, as functions of the variables of the search.
 class TuningSpace {
  public:
-  /// Makes the shapes of the scene's approach. Keeps a reference to the scene. Throws the exceptions of SearchSpace.
+  /// Makes the waveform shapes of the scene's approach. Keeps a reference to the scene. Throws the exceptions of SearchSpace.
   explicit TuningSpace(const TuningModel& scene);
-  /// Returns the same shapes with a limit `highest` [V] on the closing electrode's levels, within the limits of its driver. The
-  /// hold level is multiplied by `hold`, and limited as well.
+  /// Returns the same space of waveforms with a limit `highest` [V] on the closing electrode's levels, within the limits of its
+  /// driver. The hold level is multiplied by `hold`, and limited as well.
   [[nodiscard]] TuningSpace within(double highest, double hold) const;
 
   [[nodiscard]] const std::vector<Variable>& variables() const { return variables_; }
@@ -52,7 +52,7 @@ class TuningSpace {
   [[nodiscard]] bool is_allowed(const std::vector<Waveform>& waveforms) const;
   /// Returns the highest level of the closing electrode that its driver permits [V]; infinite for a piezo.
   [[nodiscard]] double highest_level() const;
-  /// Returns the largest factor of all voltages at which the limits of the drivers and the highest level are not exceeded.
+  /// Returns the largest factor for all voltages that exceeds neither the limits of the drivers nor the highest level.
   [[nodiscard]] double largest_factor(const std::vector<Waveform>& waveforms) const;
 
  private:
@@ -60,7 +60,7 @@ class TuningSpace {
 
   const TuningModel* scene_;
   std::vector<DriveSearch> drives_;
-  std::optional<QuasiStatic> joint_;  // shapes that vary all drives together; only for the quasi-static approach
+  std::optional<QuasiStatic> joint_;  // waveforms that vary all drives together; only for the quasi-static approach
   DriveWaveforms others_;
   std::vector<std::vector<double>> starts_;
   std::vector<Variable> variables_;
@@ -69,18 +69,18 @@ class TuningSpace {
   double highest_ = std::numeric_limits<double>::infinity();
 };
 
-/// Devices of a belief, each with its own random gain, that forecast the outcome of the next shot.
+/// Devices of a belief, each with a random gain of its sources, that forecast the outcome of the next shot.
 class OutcomeForecast {
  public:
   /// Keeps a reference to `scene`.
   OutcomeForecast(const TuningModel& scene, const std::vector<Eigen::VectorXd>& points, Draws& draws, const Progress& progress);
   [[nodiscard]] std::size_t size() const { return devices_.size(); }
-  /// Returns the mean cost over the first `count` devices. If the mean over the first few of these devices is above `give_up`,
-  /// returns that mean.
+  /// Returns the mean cost over the first `count` devices, or the mean over the first few of them if that is above `give_up`.
   [[nodiscard]] LandingCost expected(const std::vector<Waveform>& waveforms, std::size_t count,
                                      double give_up = std::numeric_limits<double>::infinity()) const;
   [[nodiscard]] PredictedRecord predicted(const std::vector<Waveform>& waveforms) const;
-  /// Returns the median over the devices of dt_i / d ln(voltage), t_i the first contact time [s]; NaN if no device has it.
+  /// Returns the median over the devices of dt_i / d ln(voltage), t_i the first contact time [s]; NaN if no device has the
+  /// derivative.
   [[nodiscard]] double touch_slope(const std::vector<Waveform>& waveforms) const;
 
  private:
@@ -97,9 +97,9 @@ class OutcomeForecast {
 [[nodiscard]] inline TuningModel::Units units_of(const CandidateWaveform& recipe) {
   return {.volts = recipe.volts, .time = recipe.time};
 }
-/// Returns the recipes in the options. If the options have none, searches recipes for each approach of the scene, returns those
-/// of the approach with the lower cost and chooses this approach. The recipe of the nominal device comes first. Throws
-/// InvalidInput for recipes of other shapes, and Interrupted if `progress` asks to stop.
+/// Returns the recipes in the options. If the options have none, searches recipes for each approach of the scene, and chooses
+/// the approach whose recipe has the lower cost. The recipe of the nominal device comes first. Throws InvalidInput for recipes
+/// of other waveform shapes, and Interrupted if `progress` asks to stop.
 [[nodiscard]] std::vector<CandidateWaveform> recipes_of(TuningModel& scene, const Progress& progress);
 
 struct Proposal {

@@ -20,10 +20,10 @@ class TraceWindows {
   [[nodiscard]] Bench inside() const;
   /// Adds the next rows to every trace that has more rows; returns false if no trace has more.
   bool grow();
-  /// True if a time of this measurement belongs to the rows that were added last.
+  /// True if `time` of this measurement belongs to the rows that were added last.
   [[nodiscard]] bool is_new(std::size_t measurement, double time) const;
   /// Confirms the rows that were added last if `described` is true for all measurements. Otherwise removes these rows from all
-  /// traces, and adds no further rows to traces that are not described. Returns false if the fit to the removed rows must be
+  /// traces, and adds no more rows to traces that are not described. Returns false if the fit to the removed rows must be
   /// discarded.
   bool keep(const std::vector<bool>& described);
   /// Returns the time of the last row that is used at present [s].

@@ -57,7 +57,7 @@ std::optional<BelievedQuantity> believed_gap_ratio(const TuningModel& scene, con
                           .deviation = of_ratio.deviation(0)};
 }
 
-// Returns the index of the first random number that is used after a number of closings.
+// Returns the index of the first random number to use after `closings` closings.
 std::uint64_t first_draw(int closings) { return (static_cast<std::uint64_t>(closings) + 1) << 20; }
 
 }  // namespace
@@ -77,7 +77,7 @@ struct Tuner::Setting {
 struct Tuner::State {
   struct Fired {
     LearnedShot shot;
-    std::vector<double> x;  // variables of the waveform's shape
+    std::vector<double> x;  // parameters of the waveform: the variables of TuningSpace
     TunerShot as_proposed;
     int waveform = 0;  // number of the first shot that had this waveform
   };
@@ -104,7 +104,7 @@ struct Tuner::State {
     std::vector<Fired> fired;
     int closings = 0, in_a_row = 0;
     std::size_t forgotten = 0;  // number of first records that are no longer used
-    double hold = 1;            // hold level over the nominal hold level
+    double hold = 1;            // factor on the nominal hold level
     Belief belief;
     std::optional<TouchController> controller;
     std::vector<double> x;  // variables of the next shot

@@ -2,9 +2,9 @@
 // open loop.
 //
 // The belief about the device is a set of weighted devices of the scene's [spread] (or the assumed spread,
-// config/assumed_spread.h). These devices also differ in gain of the sources, viscosity of the film, stiffness of the contact,
-// and the ratio of contact to electrode gap, if a scene has such quantities. The time by which their records begin late
-// differs, too. Two steps follow every closing.
+// config/assumed_spread.h). The devices also differ in gain of the sources, viscosity of the film, stiffness of the contact,
+// and the ratio of contact to electrode gap, as far as the scene has these quantities, and in the delay of the record (trigger
+// delay). Two steps follow every closing.
 //
 //   1. The posterior of all records is computed anew: Levenberg-Marquardt on the first contact times from many starts, then
 //      rounds of weighted samples with the likelihood of the whole record (belief.h).
@@ -21,7 +21,7 @@
 // equilibria, the approach of the recipe with the lower cost is tuned.
 //
 // No shot exceeds the limits of the drivers, or has a level at which more than one in a thousand devices of the belief would
-// collapse onto the electrode. After two closings without a bounce, and if none is expected, the same shot is repeated. Its
+// collapse onto the electrode. The same shot is repeated after two closings without a bounce, if no bounce is expected. Its
 // voltages are then multiplied by a factor s that corrects t_i, s <- s [1 - 0.2 (t_i - t_ref) / (dt_i / d ln s)], until the
 // device bounces. Then all records but the last eight are dropped.
 //
@@ -51,7 +51,7 @@
 
 namespace softland {
 
-/// The way in which the tuned waveforms close the switch.
+/// The kind of motion by which the tuned waveforms close the switch.
 enum class Approach {
   fast,          ///< a drive accelerates the beam towards the contact and brakes it before contact
   quasi_static,  ///< a drive moves the beam slowly through stable equilibria
@@ -63,8 +63,9 @@ static_assert(is_complete<approaches>());
 /// A waveform from which searches start, optimised once for a scene.
 struct CandidateWaveform {
   Approach approach = Approach::fast;
-  std::vector<double> x;       ///< variables of the waveform's shape
-  double volts = 1, time = 1;  ///< units of the devices for which the waveform was optimised, over those of the nominal device
+  std::vector<double> x;       ///< parameters of the waveform: the variables of TuningSpace
+  double volts = 1, time = 1;  ///< factors of voltage and time of the devices for which the waveform was optimised, relative to
+                               ///< the nominal device
   double cost = 0;             ///< expected cost over the devices for which the waveform was optimised
 };
 
@@ -77,7 +78,7 @@ struct TunerOptions {
   double effort = 1;     ///< factor on the usual number of evaluations of every search
   /// Limit of the first contact time: before or by a time; none for no limit.
   std::optional<Condition> touch = {};
-  /// Beliefs about devices of the same wafer that were tuned before. They determine the prior of the tuned device.
+  /// Beliefs about devices of the same wafer that were tuned before. They determine the prior of the device to tune.
   std::vector<TunedBelief> wafer = {};
   /// Result of Tuner::recipes() for the same scene and options; if empty, recipes are searched.
   std::vector<CandidateWaveform> recipes = {};
@@ -101,7 +102,7 @@ struct PredictedRecord {
 struct TunerShot {
   int number = 0;                        ///< number of the shot, counted from 1
   std::vector<Waveform> waveforms = {};  ///< commanded waveforms, in the order of Switch::drives() [V]
-  double hold_time = 0;                  ///< time of holding and recording after the last breakpoint [s]
+  double hold_time = 0;                  ///< time of holding the levels and recording, after the last breakpoint [s]
   double expected_cost = 0;              ///< mean cost over the devices of the belief
   PredictedRecord predicted = {};
 };
@@ -113,14 +114,16 @@ inline constexpr const char* trigger_delay_name = "trigger delay";
 struct BelievedQuantity {
   std::string name;                            ///< name of the quantity's entry in [spread], or trigger_delay_name
   std::string unit;                            ///< SI unit; empty for a factor
-  double prior_mean = 0, prior_deviation = 0;  ///< factors of the scene's value, or values in `unit`
+  double prior_mean = 0, prior_deviation = 0;  ///< mean and deviation before the records: factors of the scene's value, or
+                                               ///< values in `unit`
   double mean = 0, deviation = 0;
 };
 
 /// The misfit of the recorded first contact times to the devices of [spread].
 struct TouchMisfit {
-  double least = 0;         ///< |z|^2 + sum of r^2 over the records (belief.h), for the device z that fits the records best
-  double bound = 0;         ///< value of `least` that one in a thousand devices of [spread] exceeds
+  double least = 0;         ///< least |z|^2 + sum of r^2 over the records (belief.h): the value of the device z that fits the
+                            ///< records best
+  double bound = 0;         ///< value that |z|^2 + sum of r^2 exceeds for one in a thousand devices of [spread]
   std::size_t records = 0;  ///< number of used records
   [[nodiscard]] bool is_beyond() const { return least > bound; }
 };
@@ -132,16 +135,16 @@ struct BeliefSummary {
   double effective_devices = 0;         ///< effective number of devices: 1 over the sum of the squared weights
   TouchMisfit touch_misfit = {};        ///< misfit of the records from which the belief was computed
   std::vector<std::string> correlated;  ///< sentences about quantities that the records do not separate
-  /// Belief for tuning another device of the wafer, in standard normal coordinates of [spread]. The last coordinate is the
-  /// trigger delay.
+  /// Belief for tuning another device of the wafer, in standard normal coordinates of [spread], and the trigger delay as the
+  /// last coordinate.
   TunedBelief coordinates = {};
 };
 
 class Tuner {
  public:
   /// Prepares the scene and searches the recipes of its nominal device, which takes seconds in SIMD lanes. Throws InvalidInput
-  /// for a scene that cannot be tuned (no contact, no drive to vary, options out of range), for a wafer of other quantities,
-  /// and for recipes of other shapes. Throws Interrupted if `progress` asks to stop.
+  /// for a scene that cannot be tuned (no contact, no drive to vary, options out of range), for wafer beliefs about other
+  /// quantities, and for recipes of other waveform shapes. Throws Interrupted if `progress` asks to stop.
   Tuner(const SceneFile& file, const TunerOptions& options, const Progress& progress = {});
   ~Tuner();
   Tuner(Tuner&&) noexcept;
@@ -150,9 +153,9 @@ class Tuner {
   /// Returns a tuner of the same scene in its state before the first closing, for the next device.
   [[nodiscard]] Tuner restarted() const;
 
-  /// Returns the scene of the belief, with nominal device, drives and limits.
+  /// Returns the scene on which the belief is based, with nominal device, drives and limits.
   [[nodiscard]] const PreparedScene& scene() const;
-  /// Returns the recipes; that of the nominal device comes first.
+  /// Returns the recipes; the recipe of the nominal device comes first.
   [[nodiscard]] const std::vector<CandidateWaveform>& recipes() const;
   [[nodiscard]] Approach approach() const;
   /// Returns the time of first contact of the plain step on the nominal device [s].
@@ -172,9 +175,8 @@ class Tuner {
   /// Returns the number of closings whose records were added.
   [[nodiscard]] int closings() const;
   [[nodiscard]] BeliefSummary belief() const;
-  /// Returns the best known shot, with its prediction: a shot whose waveform did not bounce when it was last applied, unless
-  /// the next waveform is expected to be clearly better. While a shot is repeated, the last shot that did not bounce is
-  /// returned.
+  /// Returns the best shot so far, with its prediction: one whose waveform did not bounce when last applied, unless the next
+  /// waveform is expected to be clearly better. While a shot is repeated, returns the last shot that did not bounce.
   [[nodiscard]] const TunerShot& kept() const;
   /// True if the last closing had the waveform of the shot kept().
   [[nodiscard]] bool was_kept_last() const;

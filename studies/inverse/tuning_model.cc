@@ -160,7 +160,7 @@ class SingleClosing final : public ClosingObserver {
 }  // namespace
 
 // Removes the contact gaps from the variable that they share with other gaps. The contact gaps then vary together with the
-// other gaps, but with a further deviation of their own, as correlated normal factors.
+// other gaps, but with an additional deviation, as correlated normal factors.
 void TuningModel::loosen_contact_gap(DeviceSpread& spread, const std::vector<std::string>& gaps) {
   for (std::size_t i = 0; i < spread.variables.size(); ++i) {
     SpreadVariable& shared = spread.variables[i];

@@ -4,7 +4,7 @@
 // The quantities of [spread] have the distributions that [spread] gives them. The following quantities vary as well, if the
 // scene has them and [spread] does not:
 //
-//   gain of each shaped drive              normal, LaboratoryErrors::gain_error
+//   gain of each tuned drive               normal, LaboratoryErrors::gain_error
 //   gas.viscosity                          lognormal, 5 %
 //   stiffness or modulus of the contacts   lognormal, 10 %
 //   contact gaps over electrode gap        normal, 3 %, beside the factor that they may share
@@ -43,7 +43,7 @@ namespace softland {
 struct TuningScales {
   double closing_time = 0;  ///< T_0: first contact time of the plain step on the nominal device [s]
   double gap = 0;           ///< contact gap [m]
-  double rebound = 0;       ///< significant rebound [m]
+  double rebound = 0;       ///< least height of a significant rebound [m]
   double rise = 0;  ///< capacitance of the closed state less that of the open state [F]; 0 if the capacitance is not recorded
   double latest_touch = std::numeric_limits<double>::infinity();  ///< requested limit for the time of first contact [s]
   /// Permanent contact time of the plain step on the nominal device [s]; NaN unless the approach is quasi-static.
@@ -55,22 +55,22 @@ struct TuningScales {
 struct Particle {
   Eigen::VectorXd z;
   SampledDevice sampled;
-  double delay = 0;  ///< delay of the device's records behind the drives [s]
+  double delay = 0;  ///< delay of the device's record behind the drives [s]
 };
 
-/// A closing as an instrument without errors records it.
+/// A closing as an instrument without errors would record it.
 template <class Openings>
 struct SeenClosing {
-  double touch = std::numeric_limits<double>::quiet_NaN();  ///< first closing of the contact after the drives begin [s]
-  /// Impact velocity at the time `touch` [m/s]. If the capacitance is recorded, this speed is the rate of the capacitance over
-  /// TuningScales::rise, times the contact gap.
+  double touch = std::numeric_limits<double>::quiet_NaN();  ///< time of first contact after the drives begin [s]
+  /// Impact velocity at the time `touch` [m/s]. If the capacitance is recorded instead of the contact, this is the rate of the
+  /// capacitance over TuningScales::rise, times the contact gap.
   double speed = std::numeric_limits<double>::quiet_NaN();
   Openings openings = {};  ///< openings, by time after the drives begin [s]
 };
 
 /// A simulated closing of a device of a belief, without errors of measurement.
 struct PredictedClosing {
-  bool followed = false;                                      ///< true if simulated to the end of its window
+  bool followed = false;                                      ///< true if the closing was simulated to the end of its window
   double touch = std::numeric_limits<double>::quiet_NaN();    ///< first contact after the drives begin [s]; NaN without contact
   double speed = std::numeric_limits<double>::quiet_NaN();    ///< impact velocity of the first touch [m/s]
   double fastest = std::numeric_limits<double>::quiet_NaN();  ///< largest impact velocity of all touches [m/s]
@@ -96,7 +96,7 @@ struct PredictedClosing {
 struct PredictedShot {
   const Particle* device = nullptr;
   const std::vector<Waveform>* waveforms = nullptr;
-  double gain = 1;  ///< gain of all sources in this shot
+  double gain = 1;  ///< gain that all sources have in this shot
 };
 
 class TuningModel {
@@ -132,7 +132,7 @@ class TuningModel {
   /// Returns the trigger delay of a device at z, by which the device's records begin late [s].
   [[nodiscard]] double delay(const Eigen::VectorXd& z) const { return delay_deviation() * spread_point(z)[size() - 1]; }
 
-  /// Replaces the coordinates z by coordinates in which this belief about z is standard normal.
+  /// Replaces the coordinates z by coordinates in which the belief `prior` about z is standard normal.
   void begin_with(const NormalBelief& prior);
   [[nodiscard]] const std::optional<NormalBelief>& prior() const { return prior_; }
   /// Converts a belief in the current coordinates to the coordinates of [spread].
@@ -140,8 +140,8 @@ class TuningModel {
 
   /// Returns the values of the varied quantities at z (DeviceSpread::to_values).
   [[nodiscard]] std::vector<double> values(const Eigen::VectorXd& z) const;
-  /// Returns contact gap over electrode gap of a device with these values, relative to the scene. None if [spread] varies the
-  /// contact gap as a quantity of its own.
+  /// Returns contact gap over electrode gap of a device with these values, relative to that of the scene. None if [spread]
+  /// varies the contact gap as a separate quantity.
   [[nodiscard]] std::optional<double> gap_ratio(std::span<const double> values) const;
   /// Returns the name of the gap ratio, "gap.contact / gap.electrode", for a scene that has such a ratio.
   [[nodiscard]] std::string gap_ratio_name() const {
@@ -152,7 +152,7 @@ class TuningModel {
   [[nodiscard]] std::optional<double> gap_ratio_coordinate(const Eigen::VectorXd& z) const;
   /// Returns the nearest point to z with the gap ratio of the scene; z if the scene has no gap ratio.
   [[nodiscard]] Eigen::VectorXd with_gap_ratio_of_scene(const Eigen::VectorXd& z) const;
-  /// Standard deviation of the ratio of contact to electrode gap in a belief. For devices of [spread] this ratio is constant.
+  /// Standard deviation of the ratio of contact to electrode gap in a belief. Devices of [spread] all have the same ratio.
   static constexpr double gap_ratio_deviation = 0.03;
   [[nodiscard]] std::vector<Particle> devices(std::span<const Eigen::VectorXd> points, const Progress& progress = {}) const;
   /// Returns the applied voltages of a shot.

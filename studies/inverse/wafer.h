@@ -8,7 +8,7 @@
 // A tuning yields a belief about z_i, normal with mean m and covariance C, from a prior with its own mean and covariance. The
 // measured directions are the eigenvectors of C, in units of that prior, with an eigenvalue below a half. Along these
 // directions the belief is a measurement y = J z_i + n, n ~ N(0, I). All measurements and the next z are jointly normal. The
-// result is the next z under all y, for every rho of a grid, weighted by the likelihood of y. The prior is on sqrt(1 - rho),
+// result is the next z given all y, for every rho of a grid, weighted by the likelihood of y. The prior is on sqrt(1 - rho),
 // the standard deviation within a wafer over that of all devices: uniform from 0.03 to 1 on a logarithmic scale.
 //
 // Source: empirical Bayes for groups, D. V. Lindley & A. F. M. Smith, J. R. Stat. Soc. B 34 (1972) 1.
@@ -31,7 +31,7 @@ struct WaferBelief {
   double share = 0;   ///< posterior mean of rho, the part of the variance that devices of the wafer share
 };
 
-/// Returns the belief about the next device after the beliefs `tuned`. Throws InvalidInput unless all beliefs are finite, have
+/// Returns the belief about the next device, given the beliefs `tuned`. Throws InvalidInput unless all beliefs are finite, have
 /// `size` coordinates and positive definite covariances.
 [[nodiscard]] WaferBelief believed_of_wafer(std::span<const TunedBelief> tuned, Eigen::Index size);
 

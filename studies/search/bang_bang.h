@@ -2,13 +2,13 @@
 //
 //   m x'' = -U'(x),  U = U_driven from x_0 to x_s, U_coasting from x_s to x_c
 //
-// from rest at x_0 to rest at the contact x_c. The work-energy balance gives x_s: the kinetic energy gained up to x_s just
-// carries the coasting switch to x_c,
+// from rest at x_0 to rest at the contact x_c. The work-energy balance gives x_s: with the kinetic energy gained up to x_s, the
+// coasting switch just reaches x_c,
 //
 //   U_driven(x_0) - U_driven(x_s) = U_coasting(x_c) - U_coasting(x_s)
 //
 // The two times are quadratures of dx / v, v^2 = 2 (energy - U) / m. With the largest pull first and the least pull afterwards,
-// no landing at zero speed is quicker. The force enters linearly, so that the optimal drive jumps between its bounds
+// no landing at zero speed is quicker: the force enters linearly, so that the optimal drive jumps between its bounds
 // (Pontryagin), and one jump is enough to reach a point of rest. For a plate on a spring the balance is the formula of
 // Czaplewski, Dyck, Sumali et al., J. Micromech. Microeng. 16 (2006) 1. Valid without damping and contact forces, where
 // U_coasting rises up to x_c. No solution exists if the driven switch does not reach x_c, or if the switch reaches x_c by
@@ -28,22 +28,23 @@ namespace softland {
 /// Potential energy [J] as a function of the position [m].
 using Potential = std::function<double(double)>;
 
-/// Returns the position x_s [m] where the driven part ends, or nothing if no solution exists.
+/// Returns the position x_s [m] where the drive jumps to its coasting value, or nothing if no solution exists.
 [[nodiscard]] std::optional<double> switching_position(const Potential& driven, const Potential& coasting, double from,
                                                        double contact);
 
 struct BangBang {
-  double switching_position = 0;  ///< position x_s where the driven part ends [m]
+  double switching_position = 0;  ///< position x_s where the drive jumps to its coasting value [m]
   double driven_time = 0;         ///< time from rest at x_0 to x_s [s]
   double coasting_time = 0;       ///< time from x_s to rest at the contact [s]
 };
 
-/// Returns the landing of a mass [kg] from x_0 = `from` to x_c = `contact` [m], or nothing if no solution exists.
+/// Returns the landing with zero speed of a mass [kg] from x_0 = `from` to x_c = `contact` [m], or nothing if no solution
+/// exists.
 [[nodiscard]] std::optional<BangBang> bang_bang(const Potential& driven, const Potential& coasting, double mass, double from,
                                                 double contact);
 
-/// Computes the landing of a switch that moves in its first mode alone, from rest under the drive values `before` (none: 0).
-/// The drives have the values `driven` up to the switching position x_s, and `coasting` after it.
+/// Computes the landing with zero speed of a switch that moves in its first mode alone, from rest under the drive values
+/// `before` (none: 0). The drives have the values `driven` up to the switching position x_s, and `coasting` after it.
 [[nodiscard]] std::optional<BangBang> bang_bang(const Switch& model, const std::vector<double>& driven,
                                                 const std::vector<double>& coasting, std::span<const double> before = {});
 

@@ -72,7 +72,8 @@ std::vector<std::vector<double>> BrakePulses::starts() const {
   return all;
 }
 
-// Returns the point at which `braking` gives the pulse train. The times of `pulse_train` are in periods of the first mode.
+// Returns the point of the search at which the drive `braking` gives the pulse train. The times of `pulse_train` are in periods
+// of the first mode.
 std::vector<double> BrakePulses::start(const Brake& braking, const std::array<double, 6>& pulse_train) const {
   std::vector<double> x;
   for (const Brake& b : brakes_) {

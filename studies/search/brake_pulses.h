@@ -1,5 +1,5 @@
 // Waveforms that open a closed switch and stop it in its open position. Every drive goes from its hold level to 0 V. The drives
-// that the actuator may shape then give two pulses, each after a wait at 0 V, within the limits of [driver.*].
+// that the actuator may vary then give two pulses, each after a wait at 0 V, within the limits of [driver.*].
 #pragma once
 
 #include <array>
@@ -27,8 +27,8 @@ class BrakePulses {
   BrakePulses(const PreparedScene& given, Actuator actuator, std::vector<double> holds, std::string_view asker);
 
   [[nodiscard]] const std::vector<Variable>& variables() const { return variables_; }
-  /// Starting points: one drive brakes, by one pulse or by a push and then a braking pulse, at different times and levels. All
-  /// other drives stay at 0 V.
+  /// Starting points: in each, one drive brakes, by one pulse or by a push and then a braking pulse, at different times and
+  /// levels. All other drives stay at 0 V.
   [[nodiscard]] std::vector<std::vector<double>> starts() const;
   /// Commanded voltages at a point of the search, one list of corners per drive of the switch.
   [[nodiscard]] std::vector<Corners> commanded(std::span<const double> x) const;

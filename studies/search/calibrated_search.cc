@@ -19,8 +19,10 @@ constexpr double least_times_of_error = 20;
 constexpr std::array errors_of_pull_in{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02};  // relative errors of Vdp
 constexpr double most_rows = 4;                // largest number of rows of results with a per-device calibration
 constexpr std::size_t devices_by_error = 256;  // number of fresh devices for the results by measurement error
-constexpr double ranked_by_share = 0.25;       // bounce-free share of the winner from which on searches maximise this share
-constexpr std::uint64_t which_measured = 2;    // number that makes the random devices differ from those of robust_search.cc
+constexpr double ranked_by_share = 0.25;       // bounce-free share under the best waveform from which on searches maximise this
+                                               // share
+constexpr std::uint64_t which_measured = 2;    // number of these random devices: they differ from the devices of
+                                               // robust_search.cc
 
 }  // namespace
 
@@ -47,7 +49,7 @@ bool DevicesRow::is_worth_measuring(const DevicesRow& uncalibrated) const {
   return speed(*this) < worth_choosing * speed(uncalibrated);
 }
 
-// Computes the measured quantities of the fresh devices, for the rows with a per-device calibration, in advance.
+// Computes in advance the measured quantities of the fresh devices, for the rows of results with a per-device calibration.
 void RobustSearch::measure_ahead() {
   try {
     meter_.emplace(first().given, MeasuredQuantities{.closing_time = true});
@@ -89,7 +91,7 @@ CalibratedSearch RobustSearch::in_measured_units(const ChosenFrom& winner, const
   return all;
 }
 
-// Searches in parallel with each of the calibrations. The result has no waveforms for a calibration whose search found none.
+// Searches in parallel with each of the calibrations. No waveforms for a calibration whose search found none.
 std::array<RobustSearch::Found, 2> RobustSearch::searched_in(const ChosenFrom& winner, const DriveWaveforms& drawing,
                                                              const std::array<Calibration, 2>& calibrations) {
   const auto family = std::ranges::find(names_, winner.family);
@@ -125,7 +127,7 @@ std::array<RobustSearch::Found, 2> RobustSearch::searched_in(const ChosenFrom& w
 }
 
 RaceResult RobustSearch::searched_at_pace(const RobustCost& cost, const RaceAims& aims, std::size_t family, RaceOptions options) {
-  constexpr long shorter = 3;  // divisor of the closings of a search without calibration
+  constexpr long shorter = 3;  // divisor of the number of closings of a search without calibration
   RobustAim aim = tail_aim_;
   aim.free = free_;
   for (const Condition& one : aims.tail.conditions) {
@@ -164,8 +166,8 @@ DevicesRow RobustSearch::row_of(const char* name, const DriveWaveforms& waveform
                                          std::move(outcomes))};
 }
 
-// Computes results for several measurement errors of Vdp, each for the best of `waveforms` and `in_volts`. The waveform in
-// volts does not depend on Vdp.
+// Computes results for several measurement errors of Vdp, each for the best of `waveforms` and `in_volts`. The waveform
+// `in_volts` does not depend on Vdp.
 std::vector<CalibrationError> RobustSearch::judged_by_error(const std::vector<DriveWaveforms>& waveforms,
                                                             const DriveWaveforms& in_volts) {
   std::vector<CalibrationError> judged;

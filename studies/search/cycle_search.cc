@@ -46,8 +46,8 @@ class PairSearch {
   [[nodiscard]] long evaluations() const { return budget_.taken(); }
 
   /// Returns the closing and opening waveforms of a point, whose first parameters are those of the closing. Without parameters
-  /// of the opening the drives go to 0 V at once. Returns nothing if a drive leaves its limits, or if a waveform is longer than
-  /// its part of a cycle.
+  /// of the opening, the drives go to 0 V at once. Returns nothing if a drive exceeds its limits, or if a waveform is longer
+  /// than its part of a cycle.
   [[nodiscard]] std::optional<CycleWaveforms> pair(std::span<const double> x) const {
     std::optional<std::vector<Signal>> closing = setting_.allowed_commands(setting_.space.waveforms(x.first(closing_)));
     if (!closing) return std::nullopt;
@@ -90,7 +90,7 @@ class PairSearch {
   }
   [[nodiscard]] double cost_of_cycles(const CycleWaveforms& waveforms) const { return cost(waveforms); }
 
-  /// Improves the parameters with index `first` and above; the others stay as in `from`.
+  /// Improves the parameters with index `first` and above; all other parameters stay as in `from`.
   [[nodiscard]] OptimizerResult improve(const char* what, Price by, std::size_t first, const std::vector<double>& from,
                                         std::vector<std::vector<double>> starts) {
     const std::vector<Variable> all = variables();

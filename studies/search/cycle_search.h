@@ -1,5 +1,5 @@
-// The search for the closing and the opening waveform of a switch that is cycled at a rate. Both are searched together, since
-// each begins with the residual vibration of the other.
+// The search for the closing and the opening waveform of a switch that is cycled at a rate. Both waveforms are searched
+// together, since each begins with the residual vibration of the other.
 //
 // A waveform for the closing alone is found first (optimize.h). Then pulses are found that brake the opening (brake_pulses.h),
 // so that the contact point hardly swings in the last third of the open part of a cycle. Then both waveforms are improved
@@ -26,9 +26,9 @@ struct CycleSearchOptions {
   double rate = 0;    ///< cycles per second [Hz]
   double duty = 0.5;  ///< share of a cycle before the command to open
   Aim target = Target::bounce;
-  Actuator actuator = Actuator::electrostatic;  ///< drives that the closing and the opening waveform may shape
+  Actuator actuator = Actuator::electrostatic;  ///< drives that the closing and the opening waveform may use
   std::string family = {};                      ///< waveform families of the closing: families_of(); empty: default
-  long max_evaluations = 3000;                  ///< a third each for the closing, the opening, and both together
+  long max_evaluations = 3000;                  ///< evaluations: a third each for the closing, the opening, and both together
   std::size_t cycles = 10;                      ///< simulated cycles of the best pair of waveforms
   std::uint64_t seed = 1;
   int jobs = 1;
@@ -40,7 +40,7 @@ struct CycleSearchResult {
   std::string family;  ///< waveform family of the closing
   std::map<std::string, double> parameters;  ///< parameters of the best pair, by closing.drive.name and opening.drive.name
   double cost = std::numeric_limits<double>::quiet_NaN();        ///< cost of the best pair of waveforms
-  double plain_cost = std::numeric_limits<double>::quiet_NaN();  ///< cost of plain closing and plain opening
+  double plain_cost = std::numeric_limits<double>::quiet_NaN();  ///< cost of the plain pair: a step to close and a step to open
   long evaluations = 0;                                          ///< evaluated pairs of waveforms
   /// The scene of one cycle, a closing and an opening on command, of the best pair of waveforms; of the plain pair if no pair
   /// was feasible.

@@ -1,5 +1,5 @@
-// A search over devices from one start by CMA-ES. Candidates are tried on more and more devices. A candidate that does worse on
-// the first devices than the median of the earlier candidates is given up.
+// A search over devices from one starting point by CMA-ES. Candidates are tried on more and more devices. A candidate with a
+// higher cost on the first devices than the median of the earlier candidates is given up.
 //
 // Source for giving up candidates: O. Maron & A. W. Moore, "Hoeffding races", NIPS 1993 (the idea; the test here is the median
 // of the earlier candidates).
@@ -32,7 +32,7 @@ class StagedCost {
     double cost = std::numeric_limits<double>::infinity();  ///< infinite if the waveform exceeds a driver's limits
     long closings = 0;
   };
-  /// Evaluates the point `x` on the first `most` devices, or on fewer if their cost already exceeds `hopeless`.
+  /// Evaluates the point `x` on the first `most` devices, or on fewer if the cost on these already exceeds `hopeless`.
   [[nodiscard]] Tried tried(const std::vector<double>& x, std::size_t most,
                             double hopeless = std::numeric_limits<double>::infinity(), int jobs = 1) const;
   [[nodiscard]] std::vector<Variable> variables() const { return setting_.space.variables(); }
@@ -53,7 +53,7 @@ struct Chain {
   std::size_t devices = 0;  ///< number of devices that candidates are tried on
   long closings = 0;        ///< most simulated closings of the chain
   double step = 0.1;        ///< first step size of CMA-ES, as a share of the range of every variable
-  double population = 1;    ///< candidates of a CMA-ES generation, over the default number
+  double population = 1;    ///< number of candidates of a CMA-ES generation, over the default number
   std::uint64_t seed = 1;
   int jobs = 1;  ///< threads for one candidate; does not change the result
 };
@@ -62,8 +62,8 @@ struct ChainEnd {
   double cost = std::numeric_limits<double>::infinity();  ///< cost of the best point; infinite without one
   long closings = 0;
 };
-/// Searches until the chain has used its number of closings or the budget is over. Calls `told` with every candidate, after the
-/// budget has counted the candidate's closings.
+/// Searches until the chain has used its number of closings or the budget is spent. Calls `told` with every candidate, after
+/// the budget has counted the candidate's closings.
 [[nodiscard]] ChainEnd search_chain(const StagedCost& cost, const Chain& chain, SearchBudget& budget,
                                     const std::function<void(const std::vector<double>& x, double cost)>& told);
 

@@ -1,5 +1,5 @@
-// The log of a search: its evaluations in an order that does not depend on the number of threads, and the improvements among
-// its evaluations. During the search the log calls the callbacks of OptimizeOptions.
+// The log of a search: evaluations in an order that does not depend on the number of threads, and the improvements among them.
+// During the search the log calls the callbacks of OptimizeOptions.
 #pragma once
 
 #include <functional>
@@ -13,10 +13,10 @@
 
 namespace softland {
 
-/// Returns the feasible evaluations whose cost is below that of every earlier one, in the order of their index.
+/// Returns the feasible evaluations whose cost is below that of every earlier evaluation, in the order of their index.
 [[nodiscard]] std::vector<Evaluation> improvements_of(const std::map<long, Evaluation>& evaluations);
 
-/// Collects the evaluations of a search. Several threads may call it; the callbacks are called one at a time.
+/// Collects the evaluations of a search. Several threads may call the log; callbacks are called one at a time.
 class EvaluationLog {
  public:
   /// Returns the scene with an evaluation's waveforms, or none if the improvement is not to be reported.
@@ -27,7 +27,7 @@ class EvaluationLog {
 
   /// Adds an evaluation to the log. Call note() after the budget has counted the evaluation.
   void note(const Evaluation& evaluation);
-  /// Reports `given`, a waveform from outside the search, if it is the best so far. The log does not store this evaluation.
+  /// Reports `given`, a waveform from outside the search, if it is the best so far. The log does not store it.
   void begin_with(const Evaluation& given, const std::optional<SceneFile>& scene);
   /// Reports the progress of the search without a new evaluation.
   void tell();

@@ -1,6 +1,6 @@
 // The evaluations of a search, stored by an owner that outlives the search. A search is a function of its scene and options:
-// run again, it evaluates the same candidates in the same order. A search that reads some evaluations from this memory
-// therefore ends with the same bits as an uninterrupted search, and simulates only the missing candidates.
+// run again, it evaluates the same candidates in the same order. If some evaluations come from this memory, the search ends
+// with the same bits, and simulates only the missing candidates.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ struct EvaluationKey {
   std::vector<double> x;      ///< searched parameters of the candidate
   std::uint64_t devices = 0;  ///< number of varied devices; 0: the nominal device alone
   std::uint64_t seed = 0;     ///< seed of the random devices
-  /// A candidate whose cost on the first devices exceeds this is not simulated on the rest.
+  /// A candidate whose cost on the first devices exceeds this value is not simulated on the rest.
   double hopeless = std::numeric_limits<double>::infinity();
 };
 

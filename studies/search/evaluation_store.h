@@ -1,4 +1,4 @@
-// The evaluations of a search in a database file. A continued search simulates no evaluation of this file again.
+// The evaluations of a search in a database file. A continued search does not simulate the stored evaluations again.
 #pragma once
 
 #include <exception>
@@ -18,8 +18,8 @@ namespace softland {
 /// Name of the database file in the folder of a search.
 inline constexpr const char* evaluations_file = "evaluations.sqlite";
 
-/// A database file with one row per simulated candidate, in the order in which the simulations ended. On request it takes over
-/// rows of a search in the same file that differs only in its budget.
+/// A database file with one row per simulated candidate, in the order in which the simulations ended. On request the file takes
+/// over rows of a search in the same file that differs only in its budget.
 class EvaluationStore : public EvaluationMemory {
  public:
   /// `columns` are the parameters of all waveform families. `points` is the largest number of evaluations of the plan; later

@@ -24,10 +24,10 @@ class FamilySearch {
   FamilySearch(const SearchSetting& setting, const OptimizeOptions& options,
                std::function<void(const Evaluation&)> on_evaluation);
 
-  /// Adds a start before the family's own starts: the given waveforms, or the most similar ones of the family. Waveforms from
-  /// which a search cannot begin are skipped.
+  /// Adds a starting point before the family's own: the given waveforms, or the most similar waveforms of the family. Waveforms
+  /// from which a search cannot begin are skipped.
   void begin_at(const DriveWaveforms& waveforms);
-  /// Adds a start before all others: the point `x` of the family.
+  /// Adds a starting point before all others: the point `x` of the family.
   void begin_at_point(const std::vector<double>& x);
   /// Runs the search: see GuidedSearch::run().
   [[nodiscard]] OptimizerResult run(const OptimizerOptions& share, Costs costs, long more, long first_index);
@@ -43,7 +43,7 @@ class FamilySearch {
   [[nodiscard]] PreparedScene prepared(const Evaluation& e) const { return setting_.prepared(waveforms(e)); }
   /// Returns the waveform parameters of an evaluation, by drive.name.
   [[nodiscard]] std::map<std::string, double> named(const Evaluation& e) const;
-  /// Returns the evaluation of GuidedSearch::surest_below(); `others` may be evaluations of other families, too.
+  /// Returns GuidedSearch::surest_below(); `others` may contain evaluations of other families.
   [[nodiscard]] std::optional<Evaluation> surest_below(double own, const std::vector<Evaluation>& others) const;
 
  private:

@@ -9,7 +9,7 @@ namespace softland {
 
 /// A column of numbers.
 struct PointFigure {
-  std::string quantity;  ///< "impact_velocity"
+  std::string quantity;  ///< key of the quantity: "impact_velocity"
   std::string name;      ///< displayed name: "Impact speed"
   std::string unit;      ///< SI unit; empty for a count, a share, and true or false (1 or 0)
 };

@@ -27,9 +27,10 @@ namespace softland {
 
 class FirstTouchProblem final : public ControlledSystem {
  public:
-  /// Keeps a reference to `prepared`. The drives that the actuator shapes are the controls, within their limits and, for
-  /// electrodes, up to `peak` [V]. The other drives stay at their values in the plain step. Throws InvalidInput for a scene
-  /// that lacks the drive or its limits, whose gas film is compressible, or whose open switch does not rest above its contact.
+  /// Keeps a reference to `prepared`. The controls are the drives whose waveforms the actuator may vary, within their limits
+  /// and, for electrodes, up to `peak` [V]. The other drives stay at their values in the plain step. Throws InvalidInput for a
+  /// scene that lacks the drive or its limits, whose gas film is compressible, or whose open switch does not rest above its
+  /// contact.
   FirstTouchProblem(const PreparedScene& prepared, Actuator actuator, double peak = std::numeric_limits<double>::infinity());
 
   [[nodiscard]] Eigen::Index states() const override { return 2 * modes_; }
@@ -45,21 +46,22 @@ class FirstTouchProblem final : public ControlledSystem {
   /// Row vectors that give position [gap] and velocity [gap per time unit] of the contact point as products with a state.
   [[nodiscard]] const Eigen::VectorXd& tip() const { return tip_; }
   [[nodiscard]] const Eigen::VectorXd& tip_speed() const { return tip_speed_; }
-  [[nodiscard]] double speed_unit() const { return gap_ * omega_[0]; }  ///< [m/s]
+  [[nodiscard]] double speed_unit() const { return gap_ * omega_[0]; }  ///< unit of dimensionless velocity [m/s]
   [[nodiscard]] const Eigen::VectorXd& start() const { return start_; }
   struct Landing {
     Eigen::VectorXd state, controls;
   };
   /// The beam at rest on the contact plane under the hold levels of all drives; none if the contact force would have to be
   /// tensile. If the slew is limited, the controlled drives have the smallest share of their hold levels that keeps the switch
-  /// closed: with a larger share the contact point would come to rest from behind the plane.
+  /// closed: with a larger share the contact point would have to come to rest from behind the contact plane.
   [[nodiscard]] std::optional<Landing> landing() const;
 
   /// The quickest single swing to the contact: full pull, then full release, so that the contact point turns back as it
   /// arrives. None if full pull does not reach the contact within `longest` [s].
   [[nodiscard]] std::optional<ControlledCourse> swing(double longest) const;
   /// The motion until first contact under signals of all drives, with the controls in `intervals` intervals. The controls are
-  /// the signals of the controlled drives, clamped to their bounds. None if the switch does not touch within `longest` [s].
+  /// the signals of the controlled drives, clamped to their bounds. None if the switch does not touch its contact within
+  /// `longest` [s].
   [[nodiscard]] std::optional<ControlledCourse> flown(std::span<const Signal> signals, int intervals, double longest) const;
   /// The voltages of the controlled drives at the controls `c`, by drive [V].
   [[nodiscard]] std::map<std::string, double> volts(const Eigen::VectorXd& c) const;
@@ -72,9 +74,9 @@ class FirstTouchProblem final : public ControlledSystem {
   struct Free {
     std::size_t drive;
     std::string name;
-    double largest;   ///< largest strength, or voltage if the slew is limited
+    double largest;   ///< largest strength of the drive, or largest voltage if the slew is limited
     double sign;      ///< sign of an electrode's voltage, which does not change its pull
-    double max_slew;  ///< [V/s]
+    double max_slew;  ///< slew limit of the driver [V/s]
   };
   [[nodiscard]] double strength(std::size_t drive, double value) const;
   [[nodiscard]] std::vector<double> strengths(const Eigen::VectorXd& c) const;
@@ -88,7 +90,7 @@ class FirstTouchProblem final : public ControlledSystem {
   Eigen::Index modes_;
   double gap_;
   Eigen::VectorXd omega_, per_q_, per_v_, per_acceleration_, tip_, tip_speed_, start_, pull_, release_;
-  std::vector<double> held_;  ///< strengths of all drives; those of the controlled drives are not used
+  std::vector<double> held_;  ///< strengths of all drives; entries of controlled drives are not used
   std::vector<double> hold_;  ///< values of all drives after first contact
   std::vector<Free> free_;
   std::vector<ControlBound> bounds_;

@@ -1,4 +1,4 @@
-// The result of a search on the nominal device, by one measure over devices, or with a race over devices.
+// The result of a search: on the nominal device, over devices by one measure, or over devices by a tournament of families.
 #pragma once
 
 #include <variant>
@@ -10,7 +10,7 @@ namespace softland {
 struct FoundSearch {
   std::variant<OptimizeResult, RobustResult, RobustSearchResult> result;
 
-  /// The waveform that was found, with its closing of the nominal device.
+  /// Returns the found waveform, with the closing of the nominal device.
   [[nodiscard]] const OptimizeResult& best() const;
   [[nodiscard]] OptimizeResult& best();
   [[nodiscard]] bool interrupted() const { return best().search.termination == Termination::interrupted; }
@@ -19,7 +19,7 @@ struct FoundSearch {
   [[nodiscard]] bool is_success() const;
 };
 
-/// Runs the search with the first of its seeds. A search over varied devices of a scene without [spread] takes that of
+/// Runs the search with the first of its seeds. A search over varied devices of a scene without [spread] uses the spread of
 /// assume_spread(). Throws InvalidInput as optimize() does.
 [[nodiscard]] FoundSearch run(PlannedSearch& search);
 

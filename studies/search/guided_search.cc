@@ -128,7 +128,7 @@ OptimizerResult GuidedSearch::run(Problem problem, OptimizerOptions options, Cos
   OptimizerResult result = stage(problem, first, costs == Costs::both || costs == Costs::guide);
   const bool goes_on = result.termination != Termination::interrupted && result.termination != Termination::failure;
   OptimizerOptions second = options;
-  second.seed = ~options.seed;  // second stage: other random points than in the first
+  second.seed = ~options.seed;  // second stage: use other random points than in the first stage
   second.goes_on = options.goes_on || costs == Costs::both;
   second.smooth = costs == Costs::both;
   second.max_evaluations -= result.evaluations;

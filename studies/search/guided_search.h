@@ -1,6 +1,6 @@
-// A search in two stages. The first stage spends two thirds of the budget on minimising a guide cost, which finds the right
-// minima. The second stage minimises the target cost, from the best points so far. The log shows both stages as one search by
-// the target cost. There is one stage if the two costs are the same.
+// A search in two stages. The first stage spends two thirds of the budget on minimising a guide cost, which leads to the right
+// minima. The second stage minimises the target cost, from the best points of the first stage. The log shows both stages as one
+// search by the target cost. There is only one stage if both costs are the same.
 #pragma once
 
 #include <functional>
@@ -21,7 +21,7 @@ struct SearchCosts {
   double guide = std::numeric_limits<double>::infinity();
   double target = std::numeric_limits<double>::infinity();
   bool lands = false;  ///< true if the switch closes without a significant rebound
-  /// Values of a search under conditions: costs without the penalty of broken conditions, and each g of Conditions.
+  /// Values of a search under conditions: costs without the penalty of broken conditions, and each excess g of Conditions.
   struct Apart {
     double guide, target;
     std::vector<double> excess;
@@ -29,19 +29,20 @@ struct SearchCosts {
   std::optional<Apart> apart = {};  ///< none without conditions, and if the costs come from an EvaluationMemory
 };
 
-/// Gradients of the guide and the target cost as Problem::gradient, or null; under conditions as Conditions::gradients.
+/// Functions for the gradients of the guide cost and the target cost, as Problem::gradient; may be null. Under conditions they
+/// return what Conditions::gradients returns.
 struct CostGradients {
   std::function<std::vector<double>(std::span<const double>)> guide, target;
   std::size_t conditions = 0;
-  /// Computes the costs of a point again, even if they are in a memory.
+  /// Computes the costs of a point again, even if the memory has them.
   std::function<SearchCosts::Apart(std::span<const double>)> apart = {};
 };
 
-/// The cost that a run minimises. `same`: guide and target are one cost; `both`: the guide for two thirds of the budget, then
-/// the target.
+/// The cost that a run minimises. `same`: guide cost and target cost are the same; `both`: the guide for two thirds of the
+/// budget, then the target.
 enum class Costs { same, guide, target, both };
 
-/// Divisor of the budget: one part of this many is spent on the target cost, if it differs from the guide.
+/// Divisor of the budget: one part in this number is spent on the target cost, if it differs from the guide cost.
 inline constexpr long target_share = 3;
 
 class GuidedSearch {
@@ -55,8 +56,8 @@ class GuidedSearch {
   /// Minimises over the variables of `problem` from its starts. The objective of `problem` and the callbacks of `options` are
   /// not used. Throws as minimize() does. Result, improvements and indices are those of one search by the target cost; the
   /// first index is `first_index`. If both costs are the same and no point closes without a bounce, a second stage of `more`
-  /// evaluations goes on from the best points. A further run begins at these points, and at starts that were not tried; its
-  /// result is that of all runs.
+  /// evaluations continues from the best points. A further call of run() begins at these points, and at starts that were not
+  /// tried; its result covers all calls.
   [[nodiscard]] OptimizerResult run(Problem problem, OptimizerOptions options, Costs costs, long more = 0, long first_index = 0);
   struct Best {
     Evaluation evaluation;  ///< evaluation with the target cost as value
@@ -67,7 +68,7 @@ class GuidedSearch {
   [[nodiscard]] std::optional<Best> best(Costs costs) const;
   /// All evaluations, by index, with the target cost as value.
   [[nodiscard]] const std::map<long, Evaluation>& log() const { return log_; }
-  /// Returns the evaluation with the least guide cost, among evaluations whose target cost is below `own` and whose points
+  /// Returns the evaluation with the least guide cost among evaluations whose target cost is below `own` and whose points
   /// differ from `others`.
   [[nodiscard]] std::optional<Evaluation> surest_below(double own, const std::vector<std::vector<double>>& others) const;
 

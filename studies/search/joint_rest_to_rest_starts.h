@@ -1,9 +1,9 @@
 // Waveforms of all searched drives that close the switch by a single swing: the drives pull, then release, so that the contact
-// point turns back as it arrives (swing.h). A push then keeps the switch closed. The search of several drives, or of a piezo,
-// begins with these waveforms.
+// point reaches the contact with zero velocity (swing.h). A pull after contact then keeps the switch closed. The search of
+// several drives, or of a piezo, begins with these waveforms.
 //
-// The pulling electrode goes to its limits. The other drives use only shares of their ranges, since their full range would ring
-// the higher modes. A piezo pulls and then lifts; an electrode on the far side waits and then brakes.
+// The pulling electrode goes to its limits. The other drives use only shares of their ranges, since their full range would
+// excite the higher modes. A piezo pulls and then lifts; an electrode on the far side waits and then brakes.
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@
 
 namespace softland {
 
-/// Returns waveforms for each share of the ranges and each length of the push, as far as a swing exists. None for a single
-/// electrode, whose waveform families have such starts themselves, and none if the gas film is compressible.
+/// Returns waveforms for each share of the ranges and each duration of the pull after contact, as far as a swing exists. None
+/// for a single electrode, whose waveform families have such starts themselves, and none if the gas film is compressible.
 [[nodiscard]] std::vector<DriveWaveforms> joint_rest_to_rest_starts(const PreparedScene& given, const SearchSpace& space);
 
 }  // namespace softland

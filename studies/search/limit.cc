@@ -27,8 +27,8 @@ using Eigen::VectorXd;
 
 constexpr int first_knots = 48;       // intervals of the controls before refinement
 constexpr double piece_angle = 0.75;  // phase angle of the fastest mode in one piece of the mesh
-// Permitted difference of optimum and simulation: relative in the time of first contact, or in contact gaps if only one of them
-// touches.
+// Permitted difference of optimum and simulation: relative in the time of first contact, or in contact gaps if only one of the
+// two touches.
 constexpr double agreement = 1e-4;
 constexpr double longest_swing = 3;       // longest time of a swing, in periods of the first mode
 constexpr double softness = 0.2;          // relative excess over the permitted speed that a simulation may have
@@ -74,8 +74,8 @@ class LeastTimeSearch {
     return from(std::move(*swing), longest_time());
   }
 
-  // Returns waveforms of solutions that end closer and closer to rest, on the first knots and mesh. After first contact the
-  // drives are as in `plain`.
+  // Returns waveforms of solutions that end closer and closer to rest, on the initial intervals and mesh. After first contact
+  // the drives are as in `plain`.
   std::vector<DriveWaveforms> ways_to_rest(const DriveWaveforms& plain) {
     std::vector<DriveWaveforms> all;
     std::optional<ControlledCourse> swing = first_touch_.swing(longest_time());
@@ -139,7 +139,7 @@ class LeastTimeSearch {
                 .knots = uniform_knots(first_knots),
                 .longest_piece = piece_angle / (fastest * course_.time),
                 .stop = options_.progress.stop};
-    // A beam stays at rest only if the drives end at the levels of that equilibrium.
+    // A beam stays at rest only if the drives end at the levels of the equilibrium in which it lands.
     for (Index k = 0; landing && first_touch_.ramps() && k < first_touch_.controls(); ++k)
       problem_.bounds[static_cast<std::size_t>(k)].after = landing->controls[k];
   }
@@ -164,7 +164,8 @@ class LeastTimeSearch {
     }
   }
 
-  // Brings the modes to rest in several solutions, since Ipopt fails to do so in one. Calls `nearer` after each.
+  // Brings the modes to rest in several solutions, since Ipopt cannot do so in one solution. Calls `nearer` after each
+  // solution.
   Status come_to_rest(const VectorXd& landed, const std::function<void()>& nearer = {}) {
     const Index n = first_touch_.states();
     for (Index r = 0; r < n; ++r) problem_.at_the_end.push_back({.row = VectorXd::Unit(n, r)});
@@ -268,11 +269,11 @@ std::vector<DriveWaveforms> rest_to_rest_starts(const PreparedScene& prepared, A
 
 namespace {
 
-// Delays of the catch after first contact, over the time of first contact. Without delay, the catch would pull while the modes
-// still swing back from the contact.
+// Delays of the catch (the pull after first contact), over the time of first contact. Without delay, the drives would pull
+// while the modes still swing back from the contact.
 constexpr std::array catch_delays = {0.0, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04};
 
-// The catches that can follow the waveforms `path` until first contact, and their simulated closings.
+// The catches that can follow the waveforms of `path`, which end at first contact, and their simulated closings.
 class AfterTouch {
  public:
   AfterTouch(const PreparedScene& prepared, const LeastTime& path, Actuator actuator)
@@ -368,11 +369,11 @@ class LimitStudy {
   }
 
  private:
-  static constexpr std::array quicker = {10.0, 3.0};  // multiples of the permitted speed, for quicker closings
+  static constexpr std::array quicker = {10.0, 3.0};  // multiples of the permitted impact velocity, for quicker closings
   static constexpr std::array speeds = {0.3, 1.0, 3.0, 10.0, 30.0, 100.0};
   static constexpr std::array peaks = {0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95};
 
-  // Faster first contacts are tried for the closing, unless the user gave a permitted speed.
+  // Faster first contacts are tried for the closing, unless the user gave a permitted impact velocity.
   [[nodiscard]] bool may_be_quicker() const { return !result_.options.impact_velocity; }
   [[nodiscard]] bool has_peaks() const { return result_.options.curves && result_.options.actuator != Actuator::pzt; }
 
@@ -389,7 +390,8 @@ class LimitStudy {
     return known_.emplace(share, least_time(result_.given, other)).first->second;
   }
 
-  // Simulates closings on `path`, with several catches if `catches`, until one is bounce-free; stores the best in the result.
+  // Simulates closings on `path`, with several catches if `catches`, until a closing is bounce-free; stores the best one in the
+  // result.
   void land(const LeastTime& path, bool catches) {
     if (path.status != Status::done) return;
     const AfterTouch after(result_.given, path, result_.options.actuator);
@@ -416,7 +418,7 @@ class LimitStudy {
   const Progress& progress_;
   LeastTimeOptions usual_;
   double parts_, done_ = 0;
-  std::map<double, LeastTime> known_;  // results by the ratio of their speed to the permitted speed
+  std::map<double, LeastTime> known_;  // least times by the ratio of their impact velocity to the permitted one
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Keeps a search from closings that are bounce-free only with the number of modes in its scene. A real beam has more modes, and
-// a waveform must not ring the neglected modes.
+// Keeps a search from closings that are bounce-free only with the number of modes in its scene. A real beam has more modes,
+// which a waveform must not excite.
 #pragma once
 
 #include <string>
@@ -11,10 +11,10 @@ namespace softland {
 
 /// Returns the settings of a search with slower edges: searched drives need at least one period of the highest mode of the
 /// model from one end of their range to the other. Empty if this changes nothing: for a plate, which has one mode, and if every
-/// searched driver has its own max_slew. Families whose waveforms do not fit such slow edges keep their limits.
+/// searched driver has its own max_slew. Families whose waveforms cannot have such slow edges keep their limits.
 [[nodiscard]] std::vector<SearchSetting> with_gentle_edges(const std::vector<SearchSetting>& settings, Actuator actuator,
                                                            const std::string& families, const OwnWaveforms& own = {});
-/// True if the search uses the slower edges from its start: it shapes a piezo, whose edges ring every mode, and no starting
+/// True if the search uses slower edges from its start: it varies a piezo, whose edges excite every mode, and no starting
 /// waveform is steeper.
 [[nodiscard]] bool begins_gently(const std::vector<SearchSetting>& gentle, const std::vector<StartingWaveforms>& starts);
 /// Returns a setting whose cost is the worst over closings with the scene's number of modes and with more modes: see

@@ -37,7 +37,7 @@ constexpr double opening_tolerance = 1e-5;  // tolerance of the integrator
 constexpr double seen_for = 1;              // periods over which a candidate's vibration is measured, with drives at 0 V
 constexpr double watched_for = 3;           // periods over which the best waveform's vibration is measured, at least
 
-// Time for which sources are at their hold levels before the command to open, in their time constants.
+// Time for which sources stay at their hold levels before the command to open, in time constants of the sources.
 constexpr double settled_after = 50;
 
 class ReleaseSearch {
@@ -54,8 +54,8 @@ class ReleaseSearch {
   [[nodiscard]] const std::vector<Signal>& plain() const { return plain_; }
   [[nodiscard]] std::vector<Signal> signals(std::span<const double> x) const { return applied(pulses_.commanded(x)); }
 
-  /// Returns the scene with the commanded voltages of all drives at the point `x`, from the hold levels on; those of the plain
-  /// opening if `x` is empty.
+  /// Returns the scene with the commanded voltages of all drives at the point `x`, from the hold levels on; if `x` is empty,
+  /// with those of the plain opening.
   [[nodiscard]] SceneFile scene(std::span<const double> x) const {
     const std::vector<Corners> commanded = x.empty() ? pulses_.plain() : pulses_.commanded(x);
     const std::vector<std::string> names = given_.drive_names();
@@ -124,8 +124,8 @@ class ReleaseSearch {
     return all;
   }
 
-  // Returns the applied voltage of drive k for the commanded voltages `points`, if the source was at the first voltage for
-  // long.
+  // Returns the applied voltage of drive k for the commanded voltages `points`, if the source was at the first voltage long
+  // enough to settle.
   [[nodiscard]] Signal applied(std::size_t k, Corners points) const {
     const DriverModel& source = given_.drives[k].source;
     const SourceErrors& errors = given_.drives[k].errors;
@@ -150,7 +150,7 @@ bool is_open_with_drives(const OpeningFigures& f, double band) {
   return f.status == Status::done && f.residual_vibration <= band;
 }
 
-// True if the opening `a` stays open sooner than `b`; with equal times, or none, if `a` leaves less vibration.
+// True if the opening `a` is open for good earlier than `b`; with equal times, or none, if `a` leaves less vibration.
 bool better(const OpeningFigures& a, const OpeningFigures& b) {
   if (!std::isfinite(a.release_time)) return false;
   if (!std::isfinite(b.release_time)) return true;

@@ -2,9 +2,9 @@
 //
 // The switch rests on its contact under the scene's hold levels until t = 0. The plain opening takes every drive to 0 V at
 // once, or as fast as its source can. A beam with little damping then swings about its open position by the contact gap, until
-// the gas has damped the vibration. The search brakes the beam. Every drive that the actuator may shape gives two pulses, each
+// the gas has damped the vibration. The search brakes the beam. Every drive that the actuator may vary gives two pulses, each
 // after a wait at 0 V, within the limits of [driver.*], and then stays at 0 V. One pulse brings an undamped plate under a
-// constant pull to rest (Pontryagin; the time reversal of bang_bang.h). The second pulse is for the modes that still ring.
+// constant pull to rest (Pontryagin; the time reversal of bang_bang.h). The second pulse is for the remaining modes.
 //
 // The cost is the residual vibration over the contact gap, plus five times the vibration's excess over the band about the open
 // position, plus 0.3 times the time until the switch stays open, in periods of its first mode. The best waveform is verified by
@@ -49,8 +49,9 @@ struct ConfirmingOpening {
   OpeningFigures figures;
 };
 
-/// Openings of varied devices, with the scene's spread or an assumed one (config/assumed_spread.h), and without errors of the
-/// sources. All devices get the voltages of the nominal device. The figures of a device that does not stay open are infinite.
+/// Openings of varied devices, with the scene's spread or the assumed spread (config/assumed_spread.h), and without errors of
+/// the sources. All devices get the voltages of the nominal device. The figures of a device that does not stay open are
+/// infinite.
 struct DeviceOpenings {
   double open = 0;     ///< share of devices that are open and stay open at the end of the window
   double in_band = 0;  ///< share of devices within the band as soon as all drives are at 0 V
@@ -78,9 +79,10 @@ struct OpeningResult {
   /// is no best opening.
   std::optional<SceneFile> scene;
   std::vector<ConfirmingOpening> checks;
-  std::optional<OpeningsOnDevices> on_devices;  ///< none if not requested, or if no waveform opens the switch
+  std::optional<OpeningsOnDevices> on_devices;  ///< openings of varied devices; none if not requested, or if no waveform opens
+                                                ///< the switch
   OptimizerResult search;
-  bool better = false;     ///< true if the best opening stays open sooner than the plain opening, or else vibrates less
+  bool better = false;     ///< true if the best opening is open for good earlier than the plain opening, or else vibrates less
   bool goal_met = false;   ///< true if the best opening is within the band as soon as all drives are at 0 V
   bool confirmed = false;  ///< true if `checks` confirm the result
   bool interrupted = false;

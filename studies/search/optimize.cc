@@ -24,24 +24,25 @@ namespace softland {
 namespace {
 
 constexpr std::size_t most_candidates = 8;  // largest number of candidates that are verified
-constexpr std::size_t most_sure = 4;        // further candidates of each family that are verified by the target's own cost
+constexpr std::size_t most_sure = 4;        // further candidates of each family that are verified, by the target's separate
+                                            // cost
 constexpr std::size_t most_of_family = 4;   // candidates of each family that are verified if no candidate was confirmed
 constexpr long fewest_for_landings = 1000;  // budget from which on starts that reach the contact at rest are computed
 constexpr double least_for_landings = 60;   // time budget from which on starts that reach the contact at rest are computed [s]
 // Ends of the search, of the search with slower edges, and of the search with several numbers of modes, as shares of a time
-// budget. The rest is for verifying the winner.
+// budget. The rest is for verifying the best waveform.
 constexpr double end_of_search = 0.6, end_of_gentle = 0.75, end_of_worst = 0.85;
 constexpr double soft_touch = 0.01;            // impact speed of starts that reach the contact at rest, over the plain step's
 constexpr double distinct = 1.01;              // least ratio between the costs of two verified candidates
 constexpr std::size_t families_sifted = 2;     // families in which the search with several numbers of modes is run
 constexpr long evaluations_of_the_worst = 50;  // divisor of the budget for the search with several numbers of modes
-constexpr long shortest_half = 100;            // evaluations of a budget that is not divided into halves any more
+constexpr long shortest_half = 100;            // budget in evaluations below which a budget is not divided into halves
 constexpr double opening = 0.6;                // share of the budget for all families; the best family gets the rest
 
 // Numbers of candidates in OptimizeResult::tried: see RunningSearch::tried().
 constexpr std::size_t kept_best = 100, kept_of_ladder = 150, kept_of_family = 15;
 
-// Returns improvements of a search, the best first, each distinctly worse than its predecessor: similar candidates would fail
+// Returns improvements of a search, the best first, each distinctly worse than the one before: similar candidates would fail
 // for the same reason.
 std::vector<Evaluation> candidates(const std::vector<Evaluation>& improvements) {
   std::vector<Evaluation> chosen;
@@ -55,7 +56,7 @@ std::vector<Evaluation> candidates(const std::vector<Evaluation>& improvements) 
 // One search: its waveform families, its log and its reports.
 class RunningSearch {
  public:
-  /// The index of each setting is the number of its family. The search gets `seconds` [s] of the budget `whole`.
+  /// The index of each setting is the number of its family. The search may use `seconds` [s] of the budget `whole`.
   RunningSearch(const std::vector<SearchSetting>& settings, const OptimizeOptions& options, SearchBudget& whole, double seconds)
       : settings_(settings),
         options_(options),
@@ -127,7 +128,7 @@ class RunningSearch {
       add(e);
       if (all.decided(e.value)) break;
     }
-    // Verify candidates of other families, since those of one family ring the same neglected modes.
+    // Verify candidates of other families, since all candidates of one family excite the same neglected modes.
     for (std::size_t k = 0; k < families_.size() && families_.size() > 1 && !all.confirmed(); ++k) {
       std::size_t added = 0;
       for (const Evaluation& e : candidates(improvements_of(log_.evaluations(k)))) {
@@ -137,8 +138,8 @@ class RunningSearch {
         ++added;
       }
     }
-    // For a target with its own cost, verify further candidates that cost less than the best verified one, in the order of the
-    // guide cost.
+    // For a target with a separate cost, verify further candidates whose target cost is below that of the best verified
+    // candidate, in the order of the guide cost.
     if (options_.target.has_own_cost()) {
       for (const FamilySearch& family : families_) {
         for (std::size_t k = 0; k < most_sure; ++k) {
@@ -175,7 +176,7 @@ class RunningSearch {
     return all;
   }
 
-  // Returns some of the candidates that touch: the best of all, evenly spaced ones by rank, and the best of every family.
+  // Returns some of the candidates that touch: the best of all, candidates evenly spaced by rank, and the best of every family.
   [[nodiscard]] std::vector<TriedWaveform> tried() const {
     std::vector<Evaluation> all;
     for (std::size_t k = 0; k < families_.size(); ++k) {
@@ -196,7 +197,7 @@ class RunningSearch {
     return kept;
   }
 
-  // Returns the results of every family.
+  // Returns the results of every waveform family.
   [[nodiscard]] std::vector<SearchedFamilyResult> families() const {
     std::vector<SearchedFamilyResult> all;
     for (std::size_t k = 0; k < families_.size(); ++k) {
@@ -228,11 +229,12 @@ class RunningSearch {
     const long before = all_.evaluations;
     if (families_.size() == 1)
       return go_on(0, evaluations, all_seconds, options_.more_evaluations, has_own ? Costs::both : Costs::same, before > 0);
-    // Search for bounce first, as a whole search: its winner is then a candidate for the other target.
+    // Search for bounce first, as a whole search: its best waveform is then a candidate for the actual target.
     const long own = has_own ? evaluations / target_share : 0;
     const double bounce_seconds = all_seconds * (has_own ? 1 - 1.0 / target_share : 1);
     if (!run_families(evaluations - own, bounce_seconds, has_own ? Costs::guide : Costs::same)) return false;
-    // Search by the target's own cost next, from the best points of every family. The remaining budget also counts gradients.
+    // Search by the separate cost of the target next, from the best points of every family. The remaining budget also counts
+    // gradients.
     const long rest = evaluations - (all_.evaluations - before);
     return !has_own || rest <= 0 || run_families(rest, budget_.seconds_left(), Costs::target);
   }
@@ -253,9 +255,9 @@ class RunningSearch {
             .parameters = families_[k].named(e)};
   }
 
-  // Runs each family with a share of the budget, and the best family with the rest. By the cost of bounce each family begins at
-  // the results of earlier families. By the target's own cost only the best family does so, since all would end in one minimum.
-  // Returns false if the search must end.
+  // Runs each family with a share of the budget, and the best family with the rest. By the cost of bounce, each family begins
+  // at the results of earlier families. By the separate cost of the target, only the best family does so, since all would end
+  // in one minimum. Returns false if the search must end.
   bool run_families(long all_evaluations, double all_seconds, Costs costs) {
     const SearchBudget all(budget_, all_evaluations, all_seconds);
     const double share = opening / static_cast<double>(families_.size());
@@ -290,7 +292,7 @@ class RunningSearch {
     log_.begin_with(given, can_be_written(waveforms) ? std::optional(landing.scene.scene.file) : std::nullopt);
   }
 
-  // Returns the number of the family with the least cost; the first of equals.
+  // Returns the number of the family with the least cost; of equal families, the first one.
   [[nodiscard]] std::size_t leader(Costs costs) const {
     std::size_t leader = 0;
     double least = std::numeric_limits<double>::infinity();
@@ -348,8 +350,9 @@ class RunningSearch {
   std::uint64_t runs_ = 0;
 };
 
-// Continues a search whose winner is bounce-free only with the scene's number of modes: with slower edges, then with the worst
-// cost over several numbers of modes. These evaluations are not in the database file: a continued search makes them again.
+// Continues a search whose best waveform is bounce-free only with the scene's number of modes: with slower edges, then with the
+// worst cost over several numbers of modes. These evaluations are not in the database file: a continued search makes them
+// again.
 class SearchBeyondModes {
  public:
   SearchBeyondModes(const OptimizeOptions& options, SearchBudget& budget, Verification& verified)
@@ -488,7 +491,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& asked) {
   search.check(verified);
   result.families = search.families();
   if (options.keep_tried) result.tried = search.tried();
-  result.family = result.families.front().family;  // family of a result without winner
+  result.family = result.families.front().family;  // the family to report if there is no best waveform
   result.variables = setting.space.variables();
   SearchBeyondModes beyond(options, budget, verified);
   result.evaluations_of_modes = is_gentle ? beyond.sift(search, gentle) : beyond.go_on(search, settings, gentle);

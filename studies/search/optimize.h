@@ -1,4 +1,4 @@
-// The search for a drive waveform: from a scene, by way of its baseline and a search, to a verified winner.
+// The search for a drive waveform: from a scene, through the plain step as baseline and a search, to a verified waveform.
 //
 // The best candidate is read back from the text of best.toml and verified by a simulation over the whole window at the scene's
 // accuracy. Simulations with a tighter integrator and with two more modes confirm the result. If a candidate fails one of these
@@ -38,12 +38,12 @@ struct SearchEstimate {
   double closing = 0;      ///< computing time of one closing of the nominal device on this machine [s]
   long evaluations = 0;    ///< evaluations of candidates on the nominal device
   long closings = 0;       ///< closings of varied devices; 0: none
-  bool has_fewer = false;  ///< true if the search makes fewer closings, since each is slow
+  bool has_fewer = false;  ///< true if the search makes fewer closings because each closing is slow
   double seconds = 0;      ///< processor time of the whole search [s]
 };
 
 /// Default number of evaluations: as many as found bounce-free waveforms from every seed tried, on the shipped scenes and their
-/// variants. A search of a piezo needs more. A target with a cost of its own gets 1.5 times as many evaluations as `bounce`.
+/// variants. A search of a piezo needs more. A target with a separate cost gets 1.5 times as many evaluations as `bounce`.
 [[nodiscard]] long default_budget(const Aim& target, Shaped drives);
 
 /// Evaluation::index of the scene's own waveform, and of the given starts.
@@ -51,21 +51,22 @@ inline constexpr long given_index = -1;
 
 struct OptimizeOptions {
   Aim target = Target::bounce;
-  /// Conditions that the winner must fulfil, on conditioned_figures.
+  /// Conditions that the found waveform must fulfil, on conditioned_figures.
   std::vector<Condition> conditions = {};
   Actuator actuator = Actuator::electrostatic;
-  std::string family = "pulse";  ///< waveform families, see families_of(); the best waveform of all wins
-  /// Waveforms from the user's code that `family` may name. They have no gradients, and no scene file can contain such a
-  /// waveform.
+  std::string family = "pulse";  ///< waveform families, see families_of(); the best waveform of all families is the result
+  /// Waveforms from the user's code that `family` may name. They have no gradients, and no scene file can contain them.
   OwnWaveforms own_waveforms = {};
   std::string optimizer = "auto";
   long max_evaluations = 2500;  ///< budget of evaluations, see default_budget()
   /// Further evaluations from the best points, if max_evaluations found no closing without a significant rebound.
   long more_evaluations = 0;
-  /// true: max_evaluations counts closings of usual computing time; fewer are made if closings are slow (search_work.h).
+  /// true: max_evaluations counts closings of usual computing time; the search makes fewer if closings are slow
+  /// (search_work.h).
   bool counts_work = false;
-  /// true: the search first repeats the search with half the budget, to the bit, and goes on from its result, which never gets
-  /// worse. Use this to compare budgets; an undivided search finds more. The budget must be in evaluations, not in seconds.
+  /// true: the search first repeats the search with half the budget, to the bit, and continues from its result, so that a
+  /// larger budget is never worse. Use this to compare budgets; an undivided search finds more. The budget must be in
+  /// evaluations, not in seconds.
   bool begins_with_half = false;
   double max_seconds = std::numeric_limits<double>::infinity();  ///< time budget [s]
   std::uint64_t seed = 1;
@@ -80,8 +81,8 @@ struct OptimizeOptions {
   EvaluationMemory* memory = nullptr;
   /// Flag from outside (Ctrl-C) that ends the search. The best candidate so far is still verified and confirmed.
   const std::atomic<bool>* stop = nullptr;
-  /// Progress of the computations before and after the search: pull-in voltages, baseline, and verification of the winner. See
-  /// Progress.
+  /// Progress of the computations before and after the search: pull-in voltages, baseline, and verification of the best
+  /// waveform. See Progress.
   std::function<void(std::string_view what, double part)> on_preparation = {};
   /// Called once before the first evaluation, when scene and options are valid, with the searched parameters of every family.
   /// Evaluation::problem is the index of a family. A budget of time excludes the duration of this call.
@@ -125,28 +126,30 @@ struct OptimizeResult {
   std::optional<Closing> best;
   std::vector<CheckingRun> checks;
   std::vector<SearchedFamilyResult> families = {};  ///< results of the searched families
-  std::string family;                               ///< family of the winner
-  std::string prefix;                        ///< prefix of the winner's parameters among those of all families: prefix_of()
-  std::map<std::string, double> parameters;  ///< parameters of the winner, by drive.name
-  std::vector<Variable> variables;           ///< variables of the winner's family, with their bounds
+  std::string family;                               ///< family of the best waveform
+  std::string prefix;                               ///< prefix of the best waveform's parameters among those of all families:
+                                                    ///< prefix_of()
+  std::map<std::string, double> parameters;         ///< parameters of the best waveform, by drive.name
+  std::vector<Variable> variables;                  ///< variables of the best waveform's family, with their bounds
   double best_cost = std::numeric_limits<double>::quiet_NaN();
   double baseline_cost = std::numeric_limits<double>::quiet_NaN();
   OptimizerResult search;  ///< evaluations; their points are parameters of the family with the index Evaluation::problem
   bool goal_met = false;
   bool confirmed = false;  ///< true if the goal is also met with a tighter integrator and with more modes
-  /// Further evaluations, each with several numbers of modes, if the waveforms found were bounce-free only with the scene's
-  /// number.
+  /// Further evaluations, each with several numbers of modes, if the found waveforms were bounce-free only with the scene's
+  /// number of modes.
   long evaluations_of_modes = 0;
   bool better_than_baseline = false;
-  bool plain_step_wins = false;  ///< true if the bounce-free plain step wins: all other candidates are harder or no better
-  double harder_than_step = 0;   ///< hardness_beyond_step() of the winner
-  /// True if the winner meets the goal or is better than the plain step.
+  bool plain_step_wins = false;  ///< true if the plain step is the result: it is bounce-free, and all other candidates are
+                                 ///< harder or no better
+  double harder_than_step = 0;   ///< hardness_beyond_step() of the best waveform
+  /// True if the best waveform meets the goal or is better than the plain step.
   [[nodiscard]] bool is_success() const { return best && !best->is_pulled_through && (goal_met || better_than_baseline); }
-  std::vector<std::string> broken_conditions = {};  ///< conditions that the winner does not fulfil
+  std::vector<std::string> broken_conditions = {};  ///< conditions that the best waveform does not fulfil
   std::vector<TriedWaveform> tried = {};            ///< candidates that were tried, see OptimizeOptions::keep_tried
 
-  /// The winner's value of the parameter `name`, one of searched_columns(); NaN if the winner's family lacks it, or without a
-  /// winner.
+  /// The best waveform's value of the parameter `name`, one of searched_columns(); NaN if its family lacks the parameter, or if
+  /// there is no best waveform.
   [[nodiscard]] double parameter(std::string_view name) const;
 };
 
@@ -162,11 +165,11 @@ inline constexpr double settling_goal = 1.3;
 /// excess is at most a thousandth.
 [[nodiscard]] double hardness_beyond_step(const Metrics& closing, const Metrics& step);
 
-/// True if the closing `best` meets the goal of the target. A user objective from Aim::from_the_start(): the switch touches
-/// with a lower value than the baseline. All other targets: the contact settles without a significant rebound. Settling: it
-/// also settles within settling_goal, or before the baseline does, if the baseline does not touch. Other targets with a cost of
-/// their own, and sums of targets: their figure is also better than the baseline's. The figure of a sum is the weighted mean of
-/// the figures relative to the baseline.
+/// True if the closing `best` meets the goal of the target. For a user objective from Aim::from_the_start(): the switch touches
+/// with a lower value than the baseline. For all other targets: the contact settles without a significant rebound. For
+/// `settling`: it also settles within settling_goal, or before the baseline does, if the baseline does not touch. For other
+/// targets with a separate cost, and for sums of targets: their figure is also better than the baseline's. The figure of a sum
+/// is the weighted mean of the figures relative to the baseline.
 [[nodiscard]] bool goal_met(const Aim& target, const Metrics& best, const Metrics& baseline);
 
 }  // namespace softland

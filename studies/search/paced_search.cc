@@ -18,7 +18,7 @@ constexpr std::array pace_rounds{
 
 constexpr double of_the_time = 0.995;  // share of the permitted time that is used, since other devices take a little longer
 using Point = std::vector<double>;
-constexpr std::uint64_t first_of_paces = 1'000'000;  // offset of the random streams, beyond those of the race
+constexpr std::uint64_t first_of_paces = 1'000'000;  // offset of the random streams, beyond those of the tournament of families
 
 bool has_pace(const RobustAim& aim) { return aim.free.until > 0 && std::isfinite(aim.free.until); }
 

@@ -1,5 +1,5 @@
-// A search over varied devices for a quasi-static approach. CMA-ES begins at the closed form, and uses more devices in every
-// round. The pace is given by the time from which on the devices have to carry a steady contact force.
+// A search over varied devices for a quasi-static approach. CMA-ES begins at a closed-form waveform, and uses more devices in
+// every round. The pace is given by the time from which on the devices have to carry a steady contact force.
 #pragma once
 
 #include <functional>
@@ -11,13 +11,13 @@ namespace softland {
 
 /// The pace of a quasi-static approach, and the waveform family that is searched.
 struct Pace {
-  double of_step = 1;      ///< time until devices have to carry a steady force, over that of the plain step
+  double of_step = 1;      ///< time until devices have to carry a steady force, over the same time under the plain step
   std::size_t family = 0;  ///< index of the family among the settings of the search
 };
 
 /// Searches at a pace. `setting` is that of a quasi-static family; `aim` is the aim of the whole search, with the plain step's
-/// time as FreeTime. None if no waveform of this pace is within the limits, or if the budget is over before one was tried.
-/// RaceOptions::closings scales the closings of this search, as it scales those of a race.
+/// time as FreeTime. None if no waveform of this pace is within the limits, or if the budget ends before a waveform was tried.
+/// RaceOptions::closings scales the number of closings of this search, as in race().
 [[nodiscard]] std::optional<Contender> search_at_pace(const SearchSetting& setting, const Pace& pace, const RobustCost& cost,
                                                       const RobustAim& aim, SearchBudget& budget, const RaceOptions& options);
 

@@ -13,7 +13,7 @@ struct Catch {
   double begin = 0, end = 0;  ///< times after first contact [s]
 };
 
-/// Returns the controls as tables of voltage against time, until first contact.
+/// Returns the controls until first contact as tables of voltage against time.
 [[nodiscard]] DriveWaveforms tables_of(const FirstTouchProblem& flight, const ControlledCourse& course);
 /// Returns the waveforms of `found`, then a catch, then the hold levels of the waveforms `held`, or 0 V.
 [[nodiscard]] DriveWaveforms with_catch(const FirstTouchProblem& flight, const LeastTime& found, const Catch& pulled,

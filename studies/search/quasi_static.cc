@@ -10,7 +10,7 @@
 namespace softland {
 namespace {
 
-// A function of time: 0 until `begin`, a straight line to `height` at `end`, then constant.
+// A function of time: 0 until `begin`, linear to `height` at `end`, then constant.
 struct Ramp {
   double begin, end, height;
   [[nodiscard]] double at(double time) const {
@@ -57,7 +57,7 @@ class BrokenLine {
     for (const Ramp& r : ramps_) sum += r.at(time);
     return sum;
   }
-  /// Returns the corners of the signal as (time, value). Corners less than `apart` in time after another one are left out.
+  /// Returns the corners of the signal as (time, value). A corner less than `apart` after the corner before it is left out.
   [[nodiscard]] std::vector<std::pair<double, double>> points(double apart) const {
     std::vector<double> times{0};
     for (const Ramp& r : ramps_) times.insert(times.end(), {r.begin, r.end});
@@ -92,8 +92,8 @@ Waveform slewed(const std::vector<std::pair<double, double>>& points, double bef
   return table;
 }
 
-// Returns pairs: the square of a holder's level from 0 to `most`, and the carrying drive's voltage at which the nominal design
-// then touches.
+// Returns pairs: the square of the holder's level, from 0 to `most`, and the voltage of the carrying drive at which the nominal
+// design then touches.
 std::vector<std::pair<double, double>> touching_by_level(const PreparedScene& prepared, const StableApproach& approach,
                                                          double most) {
   constexpr int levels = 6;
@@ -108,12 +108,14 @@ std::vector<std::pair<double, double>> touching_by_level(const PreparedScene& pr
   return all;
 }
 
-constexpr double slow_before = 3.5, fast_before = 1.5, beyond = 2;  // in standard deviations of the touching voltage
-constexpr double least_deviation = 0.005;                           // share of the touching voltage
+constexpr double slow_before = 3.5, fast_before = 1.5, beyond = 2;  // ends of rise and line, in standard deviations of the
+                                                                    // touching voltage
+constexpr double least_deviation = 0.005;                           // least standard deviation, as a share of the touching
+                                                                    // voltage
 constexpr double nearest_points = 1e-6;  // least distance of two corners of a waveform, in periods of mode 1
 constexpr double step_after_line = 1.2,
                  holder_after_line = 0.8;  // delay of the holder after the line through the touching voltages, in periods
-constexpr double settle = 0.5;             // rise time of a shaped holder, in periods
+constexpr double settle = 0.5;             // rise time of a searched holder waveform, in periods of mode 1
 constexpr double least_contact_level = 0.16, most_low = 0.5;    // levels before contact, as shares of the holder's hold level
 constexpr std::array lower_levels{0.03, 0.12};                  // levels of further starts, over the holder's hold level
 constexpr double back = 1, back_of_step = 5.7, back_after = 2;  // duration of a piezo's return, and the wait before, in periods
@@ -171,10 +173,11 @@ double QuasiStatic::share(double deviations) const {
   return std::min(1 + deviations * approach_.deviation / reach, std::max(1.0, std::abs(approach_.limit) / reach));
 }
 
-// Returns the parameters by formula, for devices that carry a steady contact force from `steady` on [s].
+// Returns the parameters by closed formulas, for devices that carry a steady contact force from `steady` on [s].
 std::vector<double> QuasiStatic::closed_form(double steady, double low) const {
   const double rise = share(impulses_ > 2 ? -slow_before : -fast_before), end = share(beyond);
-  const double risen = static_cast<double>(impulses_ + 1) / 2 - (impulses_ > 2 ? 0.5 : 0);  // periods
+  const double risen = static_cast<double>(impulses_ + 1) / 2 - (impulses_ > 2 ? 0.5 : 0);  // end of the rise, in periods of
+                                                                                            // mode 1
   const double after = holding_ == Holding::by_step  ? step_after_line
                        : holding_ == Holding::shaped ? holder_after_line + settle
                                                      : 1.0;
@@ -198,7 +201,7 @@ void QuasiStatic::bound(const std::vector<double>& start, bool is_paced) {
     variables_.push_back({std::move(name), lower, upper});
   };
   const double line = start[1];
-  constexpr double earliest = 9, latest = 6;  // standard deviations of the touching voltage
+  constexpr double earliest = 9, latest = 6;  // bounds of rise and end, in standard deviations of the touching voltage
   between(carrier + "rise", std::max(0.3, share(-earliest)), share(1));
   is_paced ? between(carrier + "line_s", std::max(0.2 * period_, line - 2 * period_), line + 2 * period_)
            : between(carrier + "line_s", 0.2 * period_, 5 * line + 5 * period_);
@@ -259,7 +262,8 @@ DriveWaveforms QuasiStatic::waveforms(std::span<const double> x) const {
   const double touching = reaches(holding_ == Holding::shaped ? x[3] : holder_before_), line = x[1];
   const auto within = [&](double voltage) { return std::clamp(voltage, limits_.min_voltage, limits_.max_voltage); };
   const double rise_voltage = within(x[0] * touching), end_voltage = within(x[2] * touching);
-  const std::size_t of_line = impulses_ > 2 ? impulses_ : 1;  // impulses at the ends of the second ramp; 1: it is not filtered
+  const std::size_t of_line = impulses_ > 2 ? impulses_ : 1;  // number of impulses that shape the ends of the second ramp; 1:
+                                                              // the ramp is not filtered
   const double risen = static_cast<double>(impulses_ + 1) / 2 * period_;
   const double begin = impulses_ > 2 ? risen - period_ / 2 : risen, end = begin + line;
   BrokenLine carrier(strength(before_));

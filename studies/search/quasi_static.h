@@ -1,6 +1,6 @@
-// The quasi-static approach: waveforms that carry the switch to its contact slowly, through stable equilibria, so that every
-// device touches softly, and that hold the switch closed afterwards. The carrying drive moves the beam to its contact. The
-// holder is the electrode that holds the closed switch, if the carrying drive does not hold the switch by itself.
+// The quasi-static approach: waveforms that move the switch to its contact slowly, through stable equilibria, so that every
+// device touches softly, and that keep the switch closed afterwards. The carrying drive moves the beam to its contact. The
+// holder is the electrode that keeps the switch closed, if the carrying drive does not.
 //
 //   rise    The carrying drive goes to a voltage at which hardly a device touches, without vibration: a ramp of one period T of
 //           mode 1 passes an input shaper of N impulses half a period apart, whose weights are binomial.
@@ -13,9 +13,9 @@
 // carries the switch. With two impulses (ZV) the rise takes 1.5 T, and devices whose frequencies differ by 3.5 % keep 0.7 % of
 // the rise as vibration. With three (ZVD) the rise takes 2 T and leaves 0.07 %.
 //
-// Levels of the carrying drive are shares of the voltage at which the nominal design touches while the holder stands at its low
+// Levels of the carrying drive are shares of the voltage at which the nominal design touches while the holder is at its low
 // level, so that the search varies the levels of both drives independently. One point of the search gives the waveforms of all
-// drives. If the search does not shape the electrode (actuator pzt), the holder keeps its plain step, whose instant is a
+// drives. If the search does not vary the electrode (actuator pzt), the holder keeps its plain step, whose instant is a
 // parameter.
 //
 // Source of the shapers: N. C. Singer & W. P. Seering, J. Dyn. Syst. Meas. Control 112 (1990) 76.
@@ -51,18 +51,18 @@ class QuasiStatic {
   [[nodiscard]] const std::vector<Variable>& variables() const { return variables_; }
   [[nodiscard]] const std::vector<std::vector<double>>& starts() const { return starts_; }
   [[nodiscard]] DriveWaveforms waveforms(std::span<const double> x) const;
-  /// Returns the approach with bounds about its closed form for devices that carry a steady contact force from `steady` on [s].
-  /// The search starts at the closed form, and, with a shaped holder, also at lower levels of the holder.
+  /// Returns the approach with bounds about its closed-form waveforms for devices that carry a steady contact force from
+  /// `steady` on [s]. The search starts at the closed form, and, if the holder is varied, also at lower levels of the holder.
   [[nodiscard]] QuasiStatic paced(double steady) const;
 
  private:
-  /// How the switch is held once it is closed.
+  /// How the switch is kept closed after contact.
   enum class Holding {
     by_itself,  ///< the carrying drive goes on to its hold level
     shaped,     ///< the holder's waveform is searched
     by_step,    ///< the holder's plain step comes after the contact is made
   };
-  using Points = std::vector<std::pair<double, double>>;  // [s, V]
+  using Points = std::vector<std::pair<double, double>>;  // corners of a waveform: time [s] and voltage [V]
 
   // `low` is the holder's level before contact [V].
   [[nodiscard]] std::vector<double> closed_form(double steady, double low) const;

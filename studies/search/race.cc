@@ -18,8 +18,8 @@ namespace {
 
 using Point = std::vector<double>;
 
-// Rounds of a race, with closings per search at the default length of the race. The last two rounds continue the winner's
-// search.
+// Rounds of a race (a tournament), with closings per search at the default length. The last two rounds continue the search with
+// the best result.
 constexpr std::array race_rounds{Round{.devices = 32, .closings = 2000, .step = 0.15},
                                  Round{.devices = 64, .closings = 6000, .step = 0.08},
                                  Round{.contenders = 3, .devices = 128, .closings = 10'000, .step = 0.03},
@@ -33,7 +33,7 @@ constexpr double population_by_share = 2, longer_where_many_land = 1.7;
 constexpr std::size_t first_devices = 16;  // devices on which starts are tried
 constexpr std::uint64_t box_points = 32;
 
-// Returns the closings per search in the rounds `first` to `last` - 1, at the default length.
+// Returns the closings per search in the rounds `first` to `last` - 1, at the default length of a tournament.
 double closings_of_rounds(std::size_t first, std::size_t last) {
   double all = 0;
   for (std::size_t k = first; k < last; ++k) all += race_rounds[k].closings;
@@ -46,7 +46,7 @@ class Race {
        const RaceOptions& options)
       : settings_(settings), cost_(cost), aims_(aims), options_(options), budget_(budget, options.closings) {}
 
-  /// Runs a race between `contenders`, or, if `alone`, a single search through all rounds. `begun` are further starting
+  /// Runs a tournament between `contenders`, or, if `alone`, a single search through all rounds. `begun` are further starting
   /// waveforms.
   RaceResult run(std::vector<Contender> contenders, const std::vector<DriveWaveforms>& begun, bool alone) {
     alone_ = alone;
@@ -126,7 +126,7 @@ class Race {
     r.closings += improve(r.x, staged, chain, part, [this] { tell(); }).searched;
   }
 
-  // Judges the searches after round `k`, and returns the searches of the next round.
+  // Compares the searches after round `k`, and returns the searches of the next round.
   std::vector<Contender> select(std::vector<Contender> contenders, std::size_t k) {
     const double before = contenders.front().bounce_free;
     judge(contenders, race_rounds[std::min(k + 1, race_rounds.size() - 1)].devices);
@@ -148,7 +148,7 @@ class Race {
     return contenders;
   }
 
-  // Sets the budget for longer rounds, and for the rounds that continue the winner's search.
+  // Sets the budget for longer rounds, and for the rounds that continue the search with the best result.
   void plan_longer() {
     const double again = alone_ ? 0 : closings_of_rounds(usual_rounds, race_rounds.size());
     const double left = longer_ / length_ * static_cast<double>(budget_.left()) + longer_ * again;
@@ -200,8 +200,8 @@ class Race {
   const RaceAims& aims_;
   const RaceOptions& options_;
   SearchBudget budget_;             // budget of the planned closings
-  double length_ = 1, longer_ = 1;  // length relative to the default; the length if many devices are bounce-free
-  bool alone_ = false;              // true: a single search, not a race
+  double length_ = 1, longer_ = 1;  // length relative to the default; length if many devices are bounce-free
+  bool alone_ = false;              // true: a single search, not a tournament
   bool many_ = false;               // true: many devices are bounce-free
   RaceResult result_;
 };

@@ -1,4 +1,4 @@
-// The race over devices: a tournament (tournament.h) between searches that differ in waveform family and in measure of cost.
+// The race: a tournament (tournament.h) between searches over devices that differ in waveform family and in measure of cost.
 //
 //   round  searches                                              closings of each   devices   first step
 //   A      every family by either measure                        2000               32        0.15 of the range
@@ -9,12 +9,12 @@
 //
 // The measures are the tail of the cost and the share of bounce-free devices. If a quarter of the devices close without a
 // rebound after round A, the next rounds are 1.7 times as long, unless the number of closings is a fixed budget. Searches by
-// the share have generations of twice the usual size, since the share hardly changes between neighbouring points.
+// the share use CMA-ES generations of twice the usual size, since the share hardly changes between neighbouring points.
 //
-// The searches are judged on the devices of the next round. They are ranked by the share of bounce-free devices if the share of
-// any search is a quarter or more (two fifths in the last round). Otherwise they are ranked by the tail of the cost, and all
-// searches go on by the tail. A search begins at the best, on 16 devices, of the starts of its family, points of the whole
-// search space, and given waveforms.
+// The results of the searches are evaluated on the devices of the next round. They are ranked by the share of bounce-free
+// devices if the share of any search is a quarter or more (two fifths in the last round). Otherwise they are ranked by the tail
+// of the cost, and all searches continue by the tail. A search begins at the best, on 16 devices, of the starts of its family,
+// points of the whole search space, and given waveforms.
 #pragma once
 
 #include <array>
@@ -30,22 +30,22 @@
 
 namespace softland {
 
-/// Default waveform families of a race.
+/// Default waveform families of a race (a tournament of searches).
 inline constexpr std::string_view raced_families = "knots:6+catch+dual-pulse+bspline:6+staircase:5";
-/// Default number of closings in a race of five families by two measures.
+/// Default number of closings in a race (a tournament) of five families by two measures.
 inline constexpr long race_closings = 86'000;
-/// Shortest race, as a share of race_closings: the searches of shorter races end too early to be meaningful.
+/// Shortest race, as a share of race_closings: shorter tournaments end too early to be meaningful.
 inline constexpr double least_length_of_race = 0.25;
-/// Number of devices that a race simulates at most.
+/// Largest number of devices that a race (a tournament of searches) simulates.
 inline constexpr std::uint64_t raced_devices = 256;
 
-/// The two measures of cost in a race.
+/// The two measures of cost that the searches of a race (a tournament) minimise.
 struct RaceAims {
   RobustAim tail;   ///< tail of the cost distribution, like cvar:0.9
   RobustAim share;  ///< share of bounce-free devices
 };
 
-/// A search in a race, and its result so far.
+/// A search that takes part in a race (a tournament), and its result so far.
 struct Contender {
   std::size_t family = 0;  ///< index of the waveform family among the settings
   bool by_share = false;   ///< true: searched by RaceAims::share; false: by RaceAims::tail
@@ -55,7 +55,7 @@ struct Contender {
   long closings = 0;              ///< simulated closings of this search in all rounds
   double bounce_free = 0;         ///< share of bounce-free devices in the last round of the search
   double tail = std::numeric_limits<double>::infinity(),
-         share = std::numeric_limits<double>::infinity();  ///< costs in the last round
+         share = std::numeric_limits<double>::infinity();  ///< costs by RaceAims::tail and RaceAims::share in the last round
 };
 
 struct RaceOptions {
@@ -63,9 +63,10 @@ struct RaceOptions {
   bool are_a_budget = false;      ///< true: `closings` is a limit even if many devices close without a rebound
   std::uint64_t seed = 1;
   int jobs = 1;                               ///< threads; does not change the result
-  EvaluationMemory* memory = nullptr;         ///< may be null; its keys contain SearchSetting::family, which has to differ
+  EvaluationMemory* memory = nullptr;         ///< may be null; its keys contain SearchSetting::family, which must differ
+                                              ///< between settings
   std::function<void(double)> progress = {};  ///< called with the share of the race that is done, from any thread
-  /// Called with the best search at the end of every round but the last; may be null.
+  /// Called with the best search at the end of every round except the last; may be null.
   std::function<void(const Contender&)> on_stage = {};
 };
 
@@ -74,13 +75,14 @@ struct RaceResult {
   long closings = 0;
 };
 
-/// Runs the race. `settings` differ in SearchSetting::family and space alone; `cost` is on raced_devices devices. The race
-/// counts its closings in `budget`, and ends when the budget is over. `begun` are further waveforms from which searches begin.
+/// Runs the tournament. `settings` differ only in SearchSetting::family and space; `cost` is for raced_devices devices. The
+/// tournament counts its closings in `budget`, and ends with the budget. `begun` are further waveforms from which searches
+/// begin.
 [[nodiscard]] RaceResult race(const std::vector<SearchSetting>& settings, const RobustCost& cost, const RaceAims& aims,
                               SearchBudget& budget, const RaceOptions& options, const std::vector<DriveWaveforms>& begun = {});
 
-/// Runs a single search, of one family by one measure, through all rounds of a race. `begun` are further waveforms from which
-/// the search begins.
+/// Runs a single search, of one family by one measure, through all rounds of a tournament. `begun` are further waveforms from
+/// which the search begins.
 [[nodiscard]] RaceResult race_single_search(const SearchSetting& setting, std::size_t family, const RobustCost& cost,
                                             const RaceAims& aims, bool by_share, const std::vector<DriveWaveforms>& begun,
                                             SearchBudget& budget, const RaceOptions& options);

@@ -169,8 +169,8 @@ std::vector<Signal> RobustCost::signals(const std::vector<Waveform>& waveforms, 
                                : setting_.given.applied(waveforms);
 }
 
-// Finds the gains of the devices' drives. Drives of devices that differ only by a gain are prepared once, since a sampled
-// waveform has many breakpoints.
+// Finds the gains of the devices' drives. Drives that differ from device to device only by a gain are prepared once, since a
+// sampled waveform has many breakpoints.
 void RobustCost::find_gains() {
   if (std::ranges::none_of(ensemble_.units, [&](const DeviceUnits& units) { return drives_.differ(units); })) return;
   ungained_levels_ = hold_levels(drives_.without_gains(setting_.drives({})));
@@ -309,8 +309,8 @@ bool RobustCost::is_told(std::span<const DeviceOutcome> outcomes) const {
                             : risk(scores(outcomes), aim_.measure.risk) < (1 - rounding) * worst_score;
 }
 
-// Returns the measure of risk of scores with failing devices. Their standard deviation alone would decrease if most devices
-// fail.
+// Returns the measure of risk of scores with failing devices. The standard deviation of all scores would decrease if most
+// devices fail.
 double RobustCost::risk_of(std::span<const DeviceOutcome> outcomes, const std::vector<double>& scores, const Risk& measure) {
   if (measure.kind != RiskKind::mean_sigma || std::ranges::none_of(outcomes, fails)) return risk(scores, measure);
   std::vector<double> others;

@@ -11,18 +11,18 @@
 //   cost  R(s) + (share of devices that fail) + 0.02 min(median of first contact over that of the step, max(0, tau - 1))
 //         + 10 (sum over the conditions: violation, where positive)
 //
-// The waiting time of a user is tau: the 95th percentile of the time from which on the contact force is steady, over the free
+// tau is the waiting time of a user: the 95th percentile of the time from which on the contact force is steady, over the free
 // time. The free time is the same percentile under the plain step. The plain step bounces for that long, so that a slower first
 // contact costs the user nothing. If fewer than 95 % of the devices get a steady force under the step, the time of permanent
 // contact is used instead, or of first contact if they do not settle. For a device whose force is not steady when its
-// simulation ends, that end is the time.
+// simulation ends, the end of the simulation is the time.
 //
-// R of mean+sigma is that of the devices that do not fail, plus 3 (1 + factor) times the root of the share of failing devices.
-// The standard deviation over all devices would decrease again if most devices fail.
+// R of mean+sigma is computed over the devices that do not fail, plus 3 (1 + factor) times the root of the share of failing
+// devices. The standard deviation over all devices would decrease again if most devices fail.
 //
-// R is the requested measure (sampling/risk.h). For a yield R is 1 less the share of devices that fulfil the yield's condition,
-// plus a tenth of the mean of s, which guides the search where the share does not change. A condition holds when 95 % of the
-// devices fulfil the condition: its violation is the 95th percentile of the devices' violations (config/condition.h).
+// R is the requested measure (sampling/risk.h). For a yield, R is 1 less the share of devices that fulfil the yield's
+// condition, plus a tenth of the mean of s, which guides the search where the share does not change. A condition holds when
+// 95 % of the devices fulfil it: its violation is the 95th percentile of the devices' violations (config/condition.h).
 //
 // A closing is scored until 0.6 periods of the first mode, or 2.5 periods in contact, after first contact, and at least until
 // one period in contact after the last breakpoint of its drives.
@@ -50,7 +50,8 @@ inline constexpr double constrained_share = 0.95;
 
 /// The time until contact that costs nothing; later contact is penalised.
 struct FreeTime {
-  double Metrics::*figure = &Metrics::initial_contact_time;  ///< the time until contact that is compared
+  double Metrics::*figure = &Metrics::initial_contact_time;  ///< the compared time until contact: of first contact, settling or
+                                                             ///< steady force
   double until = 0;  ///< 95th percentile [s]; 0: only the median of first contact costs, infinite: no time costs
 };
 /// Returns the time until contact under the plain step, whose outcomes are `of_step`. The time is 0 if fewer than 95 % of the
@@ -63,29 +64,30 @@ struct RobustAim {
   FreeTime free = {};
 };
 
-/// Devices, and the exact values of the quantities that are measured for their calibration.
+/// Devices, and the exact values of the scale factors that a per-device calibration measures.
 struct CalibratedEnsemble {
   std::vector<SampledDevice> devices;
-  std::vector<DeviceUnits> exact;  ///< exact units of the devices; 1 for an invalid device
+  std::vector<DeviceUnits> exact;  ///< exact scale factors of the devices; 1 for an invalid device
 };
 /// Builds the devices and computes their measured quantities, pull-in voltages with the relative `precision`. Throws
 /// Interrupted if `progress` asks to stop.
 [[nodiscard]] CalibratedEnsemble calibrate_all(const Ensemble& ensemble, const MeasuredQuantities& quantities, double precision,
                                                int jobs, const Progress& progress = {});
 /// Relative precision of pull-in voltages for comparing devices, far finer than any instrument. With a slow gas film, whose
-/// motion just above pull-in takes long, this precision costs a sixth of the time of dynamic_pull_in_precision.
+/// motion just above pull-in takes long, pull-in voltages then take a sixth of the time that dynamic_pull_in_precision takes.
 inline constexpr double compared_precision = 1e-5;
 
-/// Devices, with the units in which their waveforms are scaled by a per-device calibration.
+/// Devices, with the factors by which a per-device calibration scales their waveforms.
 struct BuiltEnsemble {
   std::vector<SampledDevice> devices;
-  std::vector<DeviceUnits> units;  ///< units of each device's drive, relative to the nominal device
+  std::vector<DeviceUnits> units;  ///< measured factors by which each device's waveforms are scaled, relative to the nominal
+                                   ///< device
 };
-/// Returns the devices with their measured units: exact units plus random errors of the calibration `known`, which are
-/// functions of `seed` and the number of the device. `known` must not need other measured quantities. A device that cannot be
-/// measured is refused.
+/// Returns the devices with their measured scale factors: exact ones with random errors of the calibration `known`, which are
+/// functions of `seed` and the number of the device. `known` must use only quantities that `calibrated` has. A device that
+/// cannot be measured is refused.
 [[nodiscard]] BuiltEnsemble known_as(CalibratedEnsemble calibrated, const MeasuredUnits& known, std::uint64_t seed);
-/// Builds the devices with their measured units. Throws Interrupted if `progress` asks to stop.
+/// Builds the devices with their measured scale factors. Throws Interrupted if `progress` asks to stop.
 [[nodiscard]] BuiltEnsemble build_all(const Ensemble& ensemble, const MeasuredUnits& known, std::uint64_t seed, int jobs,
                                       const Progress& progress = {});
 
@@ -113,7 +115,7 @@ class RobustCost {
   [[nodiscard]] std::vector<DeviceOutcome> close_by_step(int jobs) const;
   /// Simulates all devices after first contact for the window of the scene or until `free` [s], whichever is longer.
   [[nodiscard]] std::vector<DeviceOutcome> close_until(const std::vector<Waveform>& waveforms, double free, int jobs) const;
-  /// False if the measure would be the same if all devices failed: a tail consists of failing devices only, or no device
+  /// False if the measure would be the same if all devices failed: the tail consists of failing devices only, or no device
   /// fulfils the condition of a yield.
   [[nodiscard]] bool is_told(std::span<const DeviceOutcome> outcomes) const;
 
@@ -129,8 +131,8 @@ class RobustCost {
   // Closed state of a device under its hold levels.
   struct Kept {
     bool is_held = true;
-    double steady_force = Metrics::unset;  // [N]
-    double resistance = Metrics::unset;    // [Ohm]
+    double steady_force = Metrics::unset;  // contact force that counts as steady [N]
+    double resistance = Metrics::unset;    // contact resistance at rest [Ohm]
   };
   void find_gains();
   [[nodiscard]] Kept kept(std::size_t k, const std::vector<Signal>& signals) const;
@@ -155,7 +157,8 @@ class RobustCost {
   std::vector<double> ungained_levels_;  // hold levels of the plain step, from sources with a gain of 1
   Vectors vectors_;
   DeviceOutcome step_;                               // outcome of the nominal device under the plain step
-  std::optional<ClosedEquilibrium> nominal_closed_;  // nominal device under the hold levels; none if not kept closed
+  std::optional<ClosedEquilibrium> nominal_closed_;  // closed equilibrium of the nominal device under the hold levels; none if
+                                                     // not kept closed
   std::vector<double> levels_;                       // hold levels of the nominal device
   std::vector<Kept> kept_;                           // closed state of each device under the hold levels
   double window_, tail_, wait_;  // simulated time after first contact, after the last breakpoint, and for a contact [s]
@@ -164,8 +167,8 @@ class RobustCost {
 /// True if a device does not close and stay closed, cannot be simulated, or is invalid.
 [[nodiscard]] bool fails(const DeviceOutcome& outcome);
 
-/// Time until contact of a device, by FreeTime::figure [s]: the end of the simulation if that contact was not reached, infinite
-/// if the device fails.
+/// Time until contact of a device, by FreeTime::figure [s]: the end of the simulation if the device does not reach that
+/// contact, infinite if the device fails.
 [[nodiscard]] double waited(const DeviceOutcome& outcome, double Metrics::*figure);
 /// 95th percentile over the devices of the time until contact by FreeTime::figure [s].
 [[nodiscard]] double waited(std::span<const DeviceOutcome> outcomes, double Metrics::*figure);

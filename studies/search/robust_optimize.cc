@@ -57,7 +57,7 @@ double distance(const Point& a, const Point& b, const std::vector<Variable>& var
   return farthest;
 }
 
-// Returns the `count` best candidates with a least distance from each other, which is reduced until there are enough.
+// Returns the `count` best candidates with a least distance between them, which is reduced until there are enough candidates.
 std::vector<Candidate> best_apart(std::vector<Candidate> all, std::size_t count, const std::vector<Variable>& variables) {
   std::stable_sort(all.begin(), all.end(), is_better);
   std::vector<Candidate> chosen;
@@ -109,7 +109,7 @@ class HalvingSearch {
   }
 
   [[nodiscard]] long closings() const { return budget_.taken(); }
-  /// Number of candidates whose evaluation on all devices was begun, even if it was given up early.
+  /// Number of candidates whose evaluation on all devices has begun, even if the evaluation was given up early.
   [[nodiscard]] long evaluations() const { return static_cast<long>(log_.evaluations().size()); }
   [[nodiscard]] std::vector<Evaluation> improvements() const { return improvements_of(log_.evaluations()); }
   [[nodiscard]] Termination termination() const {
@@ -176,8 +176,8 @@ class HalvingSearch {
     return best_apart(std::move(all), robust_rounds[0].contenders, variables_);
   }
 
-  // Returns each search's share of the closings and of the remaining time in a round. Also reserves a range of log indices for
-  // each search.
+  // Returns the share of each search in the closings and in the remaining time of a round. Also reserves a range of log indices
+  // for each search.
   RoundShare share(const Round& round, std::size_t contenders) {
     const auto count = static_cast<long>(contenders);
     const RoundShare each{.closings = static_cast<long>(round.closings * left_) / count,
@@ -189,8 +189,8 @@ class HalvingSearch {
     return each;
   }
 
-  // Searches from a candidate and replaces it by the result of the search; if both were tried on all devices, only by a better
-  // result.
+  // Searches from a candidate and replaces it by the result of the search. If both were tried on all devices, only a better
+  // result replaces the candidate.
   void search(Candidate& candidate, Turn turn, Chain chain, SearchBudget& part) {
     long index = first_index_ + static_cast<long>(turn.number) * indices_of_search_;
     const bool on_all = chain.devices >= cost_.devices();
@@ -227,9 +227,9 @@ class HalvingSearch {
   std::vector<Variable> variables_;
   SearchBudget budget_;
   EvaluationLog log_;
-  std::vector<Candidate> leaders_, found_;  // candidates that go on; results of all rounds
+  std::vector<Candidate> leaders_, found_;  // candidates that continue; results of all rounds
   double left_ = 0, shares_left_ = 0;       // closings for all rounds; shares of the remaining rounds
-  long next_index_ = 0;                     // least log index that no round uses
+  long next_index_ = 0;                     // least log index that no round has used
   long first_index_ = 0, indices_of_search_ = 0;
 };
 
@@ -249,7 +249,7 @@ Candidate compared(std::vector<Candidate> candidates, const SearchSetting& setti
   return winner;
 }
 
-// Simulates fresh devices under the winner and the plain step over the whole window, and adds the results to `result`.
+// Simulates fresh devices under the best waveform and the plain step over the whole window, and adds the results to `result`.
 void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& options, const RobustOptions& robust,
            const Progress& progress) {
   OptimizeResult& out = result.found;

@@ -2,11 +2,11 @@
 //
 // All candidates are tried on the same devices. Starts are those of the family, the best of two searches on the nominal device,
 // the waveform of the scene, the given waveforms, and points of the whole search space. All starts are tried on 8 devices, the
-// best on 32, and CMA-ES begins at the best six on 32 devices. The search goes on from the best two points on all devices, and
-// then from the best point, by smaller steps. A candidate that is worse on the first 8 or 32 devices than the median of earlier
-// candidates is not tried on the rest, and gets its cost on those first devices. The best point of every round is compared on
-// 512 other devices. The winner is judged on 2000 fresh devices over the whole window, since the search is over-fitted to the
-// searched devices.
+// best on 32, and CMA-ES begins at the best six on 32 devices. The search continues from the best two points on all devices,
+// and then from the best point, by smaller steps. A candidate that is worse on the first 8 or 32 devices than the median of
+// earlier candidates is not tried on the rest, and gets its cost on the first devices. The best point of every round is
+// compared on 512 other devices. The best waveform is evaluated on 2000 fresh devices over the whole window, since the search
+// is over-fitted to the searched devices.
 //
 // Source for giving up candidates: O. Maron & A. W. Moore, "Hoeffding races", NIPS 1993 (the idea; the test here is the median
 // of the earlier candidates).
@@ -32,7 +32,7 @@ inline constexpr std::uint64_t most_searched = 100'000;  ///< largest number of 
 struct RobustOptions {
   RobustAim aim;
   std::uint64_t samples = 128;                 ///< number of devices on which candidates are tried
-  std::uint64_t verdict = 2000;                ///< number of fresh devices that judge the winner
+  std::uint64_t verdict = 2000;                ///< number of fresh devices on which the best waveform is evaluated
   std::function<double()> clock = wall_clock;  ///< clock for a time budget [s]
 };
 
@@ -43,21 +43,22 @@ struct FulfilledCondition {
 };
 [[nodiscard]] FulfilledCondition fulfilled(const std::vector<DeviceOutcome>& outcomes, const Condition& condition);
 
-/// The findings of a search over varied devices by one measure, as they are written to JSON.
+/// The findings of a search over varied devices by one measure, as written to JSON.
 struct RobustFindings {
   std::string measure;
   double devices = Metrics::unset, fresh_devices = Metrics::unset,
          closings = Metrics::unset;          ///< numbers of devices, and of closings in the search
-  double cost_on_searched = Metrics::unset;  ///< cost of the winner on the searched devices
-  double failing = Metrics::unset;           ///< share of the fresh devices that fails() is true for
-  bool is_told = true;                       ///< see RobustCost::is_told()
+  double cost_on_searched = Metrics::unset;  ///< cost of the best waveform on the searched devices
+  double failing = Metrics::unset;           ///< share of the fresh devices that do not close and stay closed, by fails()
+  bool is_told = true;                       ///< false if the measure would be the same if all devices failed, see
+                                             ///< RobustCost::is_told()
   std::optional<FulfilledCondition> yield;   ///< condition of a yield, if the measure is one
   std::vector<FulfilledCondition> conditions;
 };
 
 struct RobustResult {
-  OptimizeResult found;               ///< the winner; its costs are those on fresh devices
-  std::optional<Robustness> verdict;  ///< plain step and winner on the same fresh devices; none if interrupted
+  OptimizeResult found;               ///< the best waveform; its costs are those on fresh devices
+  std::optional<Robustness> verdict;  ///< plain step and best waveform on the same fresh devices; none if interrupted
   RobustFindings findings;
 };
 

@@ -21,8 +21,9 @@ namespace softland {
 namespace {
 
 constexpr std::uint64_t devices_of_choice = 512, least_of_verdict = 500;
-constexpr std::size_t most_of_race = 3;                       // largest number of candidates from a race, by each measure
-constexpr double most_times = 5, most_times_of_landings = 7;  // multiples of the plain step's 95th percentile closing time
+constexpr std::size_t most_of_race = 3;                       // largest number of candidates from a tournament, by each measure
+constexpr double most_times = 5, most_times_of_landings = 7;  // multiples of the plain step's 95th percentile closing time; the
+                                                              // second one if many devices are bounce-free
 constexpr double margin = 0.98;      // a chosen waveform's figures may be at most this share of the plain step's
 constexpr double more_open = 0.005;  // permitted excess of the share of open devices
 constexpr std::uint64_t which_searched = 0, which_chosen = 1;
@@ -31,11 +32,12 @@ constexpr double least_of_race = 0.4,
 constexpr std::string_view quasi_static_short = "quasi-static:2",
                            approaches = "+quasi-static+quasi-static:2";  // families searched with a stable path
 constexpr std::string_view usual_prefix = "usual_limit.";
-constexpr double alike = 1.05;        // candidates up to this multiple of the least cost count as equal
-constexpr double little_more = 1.25;  // multiple of the least cost up to which a quicker waveform wins, without a stable path
+constexpr double alike = 1.05;               // candidates up to this multiple of the least cost count as equal
+constexpr double little_more = 1.25;         // multiple of the least cost up to which a quicker waveform is preferred, without
+                                             // a stable path
 constexpr std::uint64_t path_devices = 512;  // devices for computing the share with a stable path
-// Paces of the quasi-static approach: time until a steady contact, over that of the plain step. The third pace is the plain
-// step's.
+// Paces of the quasi-static approach: time until a steady contact, over that of the plain step. The third pace is 1, that of
+// the plain step.
 constexpr double fast = 0.49, slow = 1.96;
 constexpr double usual_closings_at_pace = 30'000;  // closings of a search at one pace; fewer for longer waveforms
 
@@ -133,7 +135,7 @@ RobustSearch::RobustSearch(const SceneFile& file, const OptimizeOptions& options
   const std::vector<SearchSetting> gentle = with_gentle_edges(settings, options.actuator, families);
   settings_ = begins_gently(gentle, options.starts) ? gentle : std::move(settings);
   names_ = families_of(families);
-  // The families of the race come first, then the quasi-static ones, which search_paces() searches.
+  // The families of the tournament come first, then the quasi-static ones, which search_paces() searches.
   while (raced_ < names_.size() && !is_quasi_static(names_[raced_])) ++raced_;
   if (raced_ < names_.size()) approach_ = settings_[raced_].space.quasi_static()->approach();
   if (!devices_.is_of_before) usual_room_ = within_usual_room(raced_settings(), options_.actuator, names_);
@@ -141,8 +143,8 @@ RobustSearch::RobustSearch(const SceneFile& file, const OptimizeOptions& options
   fit_budget();
 }
 
-// Sets the number of closings of the race and of fresh devices. If closings are slow, the race gets fewer, but enough for a
-// meaningful search. Fresh devices are reduced in proportion, but remain enough for 95th percentiles.
+// Sets the number of closings of the tournament and of fresh devices. If closings are slow, the tournament gets fewer, but
+// enough for a meaningful search. Fresh devices are reduced in proportion, but remain enough for 95th percentiles.
 void RobustSearch::fit_budget() {
   race_length_ = devices_.closings;
   verdict_ = devices_.verdict;
@@ -224,8 +226,8 @@ std::vector<SearchSetting> RobustSearch::raced_settings() const {
   return {settings_.begin(), settings_.begin() + static_cast<std::ptrdiff_t>(raced_)};
 }
 
-// Runs a race within the default voltage limits first if the scene's limits are wider. The race within the scene's limits
-// begins with the winner of the first one.
+// Runs a tournament within the default voltage limits first if the scene's limits are wider. The tournament within the scene's
+// limits then begins with the best waveform of the first one.
 void RobustSearch::race_all() {
   const std::vector<SearchSetting> raced = raced_settings();
   RaceOptions own = race_options();
@@ -244,7 +246,7 @@ void RobustSearch::race_all() {
 }
 
 std::vector<Pace> RobustSearch::paces_of_search() const {
-  // A quick pace uses the short input shaper, if both shapers are searched.
+  // A quick pace uses the short input shaper, if both input shapers are searched.
   const auto of = [this](double times) {
     constexpr double short_below = 0.75;
     const bool is_short = times < short_below && names_.back() == quasi_static_short;
@@ -291,7 +293,7 @@ void RobustSearch::make_aims(const std::vector<DeviceOutcome>& step, const FreeT
   const double step_time = quantile_95(step, key_of(&Metrics::initial_contact_time));
   const std::span<const Figure> figures = device_figures;
   tail_aim_ = {.measure = parse_robust_measure("cvar:0.9", figures), .conditions = conditions_};
-  // Time costs nothing if a condition of the user bounds a time.
+  // The time until contact costs nothing if a condition of the user bounds a time.
   free_ = free;
   tail_aim_.free = free;
   if (std::ranges::any_of(conditions_, is_about_time)) tail_aim_.free.until = std::numeric_limits<double>::infinity();
@@ -311,8 +313,7 @@ bool RobustSearch::says_when_to_close() const {
       conditions_, [](const Condition& one) { return one.figure.member == Figure::Member(&Metrics::initial_contact_time); });
 }
 
-// Limits the time of the searches, so that the verdict fits into the time budget, but not below a share of the budget.
-// `closing` is the computing time per device [s].
+// Limits the time of the searches, so that the final evaluation fits into the time budget, but not below a share of the budget.
 void RobustSearch::reserve_for_verdict(double closing, double reserved) {
   constexpr double rows =
       20;  // work per fresh device in closings of a search: three whole windows, three calibrated rows, the Pareto front
@@ -351,7 +352,7 @@ ChosenFrom RobustSearch::candidate_of(const Contender& contender) const {
   return c;
 }
 
-// Adds the best candidates of a race by each measure to the pool.
+// Adds the best candidates of a tournament by each measure to the pool.
 void RobustSearch::take(std::vector<ChosenFrom>& pool, RaceResult& raced, bool is_in_usual_room) const {
   for (const bool by_share : {false, true}) {
     std::ranges::stable_sort(raced.contenders, {}, [&](const Contender& r) { return by_share ? r.share : r.tail; });
@@ -364,7 +365,7 @@ void RobustSearch::take(std::vector<ChosenFrom>& pool, RaceResult& raced, bool i
   }
 }
 
-// Judges the best candidates of all races and paces on the devices of the choice.
+// Evaluates the best candidates of all tournaments and paces on the devices on which the choice is made.
 void RobustSearch::choose() {
   progress_.tell("choosing on other devices", 0);
   std::vector<ChosenFrom> pool;
@@ -374,8 +375,8 @@ void RobustSearch::choose() {
   for (ChosenFrom& one : pool) place(std::move(one));
 }
 
-// Judges an intermediate candidate on the devices of the choice. Reports the candidate if it is the best so far and keeps the
-// bounds of the choice.
+// Evaluates an intermediate candidate on the devices on which the choice is made. Reports the candidate if it is the best so
+// far and fulfils the bounds of the choice.
 void RobustSearch::look(const Contender& contender) {
   if (budget_.given_up() || devices_.is_of_before || progress_.stopped()) return;
   std::vector<DeviceOutcome> outcomes = on_others(contender.waveforms);
@@ -423,7 +424,7 @@ std::vector<DeviceOutcome> RobustSearch::on_others(const DriveWaveforms& wavefor
   return others_->close_until(first().drives(waveforms), free_.until, options_.jobs);
 }
 
-// Judges a candidate by its outcomes on the devices of the choice.
+// Rates a candidate by its outcomes on the devices on which the choice is made.
 RobustSearch::Placed RobustSearch::judged(ChosenFrom one, const std::vector<DeviceOutcome>& outcomes) const {
   RobustAim aim = aims_.tail;
   if (approach_) aim.conditions = conditions_;  // no bound on the time of first contact
@@ -448,7 +449,7 @@ bool RobustSearch::Placed::is_before(const Placed& other) const {
 }
 
 // Moves the candidate that touches first to the front, among candidates that cost at most little_more times the least. It must
-// not cost more than the candidate that would win within the default voltage limits.
+// not cost more than the best candidate within the default voltage limits.
 void RobustSearch::prefer_sooner(std::vector<Placed>& sorted) {
   const auto soonest = [&](double most, bool in_usual_room) {
     double least = std::numeric_limits<double>::infinity();
@@ -471,7 +472,8 @@ void RobustSearch::prefer_sooner(std::vector<Placed>& sorted) {
 std::vector<ChosenFrom> RobustSearch::placed() const {
   std::vector<Placed> sorted = placed_;
   std::ranges::stable_sort(sorted, [](const Placed& a, const Placed& b) { return a.is_before(b); });
-  // Without a stable path the switch falls from the pull-in point onto its contact, so that slower waveforms are hardly softer.
+  // Without a stable path the switch accelerates from the pull-in point to its contact, so that slower waveforms are hardly
+  // softer.
   if (!approach_ && free_.until > 0 && !sorted.empty() && sorted.front().candidate.is_good_enough && !sorted.front().lands_half)
     prefer_sooner(sorted);
   // Costs are similar because of the few devices without a stable path: prefer the lowest 95th percentile of impact speed among

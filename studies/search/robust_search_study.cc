@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t scouted_on = 16, ranked_on = 64;  // devices for ranking candidates of the nominal search
 constexpr std::size_t kept_of_scouted = 24;             // best candidates on scouted_on devices, by each measure
 constexpr std::size_t most_of_ranked = 2;               // best candidates on ranked_on devices, by each measure
-constexpr std::size_t most_judged = 3;  // candidates judged on fresh devices, until one is not worse than the plain step
+constexpr std::size_t most_judged = 3;  // candidates evaluated on fresh devices, until one is not worse than the plain step
 constexpr double end_of_drawing = 0.3;  // end of the nominal search, as a share of a time budget
 
 constexpr const char *fast_row = "fast", *soft_row = "soft";
@@ -58,7 +58,7 @@ class RobustSearchStudy {
 
  private:
   [[nodiscard]] const SearchSetting& first() const { return searched_.first(); }
-  // Reports progress, but not while the search on the nominal device runs, which reports its own.
+  // Reports progress, except while the search on the nominal device runs, which makes its own reports.
   void tell(std::string_view what, double part) const {
     if (options_.on_preparation && !searches_drawing_) options_.on_preparation(what, part);
   }
@@ -76,13 +76,13 @@ class RobustSearchStudy {
   }
 
   // Options of the search on the nominal device: its candidates are stored for ranking on devices, and on_start gets the
-  // parameters of all searches.
+  // parameters of both searches.
   OptimizeOptions options_of_drawing() {
     OptimizeOptions own = options_;
     own.keep_tried = true;
     if (std::isfinite(own.max_seconds)) own.max_seconds = searched_.budget().seconds_left(end_of_drawing);
     own.max_seconds = std::max(own.max_seconds, 1e-3);
-    own.on_improvement = {};  // best.toml is not for the nominal device
+    own.on_improvement = {};  // best.toml is not the waveform for the nominal device
     own.on_estimate = [this](const SearchEstimate& of_drawing) {
       if (options_.on_estimate) options_.on_estimate(searched_.estimate(of_drawing));
     };
@@ -96,8 +96,8 @@ class RobustSearchStudy {
     return own;
   }
 
-  // Starts the search over devices, and returns when it has judged a first waveform; then the search on the nominal device
-  // begins. `before` is the number of families of the latter.
+  // Starts the search over devices, and returns when that search has evaluated a first waveform; then the search on the nominal
+  // device begins. `before` is the number of families of the search on the nominal device.
   void search_beside(std::size_t before) {
     const bool is_beside = options_.jobs > 1, is_timed = std::isfinite(options_.max_seconds);
     const double of_drawing = is_timed ? end_of_drawing * options_.max_seconds : 0;
@@ -119,7 +119,7 @@ class RobustSearchStudy {
     searches_drawing_ = true;
   }
 
-  // Makes the best candidate so far the winner of a search that was interrupted before the verdict.
+  // Makes the best candidate so far the result of a search that was interrupted before the final evaluation.
   void take_leader() {
     const ChosenFrom* leader = searched_.leader();
     if (leader == nullptr) return;
@@ -317,7 +317,7 @@ class RobustSearchStudy {
   }
   [[nodiscard]] NamedDrive of_candidate(std::size_t n) const { return named(for_the_devices, result_->candidates[n]); }
 
-  // Adds a row with the results of a judged drive, which is found by its name or by equal signals.
+  // Adds a row with the results of an evaluated waveform, which is found by its name or by equal signals.
   void add_row(const char* name, const DriveWaveforms& waveforms) {
     const std::vector<DriveRobustness>& drives = result_->verdict.drives;
     auto found = std::ranges::find(drives, std::string_view(name), &DriveRobustness::name);
@@ -331,7 +331,7 @@ class RobustSearchStudy {
     if (found != drives.end()) result_->rows.push_back({.name = name, .knowledge = found->known.calibration(), .judged = *found});
   }
 
-  // Decides the winner on the fresh devices: the first candidate that is not worse than the plain step, else the plain step.
+  // Decides the result on the fresh devices: the first candidate that is not worse than the plain step, else the plain step.
   void decide() {
     const double significant = first().given.scene.metrics.significant_rebound;
     std::vector<DriveRobustness>& drives = result_->verdict.drives;
@@ -370,7 +370,7 @@ class RobustSearchStudy {
       findings().conditions.push_back(fulfilled(result_->row_of_devices().judged.outcomes, condition));
   }
 
-  // Replaces the winner by a quicker choice, if that is not worse than the winner and than the plain step.
+  // Replaces the best waveform by a quicker choice, if the latter is not worse than the best waveform and than the plain step.
   void prefer_sooner(const DriveRobustness& step) {
     const double significant = first().given.scene.metrics.significant_rebound;
     const auto fast = std::ranges::find(result_->choices, std::string_view(fast_row), &DeviceChoice::name);
@@ -401,7 +401,7 @@ class RobustSearchStudy {
     }
   }
 
-  // Judges the choices on the fresh devices, and removes a choice that a quicker choice equals in speed, rebound and force.
+  // Evaluates the choices on the fresh devices, and removes a choice if a quicker choice equals it in speed, rebound and force.
   void decide_choices() {
     std::vector<DeviceChoice> all = std::exchange(result_->choices, {});
     if (result_->best.plain_step_wins) return;
@@ -432,7 +432,7 @@ class RobustSearchStudy {
     result_->choices = std::move(kept);
   }
 
-  // Returns the scene with the waveforms in volts, over the window of the verdict.
+  // Returns the scene with the waveforms in volts, over the window of the final evaluation.
   [[nodiscard]] SceneFile scene_of(const DriveWaveforms& waveforms) const {
     SceneFile file = with_waveforms(result_->drawing.baseline_scene, waveforms);
     if (result_->varied.duration > first().given.duration)
@@ -440,7 +440,7 @@ class RobustSearchStudy {
     return file;
   }
 
-  // Makes the waveforms the winner: simulates and confirms the closing of the nominal device.
+  // Makes the waveforms the result: simulates and confirms the closing of the nominal device.
   void win(const DriveWaveforms& waveforms) {
     OptimizeResult& best = result_->best;
     const OptimizeResult& drawing = result_->drawing;
@@ -468,9 +468,9 @@ class RobustSearchStudy {
   RobustSearch searched_;
   OptimizeOptions drawing_options_;
   std::optional<RobustSearchResult> result_;  // none before the search on the nominal device
-  std::optional<ChosenFrom>
-      undelayed_;             // the best candidate whose electrode steps at t = 0, if that of other candidates may step later
-  std::future<void> beside_;  // last member, so that the members used by its thread outlive it
+  std::optional<ChosenFrom> undelayed_;       // the best candidate whose electrode steps at t = 0, if the electrode of other
+                                              // candidates may step later
+  std::future<void> beside_;                  // last member, so that the members used by its thread outlive it
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The budget of a search: a number of evaluations of one switch or of closings of devices, and a time. A flag from outside ends
-// the search earlier.
+// The budget of a search: a number of evaluations of one switch or of closings of devices, and a time. A flag from outside
+// (Ctrl-C) ends the search earlier.
 //
 // A search in stages gives every stage a part of its budget. Evaluations of a part count for the whole budget, too. A part is
 // over when its own time has passed, or after give_up() of the whole budget. All parts use one clock, which a test can replace.
@@ -37,7 +37,7 @@ class SearchBudget {
   /// Adds to the evaluations spent, of this budget and of the whole one.
   void took(long evaluations);
   [[nodiscard]] long taken() const { return taken_; }
-  /// Number of evaluations that are left; negative if the last candidate spent more than were left.
+  /// Number of evaluations that are left; negative if the last candidate used more than were left.
   [[nodiscard]] long left() const { return evaluations_ - taken_; }
   /// Share of the evaluations that is spent, 0 to 1.
   [[nodiscard]] double share_taken() const;
@@ -48,12 +48,12 @@ class SearchBudget {
   [[nodiscard]] double seconds() const { return seconds_; }
   /// Time since the construction of the budget [s].
   [[nodiscard]] double elapsed() const { return clock_() - begin_; }
-  /// Time until `share` of the budget's time has passed [s]; infinite without a limit, negative afterwards.
+  /// Time until `share` of the budget's time has passed [s]; infinite without a limit, negative after that time.
   [[nodiscard]] double seconds_left(double share = 1) const { return share * seconds_ - elapsed(); }
   /// Does `work`, whose time does not count for the budget.
   void leave_out(const std::function<void()>& work);
 
-  /// Ends the search with this budget and with its parts; may be called from any thread.
+  /// Ends the search with this budget and its parts; may be called from any thread.
   void give_up() { given_up_ = true; }
   [[nodiscard]] bool given_up() const { return given_up_ || (whole_ != nullptr && whole_->given_up()); }
   /// True if the flag from outside (Ctrl-C) is set.
@@ -66,10 +66,10 @@ class SearchBudget {
  private:
   SearchBudget* whole_ = nullptr;  // null for a budget that is not a part
   std::atomic<long> evaluations_, taken_ = 0;
-  double seconds_;  // [s]
+  double seconds_;  // time of the budget [s]
   const std::atomic<bool>* stop_;
   std::function<double()> clock_;
-  double begin_;  // [s]
+  double begin_;  // time of the clock at construction [s]
   std::atomic<bool> given_up_ = false;
 };
 

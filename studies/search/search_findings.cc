@@ -48,7 +48,7 @@ DevicesFindings::Row told(const DevicesRow& row) {
 
 }  // namespace
 
-// Computes contact gaps of devices over time, under the plain step and the winner, until the contact force is steady.
+// Computes contact gaps of devices over time, under the plain step and the best waveform, until the contact force is steady.
 void draw_courses(RobustSearchResult& result, const RobustnessOptions& judging, const Progress& progress) {
   if (result.best.plain_step_wins) return;
   const DriveRobustness &step = result.verdict.drives.front(), &own = result.row_of_devices().judged;
@@ -69,7 +69,8 @@ void draw_courses(RobustSearchResult& result, const RobustnessOptions& judging, 
   result.findings.courses = {.end = end, .unit = unit, .step = courses(step), .own = courses(own)};
 }
 
-// Finds the Pareto front of the candidates in time and impact speed, and judges its candidates on the fresh devices.
+// Finds the Pareto front of the candidates in time and impact speed, and evaluates the candidates of the front on the fresh
+// devices.
 void judge_front(RobustSearchResult& result, RobustSearch& search, const Progress& progress) {
   std::vector<const ChosenFrom*> kept;
   for (const ChosenFrom& one : result.candidates) {

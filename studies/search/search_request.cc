@@ -50,7 +50,8 @@ std::vector<Condition> conditions_of(const SearchRequest& request, std::span<con
   return all;
 }
 
-// Parses conditions. A condition on a figure of both searches applies to the nominal design and to the devices.
+// Parses conditions. A condition on a figure of both searches applies to the search on the nominal design and to that on
+// devices.
 void read_shared_conditions(const SearchRequest& request, std::vector<Condition>& drawing, std::vector<Condition>& devices) {
   devices = conditions_of(request, device_figures);
   for (const std::string& text : request.constrain) {
@@ -208,7 +209,7 @@ SearchRequest or_else(SearchRequest request, const SearchRequest& other) {
 
 namespace {
 
-// Returns the default actuator: all drives that can be shaped.
+// Returns the default actuator: all drives whose waveforms can be varied.
 Actuator usual_actuator(const SceneFile& scene) {
   const bool has_piezo = scene.written("piezo") && scene.written("driver.piezo");
   if (!has_piezo) return Actuator::electrostatic;

@@ -16,14 +16,14 @@
 
 namespace softland {
 
-/// Values of SearchRequest::robust other than a measure: search for the nominal design and over devices; or for the nominal
-/// design alone.
+/// Values of SearchRequest::robust other than a measure: search over devices by a tournament, beside the nominal design; or
+/// search for the nominal design alone.
 inline constexpr std::string_view by_race = "auto", nominal_alone = "none";
 
 /// Values of SearchRequest::hold_step: the instant of the electrode's plain step is searched (actuator pzt), or is t = 0.
 inline constexpr std::string_view step_is_chosen = "chosen", step_is_fixed = "fixed";
 
-/// The request of a search. Members that are empty were not given: completed() fills them in.
+/// The request of a search. A member that is empty was not given: completed() fills it in.
 struct SearchRequest {
   std::string target = {};                  ///< "bounce", "0.7 bounce + 0.3 energy"
   std::string actuator = {};                ///< "electrostatic", "pzt", "both"
@@ -42,7 +42,7 @@ struct SearchRequest {
   [[nodiscard]] bool is_by_measure() const { return robust != by_race && robust != nominal_alone; }
 };
 
-/// Calls visit(name, member of the first request, of the second, ...) for the text members of requests: std::string, or
+/// Calls visit(name, member of the first request, of the second, ...) for each text member of the requests: std::string, or
 /// std::optional<std::string> for optional members. The conditions are not visited.
 template <class Visit, class... Requests>
 void visit_prose(const Visit& visit, Requests&... requests) {
@@ -62,8 +62,8 @@ void visit_prose(const Visit& visit, Requests&... requests) {
 /// Returns `request` with the empty members filled in from `other`.
 [[nodiscard]] SearchRequest or_else(SearchRequest request, const SearchRequest& other);
 
-/// Returns `request` with defaults, which depend on the scene and on the other members, for all empty members but the optional
-/// ones.
+/// Returns `request` with defaults, which depend on the scene and on the other members, for all empty members except the
+/// optional members.
 [[nodiscard]] SearchRequest completed(SearchRequest request, const SceneFile& scene);
 
 /// Parts of a request from the user's code, which no text can describe.
@@ -77,19 +77,20 @@ struct PlannedSearch {
   SceneFile scene;                                 ///< scene with the requested calibration
   OptimizeOptions options;                         ///< options of the search with the first seed, on one thread
   std::optional<RobustOptions> robust;             ///< options of a search over devices by one measure
-  std::optional<RobustSearchOptions> for_devices;  ///< options of a search with a race of measures and families
+  std::optional<RobustSearchOptions> for_devices;  ///< options of a search with a tournament of measures and families
   std::uint64_t seeds = 1;
 
   [[nodiscard]] std::uint64_t seed(std::uint64_t k) const { return options.seed + k; }
-  /// Number of devices on which candidates are tried by one measure, or of the race's fresh devices; 0: nominal device only.
+  /// Number of devices on which candidates are tried by one measure, or of fresh devices after a tournament; 0: nominal device
+  /// only.
   [[nodiscard]] std::uint64_t devices() const { return robust ? robust->samples : for_devices ? for_devices->verdict : 0; }
 };
 
 inline constexpr std::uint64_t most_seeds = 100'000;
 
-/// Parses a completed() request. `families` are those of a race over devices; empty: all. A request without hold_step comes
-/// from a version before the quasi-static approach, and gives the search of that version. Throws InvalidRequest with field,
-/// value and rule.
+/// Parses a completed() request. `families` are the waveform families of a tournament over devices; empty: all. A request
+/// without hold_step comes from a version before the quasi-static approach, and gives the search of that version. Throws
+/// InvalidRequest with field, value and rule.
 [[nodiscard]] PlannedSearch planned(const SearchRequest& request, SceneFile scene, const std::string& families = {},
                                     const OwnParts& own = {});
 

@@ -20,13 +20,13 @@ namespace softland {
 namespace {
 
 constexpr double latest_touch = 2.5;  // multiples of the baseline's time of first contact
-// First contact up to these multiples of the baseline's costs little: an electrode can close softly in about the time of the
-// step, a piezo only slows the beam.
+// First contact up to these multiples of the plain step's time costs little: an electrode can close softly in about the time of
+// the step, a piezo only slows the beam.
 constexpr double driven_touch = 1.5, braked_touch = 2.0;
 constexpr double search_tolerance = 1e-6;  // tolerance of the integrator: costs good to about 1e-4
 constexpr double most_broken = 10;         // largest relative violation of a condition
 // Weight of the impact speed in the cost over several numbers of modes. The impact speed hardly counts in the cost of bounce,
-// but is the most sensitive to further modes.
+// but changes most with further modes.
 constexpr double weight_of_speed = 0.04;
 constexpr double hopeless = 0.25;  // cost of bounce from which on models with more modes are not simulated; plain step: about 1
 constexpr double golden_ratio = 1.618033988749895;
@@ -42,14 +42,14 @@ Metrics imagined_step(const PreparedScene& given, double period) {
   return step;
 }
 
-// Returns g of a condition for a constrained optimizer. The margin keeps the condition fulfilled where the search ends, at g =
-// 0.
+// Returns the excess g of a condition for a constrained optimizer. The margin keeps the condition fulfilled at the end of the
+// search, where g = 0.
 double excess(const Condition& one, const Metrics& metrics) {
   constexpr double margin = 1e-6;
   return std::clamp(one.violation(one.figure.value(metrics)) + margin, -most_broken, most_broken);
 }
 
-// Returns the derivative of excess() with respect to the figure.
+// Returns the derivative of excess() by the figure.
 double excess_rate(const Condition& one, const Metrics& metrics) {
   if (std::abs(excess(one, metrics)) >= most_broken) return 0;
   const double scale = one.limit == 0 ? 1 : std::abs(one.limit);
@@ -204,8 +204,8 @@ SearchCosts SearchSetting::price_of(const RecordedClosing& closing) const {
   for (const Condition& one : followed_conditions()) costs.apart->excess.push_back(excess(one, figures));
   const double violation = broken(conditions, figures);
   if (!(violation > 0)) return costs;
-  // The penalty is less than the cost difference between closing and not touching. The target's own cost gets 1 more, so that
-  // it exceeds every cost of closings that fulfil the conditions.
+  // The penalty is less than the cost difference between closing and not touching. The separate cost of a target gets 1 more,
+  // so that it exceeds every cost of closings that fulfil the conditions.
   const double penalty = 3 * violation / (1 + violation);
   costs.guide += penalty;
   costs.target += target.has_own_cost() ? 1 + penalty : penalty;

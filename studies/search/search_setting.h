@@ -25,11 +25,11 @@
 
 namespace softland {
 
-/// Cost from which on a waveform never touches: see cost().
+/// Cost from which on a waveform does not reach the contact: see cost().
 inline constexpr double never_touched = 10;
 
 struct RecordedClosing;
-/// The point whose cost was computed last, and its simulated closing, which the gradient at this point reuses.
+/// The point whose cost was computed last, and the simulated closing at this point, which the gradient reuses.
 struct LastClosing {
   std::vector<double> x = {};
   std::shared_ptr<const RecordedClosing> closing = {};
@@ -38,7 +38,8 @@ struct LastClosing {
 /// The switch of the scene, modelled with more modes.
 struct RicherBeam {
   Switch model;
-  double closed_potential = std::numeric_limits<double>::quiet_NaN();  ///< see ClosingOptions
+  double closed_potential = std::numeric_limits<double>::quiet_NaN();  ///< closed-state potential energy of the richer model,
+                                                                       ///< see ClosingOptions
 };
 
 struct SearchSetting {
@@ -49,7 +50,7 @@ struct SearchSetting {
   Closing baseline;
   CostScale scale;
   double baseline_cost = 0;
-  ClosingOptions run;  ///< options for simulating a candidate
+  ClosingOptions run;  ///< options for simulating the closing of a candidate
   SearchSpace space;
   std::size_t family = 0;                      ///< number of the waveform family among those that share a memory
   std::map<std::string, DriverLimits> limits;  ///< limits of searched waveforms by drive: those of the drivers, or slower edges
@@ -57,18 +58,18 @@ struct SearchSetting {
   /// and with these models.
   std::vector<RicherBeam> richer = {};
 
-  /// The scene with the waveforms `searched`; other drives are as in the baseline. Throws InvalidInput if a scene file cannot
+  /// The scene with the waveforms `searched`; other drives are as in the plain step. Throws InvalidInput if a scene file cannot
   /// describe one of the waveforms.
   [[nodiscard]] SceneFile scene(const DriveWaveforms& searched) const;
   /// The scene with the waveforms of the point `x`; none if a scene file cannot describe these waveforms.
   [[nodiscard]] std::optional<SceneFile> scene_at(std::span<const double> x) const;
   /// The scene with the waveforms `searched`, ready to run: see prepared_with().
   [[nodiscard]] PreparedScene prepared(const DriveWaveforms& searched) const;
-  /// One waveform per drive, in the order of Switch::drives(): `searched`, and the baseline's for the other drives.
+  /// One waveform per drive, in the order of Switch::drives(): `searched`, and the plain step for the other drives.
   [[nodiscard]] std::vector<Waveform> drives(const DriveWaveforms& searched) const;
   /// True if the waveforms stay within the limits of their drives.
   [[nodiscard]] bool is_allowed(const DriveWaveforms& searched) const;
-  /// Commanded signals of all drives, or nothing if one of `searched` leaves the limits of its drive.
+  /// Commanded signals of all drives, or nothing if one of `searched` exceeds the limits of its drive.
   [[nodiscard]] std::optional<std::vector<Signal>> allowed_commands(const DriveWaveforms& searched) const;
   /// Options for simulating a candidate with the given signals.
   [[nodiscard]] ClosingOptions run_of(const std::vector<Signal>& signals) const;
@@ -77,7 +78,7 @@ struct SearchSetting {
   /// driver. Costs in `memory` are not computed again; a simulated closing is stored in `last`.
   [[nodiscard]] SearchCosts cost_at(std::span<const double> x, EvaluationMemory* memory = nullptr,
                                     LastClosing* last = nullptr) const;
-  /// The gradient of the cost of `aim` with respect to the parameters, at a point on the nominal device, then the gradients of
+  /// The gradient of the cost of `aim` by the parameters, at a point on the nominal device, then the gradients of
   /// followed_conditions(), as in Conditions::gradients. Exact except at grazing contacts; NaN where no gradient exists.
   /// `groups` and `last`, the closing at this point, only save time.
   [[nodiscard]] std::vector<double> gradient_at(std::span<const double> x, const Aim& aim,
@@ -85,14 +86,14 @@ struct SearchSetting {
                                                 const LastClosing* last = nullptr) const;
   /// The parameters, grouped by the pieces of the signals that a parameter changes.
   [[nodiscard]] std::vector<ParameterGroup> parameter_groups() const;
-  /// Derivatives of the signals of all drives with respect to the parameters.
+  /// Derivatives of the signals of all drives by the parameters.
   [[nodiscard]] SignalSlopes signal_slopes(std::span<const double> x, const std::vector<ParameterGroup>& groups = {}) const;
   /// The conditions that a gradient-based optimizer handles as constraints: those on figures with a gradient. Other conditions,
   /// on counts, only add to the cost.
   [[nodiscard]] std::vector<Condition> followed_conditions() const;
   /// The reason why the cost of `aim` or a condition has no gradient, as text; empty if all have gradients.
   [[nodiscard]] std::string gradient_refusal(const Aim& aim) const;
-  /// Throws InvalidInput if the search cannot begin with one of `starts`, with its name and the reason.
+  /// Throws InvalidInput with the name of the start and the reason if the search cannot begin with one of `starts`.
   void check_starts(const std::vector<StartingWaveforms>& starts) const;
   /// True if the waveforms of the scene itself are the plain step.
   [[nodiscard]] bool starts_as_step() const;
@@ -110,8 +111,8 @@ struct SearchSetting {
 /// Throws InvalidInput if the scene does not request the figure of a condition.
 void require_asked(const Condition& condition, const AskedFigures& asked);
 
-/// Prepares a scene for a search in one waveform family. Throws InvalidInput for a scene or a family that cannot be searched;
-/// Interrupted if `progress` asks to stop.
+/// Prepares a scene for a search in one waveform family. Throws InvalidInput for a scene or a family that cannot be searched,
+/// and Interrupted if `progress` asks to stop.
 [[nodiscard]] SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator actuator, const std::string& family,
                                            const Progress& progress, std::vector<Condition> conditions = {},
                                            const OwnWaveforms& own = {});

@@ -215,7 +215,7 @@ std::vector<double> nearest_point(const std::vector<Variable>& variables, const 
     if (left < fewest) fewest = left, best = std::move(fit);
   };
   for (const std::vector<double>& start : starts) fit_from(start);
-  // Search without derivatives for families of steps: their samples have no derivatives with respect to times.
+  // Search without derivatives for families of steps: samples of steps have no derivatives by times.
   if (fewest > near_enough * about_hold) {
     Problem problem;
     problem.variables = variables;

@@ -23,10 +23,10 @@
 //   bspline   a cubic B-spline with N levels and two hold levels as control points, with a duration in [0.5, 10] T0
 //   sines     the hold level and N sines of 1 ... N half waves, with amplitudes up to the range of the driver, in a duration in
 //             [0.5, 4] T0; beyond the driver's limits all amplitudes are reduced by one factor
-//   quasi-static   one family that shapes all drives together, over devices only: see quasi_static.h
+//   quasi-static   one family that varies all drives together, over devices only: see quasi_static.h
 // An electrode on the far side, which brakes, waits before its pulses instead of coasting after them. The hold level is that of
 // the scene and never varied. A slew limit lengthens edges, rise times and fades, delays a sine until its base has risen, and
-// limits its amplitude.
+// limits the amplitude of the sine.
 #pragma once
 
 #include <array>
@@ -45,11 +45,11 @@
 
 namespace softland {
 
-/// Drives whose waveforms are searched: the defaults of a search depend on this.
+/// The drives whose waveforms are searched; the defaults of a search depend on this value.
 enum class Shaped { electrode, piezo, several };
 /// Returns `several` for an electrode and a piezo, and if the scene has a driver for an electrode on the far side.
 [[nodiscard]] Shaped shaped_drives(const SceneFile& scene, Actuator actuator);
-/// The default waveform families: together they close every switch of results/comparison.md without a bounce.
+/// The default waveform families: together they find a bounce-free waveform for every switch of results/comparison.md.
 [[nodiscard]] std::string_view default_families(Shaped drives);
 /// Splits a list of waveform families like "knots+dual-pulse+staircase:5+knots:8". Throws InvalidInput if a name is empty or
 /// occurs twice.
@@ -62,7 +62,7 @@ struct SearchedFamily;
 using OwnWaveforms = std::vector<std::shared_ptr<const OwnWaveform>>;
 /// The names of all waveform families, for messages: "step, pulse, ..., sines:N or quasi-static:N".
 [[nodiscard]] std::string listed_searched_families();
-/// True for the waveform family that shapes all drives together: "quasi-static", "quasi-static:2".
+/// True for the waveform family that varies all drives together: "quasi-static", "quasi-static:2".
 [[nodiscard]] bool is_quasi_static(std::string_view family);
 
 /// The waveform parameters of one drive.
@@ -79,14 +79,14 @@ struct DriveSearch {
   std::vector<Variable> variables;
   std::vector<std::vector<double>> starts;
   [[nodiscard]] Waveform waveform(std::span<const double> x) const;
-  /// The parameters of `waveform`; none if it is not of this family or is outside the bounds, up to rounding.
+  /// The parameters of `waveform`; none if it is not of this waveform family or is outside the bounds, up to rounding.
   [[nodiscard]] std::optional<std::vector<double>> parameters(const Waveform& waveform) const;
-  /// The parameters of this family that approximate `waveform` best: least mean square difference of an electrode's squared
-  /// voltage, or of the piezo's voltage, until a little after the last breakpoint. A waveform of this family has its own
-  /// parameters.
+  /// The parameters of this waveform family that approximate `waveform` best: least mean square difference of an electrode's
+  /// squared voltage, or of the piezo's voltage, until a little after the last breakpoint. The result is exact for a waveform
+  /// of this family.
   [[nodiscard]] std::vector<double> nearest(const Waveform& waveform) const;
   /// The reason why a search cannot begin with a waveform, as text: another hold level, or values beyond the driver's limits.
-  /// Empty if it can.
+  /// Empty if it can begin.
   [[nodiscard]] std::string misfit(const Waveform& waveform) const;
   /// True if a signal ends on the hold level, up to rounding.
   [[nodiscard]] bool holds(const Signal& signal) const;
@@ -100,7 +100,7 @@ class SearchSpace {
   /// `family` is the waveform family of all drives ("pulse", "knots:8") or of each drive ("main=step,pzt=pulse"; pulse for the
   /// others), and may name one of `own`. `first_touch` is the time of first contact under the plain step [s]. Throws
   /// InvalidInput if the scene lacks the drive or a piezo limit, if the family cannot be searched, for one of `own` whose
-  /// starting waveform does not end on the hold level, and for quasi-static if no drive can carry the switch to its contact.
+  /// starting waveform does not end on the hold level, and for quasi-static if no drive can move the switch to its contact.
   SearchSpace(const PreparedScene& prepared, Actuator actuator, const std::string& family, double first_touch,
               const OwnWaveforms& own = {});
 
@@ -111,7 +111,7 @@ class SearchSpace {
   [[nodiscard]] std::vector<std::vector<double>> starts() const;
   /// Waveforms of the searched drives at the point `x`.
   [[nodiscard]] DriveWaveforms waveforms(std::span<const double> x) const;
-  /// The point whose waveforms are the given ones, if it exists: the start for refining an earlier result.
+  /// The point whose waveforms are the given ones, if this point exists: the start for refining an earlier result.
   [[nodiscard]] std::optional<std::vector<double>> parameters(const DriveWaveforms& waveforms) const;
   /// The point whose waveforms differ least from the given ones, for which misfit() must be empty: a start in another family.
   [[nodiscard]] std::vector<double> nearest(const DriveWaveforms& waveforms) const;
@@ -129,7 +129,7 @@ class SearchSpace {
   [[nodiscard]] std::vector<double> nearest_of_all(const DriveWaveforms& given) const;
 
   std::vector<DriveSearch> drives_;
-  std::optional<QuasiStatic> joint_;  // the quasi-static family, which shapes all drives together
+  std::optional<QuasiStatic> joint_;  // the quasi-static family, which varies all drives together
 };
 
 }  // namespace softland

@@ -11,7 +11,8 @@ namespace {
 
 class NoObserver final : public ClosingObserver {};
 
-// Returns the waveforms of the first start. With waveforms from the user's code, which may throw exceptions, returns none.
+// Returns the waveforms at the first start of the search. Returns none for waveforms from the user's code, which may throw
+// exceptions.
 DriveWaveforms first_waveforms(const SearchSetting& setting) {
   const bool has_own = std::ranges::any_of(setting.space.drives(), [](const DriveSearch& drive) { return bool(drive.own); });
   return has_own ? DriveWaveforms() : setting.space.waveforms(setting.space.starts().front());

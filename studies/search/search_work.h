@@ -24,7 +24,7 @@ struct ClosingWork {
 /// search, and returns the work of the slower one. Throws no exception: a simulation that fails counts up to its failure.
 [[nodiscard]] ClosingWork closing_work(const SearchSetting& setting);
 
-/// Reference work u, in right-hand sides; shipped scenes with quick closings need less.
+/// Reference work u, in right-hand sides; shipped scenes with quick closings need less work.
 [[nodiscard]] double usual_work(Shaped drives);
 /// Number of devices that SIMD lanes simulate in the time of one.
 inline constexpr double usual_lanes = 8;

@@ -18,7 +18,7 @@ namespace softland {
 struct SearchedFamily {
   std::string_view name;
   std::string_view waveform;  ///< type of the waveforms in a scene file
-  std::size_t count = 0;      ///< default number of levels, knots, pulses or sines, if the family has a choice
+  std::size_t count = 0;      ///< default number of levels, knots, pulses or sines, if the family has such a number
   void (*add)(DriveSearch&, const PreparedScene&, double first_touch);
   Waveform (*at)(const DriveSearch&, std::span<const double> x);
   std::optional<std::vector<double>> (*parameters)(const DriveSearch&, const Waveform&);

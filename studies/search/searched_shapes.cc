@@ -49,7 +49,7 @@ std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const Prepare
   }
   // Use the swing of all modes, or the bang-bang landing of the first mode if the gas film is compressible.
   if (p.model.film_states() == 0 && p.rest()) {
-    constexpr double longest = 3;  // periods of the first mode
+    constexpr double longest = 3;  // longest swing, in periods of the first mode
     const std::optional<Swing> swing = quickest_swing(p.model, driven, coasting, longest * first_period(p), p.values_before());
     if (!swing) return std::nullopt;
     found.driven_time = swing->driven_time;

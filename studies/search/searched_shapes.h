@@ -21,15 +21,15 @@ using Parameters = std::optional<std::vector<double>>;
 /// Period of the first mode [s].
 [[nodiscard]] double first_period(const PreparedScene& p);
 /// Full pull, then least pull, so that the switch reaches its contact at rest (swing.h). If the gas film is compressible, the
-/// times are those of the first mode alone, without damping (bang_bang.h). The other drives stay at their hold levels.
+/// durations are those of the first mode alone, without damping (bang_bang.h). The other drives stay at their hold levels.
 struct ThrowAndCoast {
   double pulling = 0, coasting = 0;           ///< voltages of the two parts [V]
   double driven_time = 0, coasting_time = 0;  ///< durations of the two parts [s]
 };
-/// Durations of the pull after first contact in starting points, over the plain step's time of first contact. Modes that still
-/// ring decay during this pull.
+/// Durations of the pull after first contact in starting points, over the plain step's time of first contact. Modes that are
+/// still excited decay during this pull.
 inline constexpr std::array pushes = {0.5, 1.0, 2.0, 3.5};
-/// Returns the full pull and the coast of a drive; nothing if the switch does not reach its contact in this manner, and for a
+/// Returns the full pull and the coast of a drive; nothing if the switch cannot reach its contact by pull and coast, and for a
 /// drive that pulls away from the contact.
 [[nodiscard]] std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const PreparedScene& p);
 

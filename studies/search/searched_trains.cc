@@ -61,7 +61,7 @@ void add_pulse(DriveSearch& s, const PreparedScene& p, double t0) {
     for (const double brake : {0.5, 0.8})
       s.starts.push_back({0, inside(s, brake * s.limits.max_voltage), 0.5 * t0, 0.5 * t0, 0.01 * period});
   } else {
-    // The electrode pulls, coasts below the hold level, and then holds.
+    // The electrode pulls, coasts below the hold level, and then keeps its hold level.
     for (const double throwing : {1.0, 1.1}) {
       s.starts.push_back({inside(s, throwing * s.hold), inside(s, 0.6 * s.hold), 0.85 * t0, 0.5 * t0, 0.01 * period});
     }

@@ -17,11 +17,11 @@ namespace softland::internal {
 
 /// The restrictions of a waveform family on its pulse train.
 struct TrainRules {
-  std::size_t pulses = 0;  ///< number of pulses; 0: as requested, or not a pulse train
-  bool coasts = false;     ///< true: no voltage between two pulses
-  std::array<double, 3> longest =
-      {};  ///< longest durations of the pulses, over the plain step's time of first contact; the last also for later pulses
-  double longest_edge = 0.1;  ///< longest edge, in periods of the first mode
+  std::size_t pulses = 0;              ///< number of pulses; 0: given by the user, or the family is not a pulse train
+  bool coasts = false;                 ///< true: no voltage between two pulses
+  std::array<double, 3> longest = {};  ///< longest durations of the pulses, over the plain step's time of first contact; the
+                                       ///< last entry also applies to later pulses
+  double longest_edge = 0.1;           ///< longest edge, in periods of the first mode
   std::string_view first_duration = "duration_1_s";
 };
 
@@ -31,11 +31,12 @@ struct TrainRules {
                                 double edge);
 
 void add_pulse(DriveSearch& s, const PreparedScene& p, double t0);
-/// Adds an overshooting initial pulse, a coast, and a level that presses the switch on its contact.
+/// Adds variables and starts of a catch: an overshooting initial pulse, a coast, and a level that presses the switch on its
+/// contact.
 void add_catch(DriveSearch& s, const PreparedScene& p, double t0);
 void add_staircase(DriveSearch& s, const PreparedScene& p, double t0);
 void add_coast(DriveSearch& s, const PreparedScene& p, double t0);
-/// Adds pulses: the first accelerates the switch, the second presses the switch on its contact, as do further ones.
+/// Adds variables and starts of pulses: the first accelerates the switch, all others press it on its contact.
 void add_pulses(DriveSearch& s, const PreparedScene& p, double t0);
 [[nodiscard]] Waveform train_at(const DriveSearch& s, std::span<const double> x);
 [[nodiscard]] Parameters of_train(const DriveSearch& s, const Waveform& waveform);

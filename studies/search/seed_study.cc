@@ -105,7 +105,8 @@ void SeedStudy::run(const Listener& listener) {
   store_.flush();
 }
 
-// Runs the search of seed k. An interrupted search adds no row, but its evaluations stay in their file for the continued study.
+// Runs the search of seed k. An interrupted search adds no row, but its evaluations remain in the database file for the
+// continued study.
 void SeedStudy::search(std::uint64_t k, int jobs, const Listener& listener) {
   OptimizeOptions options = search_.options;
   const Progress progress{.stop = search_.options.stop};

@@ -41,8 +41,8 @@ class SeedStudy {
     std::function<void(const SceneFile& best)> improvement = {};  ///< receives the scene with the best waveform of all seeds
   };
 
-  /// Opens the database `file`; seeds with a row in this file are not searched again. `variables` are the searched parameters.
-  /// Keeps references to `search` and `evaluations`. Throws what the constructor of StudyStore throws.
+  /// Opens the database `file`; seeds that have a row in the file are not searched again. `variables` are the searched
+  /// parameters. Keeps references to `search` and `evaluations`. Throws what the constructor of StudyStore throws.
   SeedStudy(const StoredSearch& search, EvaluationStore& evaluations, const std::filesystem::path& file,
             std::vector<std::string> variables, const StoredOrigin& origin);
 

@@ -18,7 +18,7 @@ std::vector<double> values_of(std::string_view key, const std::vector<DeviceOutc
   return all;
 }
 
-// True if the compared quantile of `own` is above that of `of_step`; both may be infinite.
+// True if the quantile of `own` at `compared_at` is above that of `of_step`; both may be infinite.
 bool is_above(const std::vector<double>& own, const std::vector<double>& of_step) {
   return sample_quantile(own, compared_at) > sample_quantile(of_step, compared_at);
 }

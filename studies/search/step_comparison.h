@@ -1,9 +1,9 @@
 // Compares the waveform of a drive with the plain step on varied devices.
 //
-// The compared figures are the largest impact speed, the highest rebound and the peak force. The drive is worse in a figure if
-// the 95th percentile is above that of the step on the same devices, and the 95 % interval of the difference, by a bootstrap
-// over devices, does not contain 0. Rebounds that are not significant are equal. A device that does not close has the worst
-// value of every figure.
+// The compared figures are the largest impact speed, the highest rebound and the peak force. The waveform is worse in a figure
+// if the 95th percentile is above that under the step on the same devices, and the 95 % interval of the difference, by a
+// bootstrap over devices, does not contain 0. Rebounds that are not significant are equal. A device that does not close has the
+// worst value of every figure.
 #pragma once
 
 #include <cstdint>
@@ -19,14 +19,14 @@ namespace softland {
 inline constexpr std::array judged_figures{key_of(&Metrics::largest_impact_velocity), key_of(&Metrics::major_bounce_height),
                                            key_of(&Metrics::peak_contact_force)};
 
-/// Keys of the figures in which the drive is worse. Both lists of outcomes have the same devices, as far as both reach;
-/// rebounds below the height `significant` are equal [m].
+/// Keys of the figures in which the waveform of `drive` is worse. Both lists of outcomes have the same devices, up to the end
+/// of the shorter list; rebounds below the height `significant` are equal [m].
 [[nodiscard]] std::vector<std::string_view> worse_in(const std::vector<DeviceOutcome>& drive,
                                                      const std::vector<DeviceOutcome>& step, double significant,
                                                      std::uint64_t seed);
 
-/// Conditions that each judged figure is at most the 95th percentile of the plain step's outcomes, and a rebound at most the
-/// larger of that and `significant` [m]. A figure whose percentile is not finite has no condition.
+/// Conditions that each of judged_figures is at most the 95th percentile of the plain step's outcomes, and a rebound at most
+/// the larger of this percentile and `significant` [m]. A figure whose percentile is not finite has no condition.
 [[nodiscard]] std::vector<Condition> at_most_step(const std::vector<DeviceOutcome>& step, double significant);
 
 }  // namespace softland

@@ -33,7 +33,7 @@ SearchRequest request_in(const json& plan) {
   return request;
 }
 
-// Returns the requested starting scenes, or, if none are requested, those of the plan `known` that is continued.
+// Returns the requested starting scenes, or, if none are requested, those of the plan `known`, which the search continues.
 std::vector<StartingScene> starting_scenes(const AskedSearch& asked, const json& known) {
   std::vector<StartingScene> all;
   for (const StartingScene& one : asked.starts) {
@@ -48,7 +48,7 @@ std::vector<StartingScene> starting_scenes(const AskedSearch& asked, const json&
   return all;
 }
 
-// Returns the requested scene, or that of the plan `known` that is continued, with the requested assignments added.
+// Returns the requested scene, or that of the plan `known`, which the search continues, with the requested assignments added.
 json given_scene(const AskedSearch& asked, const json& known) {
   json given;
   if (asked.given) {

@@ -26,7 +26,7 @@ struct StartingScene {
   SceneFile scene;
 };
 
-/// The request of a search. A request that continues a search gets its missing parts from that search.
+/// The request of a search. A request that continues an earlier search gets its missing parts from that search.
 struct AskedSearch {
   SearchRequest request = {};
   std::optional<GivenText> given = {};
@@ -59,10 +59,10 @@ struct KnownSearch {
                                          std::optional<KnownSearch>& known);
 
 /// Returns the reason why the plan `asked` does not continue the search of the plan `there`, with fields marked as by
-/// requested(). Empty if it does: the plans differ only in the budget, or `asked` has more seeds.
+/// requested(). Empty if `asked` continues it: the plans differ only in the budget, or `asked` has more seeds.
 [[nodiscard]] std::string difference(const nlohmann::json& there, const nlohmann::json& asked);
 
-/// Returns the plan of the search from one seed alone. The evaluations of that search depend on this plan only.
+/// Returns the plan of the search from one seed alone. The evaluations of the search from this seed depend on this plan only.
 [[nodiscard]] nlohmann::json plan_of_seed(const nlohmann::json& plan, std::uint64_t seed);
 
 /// Returns the largest number of evaluations of the whole search. Most evaluations over varied devices take at least eight

@@ -89,7 +89,7 @@ std::optional<Swing> quickest_swing(const Switch& model, const std::vector<doubl
   }
   swing.states = drives.fly(high).states;
   swing.driven_time = high;
-  // Only the step that ends at the release is shorter, which is negligible for a starting point.
+  // Only the step that ends at the release is shorter; the difference is negligible for a starting point.
   swing.releasing_time = std::max(0.0, static_cast<double>(swing.states.size() - 1) * swing.step - high);
   return swing;
 }

@@ -1,12 +1,12 @@
 // A tournament of searches over varied devices. In each round searches run in parallel, with more devices and smaller steps
-// than in the round before, and the best contenders go on.
+// than in the round before, and the best searches (contenders) continue in the next round.
 //
 // A contender is a point of a search space, from which CMA-ES searches in a round (device_chain.h). The contenders begin at the
 // best of many points: the starts of the waveform family, those nearest to given waveforms, and points of the whole search
-// space. Three searches use tournaments, and differ in their contenders and in how these are judged:
+// space. Three searches use tournaments, and differ in their contenders and in the measure of comparison:
 //
-//   race.h             families by two measures, judged on the devices of the next round
-//   robust_optimize.h  distant points of one family, judged by their cost on all devices
+//   race.h             families by two measures, compared on the devices of the next round
+//   robust_optimize.h  distant points of one family, compared by their cost on all devices
 //   paced_search.h     one contender, which goes on in every round
 //
 // Contenders of a round do not depend on each other, so that the result depends on the seed and the number of closings only.
@@ -51,20 +51,20 @@ struct Turn {
   std::size_t round = 0, number = 0;
 };
 
-/// Rounds of searches that share a budget. A Contender is the state of a search between rounds, at least its point.
+/// Rounds of searches that share a budget. The type Contender is the state of a search between rounds, at least its point.
 template <class Contender>
 struct Tournament {
   SearchBudget& budget;
   int jobs = 1;
-  /// Divides the budget: returns the share of each of `contenders` contenders in a round.
+  /// Divides the budget: returns the share of each of `contenders` searches in a round.
   std::function<RoundShare(const Round&, std::size_t contenders)> share;
   /// Searches from a contender, within `part`, the round's part of the budget. Start and seed of `chain` are not set yet.
   /// Called from several threads.
   std::function<void(Contender&, Turn turn, const Chain& chain, SearchBudget& part)> search;
-  /// Judges the contenders after round `round`, the first of which is 0, and returns the contenders of the next round.
+  /// Compares the contenders after round `round`, the first of which is 0, and returns the contenders of the next round.
   std::function<std::vector<Contender>(std::vector<Contender> contenders, std::size_t round)> select;
 
-  /// Runs the rounds until the budget is over, no contender goes on, or a contender would get no closings.
+  /// Runs the rounds until the budget is spent, no contender continues, or a contender would get no closings.
   void run(std::span<const Round> rounds, std::vector<Contender> contenders) const {
     for (std::size_t k = 0; k < rounds.size() && !contenders.empty() && !budget.over(); ++k) {
       const RoundShare each = share(rounds[k], contenders.size());
@@ -95,8 +95,8 @@ struct ImprovingClosings {
   long before = 0;    ///< closings for the cost of the point, which the budget does not count
   long searched = 0;  ///< closings of the search itself
 };
-/// Searches from the point `x`, and replaces `x` by the best point of the search if that costs less on the chain's devices.
-/// Calls `told` after every candidate.
+/// Searches from the point `x`, and replaces `x` by the best point of the search if the latter costs less on the chain's
+/// devices. Calls `told` after every candidate.
 ImprovingClosings improve(std::vector<double>& x, const StagedCost& cost, Chain chain, SearchBudget& budget,
                           const std::function<void()>& told);
 

@@ -1,4 +1,4 @@
-// Settings of the first race, which is within the default voltage limits even if the scene gives wider limits.
+// Settings of the first tournament, which uses the default voltage limits even if the scene gives wider limits.
 #pragma once
 
 #include <string>

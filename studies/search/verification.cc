@@ -13,7 +13,7 @@
 namespace softland {
 namespace {
 
-constexpr double as_hard = 1e-3;  // relative excess over the plain step that is ignored
+constexpr double as_hard = 1e-3;  // relative excess of the impact figures over the plain step that is ignored
 
 // Returns the figure of the target; infinite if the closing has no such figure. The figure of a sum is the weighted mean of
 // figures relative to the baseline.

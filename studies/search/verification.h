@@ -1,6 +1,6 @@
-// Verifies the candidates of a search by simulations over the whole window. The winner must also be bounce-free with a tighter
-// integrator and with more modes. A bounce-free plain step is a candidate, too, so that no winner closes harder than the plain
-// step. Among the candidates that pass, the one whose worst closing is best wins.
+// Verifies the candidates of a search by simulations over the whole window. The result must also be bounce-free with a tighter
+// integrator and with more modes. A bounce-free plain step is a candidate, too, so that no result closes harder than the plain
+// step. Of the candidates that pass, the result is the one whose worst closing is best.
 #pragma once
 
 #include <map>
@@ -30,29 +30,30 @@ class Verification {
   Verification(const SearchSetting& setting, const OptimizeOptions& options);
 
   void add(FoundWaveform candidate);
-  /// The cost of the best candidate so far, the worst over numbers of modes if it is confirmed; infinite without candidates.
+  /// The cost of the best candidate so far (if it is confirmed, the worst cost over numbers of modes); infinite without
+  /// candidates.
   [[nodiscard]] double best_cost() const;
   /// True if the best candidate is confirmed with a tighter integrator and with more modes.
   [[nodiscard]] bool confirmed() const { return best_ && best_->confidence == Confidence::confirmed; }
-  /// True if no candidate whose cost is at least `cost` can be better than the best one.
+  /// True if no candidate with at least this cost can be better than the best candidate so far.
   [[nodiscard]] bool decided(double cost) const;
   /// True if the best candidate meets its goal with the modes of the scene, but not with more modes.
   [[nodiscard]] bool belongs_to_modes() const { return best_ && best_->failed == Varied::modes; }
-  /// Moves the winner to the result, if there is one.
+  /// Moves the best candidate to the result, if there is one.
   void move_to(OptimizeResult& result);
 
  private:
-  // The last test that a candidate has passed; each includes all before it.
+  // The last test that a candidate has passed; each test includes all tests before it.
   enum class Confidence { touches, settles, lands, meets_goal, confirmed };
 
   // A candidate after its simulation over the whole window, at the scene's accuracy.
   struct Verified {
     FoundWaveform found;
     Closing closing;
-    double cost = 0;    // cost of the search; the worst over numbers of modes if confirmed
+    double cost = 0;    // cost in the search; if confirmed, the worst cost over numbers of modes
     double figure = 0;  // figure of the target; rebounds that are not significant are equal
     double broken = 0;  // sum of the violations of the conditions
-    double excess = 0;  // relative excess of impact figures over the plain step's
+    double excess = 0;  // relative excess of impact figures over those under the plain step
     Confidence confidence = Confidence::touches;
     std::optional<Varied> failed = {};  // the variation of the model under which the goal is not met
 
@@ -64,7 +65,7 @@ class Verification {
   [[nodiscard]] std::optional<Varied> undone_by(const PreparedScene& scene) const;
   [[nodiscard]] std::vector<Condition> known(const Metrics& m) const;
 
-  const SearchSetting worst_;  // cost of a candidate: the worst over numbers of modes
+  const SearchSetting worst_;  // setting whose cost of a candidate is the worst over numbers of modes
   const PreparedScene& given_;
   const Metrics& baseline_;
   Aim target_;
