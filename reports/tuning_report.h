@@ -76,6 +76,8 @@ struct TuningReport {
 [[nodiscard]] nlohmann::json json_of(const TuningReport& report);
 [[nodiscard]] TuningReport read_tuning(const nlohmann::json& from);
 [[nodiscard]] nlohmann::json belief_json(const TunedBelief& belief);
+/// Reads what belief_json() wrote; throws InvalidInput for other JSON.
+[[nodiscard]] TunedBelief read_belief(const nlohmann::json& coordinates);
 /// Reads the estimate of the device, means and deviations of its quantities, from the JSON of a tuning. Throws InvalidInput
 /// with the rule: "holds no belief ...".
 [[nodiscard]] TunedBelief tuned_belief(const nlohmann::json& written);

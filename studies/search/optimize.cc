@@ -440,29 +440,6 @@ double OptimizeResult::parameter(std::string_view name) const {
   return found == parameters.end() ? none : found->second;
 }
 
-namespace {
-
-// Reduces a default budget if the scene's closings are slow, and reports the estimated work.
-void fit_nominal_budget(const SearchSetting& setting, OptimizeOptions& options) {
-  if (!options.counts_work && !options.on_estimate) return;
-  constexpr double by_evaluation = 1.5;  // work per evaluation in closings, with gradients and verification
-  const ClosingWork one = closing_work(setting);
-  const long asked = options.max_evaluations;
-  if (options.counts_work) {
-    const double usual = usual_work(shaped_drives(setting.given.scene.file, options.actuator));
-    options.max_evaluations = within_work(asked, one.counted, usual);
-    options.more_evaluations = options.more_evaluations > 0 ? within_work(options.more_evaluations, one.counted, usual) : 0;
-  }
-  if (!options.on_estimate) return;
-  const double seconds = by_evaluation * static_cast<double>(options.max_evaluations) * one.seconds;
-  options.on_estimate({.closing = one.seconds,
-                       .evaluations = options.max_evaluations,
-                       .has_fewer = options.max_evaluations < asked,
-                       .seconds = std::min(seconds, options.max_seconds * options.jobs)});
-}
-
-}  // namespace
-
 OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& asked) {
   OptimizeOptions options = asked;
   static_cast<void>(optimizer_description(options.optimizer));  // throws InvalidInput for an unknown name

@@ -11,6 +11,7 @@
 // A closing that cannot be simulated in SIMD lanes, several devices at a time (why_not_in_lanes()), counts usual_lanes times.
 #pragma once
 
+#include "studies/search/optimize.h"
 #include "studies/search/search_setting.h"
 
 namespace softland {
@@ -35,5 +36,9 @@ inline constexpr double device_share = 0.8, slow_approach = 3;
 
 /// Number of closings n of a budget of `closings`, at least 1.
 [[nodiscard]] long within_work(long closings, double counted, double usual);
+
+/// Reduces a default budget of the search on the nominal device if the closings of the scene are slow, and reports the estimated
+/// work.
+void fit_nominal_budget(const SearchSetting& setting, OptimizeOptions& options);
 
 }  // namespace softland
