@@ -140,8 +140,9 @@ double pull_through_voltage_near(const Switch& model, std::size_t drive, std::sp
                                  const ClosedEquilibrium& near, double precision) {
   if (lands_on_wall(model, drive)) return no_equilibrium;
   const double neutral = model.neutral_voltage(drive);
-  const auto found =
-      pull_through_from(model, drive, {volts.begin(), volts.end()}, std::abs(volts[drive] - neutral), near, precision);
+  const double given = std::abs(volts[drive] - neutral);
+  if (given == 0) return pull_through_voltage(model, drive, volts, precision);  // a search by factors would not leave 0
+  const auto found = pull_through_from(model, drive, {volts.begin(), volts.end()}, given, near, precision);
   return found ? neutral + *found : pull_through_voltage(model, drive, volts, precision);
 }
 

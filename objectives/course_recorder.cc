@@ -70,7 +70,8 @@ Metrics CourseRecorder::metrics_of(std::size_t contact, const Trajectory& end) {
 }
 
 void CourseRecorder::hand_over(Trajectory& run) {
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+  // A run whose start state does not exist has no contacts.
+  for (std::size_t c = 0; c < std::min(contacts_.size(), run.contacts.size()); ++c) {
     run.contacts[c].points = std::move(contacts_[c]->points_);
     run.contacts[c].touches = std::move(contacts_[c]->touches_);
   }

@@ -75,6 +75,14 @@ TEST(ClosedStart, NamesTheOtherStateAndTheKeyWhereTheOneAskedForDoesNotExist) {
   EXPECT_LT(closed.trajectory.other_start, 1e-7);
 }
 
+TEST(ClosedStart, ThatDoesNotExistIsNamedForSeveralContactsToo) {
+  SceneFile file = closed_relay({"waveform.main.before=5 V"});
+  file.set(R"(contact.back={side="far",gap="0.5 um",model="linear",stiffness="2 kN/m"})");
+  const Closing closed = simulate(prepare(file), true);
+  EXPECT_EQ(closed.metrics.status, Status::collapsed_at_rest);
+  EXPECT_THAT(closed.trajectory.message, HasSubstr("no stable closed state"));
+}
+
 TEST(ClosedStart, BeginsInTheClosedEquilibriumAndIsDoneWhereItEndsOpenAndAtRest) {
   const PreparedScene p = prepare(closed_relay());
   const Closing c = simulate(p, true);

@@ -281,6 +281,14 @@ TEST(ClosedState, IsFoundByContinuationWhereNewtonsMethodFails) {
   }
 }
 
+TEST(ClosedState, UnderAPiezoAloneIsFoundWhileTheElectrodeStandsAtZero) {
+  SceneFile file = scene("mem-gold-pzt.toml");
+  for (const char* change : {"waveform.main.level=0 V", "waveform.piezo={family=\"step\",level=\"-1 V\"}"}) file.set(change);
+  const PreparedScene p = prepare(file);
+  const ClosedState state = closed_state(p, p.signals());
+  EXPECT_TRUE(state.stable.value_or(false));
+}
+
 TEST(ClosedState, OfADeviceThatIsPulledThroughIsNotFoundFromOneThatHolds) {
   SceneFile file = bridge({level(0.99 * pulled_through())});
   file.set("spread.\"structure.residual_stress\"={ distribution = \"normal\", standard_deviation = \"5 MPa\" }");
