@@ -1,4 +1,4 @@
-"""run_blocks.py PROGRAM PAGE... [--quick] [--pictures] [--folder FOLDER]: run the blocks of the pages of the manual.
+"""run_blocks.py PROGRAM PAGE|FOLDER... [--quick] [--pictures] [--folder FOLDER]: run the blocks of the pages of the manual.
 
 The blocks of a page run in their order, in one folder a page that begins with the links `scenes` and `examples`:
 
@@ -8,7 +8,8 @@ The blocks of a page run in their order, in one folder a page that begins with t
   <!-- quick: COMMAND --> is run in its place with --quick, and what it prints is not compared.
 - <!-- picture: FILE --> before a picture: the file of the folder that it shows; --pictures copies it there.
 
-Prints every fault and the number of blocks; exit status 1 when there is a fault. --quick leaves Python out.
+A folder stands for the pages in its folders tutorial, howto, explanation and theory. Prints every fault and the number of blocks; exit status 1 when there
+is a fault, or when more than 5 % of the blocks are left out. --quick leaves Python out.
 """
 
 import argparse
@@ -29,6 +30,8 @@ PART = re.compile(
     re.MULTILINE | re.DOTALL,
 )
 NUMBER = re.compile(r"\d+(?:\.\d+)?")
+MOST_LEFT_OUT = 0.05  # share of the blocks, over all pages
+KINDS = ("tutorial", "howto", "explanation", "theory")
 NOTES = {"save", "not run", "quick", "picture"}
 
 
@@ -123,6 +126,10 @@ class Page:
             shutil.copyfile(path, self.path.parent / image)
 
 
+def pages_of(folder):
+    return [page for kind in KINDS for page in sorted((folder / kind).glob("*.md"))]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=Path)
@@ -139,7 +146,8 @@ def main():
         (tools / "softland").symlink_to(options.program.resolve())
         environment = {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}", "COLUMNS": "100"}
         os.environ.update(environment)
-        for path in options.pages:
+        pages = [page for path in options.pages for page in ([path] if path.is_file() else pages_of(path))]
+        for path in pages:
             folder = base.resolve() / path.stem
             folder.mkdir(parents=True, exist_ok=True)
             for name in ("scenes", "examples"):
@@ -150,6 +158,9 @@ def main():
             print("\n".join(page.faults), end="\n" if page.faults else "")
             print(f"{path}: {page.ran} blocks run, {page.left_out} left out, {len(page.faults)} faults")
             faults, ran, left_out = faults + page.faults, ran + page.ran, left_out + page.left_out
+    if left_out > MOST_LEFT_OUT * (ran + left_out) and len(pages) > 1:
+        faults.append(f"more than {MOST_LEFT_OUT:.0%} of the blocks are left out")
+        print(faults[-1])
     print(f"{ran} blocks run, {left_out} left out, {len(faults)} faults")
     return 1 if faults else 0
 

@@ -1,0 +1,187 @@
+// reference_pages PAGE: prints a page of the reference from the tables of the code. PAGE is `keys`, the keys of a scene.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/engineering.h"
+#include "config/schema.h"
+
+namespace softland {
+namespace {
+
+using internal::Key;
+using internal::KeyType;
+using internal::Section;
+
+// Text of a table cell: a bar would end the cell.
+std::string cell(std::string_view text) {
+  std::string safe;
+  for (const char c : text) safe += c == '|' ? std::string("\\|") : std::string(1, c);
+  return safe;
+}
+
+std::string code(std::string_view text) { return fmt::format("`{}`", text); }
+
+std::string codes(const std::vector<std::string_view>& words) {
+  std::vector<std::string> all;
+  for (const std::string_view word : words) all.push_back(code(word));
+  return fmt::format("{}", fmt::join(all, ", "));
+}
+
+// Returns "length" of "a length".
+std::string kind(const Dimension& dimension) {
+  const std::string_view words = noun(dimension);
+  return std::string(words.substr(words.find(' ') + 1));
+}
+
+// Returns the range of a key; empty where it has that of its kind.
+std::string range_text(const Key& key, const Dimension& dimension) {
+  constexpr double open = std::numeric_limits<double>::infinity();
+  const Range& own = key.range;
+  const std::string unit = unit_symbol(dimension);
+  const auto number = [&](double value) { return value == 0 ? "0" : engineering(value, unit); };
+  const bool has_least = own.least > -open, has_most = own.most < open;
+  if (has_least && has_most)
+    return fmt::format(" {} {} to {} {}", own.least_open ? "above" : "from", number(own.least),
+                       own.most_open ? "below" : "at most", number(own.most));
+  if (has_least) return fmt::format(" {} {}", own.least_open ? ">" : "≥", number(own.least));
+  if (has_most) return fmt::format(" {} {}", own.most_open ? "<" : "≤", number(own.most));
+  return "";
+}
+
+std::string kind_text(const Key& key) {
+  const auto of_dimensions = [&] {
+    std::vector<std::string> kinds;
+    for (const Dimension& one : key.dimensions) {
+      kinds.push_back(kind(one) + range_text(key, one));
+    }
+    return kinds.empty() ? std::string("quantity") : fmt::format("{}", fmt::join(kinds, ", or "));
+  };
+  std::string text;
+  switch (key.type) {
+    case KeyType::text:
+      text = "text";
+      break;
+    case KeyType::texts:
+      text = "list of texts";
+      break;
+    case KeyType::flag:
+      text = "`true`, `false`";
+      break;
+    case KeyType::integer:
+      text = "integer" + range_text(key, dimension::none);
+      break;
+    case KeyType::choice:
+      text = codes(key.choices);
+      break;
+    case KeyType::quantity:
+      text = of_dimensions();
+      break;
+    case KeyType::quantities:
+      text = fmt::format("list of {}{}", key.count > 0 ? fmt::format("{} × ", key.count) : "", of_dimensions());
+      if (key.may_be_one) text += ", or one";
+      break;
+    case KeyType::table:
+      text = "table";
+      break;
+    case KeyType::tables:
+      text = "list of tables";
+      break;
+  }
+  return key.words.empty() ? text : fmt::format("{}, or {}", text, codes(key.words));
+}
+
+std::string default_text(const Key& key) {
+  std::string text = key.required ? "required" : key.fallback.empty() ? "" : code(key.fallback);
+  if (!key.instead_of.empty()) text += fmt::format("{}or {}", text.empty() ? "" : ", ", codes(key.instead_of));
+  if (!key.unless.empty()) text += fmt::format(" without {}", code(key.unless));
+  return text;
+}
+
+void print_table(const std::vector<const Key*>& keys) {
+  fmt::print("| key | value | default | meaning |\n|---|---|---|---|\n");
+  for (const Key* key : keys)
+    fmt::print("| {} | {} | {} | {} |\n", code(key->name), cell(kind_text(*key)), cell(default_text(*key)), cell(key->about));
+}
+
+// Prints the keys that every section has, then those of single choices of the selector, each group once.
+void print_section(const Section& section, const std::string& title, int depth, const std::string& rule) {
+  fmt::print("\n{} {}\n\n", std::string(static_cast<std::size_t>(depth), '#'), title);
+  if (!section.about.empty()) fmt::print("Content: {}{}\n\n", section.about, rule);
+  std::vector<std::pair<std::vector<std::string_view>, std::vector<const Key*>>> groups{{{}, {}}};
+  for (const Key& key : section.keys) {
+    auto group = std::ranges::find(groups, key.only_for, &decltype(groups)::value_type::first);
+    if (group == groups.end()) group = groups.insert(groups.end(), {key.only_for, {}});
+    group->second.push_back(&key);
+  }
+  for (const auto& [choices, keys] : groups) {
+    if (!choices.empty()) fmt::print("\nWith {} = {}:\n\n", code(section.selector), codes(choices));
+    if (!keys.empty()) print_table(keys);
+  }
+  for (const Key& key : section.keys) {
+    if (key.part != nullptr) print_section(*key.part(), fmt::format("{} of {}", code(key.name), title), depth + 1, ".");
+  }
+}
+
+void collect(const Section& section, std::vector<Dimension>& all) {
+  for (const Key& key : section.keys) {
+    for (const Dimension& one : key.dimensions)
+      if (one != dimension::none && std::ranges::find(all, one) == all.end()) all.push_back(one);
+    if (key.part != nullptr) collect(*key.part(), all);
+  }
+}
+
+void print_kinds() {
+  std::vector<Dimension> all;
+  for (const Section& section : internal::schema()) collect(section, all);
+  fmt::print(
+      "\n## Kinds of quantities\n\nEvery number has a smallest and a largest value. Where a table says \"> 0\" or leaves an end open, "
+      "the ends are these.\nA value that may be 0 begins there, and one that may be negative ends at minus the largest.\n\n"
+      "| kind | smallest above 0 | largest |\n|---|---|---|\n");
+  for (const Dimension& one : all) {
+    const Key positive{.name = "any", .dimensions = {one}, .range = {.least = 0, .least_open = true}};
+    const Range range = positive.range_of(one);
+    fmt::print("| {} | {} | {} |\n", kind(one), engineering(range.least, unit_symbol(one)),
+               engineering(range.most, unit_symbol(one)));
+  }
+}
+
+void print_keys() {
+  fmt::print(
+      "# Keys of a scene\n\n"
+      "*For everyone who writes a scene: which keys are there, what may they be, and what do they mean?*\n\n"
+      "This page is made from the table by which softland reads scenes. A section that is absent is an effect that is not simulated. A\n"
+      "quantity is a text with its unit, such as \"2 um\"; [the scene file](../scene.md) says how it is written and which rules join\n"
+      "several keys. A default is written as TOML; a key without default may be left out.\n");
+  for (const Section& section : internal::schema()) {
+    const std::string name = section.name.empty() ? std::string("Above the first section")
+                             : section.is_named
+                                 ? fmt::format("[{}.{}]", section.name, section.entry.empty() ? "NAME" : section.entry)
+                             : section.may_be_named ? fmt::format("[{0}] or [{0}.NAME]", section.name)
+                                                    : fmt::format("[{}]", section.name);
+    const std::string rule = section.required          ? ". The section is required."
+                             : section.always_in_force ? ". Its defaults apply without the section."
+                                                       : ".";
+    print_section(section, name, 2, rule);
+  }
+  print_kinds();
+}
+
+}  // namespace
+}  // namespace softland
+
+int main(int count, char** arguments) {
+  if (count != 2 || std::string_view(arguments[1]) != "keys") {
+    std::fputs("usage: reference_pages keys\n", stderr);
+    return 2;
+  }
+  softland::print_keys();
+  return 0;
+}
