@@ -425,4 +425,12 @@ check 'a verb does not need the packages of the module' status_is 0
 run "$project/softland" python
 check 'python names the packages that it needs' err_has 'missing packages: pybind11-dev'
 
+# The manual.
+run "$project/softland" manual more
+check 'manual takes no arguments' status_is 2
+packages_missing furo g++
+run "$project/softland" manual
+check 'manual names the packages that it needs, and no others' err_has 'missing packages: furo'
+check 'manual builds nothing' [ ! "$(grep -E '^(cmake|ninja) ' "$work/calls")" ]
+
 [ "$failed" = 0 ]
