@@ -34,8 +34,8 @@ CONTACTS = {
 
 
 def gas_laws(without):
-    """Returns the names of gas laws in the tables of docs/physics.md, which a test compares with the names in the program."""
-    part = (SCENES.parent / "docs" / "physics.md").read_text().split("## Gas ")[1].split("\n## ")[0]
+    """Returns the names of gas laws in the tables of docs/theory/gas.md, which a test compares with the names in the program."""
+    part = (SCENES.parent / "docs" / "theory" / "gas.md").read_text().split("\n## ")[1]
     return [name for name in re.findall(r"^\| `([^`]+)` \|", part, re.MULTILINE) if name not in ("model", *without)]
 
 

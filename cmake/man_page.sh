@@ -90,5 +90,5 @@ done
 printf '%s\n' "$help" | awk 'after { print } /^Usage:/ { after = 1 }' | troff yes
 cat <<'END'
 .SH SEE ALSO
-README.md and docs/own-switch.md, commands.md, scene.md, figures.md and physics.md in the folder of the documentation; the shipped scenes in share/softland/scenes.
+README.md and docs/index.md, from which all pages of the manual are reached, in the folder of the documentation; the shipped scenes in share/softland/scenes.
 END

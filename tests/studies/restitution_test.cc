@@ -1,4 +1,4 @@
-// Checks the table of docs/physics.md of damping and restitution.
+// Checks the table of docs/theory/contact.md of damping and restitution.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 /// Returns the numbers of the table row with this beginning.
 std::vector<double> row_of_docs(const std::string& begin) {
-  std::ifstream docs(std::string(SOFTLAND_SOURCE_DIR) + "/docs/physics.md");
+  std::ifstream docs(std::string(SOFTLAND_SOURCE_DIR) + "/docs/theory/contact.md");
   for (std::string line; std::getline(docs, line);) {
     if (!line.starts_with(begin)) continue;
     std::replace(line.begin(), line.end(), '|', ' ');
@@ -43,7 +43,7 @@ Speeds speeds(double damping) {
 }
 
 TEST(Restitution, IsThatOfTheTableOfDampings_slow) {
-  const std::vector<double> wanted = row_of_docs("| restitution e |"), products = row_of_docs("| κ v |");
+  const std::vector<double> wanted = row_of_docs("| restitution $e$ |"), products = row_of_docs("| $\\kappa v$ |");
   ASSERT_EQ(wanted.size(), 8U);
   ASSERT_EQ(products.size(), wanted.size());
   const double speed = speeds(0).first;
