@@ -77,6 +77,8 @@ TEST(ClosedStart, NamesTheOtherStateAndTheKeyWhereTheOneAskedForDoesNotExist) {
 
 TEST(ClosedStart, ThatDoesNotExistIsNamedForSeveralContactsToo) {
   SceneFile file = closed_relay({"waveform.main.before=5 V"});
+  for (const char* key : {"contact", "gap.contact"}) file.erase(key);
+  file.set(R"(contact.stop={gap="3 um",model="linear",stiffness="100 kN/m"})");
   file.set(R"(contact.back={side="far",gap="0.5 um",model="linear",stiffness="2 kN/m"})");
   const Closing closed = simulate(prepare(file), true);
   EXPECT_EQ(closed.metrics.status, Status::collapsed_at_rest);
