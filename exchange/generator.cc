@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "base/engineering.h"
 #include "base/require.h"
 
 namespace softland {
@@ -94,9 +95,10 @@ std::span<const GeneratorFormat> generator_formats() { return formats; }
 std::string generator_file(const GeneratorFormat& format, GeneratorSamples samples) {
   require(!samples.volts.empty(), "a generator file needs at least one sample");
   require(samples.volts.size() <= format.most, [&] {
-    return fmt::format("{} samples: a {} takes at most {}; choose a sample rate of at most {} S/s", samples.volts.size(),
-                       format.instrument, format.most,
-                       samples.rate * static_cast<double>(format.most - 1) / static_cast<double>(samples.volts.size() - 1));
+    const double most = samples.rate * static_cast<double>(format.most - 1) / static_cast<double>(samples.volts.size() - 1);
+    const double step = std::pow(10, std::floor(std::log10(most)) - 2);  // three digits, rounded down
+    return fmt::format("{} samples: a {} takes at most {}; choose a sample rate of at most {}", samples.volts.size(),
+                       format.instrument, format.most, engineering(std::floor(most / step) * step, "Hz", 3));
   });
   require(!samples.marker || format.has_marker,
           [&] { return fmt::format("a file for {} cannot hold a marker; omit the marker", format.instrument); });

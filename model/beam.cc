@@ -128,7 +128,7 @@ std::string why_buckled(const Structure& s, const std::optional<Surface>& surfac
       static_cast<void>(beam_modes({.structure = lowest, .surface = surface}));
     } catch (const InvalidInput&) {
       return fmt::format("leaves an axial force of {}, a compression beyond the buckling load of the beam",
-                         engineering(beam_support(s, surface).axial_force, "N"));
+                         engineering(beam_support(s, surface).axial_force, "N", 4));
     }
     return {};
   }
