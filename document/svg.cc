@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/printable.h"
@@ -26,6 +29,23 @@ std::vector<std::string> wrapped(const std::string& text, std::size_t columns) {
     begin = end + 1;
   }
   return lines;
+}
+
+// Colours of the drawing, and those that take their place where the reader prefers a dark page.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 8> dark_colours{{{"#fff", "#131416"},
+                                                                                     {"#1b1f24", "#e6e8ea"},
+                                                                                     {"#5f6b76", "#a7b0b8"},
+                                                                                     {"#f1f3f4", "#1d2023"},
+                                                                                     {"#e4e7ea", "#33383d"},
+                                                                                     {"#0072b2", "#4da3dd"},
+                                                                                     {"#2b6cb0", "#6aa5e3"},
+                                                                                     {"#b83232", "#e06c6c"}}};
+
+std::string dark_style() {
+  std::string rules;
+  for (const char* what : {"fill", "stroke"})
+    for (const auto& [light, dark] : dark_colours) rules += fmt::format("[{0}=\"{1}\"]{{{0}:{2}}}", what, light, dark);
+  return fmt::format("<style>@media (prefers-color-scheme:dark){{{}}}</style>\n", rules);
 }
 
 }  // namespace
@@ -54,10 +74,10 @@ std::string svg_frame(const std::string& headline, const std::string& words,
   const auto [elements, bottom] = draw(width - 2 * margin, top + between);
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1:.0f}\" viewBox=\"0 0 {0} {1:.0f}\" role=\"img\" "
-      "font-family=\"system-ui, 'Segoe UI', Helvetica, Arial, sans-serif\">\n<title>{2}</title>\n<rect width=\"100%\" "
+      "font-family=\"system-ui, 'Segoe UI', Helvetica, Arial, sans-serif\">\n<title>{2}</title>\n{6}<rect width=\"100%\" "
       "height=\"100%\" fill=\"#fff\"/>\n"
       "<g transform=\"translate({3} {4})\">\n{5}</g>\n</svg>\n",
-      width, bottom + margin, escaped(printable_line(headline)), margin, 10, body + elements);
+      width, bottom + margin, escaped(printable_line(headline)), margin, 10, body + elements, dark_style());
 }
 
 std::string svg_page(const std::string& headline, const std::string& words, const internal::Picture& drawn,
