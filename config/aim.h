@@ -1,4 +1,5 @@
-// Reads the aim of a search from text: a target ("bounce"), or a weighted sum of targets ("0.7 bounce + 0.3 energy").
+// Reads the aim of a search from text: a target, the quantity to minimise ("bounce"), or a weighted sum of targets ("0.7 bounce
+// + 0.3 energy").
 #pragma once
 
 #include <string_view>
@@ -7,7 +8,7 @@
 
 namespace softland {
 
-/// Reads an aim. Throws InvalidInput with the broken rule.
+/// Reads the aim of a search. Throws InvalidInput with the rule that the text breaks.
 [[nodiscard]] Aim parse_aim(std::string_view text);
 
 }  // namespace softland

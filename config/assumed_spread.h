@@ -11,11 +11,11 @@
 
 namespace softland {
 
-/// Note about an assumed spread.
+/// Note for the user that a process variation is assumed.
 inline constexpr std::string_view assumed_prose = "The scene has no [spread]: a typical process variation is assumed.";
 
-/// Adds the assumed [spread] to a scene that has none, and returns true in that case. An existing empty section is kept; it is
-/// refused when the scene is read.
+/// Adds the assumed process variation [spread] to a scene that has none, and returns true in that case. An existing empty
+/// section is kept; it is refused when the scene is read.
 bool assume_spread(SceneFile& file);
 
 }  // namespace softland

@@ -29,12 +29,12 @@ constexpr std::size_t most_rows = 100'000;
 constexpr std::array of_threshold{"threshold", "hysteresis", "closed", "merge"};
 constexpr std::array of_file{"column", "time_column", "interval", "skip", "time_unit", "decimal", "shift", "unit"};
 
-// Reads one [[measurement]].
+// Reads one [[measurement]] of a file of measurements.
 class MeasurementReader {
  public:
   MeasurementReader(const toml::table& table, const std::string& file, const std::filesystem::path& directory)
       : table_(table), file_(file), directory_(directory) {}
-  /// Reads the keys that a command-line option gives.
+  /// Reads the keys of a measurement that a command-line option gives.
   MeasurementReader(const toml::table& table, const std::string& option)
       : table_(table), file_(option), directory_(option), is_option_(true) {}
 
@@ -106,13 +106,11 @@ class MeasurementReader {
     m.waveform = name == "scene" ? name : (directory_ / name).string();
   }
 
-  // ---- Rows of a file
-
   struct Column {
-    std::string name;  // name of the column in the header
-    double unit = 1;   // size of the unit of the column [SI unit]
+    std::string name;  // name of the column in the header of the file
+    double unit = 1;   // size of the column's unit [SI unit]
   };
-  // Returns the column whose name is `stem` with a unit, such as "closing_time_us", "capacitance [fF]" or "time_s".
+  // Returns the column of the file whose name is `stem` with a unit, such as "closing_time_us", "capacitance [fF]" or "time_s".
   [[nodiscard]] std::optional<Column> column_of(const std::vector<std::string>& header, std::string_view stem,
                                                 const Dimension& due) const {
     for (const std::string& name : header) {
@@ -169,7 +167,7 @@ class MeasurementReader {
       }
     } catch (const InvalidInput& error) {
       if (std::string_view(error.what()).find("measurement.") != std::string_view::npos)
-        throw;  // the message names the key already
+        throw;  // the message of the exception names the key already
       refuse("file", error.what());
     }
   }
@@ -214,8 +212,6 @@ class MeasurementReader {
     });
     if (kind.name == of_contact) find_edges(m);
   }
-
-  // ---- Files of instruments
 
  public:
   [[nodiscard]] ContactTraceKeys contact_keys() const {
@@ -286,7 +282,7 @@ class MeasurementReader {
     shift_times(trace, time_shift());
     const double unit = unit_of_trace(kind, channel_of(recording, keys, std::string(kind.name)));
     for (std::size_t k = 0; k < trace.times.size(); ++k) {
-      if (trace.times[k] < 0) continue;  // skip rows before the drives begin
+      if (trace.times[k] < 0) continue;  // skip rows before t = 0, where the drives begin
       require(m.values.size() < most_rows, [&] { return fmt::format("{}: more than {} rows from t = 0 on", path, most_rows); });
       require(m.times.empty() || trace.times[k] > m.times.back(),
               [&] { return fmt::format("{}: times must rise from row to row", path); });
@@ -295,7 +291,7 @@ class MeasurementReader {
     }
     require(!m.values.empty(), [&] { return fmt::format("{}: all rows are before t = 0; give shift to move them", path); });
   }
-  // Returns the size of the unit of a trace [SI unit]; 1 for a trace in volts.
+  // Returns the size of the unit of a recorded channel [SI unit]; 1 for a channel in volts.
   [[nodiscard]] double unit_of_trace(const BenchQuantity& kind, const Channel& channel) const {
     if (has("per_volt")) {
       refuse_where(!channel.is_voltage && !channel.unit.empty(), "per_volt",
@@ -317,7 +313,7 @@ class MeasurementReader {
     return one.value * (has("unit") ? channel.per_si : 1);
   }
 
-  // Removes the rows after the time `until`.
+  // Removes the rows of a measurement after the time `until`.
   void cut(const BenchQuantity& kind, BenchMeasurement& m) const {
     refuse_where(kind.name == of_contact || !kind.is_over_time, "until", "is of a position or velocity only");
     const double end = quantity("until", {dimension::time}).value;
@@ -328,7 +324,8 @@ class MeasurementReader {
     m.has_end = true;
   }
 
-  // Finds the edges of the contact: each lies halfway between a row in which the contact is open and one in which it is closed.
+  // Finds the times at which the contact closes or opens: each is halfway between a row in which the contact is open and one in
+  // which it is closed.
   void find_edges(BenchMeasurement& m) const {
     const int edges = has("edges") ? whole("edges", 1, 3) : 1;
     std::vector<double> found;
@@ -355,8 +352,6 @@ class MeasurementReader {
       refuse_where(!(m.errors.back() > 0), "error", "is a percentage of a value that is 0: give it in a unit");
     }
   }
-
-  // ---- Keys
 
   [[nodiscard]] bool has(std::string_view key) const { return table_.contains(key); }
   [[nodiscard]] std::string place_of(const toml::node& node) const {

@@ -43,29 +43,29 @@
 
 namespace softland {
 
-/// A quantity that a bench file may hold: its dimension and the keys that it may have.
+/// A quantity that a file of measurements may hold: its dimension and the keys that a measurement of it may have.
 struct BenchQuantity {
   std::string_view name;
   Dimension dimension;
   bool has_level = false;     ///< true when a measurement of this quantity may have a level (a commanded voltage)
   bool has_waveform = false;  ///< true when a measurement of this quantity may have a waveform instead of a level
-  bool is_over_time = false;  ///< true for a quantity recorded against time
-  bool is_positive = true;    ///< true when the measured values must be above 0
+  bool is_over_time = false;  ///< true when the quantity is recorded against time
+  bool is_positive = true;    ///< true when measured values of the quantity must be above 0
 };
 
-/// Name of the quantity that is a record of the state of the contact.
+/// Name of the quantity that is a record of the contact's state, open or closed, against time.
 inline constexpr std::string_view of_contact = "contact";
 
 struct BenchMeasurement {
-  std::string quantity;                 ///< name among bench_quantities()
-  std::string drive = {};               ///< name of the drive; empty where it is not given
+  std::string quantity;                 ///< name of the measured quantity, one of bench_quantities()
+  std::string drive = {};               ///< name of the driven electrode or piezo; empty where it is not given
   std::string device = {};              ///< name of the measured device; empty where it is not given
   std::vector<double> values = {};      ///< measured values [SI unit]
   std::vector<double> errors = {};      ///< standard deviation of each value [SI unit]
-  std::vector<double> levels = {};      ///< commanded voltage of each value [V]; empty where none is given
-  std::vector<double> times = {};       ///< time of each value of a quantity over time [s]
-  bool has_end = false;                 ///< true when the key `until` has removed later rows
-  std::optional<std::string> waveform;  ///< source of the waveform: "scene", or the path of a file
+  std::vector<double> levels = {};      ///< commanded voltage of each measured value [V]; empty where none is given
+  std::vector<double> times = {};       ///< time of each measured value of a quantity over time [s]
+  bool has_end = false;                 ///< true when rows after the time of the key `until` were removed
+  std::optional<std::string> waveform;  ///< source of the drive waveform: "scene", or the path of a file
   int mode = 1;
   std::string place = {};  ///< place of the measurement for messages: "bench.toml:12"
 };
@@ -73,18 +73,21 @@ struct BenchMeasurement {
 struct Bench {
   std::string name;
   std::vector<BenchMeasurement> measurements;
-  std::map<std::string, std::vector<std::string>> changes;  ///< changed keys of the scene by device: "gap.electrode=3.4 um"
+  /// Keys of the scene that differ for each named device, such as "gap.electrode=3.4 um".
+  std::map<std::string, std::vector<std::string>> changes;
 };
 
 [[nodiscard]] const std::vector<BenchQuantity>& bench_quantities();
 
-/// Reads how the state of a contact follows from its recorded voltage, from assignments such as `threshold=1.5 V`. The keys are
-/// those of a contact in a bench file. Throws InvalidInput with the option `--contact`, the value and the rule.
+/// Reads how the state of a contact (open or closed) follows from its recorded voltage, from assignments such as `threshold=1.5
+/// V`. The keys are those of a contact in a file of measurements. Throws InvalidInput with the option `--contact`, the value
+/// and the rule.
 [[nodiscard]] ContactTraceKeys contact_trace_keys(const std::vector<std::string>& assignments);
 
-/// Reads a bench file. Throws InvalidInput with file, line, key, value and rule.
+/// Reads a file of measurements. Throws InvalidInput with file, line, key, value and rule.
 [[nodiscard]] Bench load_bench(const std::filesystem::path& path);
-/// Reads a bench text. `name` stands for the text in messages; paths in the text are relative to `directory`.
+/// Reads the text of a file of measurements. `name` is the name of the file in messages; paths in the text are relative to
+/// `directory`.
 [[nodiscard]] Bench parse_bench(std::string_view text, const std::string& name, const std::filesystem::path& directory = ".");
 
 }  // namespace softland

@@ -20,7 +20,7 @@ struct Sign {
   std::string_view text;
   Comparison comparison;
 };
-// Longer signs precede shorter ones: "<=" is tried before "<".
+// Comparison signs of a condition. Longer signs precede shorter ones: "<=" is tried before "<".
 constexpr auto signs = std::to_array<Sign>({{"<=", Comparison::at_most},
                                             {">=", Comparison::at_least},
                                             {"==", Comparison::equal},

@@ -15,37 +15,37 @@ namespace softland {
 
 enum class Comparison { below, at_most, equal, at_least, above };
 
-/// A condition on a figure of one closing.
+/// A condition on a figure of merit of one closing, such as "t_p < 60 us".
 struct Condition {
   Figure figure;
   Comparison comparison = Comparison::below;
-  double limit = 0;      ///< limit [SI unit of the figure, or a factor on the figure of an actuation by a plain step]
-  std::string text;      ///< the condition as the user wrote it
-  bool of_step = false;  ///< true if the limit is a factor on the figure of an actuation by a plain step: see beside_step()
+  double limit = 0;  ///< limit of the figure [SI unit of the figure, or a factor on the figure of an actuation by a plain step]
+  std::string text;  ///< the condition as the user wrote it
+  bool of_step = false;  ///< true if the limit is a factor on the figure of an actuation by a plain voltage step
 
-  /// Returns the violation relative to the limit (absolute if the limit is 0); 0 or less if the condition holds. Returns
-  /// infinity for a value that is not finite, as a failed closing has.
+  /// Returns the violation of the condition by a figure's value, relative to the limit (absolute if the limit is 0); 0 or less
+  /// if the condition holds. Returns infinity for a value that is not finite, which a failed closing has.
   [[nodiscard]] double violation(double value) const;
   [[nodiscard]] bool holds(double value) const;
 };
 
 /// Reads a condition such as "t_p < 60 us", or a condition relative to an actuation by a plain step, "t_i < 3 step". Throws
-/// InvalidInput with the broken rule.
+/// InvalidInput with the rule that the text breaks.
 [[nodiscard]] Condition parse_condition(std::string_view text, std::span<const Figure> figures);
 
 /// Replaces a limit relative to an actuation by a plain step with an absolute limit; `of_step` is the figure of that actuation.
 /// Throws InvalidInput if the actuation does not have the figure, or if the figure is 0.
 [[nodiscard]] Condition beside_step(Condition condition, double of_step);
 
-/// The statistic over simulated devices that a search minimises.
+/// The statistic over simulated devices (process variation) that a search minimises.
 struct RobustMeasure {
-  Risk risk;  ///< statistic of the cost of a closing; with `yield`, over the devices that violate the condition `yield`
-  std::optional<Condition> yield;  ///< condition that as many devices as possible shall fulfil
-  std::string text;                ///< the measure as the user wrote it
+  Risk risk;  ///< statistic of the closings' cost; with `yield`, over the devices that violate the condition `yield`
+  std::optional<Condition> yield;  ///< condition on a closing that as many devices as possible shall fulfil
+  std::string text;                ///< the statistic as the user wrote it
 };
 
-/// Reads cvar:LEVEL, quantile:LEVEL, mean+Ksigma, worst, yield:CONDITION, yield (no significant rebound). Throws InvalidInput
-/// with the broken rule.
+/// Reads the statistic that a search minimises: cvar:LEVEL, quantile:LEVEL, mean+Ksigma, worst, yield:CONDITION, yield (no
+/// significant rebound). Throws InvalidInput with the rule that the text breaks.
 [[nodiscard]] RobustMeasure parse_robust_measure(std::string_view text, std::span<const Figure> figures);
 
 }  // namespace softland

@@ -21,7 +21,7 @@ constexpr std::string_view main_drive = "main";
 
 enum class LimitChecks { without_pull_in, all };
 
-/// Checks that every [section.NAME] names a drive of the device.
+/// Checks that NAME of every [section.NAME] is the name of a drive (electrode or piezo) of the device.
 void check_names(const SceneFile::Impl& file, const std::string& section, const Device& device) {
   for (const std::string& name : file.names_in(section)) {
     const std::string path = join_path(section, name);
@@ -58,16 +58,17 @@ std::vector<double> volts(const std::vector<Quantity>& quantities, const PullInV
   return values;
 }
 
-/// The values that relative levels of a waveform refer to.
+/// The values to which relative levels of a waveform refer.
 struct References {
   std::string_view drive;
   const PullInVoltages& pull_in;
-  const std::optional<double>& main_hold;                     ///< level at which the main electrode holds the switch [V]
-  double max_slew = std::numeric_limits<double>::infinity();  ///< slew limit of the driver [V/s]
-  double before = 0;                                          ///< value before t = 0 [V]
+  const std::optional<double>& main_hold;                     ///< hold voltage of the main electrode [V]
+  double max_slew = std::numeric_limits<double>::infinity();  ///< slew limit of the voltage source [V/s]
+  double before = 0;                                          ///< voltage of the drive before t = 0 [V]
 };
 
-/// Returns a level in volts. A percentage refers to the base level or, for the piezo, to the main electrode's hold voltage.
+/// Returns a voltage difference of a waveform in volts. A percentage refers to the base level or, for the piezo, to the main
+/// electrode's hold voltage.
 double swing(const SectionReader& in, std::string_view key, const Quantity& given, const References& to, double base) {
   if (given.dimension != dimension::none || to.drive == dispersion_drive) return volts(given, to.pull_in);
   if (to.drive != piezo_drive) {
@@ -94,7 +95,7 @@ void read_list(const SectionReader& in, std::string_view key, ParameterKind kind
 template <class Family>
 Waveform read_parameters(const SectionReader& in, const References& to) {
   Family waveform;
-  double base = 0;  // level from which a relative level is counted
+  double base = 0;  // voltage level to which a relative level is added [V]
   for (const Parameter<Family>& p : FamilyOf<Family>::parameters) {
     const auto* one = std::get_if<double Family::*>(&p.member);
     if (one == nullptr) {
@@ -108,7 +109,7 @@ Waveform read_parameters(const SectionReader& in, const References& to) {
       value = swing(in, p.name, in.quantities(p.name).front(), to, base);
     } else if (p.kind == ParameterKind::angular_frequency && in.is_given(frequency_key)) {
       value = 2 * std::numbers::pi * in.number(frequency_key);
-    } else if (in.is_word(p.name)) {  // the only word is steepest_rise: the rise time at max_slew
+    } else if (in.is_word(p.name)) {  // the only word that a rise time may have is steepest_rise: the rise at max_slew
       value = std::abs(base - to.before) / to.max_slew;
     } else if (in.has_value(p.name)) {
       value = in.number(p.name);
@@ -138,13 +139,15 @@ Signal compile(const SectionReader& in, const Waveform& waveform, double before)
   }
 }
 
-/// Returns the permitted range of any voltage, also of a multiple of Vsp or Vdp, because resolved scenes are written in volts.
+/// Returns the permitted range of any drive voltage, also of a multiple of Vsp or Vdp (pull-in voltages), because resolved
+/// scenes are written in volts.
 const Range& any_voltage() {
   static const Range range = Key{.dimensions = {dimension::voltage}}.range_of(dimension::voltage);
   return range;
 }
 
-/// Reads the limits of a driver; none if the drive is unlimited. Without a pull-in voltage there is no default limit.
+/// Reads the limits of a drive's voltage source; none if the source is unlimited. Without a pull-in voltage there is no default
+/// limit.
 std::optional<DriverLimits> read_limits(const SectionReader& in, std::string_view drive, const PullInVoltages& known) {
   DriverLimits limits{.min_voltage = 0, .max_voltage = std::numeric_limits<double>::infinity()};
   if (known.dynamic_pull_in > 0 && drive != piezo_drive) {
@@ -163,7 +166,7 @@ std::optional<DriverLimits> read_limits(const SectionReader& in, std::string_vie
   return limits;
 }
 
-/// Reads the source of a drive. The load of the source, the capacitance of the switch, is set later.
+/// Reads the voltage source of a drive. The load of the source, the capacitance of the switch, is set later.
 DriverModel read_model(const SectionReader& in, std::string_view drive) {
   DriverModel model;
   if (!in.is_present()) return model;
@@ -188,7 +191,7 @@ DriverModel read_model(const SectionReader& in, std::string_view drive) {
   return model;
 }
 
-/// Reads the errors by which the applied voltage differs from the commanded one.
+/// Reads the errors of a voltage source by which the applied voltage differs from the commanded voltage.
 SourceErrors read_errors(const SectionReader& in) {
   SourceErrors errors;
   if (!in.is_present()) return errors;
@@ -205,7 +208,7 @@ void check_order(const SectionReader& in, const DriverLimits& limits) {
              fmt::format("min_voltage of {} V must be less than max_voltage of {} V", limits.min_voltage, limits.max_voltage));
 }
 
-// Returns advice for a step that breaks no rule but the slew limit of its driver; else an empty text.
+// Returns advice for a step waveform that breaks no rule but the slew limit of its source; otherwise an empty text.
 std::string missing_rise(const Waveform& waveform, double before, const DriverLimits& limits) {
   const Step* const step = std::get_if<Step>(&waveform);
   if (step == nullptr || std::max(step->level, before) > limits.max_voltage || std::min(step->level, before) < limits.min_voltage)
@@ -214,8 +217,8 @@ std::string missing_rise(const Waveform& waveform, double before, const DriverLi
                      engineering(std::abs(step->level - before) / limits.max_slew, "s", 3));
 }
 
-/// Returns the electrode to whose hold level a percentage of the piezo's amplitude refers; empty when the device has no such
-/// electrode.
+/// Returns the electrode whose hold voltage is 100 % for a percentage in a waveform of the piezo; empty when the device has no
+/// such electrode.
 std::string_view main_electrode(const Device& device) {
   for (const Electrode& electrode : device.electrodes) {
     if (electrode.name == main_drive || device.electrodes.size() == 1) return electrode.name;
@@ -223,13 +226,14 @@ std::string_view main_electrode(const Device& device) {
   return {};
 }
 
-/// Reads all drives. Notes on the files that are read are added to `notes`, if not null.
+/// Reads the waveforms and sources of all drives. Notes on the files that are read are added to `notes`, if not null.
 Drives read_all(const SceneFile::Impl& file, const Device& device, const std::map<std::string, PullInVoltages>& pull_in,
                 LimitChecks checks, std::vector<std::string>* notes = nullptr) {
   std::vector<Drive> drives;
   std::optional<double> main_hold;
   if (!main_electrode(device).empty()) main_hold = 0;
-  for (const std::string& drive : drive_names(device)) {  // the piezo is last: its levels may refer to the main electrode
+  // The piezo is the last drive: its voltages may be percentages of the main electrode's hold voltage.
+  for (const std::string& drive : drive_names(device)) {
     Drive& one = drives.emplace_back(Drive{.name = drive});
     const auto found = pull_in.find(one.name);
     const PullInVoltages known = found == pull_in.end() ? PullInVoltages{} : found->second;
@@ -245,7 +249,8 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
 
     const SectionReader in(file, "waveform", drive);
     if (!in.is_present()) continue;
-    const double offset = drive == dispersion_drive ? -1 : 0;  // a drive holds the excess of the force factor over 1
+    // The drive of the dispersion force has the factor on the force minus 1.
+    const double offset = drive == dispersion_drive ? -1 : 0;
     one.begins_closed = in.is_given(before_state_key) && in.text(before_state_key) == closed_state_word;
     if (in.is_given(before_key)) one.before = offset + volts(in.quantities(before_key).front(), known);
     Waveform waveform;
@@ -361,7 +366,7 @@ void check_drive_name(const SceneFile::Impl& file, const std::string& electrode)
   const std::string path = join_path("electrode", electrode);
   if (electrode == piezo_drive) file.fail_section(path, "the name 'piezo' is reserved for the piezo layer");
   if (electrode == dispersion_drive) file.fail_section(path, "the name 'dispersion' is reserved for the dispersion force");
-  // The name becomes a column of CSV files and a node of SPICE circuits.
+  // Largest length of an electrode's name, which becomes a column of CSV files and a node of SPICE circuits.
   constexpr std::size_t longest = 64;
   if (electrode == "time_s") file.fail_section(path, "the name 'time_s' is reserved for the time in CSV files");
   if (!is_bare_key(electrode) || electrode.size() > longest) {

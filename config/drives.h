@@ -1,4 +1,4 @@
-// Reads waveforms and driver limits of a scene into volts. Internal to config/.
+// Reads waveforms and voltage limits of a scene's drives into volts. Internal to config/.
 #pragma once
 
 #include <array>
@@ -14,39 +14,40 @@
 namespace softland::internal {
 
 /// Keys that may be given instead of the key of a waveform parameter.
-inline constexpr std::string_view frequency_key = "frequency";  ///< replaces the key of an angular frequency
-inline constexpr std::string_view file_key = "file";            ///< replaces the key of the rows of a table
-/// Keys of [waveform.NAME] that are used together with `file`: they give facts that the file of an instrument does not contain.
+inline constexpr std::string_view frequency_key = "frequency";  ///< key that may replace the angular frequency of a waveform
+inline constexpr std::string_view file_key = "file";            ///< key that may replace the rows of a table waveform
+/// Keys of [waveform.NAME] that are used together with `file`: they give facts that the file of an instrument lacks.
 namespace file_keys {
 inline constexpr std::string_view column = "column", time_column = "time_column", interval = "interval", skip = "skip",
                                   unit = "unit", time_unit = "time_unit", decimal = "decimal", scale = "scale", shift = "shift";
-inline constexpr std::string_view uneven = "uneven";  ///< value of `interval`: times of the file are used as written
-inline constexpr std::string_view first = "first";    ///< value of `shift`: the first row is at t = 0
+inline constexpr std::string_view uneven = "uneven";  ///< value of the key `interval`: times of the file are used as written
+inline constexpr std::string_view first = "first";    ///< value of the key `shift`: the first row of the file is at t = 0
 inline constexpr std::array all{column, time_column, interval, skip, unit, time_unit, decimal, scale, shift};
 }  // namespace file_keys
 inline constexpr std::string_view before_key = "before";  ///< key of every waveform: its voltage before t = 0
-/// Key of every waveform. Its value, open or closed, names the equilibrium at t = 0 in which a simulation begins.
+/// Key of every waveform. Its value, open or closed, is the state of the switch, an equilibrium, in which a simulation begins.
 inline constexpr std::string_view before_state_key = "before_state", open_state = "open", closed_state_word = "closed";
-/// Value of rise_time that selects the shortest rise permitted by max_slew of the driver.
+/// Value of the key rise_time that selects the shortest rise permitted by max_slew of the voltage source.
 inline constexpr std::string_view steepest_rise = "driver";
 
 /// Returns the dimension of a waveform parameter in a scene; the dimension of a level depends on the drive.
 [[nodiscard]] Dimension dimension_of(ParameterKind kind);
 
-/// Returns the waveform with every level raised by `by` [V].
+/// Returns the waveform with every voltage level raised by `by` [V].
 [[nodiscard]] Waveform raised(Waveform waveform, double by);
 
 /// Returns the reason why the device has no drive of this name, with a hint; empty where the drive exists.
 [[nodiscard]] std::string why_no_drive(const Device& device, const std::string& name);
 
-/// Throws InvalidInput for an electrode name that cannot name a drive.
+/// Throws InvalidInput for an electrode name that cannot be the name of a drive.
 void check_drive_name(const SceneFile::Impl& file, const std::string& electrode);
 
 /// Checks every [waveform.NAME] and [driver.NAME] as far as this is possible without pull-in voltages. Throws InvalidInput.
 /// Sets Scene::need_pull_in and Scene::standing.
 void check_drives(const SceneFile::Impl& file, Scene& scene);
 
-/// Reads all drives in volts. Throws InvalidInput for a waveform outside the limits of its driver.
+/// Reads the waveforms and sources of all drives, in volts. Throws InvalidInput for a waveform outside the limits of its
+/// source.
 [[nodiscard]] Drives read_drives(const SceneFile::Impl& file, const Device& device,
                                  const std::map<std::string, PullInVoltages>& pull_in);
 

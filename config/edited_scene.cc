@@ -15,7 +15,7 @@ namespace {
 
 using internal::toml_string;
 
-// Converts line and column, which TOML counts from 1 and in characters, to a place in the text.
+// Converts line and column of a scene's text, which TOML counts from 1 and in characters, to an index in the text.
 class Lines {
  public:
   explicit Lines(std::string_view text) : text_(text), begins_{0} {
@@ -32,7 +32,7 @@ class Lines {
     }
     return i;
   }
-  // Returns the end of the line of a place, without its line break.
+  // Returns the end of the line that contains an index of the text, without its line break.
   [[nodiscard]] std::size_t end(std::size_t place) const {
     std::size_t end = std::min(text_.find('\n', place), text_.size());
     if (end > place && text_[end - 1] == '\r') --end;
@@ -64,7 +64,7 @@ const toml::node* node_at(const toml::table& root, const std::vector<std::string
   return node;
 }
 
-// Writes a value in the unit of the text that it replaces.
+// Writes a value in the unit of the scene's text that it replaces.
 std::string in_unit_of(const std::string& written, const Quantity& value) {
   constexpr const char* number_begins = "0123456789.eE+-−_";
   std::size_t end = 0;
@@ -100,7 +100,7 @@ std::string edited_scene(std::string_view text, const std::string& name, const s
   const toml::table root = internal::parse_toml(text, name);
   const Lines lines(text);
   std::vector<Replacement> all;
-  std::map<std::size_t, std::string> remarks;  // comments to add, by the end of their line
+  std::map<std::size_t, std::string> remarks;  // comments to add to the scene's text, by the end of their line
   for (const SceneEdit& edit : edits) {
     const std::vector<std::string> path = internal::split_path(edit.path);
     const toml::node* node = node_at(root, path);
@@ -142,8 +142,8 @@ std::string edited_scene(std::string_view text, const std::string& name, const s
 
 namespace {
 
-// Returns the range from a header of [spread] or [spread.NAME] to the next header of another section; none without such a
-// header.
+// Returns the range of a scene's text from a header of [spread] or [spread.NAME] to the next header of another section; none
+// without such a header.
 std::optional<std::pair<std::size_t, std::size_t>> spread_of(std::string_view text) {
   std::optional<std::pair<std::size_t, std::size_t>> found;
   for (std::size_t begin = 0; begin < text.size();) {

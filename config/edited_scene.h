@@ -1,4 +1,4 @@
-// Replaces numbers in the text of a scene and keeps its comments, order and units.
+// Replaces numbers in the text of a scene and preserves its comments, order and units.
 #pragma once
 
 #include <string>
@@ -9,21 +9,21 @@
 
 namespace softland {
 
-/// A new value for a key of one quantity, or for an element of a list.
+/// A new value for a key of a scene that holds one quantity, or for an element of a list.
 struct SceneEdit {
-  std::string path;         ///< path of the key: "structure.thickness"
-  std::size_t element = 0;  ///< element of a list, counted from 1; 0 for a key without a list
+  std::string path;         ///< path of the key in the scene, such as "structure.thickness"
+  std::size_t element = 0;  ///< number of the list element that changes, from 1; 0 for a key without a list
   Quantity value;
-  std::string remark = {};  ///< comment to add at the end of the line of the key; empty for none
+  std::string remark = {};  ///< comment to add to the line of the key; empty for none
 };
 
-/// Returns the text with the new values, each in the unit of the value that it replaces, to ten digits. A missing key is added
-/// to its section, or with its section at the end, in the SI unit. `name` stands for the text in messages. Throws InvalidInput
-/// for a text that is not TOML, and where a key cannot be added because its section is an inline table.
+/// Returns the scene's text with the new values, each in the unit of the value that it replaces, to ten digits. A missing key
+/// is added to its section, or with its section at the end, in the SI unit. `name` is the name of the text in messages. Throws
+/// InvalidInput for a text that is not TOML, and where a key cannot be added because its section is an inline table.
 [[nodiscard]] std::string edited_scene(std::string_view text, const std::string& name, const std::vector<SceneEdit>& edits);
 
-/// Returns the text of a scene with the section [spread] of another scene, which replaces an existing one or is added at the
-/// end. Throws InvalidInput if an existing spread is not a section with a header.
+/// Returns the text of a scene with the section [spread] (process variation) of another scene, which replaces an existing
+/// [spread] or is added at the end. Throws InvalidInput if an existing spread is not a section with a header.
 [[nodiscard]] std::string with_spread_of(std::string_view text, const std::string& name, const SceneFile& other);
 
 }  // namespace softland

@@ -1,4 +1,4 @@
-// Reads the rows of a table from a file. Internal to config/.
+// Reads the rows (times and voltages) of a table waveform from a file. Internal to config/.
 #pragma once
 
 #include <optional>
@@ -11,9 +11,9 @@
 namespace softland::internal {
 
 struct FileRows {
-  Table table;                        ///< rows from t = 0 on
-  std::optional<double> before = {};  ///< mean of the rows before t = 0, if the file has some [V]
-  std::string told = {};              ///< one line of notes about a file of another program; empty for a file of softland
+  Table table;                        ///< recorded times and voltages from t = 0 on
+  std::optional<double> before = {};  ///< mean voltage of the rows before t = 0, if the file has such rows [V]
+  std::string told = {};              ///< note for the user on a file of another program; empty for a file of softland
 };
 
 /// Reads the file that [waveform.NAME] names. The numbers of a file written by softland (column time_s) are read bit for bit,

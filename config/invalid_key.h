@@ -1,4 +1,4 @@
-// An invalid key of a scene file, with its place, for programs that show the place.
+// An invalid key of a scene file, with its position, for programs that show the position.
 #pragma once
 
 #include <source_location>
@@ -13,7 +13,7 @@ namespace softland {
 class InvalidKey : public InvalidInput {
  public:
   struct Place {
-    std::string key;   ///< path of the key: "gap.contact"
+    std::string key;   ///< path of the invalid key, such as "gap.contact"
     std::string file;  ///< name of the scene file in messages; empty where a command-line option set the key
     int line = 0;      ///< line of the key in the scene file, counted from 1; 0 where the line is not known
   };

@@ -22,7 +22,7 @@ constexpr std::string_view clamped = "clamped";
 
 double one_of_unit(const SectionReader& in, std::string_view key, const Dimension& due) {
   const std::string& unit = in.text(key);
-  if (due == dimension::mass && unit == "t") return 1e3;  // tonne, the mass unit of models in mm, s and N
+  if (due == dimension::mass && unit == "t") return 1e3;  // t is a tonne here, the mass unit of models in mm, s and N
   Quantity one;
   try {
     one = parse_quantity("1 " + unit);
@@ -46,8 +46,8 @@ ModeKeys mode_keys(const SectionReader& in) {
   return made;
 }
 
-// Sets the width from the file, from the key, or from both if they agree. Returns the widths at the positions if the width is
-// not constant.
+// Sets the width of the beam from the file of modes, from the key, or from both if they agree. Returns the widths at the
+// positions if the width is not constant.
 std::vector<double> take_width(Structure& s, const ModeTable& table, const SectionReader& in) {
   constexpr double even = 1e-3;
   double low = std::numeric_limits<double>::infinity(), high = 0;

@@ -1,4 +1,4 @@
-// Reads the table of modes that [structure] kind = "modes" names or holds. Internal to config/.
+// Reads the table of vibration modes that [structure] kind = "modes" names or holds. Internal to config/.
 #pragma once
 
 #include <string_view>
@@ -9,7 +9,7 @@
 
 namespace softland::internal {
 
-/// Names of the keys that give the source of the modes and the way to read their file.
+/// Names of the keys that give the source of the modes and the format of their file.
 namespace modal_keys {
 inline constexpr std::string_view file = "file", axis = "axis", direction = "direction", length_unit = "length_unit",
                                   mass_unit = "mass_unit", mass = "mass", mass_normalised = "mass_normalised", clamp = "clamp",
@@ -20,8 +20,9 @@ inline constexpr std::string_view file = "file", axis = "axis", direction = "dir
 /// Returns the keys that describe the table of modes; in a scene they precede the other keys of [structure].
 [[nodiscard]] std::vector<Key> modal_table_keys();
 
-/// Sets the table, length, width and number of modes of the structure. A file of another program adds a note to the scene. Throws
-/// InvalidInput with key, file and rule for unreadable data, and for a structure that is not a beam of constant width.
+/// Sets the table of modes, length, width and number of modes of the structure. A file of another program adds a note to the
+/// scene. Throws InvalidInput with key, file and rule for unreadable data, and for a structure that is not a beam of constant
+/// width.
 void read_modal_table(Scene& scene, const SectionReader& in);
 
 /// Replaces the name of a file of modes in a scene by the table itself, so that the scene needs no other file. The table reads

@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::uint64_t most_searched = 10'000'000;
 
-/// Adds the place of an entry of a plan to the beginning of messages about the entry.
+/// Runs `read`, and adds the source (option or file and line) of a plan's entry to the beginning of messages about the entry.
 template <class Read>
 auto at_place(const PlanRequest& request, std::string_view key, std::size_t number, Read&& read) {
   try {
@@ -34,7 +34,7 @@ auto at_place(const PlanRequest& request, std::string_view key, std::size_t numb
   }
 }
 
-/// Splits "KEY=VALUES" into key and values.
+/// Splits an entry "KEY=VALUES" of a plan into key and values.
 std::pair<std::string, std::string> name_and_values(const std::string& entry) {
   const std::size_t equals = entry.find('=');
   require(equals != std::string::npos && equals > 0,
@@ -117,7 +117,8 @@ void Plan::read_rows(const PlanRequest& request) {
   std::vector<double> scale;
   at_place(request, "list", 0, [&] {
     for (const std::string& column : request.columns) {
-      // The name is "structure.length [um]"; unlike the bracket of a unit, that of a list element follows without a blank.
+      // A column name of a list of points is "structure.length [um]"; unlike the bracket of a unit, that of a list element
+      // follows without a blank.
       const std::size_t bracket = column.find(" [");
       const std::string name(trimmed(std::string_view(column).substr(0, bracket)));
       std::string unit;

@@ -1,7 +1,9 @@
-// The plan of a design-space exploration: a scene, its varied numbers and their values, and the study (a verb) of every point.
+// The plan of a design-space exploration is the request for it: a scene, its varied numbers and their values, and the study (a
+// verb) of every point.
 //
 // A plan is identified by its text: the canonical scene, the variables in SI units, the study with all its options. Equal texts
-// give equal points, on any machine and in any part of the plan. A point is a function of its number:
+// give equal points, on any machine and in any part of the plan. A point, one combination of values, is a function of its
+// number:
 //   grid     all combinations of the values of the variables, the last one fastest
 //   sample   a point set in the box of the ranges (sampling/points.h)
 //   list     the rows of a table
@@ -25,64 +27,64 @@
 
 namespace softland {
 
-/// The request for a plan, from options of the command line or from a file.
+/// The request for the plan of a design-space exploration, from options of the command line or from a file.
 struct PlanRequest {
-  /// Returns the place of an entry for messages: "--vary gap.contact=1 um:2 um" for ("vary", 0), "map.toml:4: plan.study =
-  /// "optimise"".
+  /// Returns the source of a plan's entry for messages: "--vary gap.contact=1 um:2 um" for ("vary", 0), or "map.toml:4:
+  /// plan.study = "optimise"".
   using Place = std::function<std::string(std::string_view key, std::size_t number)>;
 
   SceneFile scene;
-  std::vector<std::string> vary = {};               ///< ranges of variables: "structure.length=245 um:275 um:7"
-  std::string sample = {};                          ///< point set: "sobol:128"; empty for a grid
-  std::string pareto = {};                          ///< figures that a search for a Pareto front minimises
-  std::vector<std::string> columns = {};            ///< columns of a list: "gap.contact [um]"; empty without a list
-  std::vector<std::vector<double>> rows = {};       ///< values of a list, by row and column
-  std::string study = "simulate";                   ///< study of every point: the verb that computes the point
-  std::map<std::string, std::string> options = {};  ///< options of the study, by name
+  std::vector<std::string> vary = {};               ///< ranges of varied keys: "structure.length=245 um:275 um:7"
+  std::string sample = {};                          ///< point set that samples the ranges: "sobol:128"; empty for a grid
+  std::string pareto = {};                          ///< figures of merit that a search for a Pareto front minimises
+  std::vector<std::string> columns = {};            ///< columns of a list of points: "gap.contact [um]"; empty without a list
+  std::vector<std::vector<double>> rows = {};       ///< values of a list of points, by row and column
+  std::string study = "simulate";                   ///< study of every point: the softland command that computes the point
+  std::map<std::string, std::string> options = {};  ///< options of the study of every point, by name
   std::uint64_t seed = 1;
   Place place = {};
 };
 
-/// Reads a plan file, which has a section [plan]. The section names the file of the scene, relative to the plan file, or holds
-/// the text of the scene.
-/// Throws InvalidInput with file, line, key, value and rule.
+/// Reads a plan file, the request of a design-space exploration, which has a section [plan]. The section names the file of the
+/// scene, relative to the plan file, or holds the text of the scene. Throws InvalidInput with file, line, key, value and rule.
 [[nodiscard]] PlanRequest read_plan(const SceneFile& file);
-/// True when the file is a plan: it has a section [plan].
+/// Returns true when the file is a plan of a design-space exploration: it has a section [plan].
 [[nodiscard]] bool is_plan(const SceneFile& file);
-/// Reads columns and rows of a CSV file, whose header names keys with their units, "structure.length [um],gap.contact [um]".
+/// Reads a list of points from a CSV file, whose header names keys with their units, "structure.length [um],gap.contact [um]".
 /// Throws InvalidInput.
 void read_list(PlanRequest& request, const std::string& path);
-/// Adds options of the study, "impact-velocity=1 mm/s". Throws InvalidInput.
+/// Adds options of the study of every point, such as "impact-velocity=1 mm/s". Throws InvalidInput.
 void add_options(PlanRequest& request, const std::vector<std::string>& told);
-/// Options of the study that are keys of [plan]; all other options are in the list `options` of [plan].
+/// Options of the study of every point that are keys of [plan]; all other options are in the list `options` of [plan].
 inline constexpr std::string_view plan_options[] = {"certify",  "samples",   "target", "actuator",
                                                     "waveform", "optimizer", "budget"};
 
-/// A key of the scene that a variable sets.
+/// A key of the scene that a varied number of the plan sets.
 struct PlanKey {
-  std::string path;         ///< path of the key: "electrode.main.span"
-  std::size_t element = 0;  ///< element of a list, counted from 1; 0 for a key without a list
-  Quantity base = {};       ///< value of the key in the scene, if the variable is a factor
+  std::string path;         ///< path of the key in the scene, such as "electrode.main.span"
+  std::size_t element = 0;  ///< number of the list element that varies, from 1; 0 for a key without a list
+  Quantity base = {};       ///< value of the key in the scene, if the plan's variable is a factor on it
 };
 
-/// A varied number of the scene, or several numbers varied by one factor.
+/// A varied number of the scene, or several numbers of the scene varied by one factor.
 struct PlanVariable {
-  std::string name;  ///< "structure.length", "electrode.main.span[2]", "gap.electrode*gap.contact"
+  std::string name;  ///< name of the variable: "structure.length", "electrode.main.span[2]", "gap.electrode*gap.contact"
   std::vector<PlanKey> keys;
-  Dimension dimension = {};                ///< dimension of the values; none for a factor
-  bool is_factor = false;                  ///< true when the variable multiplies the scene's own numbers
-  bool is_whole = false;                   ///< true when the variable takes whole numbers only
-  std::vector<std::string> words = {};     ///< words of a choice or a flag; the value is the number of a word, from 1
-  std::vector<double> values = {};         ///< values on a grid [SI unit of `dimension`]
-  double low = 0, high = 0;                ///< range of a sample [SI unit of `dimension`]
-  bool is_logarithmic = false;             ///< true for equal ratios instead of equal steps
-  [[nodiscard]] std::string unit() const;  ///< "m", "Vdp"; empty for a plain number
+  Dimension dimension = {};  ///< dimension of the variable's values; none for a factor
+  bool is_factor = false;    ///< true when the variable multiplies the scene's own numbers
+  bool is_whole = false;     ///< true when the variable takes whole numbers only
+  /// Words of a varied choice or flag; the variable's value is the number of a word, from 1.
+  std::vector<std::string> words = {};
+  std::vector<double> values = {};         ///< values of the variable on a grid [SI unit of `dimension`]
+  double low = 0, high = 0;                ///< range of the variable for a sample [SI unit of `dimension`]
+  bool is_logarithmic = false;             ///< true for values in equal ratios instead of equal steps
+  [[nodiscard]] std::string unit() const;  ///< unit of the variable, such as "m" or "Vdp"; empty for a plain number
 };
 
 class Plan {
  public:
-  /// Throws InvalidInput, beginning with the place of the entry, for an invalid plan: an unknown key, a unit of another
-  /// dimension, a grid of more than `most_points`.
+  /// Makes the plan of a request. Throws InvalidInput, with a message that begins with the source of the entry, for an invalid
+  /// plan: an unknown key, a unit of another dimension, a grid of more than `most_points`.
   explicit Plan(const PlanRequest& request);
 
   static constexpr std::uint64_t most_points = 1'000'000'000;
@@ -93,16 +95,17 @@ class Plan {
   [[nodiscard]] const std::string& study() const { return study_; }
   [[nodiscard]] const std::map<std::string, std::string>& options() const { return options_; }
   [[nodiscard]] std::uint64_t seed() const { return seed_; }
-  /// Returns true if a search for a Pareto front chooses the points; pareto() names the figures that the search minimises.
+  /// Returns true if a search for a Pareto front chooses the points; pareto() has the figures that the search minimises.
   [[nodiscard]] bool is_search() const { return is_search_; }
   [[nodiscard]] const std::string& pareto() const { return pareto_; }
-  /// Maps a place in the unit cube to the box of the ranges; returns the values of the variables at the mapped place [SI unit].
+  /// Maps a point of the unit cube to the box of the variables' ranges; returns the values of the variables there [SI unit].
   [[nodiscard]] std::vector<double> values_in_box(std::vector<double> place) const;
-  /// Returns the values of the variables at point k, in their order [SI unit]. Throws InvalidInput for the points of a search.
+  /// Returns the values of the variables at point k of the plan, in the order of the variables [SI unit]. Throws InvalidInput
+  /// for the points of a search.
   [[nodiscard]] std::vector<double> values(std::uint64_t k) const;
   /// Returns the scene with these values of the variables. The scene may be invalid; read_scene() checks it.
   [[nodiscard]] SceneFile scene(const std::vector<double>& values) const;
-  /// Returns the canonical text, a file that read_plan() accepts.
+  /// Returns the canonical text of the plan, a file that read_plan() accepts.
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
@@ -118,7 +121,7 @@ class Plan {
   std::uint64_t seed_;
   std::string pareto_;
   std::vector<PlanVariable> variables_;
-  std::vector<std::vector<double>> rows_;  // values of a list, by row and variable [SI unit]
+  std::vector<std::vector<double>> rows_;  // values of a list of points, by row and variable [SI unit]
   std::optional<PointSet> sample_;         // point set of a sample; also set for a Pareto search, which reads ranges as a sample
   bool is_search_ = false;
   std::uint64_t points_ = 1;

@@ -1,4 +1,5 @@
-// Reads the entries of a plan: the keys that an entry names, and their values or range. See config/plan.h.
+// Reads the entries of a plan of a design-space exploration: the keys that an entry names, and their values or range. See
+// config/plan.h.
 #pragma once
 
 #include <fmt/format.h>
@@ -57,7 +58,7 @@ inline double in_few_digits(double value) {
   return rounded;
 }
 
-/// Returns the value of a variable at the share `t` of its range, 0 to 1.
+/// Returns the value of a variable at the share `t` of the variable's range, 0 to 1.
 inline double between(const PlanVariable& variable, double t) {
   const double low = variable.low, high = variable.high;
   if (t == 0) return low;
@@ -82,7 +83,8 @@ class KeyFinder {
     std::optional<Quantity> base = {};  ///< value of the key in the scene
   };
 
-  /// Finds the keys of an entry by its name. Throws InvalidInput whose message states the broken rule, without the entry.
+  /// Finds the scene's keys that an entry of a plan names. Throws InvalidInput whose message states the broken rule, without
+  /// the entry.
   [[nodiscard]] Found find(const std::string& name) const {
     Found found{.key = {.path = name}};
     if (const std::size_t bracket = name.rfind('['); bracket != std::string::npos && name.ends_with(']')) {
@@ -150,7 +152,7 @@ class KeyFinder {
   const SceneFile::Impl& file_;
 };
 
-/// Reads one entry of a plan into a variable.
+/// Reads one entry of a plan into a varied number.
 class EntryReader {
  public:
   EntryReader(const KeyFinder& finder, const std::string& name) {
@@ -165,7 +167,7 @@ class EntryReader {
     variable_.is_whole = type == KeyType::integer;
   }
 
-  /// Reads the values A,B,C: words of a choice, or numbers.
+  /// Reads the values A,B,C of an entry of a plan: words of a choice, or numbers.
   PlanVariable of_list(const std::vector<std::string>& texts) && {
     const KeyType type = keys_.front().schema->type;
     if (type == KeyType::choice || type == KeyType::flag) {
@@ -176,7 +178,8 @@ class EntryReader {
     return finish();
   }
 
-  /// Reads a range LOW:HIGH:N of a grid or, if `is_sample`, LOW:HIGH of a box. The suffix :log selects equal ratios.
+  /// Reads the range of an entry of a plan: LOW:HIGH:N for a grid or, if `is_sample`, LOW:HIGH for a sampled box. The suffix
+  /// :log selects equal ratios.
   PlanVariable of_range(std::vector<std::string> parts, bool is_sample) && {
     const KeyType type = keys_.front().schema->type;
     require(type != KeyType::choice && type != KeyType::flag, [&] {
@@ -238,8 +241,8 @@ class EntryReader {
                                                     count, variable_.low, variable_.high, fmt::join(counts, ", ")));
   }
 
-  /// Reads quantities of one of the dimensions that the key may have. If the key has a unit, plain numbers and percentages are
-  /// factors on the value that the key has in the scene.
+  /// Reads quantities of one of the dimensions that the varied key may have. If the key has a unit, plain numbers and
+  /// percentages are factors on the value that the key has in the scene.
   std::vector<Quantity> read(const std::vector<std::string>& texts) {
     std::vector<Quantity> all;
     bool is_percent = false;
@@ -261,7 +264,7 @@ class EntryReader {
     const Dimension given = all.front().dimension;
     const std::vector<Dimension>& allowed = keys_.front().schema->dimensions;
     const std::optional<Quantity>& base = keys_.front().base;
-    // A position on the beam may be a length in the scene; a percentage is then a factor on the length.
+    // A position on the beam may be a length in the scene; a percentage in the plan is then a factor on the length.
     const bool is_of_value = keys_.front().schema->bound.place != nullptr && given == dimension::none && is_percent && base &&
                              base->dimension != dimension::none;
     const bool fits = variable_.is_whole

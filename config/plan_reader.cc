@@ -41,7 +41,7 @@ void read_list(PlanRequest& request, const std::string& path) {
 
 namespace {
 
-/// Reads the keys of [plan].
+/// Reads the keys of [plan] in a plan file.
 class PlanReader {
  public:
   explicit PlanReader(const SceneFile& file) : file_(file.impl()) {
@@ -118,7 +118,7 @@ class PlanReader {
     }
   }
   [[nodiscard]] PlanRequest::Place place() const {
-    // The places are copied, because the file may not exist any more when a message needs one.
+    // The sources of the entries (file and line) are copied, because the file may not exist any more when a message needs one.
     std::map<std::string, std::string, std::less<>> places;
     for (const auto& [key, node] : *find_section()) {
       const std::string at = path(key.str());

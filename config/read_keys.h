@@ -1,4 +1,4 @@
-// The keys of a waveform that describe the file of its rows.
+// The keys of [waveform.NAME] that describe how the file of the waveform's rows is read.
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@
 
 namespace softland {
 
-/// Reads assignments KEY=VALUE, such as `column=CH1`, of the keys that describe how a file is read. Throws InvalidInput with the
-/// option, the value and the rule.
+/// Reads assignments KEY=VALUE, such as `column=CH1`, of the keys that describe how a recorded file is read. Throws
+/// InvalidInput with the option, the value and the rule.
 [[nodiscard]] ReadKeys read_keys(const std::vector<std::string>& assignments);
 
 namespace internal {
 
 class SectionReader;
-/// Reads the keys that describe how a file is read from [waveform.NAME] of a scene.
+/// Reads the keys that describe how a recorded file is read from [waveform.NAME] of a scene.
 [[nodiscard]] ReadKeys read_keys(const SectionReader& in);
 
 }  // namespace internal

@@ -38,7 +38,7 @@ void check_section_names(const SceneFile::Impl& file) {
   }
 }
 
-/// Sets the members of the scene that the keys of one section describe, and checks them together.
+/// Sets the members of the scene that the keys of one section describe, and checks the members together.
 void read_section(Scene& scene, const internal::Section& section, const SectionReader& in, std::string_view name = {}) {
   if (!in.is_present() && !section.always_in_force) return;
   const std::size_t entry = section.begin(scene, in, name);
@@ -60,7 +60,7 @@ void read_sections(Scene& scene, const SceneFile::Impl& file) {
   }
 }
 
-/// Checks that no two electrodes on one side overlap.
+/// Checks that no two electrodes on the same side of the beam overlap.
 void check_electrodes(const Device& device, const SceneFile::Impl& file) {
   const auto conflict = electrode_conflict(device.structure, device.electrodes);
   if (!conflict) return;
@@ -125,7 +125,7 @@ std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device
         "{}: surface.residual_stress has no effect on a cantilever; surface.cantilever_load selects its effect", file.name));
   }
   constexpr double wide = 5;          // width over thickness above which the beam bends more like a plate
-  constexpr double rounding = 1e-12;  // 20 um does not count as more than five times 4 um because of the last bit
+  constexpr double rounding = 1e-12;  // for a width of 20 um and a thickness of 4 um, rounding must not exceed the ratio
   const Structure& structure = device.structure;
   const auto* const beam = structure.find<Beam>();
   if (beam != nullptr && structure.is_built() && !beam->plate_strain && !file.find({"structure", "plate_strain"})) {
@@ -170,7 +170,7 @@ std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device
   return warnings;
 }
 
-/// Warns if a number of [structure] varies while sections of the beam have their own fixed value of it.
+/// Warns if a number of [structure] varies while sections of the beam have their own fixed value of this number.
 void warn_of_fixed_sections(const SceneFile::Impl& file, const DeviceSpread& spread, std::vector<std::string>& warnings) {
   const auto* const beam_sections = file.find({"structure", "sections"});
   if (beam_sections == nullptr || !beam_sections->is_array()) return;
@@ -196,7 +196,8 @@ void warn_of_fixed_sections(const SceneFile::Impl& file, const DeviceSpread& spr
   }
 }
 
-/// Returns all sections that apply to the scene, with [spread] from resolved_spread(). `keys_of` makes the table of a section.
+/// Returns all sections that apply to the scene, with [spread] (process variation) from resolved_spread(). `keys_of` makes the
+/// table of a section.
 template <class KeysOf>
 toml::table sections_of(const SceneFile::Impl& file, KeysOf&& keys_of) {
   toml::table root;

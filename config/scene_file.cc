@@ -23,7 +23,7 @@ namespace {
 
 using internal::join_path;
 
-/// Returns the depth of nested tables.
+/// Returns the depth of nested tables of a TOML node.
 std::size_t levels(const toml::node& node) {
   const toml::table* table = node.as_table();
   if (!table) return 0;
@@ -48,7 +48,7 @@ void record_origins(SceneFile::Impl& impl, const toml::table& table, const std::
     }
     const auto* inner = node.as_table();
     if (!inner) continue;
-    // A section and a dotted key may together form a path that is too deep to be read again.
+    // A section and a dotted key may together form a path of keys that is too deep to be read again.
     require(parts < internal::deepest_path, fmt::format("{}: a key has more than {} parts", place, internal::deepest_path));
     record_origins(impl, *inner, key_path, parts + 1);
   }
@@ -76,7 +76,7 @@ SceneFile::Impl::Origin SceneFile::Impl::origin(std::string_view path) const {
   // Find the origin of a value that contains this key, such as an option that replaced a whole section.
   const Origin* nearest = nullptr;
   for (const auto& [known, place] : origins) {
-    if (is_below(path, known)) nearest = &place;  // ancestors sort from the shortest to the longest
+    if (is_below(path, known)) nearest = &place;  // origins are sorted by path, so that the last match is the nearest
   }
   if (nearest) return *nearest;
   // Find a section that exists only because an option set one of its keys.
@@ -97,7 +97,7 @@ std::string SceneFile::Impl::written(std::string_view path) const {
 
 namespace {
 
-// Returns "scenes/x.toml:12" as file and line.
+// Splits the origin of a key, "scenes/x.toml:12", into file and line.
 InvalidKey::Place place_of_origin(std::string_view key, const SceneFile::Impl::Origin& origin) {
   InvalidKey::Place place{.key = std::string(key)};
   if (origin.is_option) return place;
@@ -249,7 +249,7 @@ void SceneFile::set(std::string_view assignment) {
   } catch (const InvalidInput&) {
     parsed.clear();
   }
-  if (parsed.size() != 1) {  // not TOML, or a line break smuggled in a second key
+  if (parsed.size() != 1) {  // the text is not TOML, or a line break in it begins a second key
     try {
       parsed = internal::parse_value(internal::toml_string(value));
     } catch (const InvalidInput&) {
@@ -314,7 +314,7 @@ void SceneFile::erase(const std::string& path) {
 void SceneFile::set_waveform(const std::string& drive, const Waveform& given) {
   if (const Own* own = std::get_if<Own>(&given))
     throw InvalidInput(fmt::format("waveform.{}: {} cannot be written into a scene file", drive, described(*own)));
-  static_cast<void>(signal(given));  // a waveform that breaks its family's rules would write an unreadable scene
+  static_cast<void>(signal(given));  // check that the waveform obeys the rules of its family, so that the scene stays readable
   const bool is_factor = drive == dispersion_drive;
   const Waveform waveform = is_factor ? internal::raised(given, 1) : given;
   toml::table table{{"family", std::string(family(waveform))}};
@@ -361,7 +361,7 @@ SceneFile SceneFile::again(std::string name) const {
 
 namespace {
 
-// Throws InvalidInput where the scene contains more than a file can express.
+// Throws InvalidInput for a scene that contains more than a file can express, such as an added contact.
 void require_writable(const SceneFile::Impl& impl) {
   const auto* const own = impl.own_contact ? std::get_if<OwnContact>(&impl.own_contact->model) : nullptr;
   require(!impl.own_contact, [&] {

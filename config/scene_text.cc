@@ -16,7 +16,7 @@ namespace softland {
 namespace internal {
 namespace {
 
-/// Returns the end of the string that begins at `begin`; a single-line string ends with its line at the latest.
+/// Returns the end of the TOML string that begins at `begin`; a single-line string ends with its line at the latest.
 std::size_t end_of_string(std::string_view text, std::size_t begin) {
   const char quote = text[begin];
   const std::string triple(3, quote);
@@ -25,7 +25,7 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
     if (text[i] == '\\' && quote == '"') {
       ++i;
     } else if (is_multiline && text.substr(i).starts_with(triple)) {
-      const auto rest = text.find_first_not_of(quote, i);  // a string may end with two quotes before the closing three
+      const auto rest = text.find_first_not_of(quote, i);  // a TOML string may end with two quotes before the closing three
       return rest == std::string_view::npos ? text.size() : rest;
     } else if (!is_multiline && (text[i] == quote || text[i] == '\n')) {
       return i + 1;
@@ -34,8 +34,8 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-/// Returns the place where a dotted key has too many parts, npos if none has. toml++ limits nested values but not dotted keys;
-/// a table of some ten thousand levels overflows the stack when it is destroyed.
+/// Returns the index in the text of a dotted key that has too many parts, npos if none has. toml++ limits nested values but not
+/// dotted keys; a table of some ten thousand levels overflows the stack when it is destroyed.
 std::size_t find_deep_dotted_key(std::string_view text) {
   constexpr std::string_view ends_of_key = "\n=,[]{}";
   std::size_t dots = 0;
@@ -60,13 +60,13 @@ std::string float_text(double value) {
   if (std::isnan(value)) return "nan";
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
   std::string text = number_text(value);
-  if (text.find_first_of(".e") == std::string::npos) text += ".0";  // an integer would change type
+  if (text.find_first_of(".e") == std::string::npos) text += ".0";  // TOML would read the number as an integer
   return text;
 }
 
 std::string key_text(std::string_view key) { return is_bare_key(key) ? std::string(key) : toml_string(key); }
 
-/// Returns the keys of `table`: those in `order` first, then the rest by name.
+/// Returns the keys of `table`: those in `order` first, then the others sorted by name.
 
 struct Entry {
   std::string key;
@@ -95,7 +95,8 @@ std::vector<std::string_view> key_names(const Section* section) {
   return names;
 }
 
-/// Writes a section and its subsections. Inline tables stay inline: an entry of [spread] is most readable on one line.
+/// Writes a section of a scene and its subsections. Inline tables stay inline: an entry of [spread] is most readable on one
+/// line.
 void write_section(std::string& out, const toml::table& table, const std::string& path, std::size_t depth,
                    const Section* section) {
   const bool holds_keys = section && (depth == (section->is_named ? 2U : 1U) || (section->may_be_named && depth == 2));
@@ -255,14 +256,14 @@ std::vector<std::string> split_path(std::string_view given) {
     if (end < given.size()) path += '.';
     begin = end + 1;
   }
-  // The TOML parser reads the path, so that quotes have the same meaning as in a file.
+  // The TOML parser reads the path of a key, so that quotes have the same meaning as in a file.
   const std::string rule = "not a key path such as structure.length";
   std::vector<std::string> parts;
   try {
     const toml::table parsed = parse_toml(std::string(path) + " = 0", "");
     for (const toml::table* table = &parsed; table != nullptr;) {
       if (table->size() != 1) throw InvalidInput(rule);
-      const auto first = table->begin();  // the iterator must live: it owns the key to which it points
+      const auto first = table->begin();  // the iterator must live as long as the key, which it owns
       parts.emplace_back(first->first.str());
       table = first->second.as_table();
     }

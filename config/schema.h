@@ -21,16 +21,16 @@ namespace softland::internal {
 
 class SectionReader;
 
-/// Word for the end of the beam, used instead of a position.
+/// Word for the free end of the beam, used instead of a position.
 inline constexpr std::string_view tip = "tip";
 
 struct Section;
 
-/// The type of the value of a key. `table`: keys in braces; `tables`: a list of such tables.
+/// The type of the value of a scene's key. `table`: keys in braces; `tables`: a list of such tables.
 enum class KeyType { text, texts, flag, integer, choice, quantity, quantities, table, tables };
 
-/// The member of a scene that a key sets. At most one of these functions is set, except that a word may replace a table. Their
-/// second argument selects the electrode or the table of a list; `element` selects the element of a list.
+/// The member of a scene that a key sets. At most one of these functions is set, except that a word may replace a table. The
+/// second argument of the functions selects the electrode or the table of a list; `element` selects the element of a list.
 struct Bound {
   double& (*number)(Scene&, std::size_t) = nullptr;
   Place& (*place)(Scene&, std::size_t, std::size_t element) = nullptr;
@@ -44,31 +44,31 @@ struct Bound {
 struct Key {
   std::string_view name;
   KeyType type = KeyType::quantity;
-  /// Permitted dimensions of the value; empty if another key decides. The first one gives the SI unit of the key.
+  /// Permitted dimensions of the key's value; empty if another key decides. The first dimension gives the SI unit of the key.
   std::vector<Dimension> dimensions = {};
-  Range range = {};         ///< permitted values; see range_of()
-  std::size_t count = 0;    ///< quantities: number of list elements; 0 for any number
-  bool any_word = false;    ///< integer: true if any text may replace the number
-  bool may_be_one = false;  ///< quantities: true if a single quantity may replace the list
-  bool is_nested = false;   ///< quantities: true if the value may be a list of lists, which are read in sequence
+  Range range = {};         ///< permitted values of the key; see range_of()
+  std::size_t count = 0;    ///< type `quantities`: number of list elements; 0 for any number
+  bool any_word = false;    ///< type `integer`: true if any text may replace the number
+  bool may_be_one = false;  ///< type `quantities`: true if a single quantity may replace the list
+  bool is_nested = false;   ///< type `quantities`: true if the value may be a list of lists, which are read in sequence
   std::vector<std::string_view> choices = {};
-  /// Words that may replace an integer, a quantity, or an element of quantities.
+  /// Words that may replace an integer, a quantity, or an element of a list of quantities.
   std::vector<std::string_view> words = {};
-  std::string_view fallback = {};  ///< default as TOML; empty for none
+  std::string_view fallback = {};  ///< default value of the key as TOML; empty for none
   bool required = false;
   std::vector<std::string_view> only_for = {};  ///< values of Section::selector for which this key exists; empty: all
   std::vector<std::string_view> instead_of =
-      {};                              ///< keys that may replace this key; one of them suffices if this key is required
-  std::string_view about = {};         ///< description, one line
-  std::string_view beyond = {};        ///< advice for a user who needs a value outside the range
+      {};                              ///< other keys that may replace this key; one of them suffices if this key is required
+  std::string_view about = {};         ///< description of the key, one line
+  std::string_view beyond = {};        ///< advice for a user who needs a value outside the key's range
   std::string_view why_fixed = {};     ///< reason why [spread] cannot vary this key; empty if [spread] can
-  std::string_view if_list = {};       ///< quantity: advice for a user who gives a list
-  std::string_view like = {};          ///< an example value as text; empty: see example_of()
-  std::string_view unless = {};        ///< if this other key is given, the key is not required
-  const Section* (*part)() = nullptr;  ///< table, tables: the keys of one table
+  std::string_view if_list = {};       ///< type `quantity`: advice for a user who gives a list
+  std::string_view like = {};          ///< an example value of the key as text; empty: see example_of()
+  std::string_view unless = {};        ///< another key, which makes this key optional if given
+  const Section* (*part)() = nullptr;  ///< types `table` and `tables`: the keys of one table
   Bound bound = {};
 
-  // Setters of properties that the functions in config/schema/sections.h do not set.
+  // Setters of properties of a key that the functions in config/schema/sections.h do not set.
   [[nodiscard]] Key needed() && { return required = true, std::move(*this); }
   [[nodiscard]] Key by_default(std::string_view toml) && { return fallback = toml, std::move(*this); }
   [[nodiscard]] Key of(std::vector<std::string_view> owners) && { return only_for = std::move(owners), std::move(*this); }
@@ -78,54 +78,57 @@ struct Key {
   [[nodiscard]] Key or_else(std::string_view advice) && { return beyond = advice, std::move(*this); }
   [[nodiscard]] Key such_as(std::string_view value) && { return like = value, std::move(*this); }
 
-  /// Returns a valid value of this dimension for messages, such as "2 um": the key's own example, its default, or a usual value
-  /// of the dimension.
+  /// Returns a valid value of this dimension for messages, such as "2 um": the example of the key, its default, or a usual
+  /// value of the dimension.
   [[nodiscard]] std::string example_of(const Dimension& dimension) const;
-  /// Returns the permitted range of a value of this dimension. An end that `range` leaves open is that of the dimension.
+  /// Returns the permitted range of a value of the key in this dimension. An end that `range` leaves open is that of the
+  /// dimension.
   [[nodiscard]] Range range_of(const Dimension& dimension) const;
   /// Returns true if the key has no dimension; a TOML number is then accepted as well as a text.
   [[nodiscard]] bool is_bare_number() const;
   [[nodiscard]] bool belongs_to(std::string_view choice) const;
 };
 
-/// Advice for an unknown key that contains a certain word: it names the key that the user may need.
+/// Advice for an unknown key that contains a certain word: the advice names the key that the user may need.
 struct Advice {
   std::string_view word, text;
 };
 
 struct Section {
-  std::string_view name;         ///< name of the section; empty for the keys above the first section
+  std::string_view name;         ///< name of the section of a scene; empty for the keys above the first section
   std::string_view entry = {};   ///< NAME of the [section.NAME] to which these keys apply; empty: every other NAME
-  bool is_named = false;         ///< true for [name.NAME], any number of them
-  bool may_be_named = false;     ///< true for [name], or several [name.NAME]
-  std::string_view beside = {};  ///< key in [name] beside the sections [name.NAME]; separate code reads this key
+  bool is_named = false;         ///< true if the scene has [name.NAME], any number of them
+  bool may_be_named = false;     ///< true if the scene has [name], or several [name.NAME]
+  std::string_view beside = {};  ///< key in [name] beside sections [name.NAME]; separate code reads the key
   bool required = false;
-  bool always_in_force = false;    ///< true if the defaults apply even without the section
-  bool may_vary = false;           ///< true when [spread] may vary numbers of this section
+  bool always_in_force = false;    ///< true if the defaults of the keys apply even without the section
+  bool may_vary = false;           ///< true when [spread] (process variation) may vary numbers of this section
   std::string_view selector = {};  ///< key whose value decides which other keys the section has
   std::vector<Key> keys = {};
   std::string_view about = {};
-  std::vector<Advice> advice = {};  ///< advice for unknown keys; the first one that applies is shown
+  std::vector<Advice> advice = {};  ///< advice for unknown keys of the section; the first that applies is shown
   /// Creates the part of the scene that the section describes; `name` is NAME of [section.NAME]. Returns the number of an
   /// electrode or contact. Null if separate code reads the keys, as for waveforms, drivers and spread.
   std::size_t (*begin)(Scene& scene, const SectionReader& in, std::string_view name) = nullptr;
-  /// Checks rules between several keys, after all keys are set. Throws InvalidInput.
+  /// Checks rules between several keys of the section, after all keys are set. Throws InvalidInput.
   void (*check)(Scene& scene, const SectionReader& in, std::size_t entry) = nullptr;
 
-  /// Returns a key by its name, or null. If several keys have this name, returns the one that exists for `choice` of the
-  /// selector.
+  /// Returns the description of a key by its name, or null. If several keys have this name, returns the one that exists for
+  /// `choice` of the selector.
   [[nodiscard]] const Key* find(std::string_view key, std::string_view choice = {}) const;
 };
 
-/// Returns the descriptions of all sections in the order of a written scene.
+/// Returns the descriptions of all sections of a scene in the order of a written scene.
 [[nodiscard]] const std::vector<Section>& schema();
-/// Returns the description of [name] or [name.ENTRY], or null.
+/// Returns the description of the section [name] or [name.ENTRY], or null.
 [[nodiscard]] const Section* find_section(std::string_view name, std::string_view entry = {});
 
-/// Returns the key at a path whose parts may name elements of lists, or null: {"structure", "sections[2]", "width"}.
+/// Returns the description of the key at a path whose parts may name elements of lists, or null: {"structure", "sections[2]",
+/// "width"}.
 [[nodiscard]] const Key* find_key(const std::vector<std::string>& path);
 
-/// Returns " (did you mean 'thickness'?)" for a near miss, else " (known: a, b, c)"; empty when `known` is empty.
+/// Returns advice for an unknown word: " (did you mean 'thickness'?)" for a word close to a known one, otherwise " (known: a,
+/// b, c)"; empty when `known` is empty.
 [[nodiscard]] std::string hint(std::string_view word, const std::vector<std::string_view>& known);
 
 }  // namespace softland::internal

@@ -14,7 +14,7 @@
 namespace softland::internal {
 namespace {
 
-/// Returns for example `a length such as "2 um"`.
+/// Returns what value a key needs, for example `a length such as "2 um"`.
 std::string wanted(const Key& key) {
   switch (key.type) {
     case KeyType::text:
@@ -162,7 +162,7 @@ void SectionReader::read() {
 }
 
 void SectionReader::check_keys() const {
-  if (!table_ || path_.empty()) return;  // the top level also holds the sections, which are not keys
+  if (!table_ || path_.empty()) return;  // the top level of a scene also holds the sections, which are not keys
   std::vector<std::string_view> known;
   for (const Key& key : section_.keys) {
     if (std::find(known.begin(), known.end(), key.name) == known.end()) known.push_back(key.name);
@@ -415,7 +415,7 @@ void SectionReader::set_members(Scene& scene, std::size_t entry) const {
     } else if (bound.element != nullptr) {
       for (std::size_t k = 0; k < quantities(name).size(); ++k) bound.element(scene, entry, k) = quantities(name)[k].value;
     } else if (bound.place != nullptr) {
-      if (is_word(name)) continue;  // a word such as "tip" means the default of the member
+      if (is_word(name)) continue;  // a word such as "tip" means the default of the scene's member
       for (std::size_t k = 0; k < quantities(name).size(); ++k) bound.place(scene, entry, k) = place_of(quantities(name)[k]);
     } else if (bound.number != nullptr) {
       bound.number(scene, entry) = number(name);
@@ -432,7 +432,7 @@ void SectionReader::set_members(Scene& scene, std::size_t entry) const {
 }
 
 void SectionReader::require_of_structure(std::string_view key, std::string_view needed, const Structure& structure) const {
-  // Sections of a beam may have their own thicknesses.
+  // Only a plate, or a beam without sections, may lack the needed number: sections have their own thicknesses.
   const bool may_lack =
       structure.is_rigid() || (needed == "thickness" && std::isnan(structure.thickness) && !structure.is_built());
   require(!may_lack || SectionReader(file_, "structure").is_given(needed), key,
@@ -452,7 +452,7 @@ std::string SectionReader::written_length(const Structure& structure) const {
 }
 
 void SectionReader::require_on_beam(std::string_view key, const Structure& beam) const {
-  constexpr double rounding = 1e-12;  // relative rounding of positions that were converted from other units
+  constexpr double rounding = 1e-12;  // relative rounding error of positions that were converted from other units
   const double length = beam.length;
   const std::vector<Quantity>& places = quantities(key);
   for (std::size_t k = 0; k + 1 < places.size(); k += 2) {

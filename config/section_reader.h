@@ -1,4 +1,4 @@
-// One section of a scene, checked against the schema key by key. Internal to config/.
+// One section of a scene, checked key by key against the description of all sections (schema). Internal to config/.
 #pragma once
 
 #include <cstddef>
@@ -24,8 +24,8 @@ namespace softland::internal {
 
 class SectionReader {
  public:
-  /// Reads [section] or [section.NAME]. Throws InvalidInput for an unknown or missing key, a value of the wrong kind, dimension
-  /// or range. Keys that are not given take their defaults. `file` must outlive the reader.
+  /// Reads [section] or [section.NAME] of a scene. Throws InvalidInput for an unknown or missing key, a value of the wrong
+  /// kind, dimension or range. Keys that are not given take their defaults. `file` must outlive the reader.
   explicit SectionReader(const SceneFile::Impl& file, std::string_view section, std::string_view name = {});
 
   /// Returns the tables in the value of a key: one for the type `table`, none if a word replaces the table, all for `tables`.
@@ -36,29 +36,29 @@ class SectionReader {
                                                                             std::size_t entry = 0) const;
   [[nodiscard]] const std::vector<Key>& keys() const { return section_.keys; }
 
-  /// Returns true if the file contains the section.
+  /// Returns true if the scene file contains the section.
   [[nodiscard]] bool is_present() const { return table_ != nullptr; }
-  /// Returns true if the file contains the key.
+  /// Returns true if the scene file gives the key in this section.
   [[nodiscard]] bool is_given(std::string_view key) const { return table_ && table_->contains(key); }
 
   /// Returns true if the key has a value, given or by default.
   [[nodiscard]] bool has_value(std::string_view key) const { return values_.contains(key); }
-  /// Returns the description of a key, or null.
+  /// Returns the description of a key of the section, or null.
   [[nodiscard]] const Key* find(std::string_view key) const { return section_.find(key, choice_); }
 
-  /// Returns the value of a number, or its default [SI unit]; NaN without either.
+  /// Returns the value of a key that holds a number, or its default [SI unit]; NaN without either.
   [[nodiscard]] double number(std::string_view key) const;
   [[nodiscard]] const std::vector<Quantity>& quantities(std::string_view key) const;
   [[nodiscard]] std::vector<double> numbers(std::string_view key) const;
   [[nodiscard]] int integer(std::string_view key) const;
-  /// Returns true if the value is a word instead of a number.
+  /// Returns true if the value of the key is a word instead of a number.
   [[nodiscard]] bool is_word(std::string_view key) const;
-  /// Returns true if the value is a list.
+  /// Returns true if the value of the key is a list.
   [[nodiscard]] bool is_list(std::string_view key) const { return is_given(key) && table_->get(key)->is_array(); }
-  /// Returns true if the value is a list of lists.
+  /// Returns true if the value of the key is a list of lists.
   [[nodiscard]] bool is_nested(std::string_view key) const;
   [[nodiscard]] bool flag(std::string_view key) const;
-  /// Returns the value of a text or a choice.
+  /// Returns the value of a key that holds a text or a choice.
   [[nodiscard]] const std::string& text(std::string_view key) const;
   [[nodiscard]] const std::vector<std::string>& texts(std::string_view key) const;
 
@@ -69,18 +69,18 @@ class SectionReader {
   /// Returns every key that has a value, with quantities in SI units, so that equal values have equal texts.
   [[nodiscard]] toml::table in_si_units() const;
 
-  /// Sets the members of the scene that the keys describe; `entry` is the number of the electrode or contact.
+  /// Sets the members of the scene that the keys of the section describe; `entry` is the number of the electrode or contact.
   void set_members(Scene& scene, std::size_t entry) const;
 
   /// Throws InvalidInput about `key` with the text `rule` unless `holds`.
   void require(bool holds, std::string_view key, std::string_view rule) const {
     if (!holds) file_.fail(path(key), rule);
   }
-  /// Throws InvalidInput about the section.
+  /// Throws InvalidInput about the section with the text `rule`.
   [[noreturn]] void fail(std::string_view rule) const { file_.fail_section(path_, rule); }
-  /// Throws InvalidInput about `key` if [structure] does not have the optional key `needed`.
+  /// Throws InvalidInput about `key` if [structure] lacks the optional key `needed`.
   void require_of_structure(std::string_view key, std::string_view needed, const Structure& structure) const;
-  /// Throws InvalidInput unless the two positions of `key` increase and lie on the beam.
+  /// Throws InvalidInput unless the two positions of `key` increase and are on the beam.
   void require_on_beam(std::string_view key, const Structure& beam) const;
   /// Returns the length of the moving structure for messages, as written in the file or as a value.
   [[nodiscard]] std::string written_length(const Structure& structure) const;
@@ -88,7 +88,7 @@ class SectionReader {
   [[nodiscard]] const SceneFile::Impl& file() const { return file_; }
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] std::string path(std::string_view key) const { return join_path(path_, key); }
-  /// Returns for example `gap.electrode = "3.5 um"`.
+  /// Returns a key and its value as written, for example `gap.electrode = "3.5 um"`.
   [[nodiscard]] std::string written(std::string_view key) const { return file_.written(path(key)); }
 
  private:

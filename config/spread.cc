@@ -86,7 +86,8 @@ constexpr std::array drive_errors{
 };
 static_assert(is_complete<drive_errors>());
 
-/// Returns the error of a drive that an entry of [spread] names. Throws InvalidInput unless the drive has this error.
+/// Returns the error of a drive's voltage source that an entry of [spread] varies. Throws InvalidInput unless the source has
+/// this error.
 FoundKey find_drive_error(const SceneFile::Impl& file, const Device& device, const SectionReader& in,
                           const std::vector<std::string>& parts) {
   const std::string name = fmt::format("{}", fmt::join(parts, "."));
@@ -100,7 +101,7 @@ FoundKey find_drive_error(const SceneFile::Impl& file, const Device& device, con
   if (error == nullptr) fail(hint(parts[2], names_of(drive_errors)));
   const SectionReader of_drive(file, parts[0], parts[1]);
   const bool is_given = of_drive.is_present() && error->value != DriveError::jitter && of_drive.is_given(error->name);
-  // The jitter of edges has either sign, and is not a key of a driver.
+  // The jitter of edges is positive or negative, and is not a key of a voltage source.
   const Key* const key = find_section(parts[0])->find(error->name);
   const Key any_value;
   const Key& ranged = error->value == DriveError::gain ? *key : any_value;
@@ -114,14 +115,14 @@ FoundKey find_drive_error(const SceneFile::Impl& file, const Device& device, con
           .dimensions = {error->dimension}};
 }
 
-/// True when an end of a span is written as "tip".
+/// Returns true when an end of a span is written as "tip", the end of the beam.
 bool is_tip(const SceneFile::Impl& file, const std::vector<std::string>& path, std::size_t element) {
   const toml::node* node = file.find(path);
   const toml::node* end = node != nullptr && node->is_array() ? node->as_array()->get(element - 1) : nullptr;
   return end != nullptr && end->is_string() && end->as_string()->get() == tip;
 }
 
-/// Returns the key that an entry of [spread] names. Throws InvalidInput unless the key has a number in this scene.
+/// Returns the key that an entry of [spread] varies. Throws InvalidInput unless the key has a number in this scene.
 FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader& in, const std::string& name) {
   std::vector<std::string> parts;
   const auto [path, given_element] = without_element(name);
@@ -145,7 +146,7 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
     for (const Key& key : of_key.keys()) {
       const std::size_t size =
           key.bound.element != nullptr && of_key.has_value(key.name) ? of_key.quantities(key.name).size() : 0;
-      // An element of a list that cannot vary is refused with the reason as well.
+      // An element of a list that cannot vary is refused with the reason of the list.
       const bool is_fixed_list = key.type == KeyType::quantities && !key.why_fixed.empty();
       const bool is_number =
           is_fixed_list                   ? true
@@ -199,7 +200,7 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
                                            hint(parts.back(), candidates)));
 }
 
-/// Converts the numbers of an entry of [spread] to the unit of its variable: that of its single key, or of a factor.
+/// Converts the numbers of an entry of [spread] to the unit of its variable: the unit of its single key, or a factor.
 class EntryUnits {
  public:
   EntryUnits(const SectionReader& in, const std::vector<FoundKey>& keys) : in_(in), keys_(keys) {
@@ -227,17 +228,17 @@ class EntryUnits {
 
   [[nodiscard]] bool is_factor() const { return is_factor_; }
   [[nodiscard]] bool is_added() const { return in_.is_given("weights"); }
-  /// Returns the scene's value of the variable.
+  /// Returns the value of the varied quantity in the nominal design.
   [[nodiscard]] double nominal() const { return is_factor_ ? 1 : is_added() ? 0 : keys_.front().varied.nominal; }
   [[nodiscard]] double of(const Quantity& q) const {
     return is_factor_ || q.dimension != dimension::none ? q.value : q.value * keys_.front().varied.nominal;
   }
   [[nodiscard]] double of(std::string_view key) const { return of(in_.quantities(key).front()); }
-  /// Returns the absolute value of a key that gives a width.
+  /// Returns the absolute value of a key that gives a width, such as a standard deviation.
   [[nodiscard]] double width(std::string_view key) const { return std::abs(of(key)); }
   [[nodiscard]] double of(std::string_view key, double otherwise) const { return in_.is_given(key) ? of(key) : otherwise; }
 
-  /// Returns the quantity 1 in the unit of the values in a file.
+  /// Returns the quantity 1 in the unit of the values in a file of an empirical distribution.
   [[nodiscard]] Quantity unit() const {
     try {
       return parse_quantity("1 " + in_.text("unit"));
@@ -247,7 +248,7 @@ class EntryUnits {
   }
 
  private:
-  // Checks the weights, with which one amount is added to several keys of the same unit.
+  // Checks the weights with which a varied amount is added to several keys of the same unit.
   void check_weights() const {
     const std::vector<Quantity> weights = in_.quantities("weights");
     in_.require(weights.size() == keys_.size(), "weights",
@@ -262,7 +263,8 @@ class EntryUnits {
                   fmt::format("one amount cannot be added to {} and {}", keys_.front().varied.name(), key.varied.name()));
     }
   }
-  // Checks the dimension of a value: a plain number is a factor on any key, any other value must have the dimension of the key.
+  // Checks the dimension of a number in [spread]: a plain number is a factor on any key, any other number must have the
+  // dimension of the key.
   void check(std::string_view key, const Dimension& given) {
     if (given == dimension::none) {
       ratio_ = key;
@@ -287,7 +289,7 @@ class EntryUnits {
   std::string_view blamed_, ratio_;
 };
 
-/// Returns the values of an empirical distribution from a file, in its unit.
+/// Returns the values of an empirical distribution from a file, in the unit of the file.
 std::vector<double> file_values(const SectionReader& in) {
   const std::string& name = in.text("file");
   in.require(!name.empty() && name.find('\0') == std::string::npos, "file", "must be the name of a file");
@@ -370,7 +372,7 @@ SpreadVariable read_variable(const SceneFile::Impl& file, Scene& scene, const st
                                          varied.unit.empty() ? "" : ": give it a standard_deviation in " + varied.unit));
     }
     if (varied.drive && varied.drive->error == DriveError::jitter) {
-      // The value of the variable seeds the random delays of the edges; it is not itself a time.
+      // The value of this variable seeds the random delays of the edges; the value itself is not a time.
       variable.is_drawn_per_edge = true;
       key.varied.refusal = [](double) { return std::string(); };
     }
@@ -391,7 +393,7 @@ SpreadVariable read_variable(const SceneFile::Impl& file, Scene& scene, const st
   return variable;
 }
 
-/// Reads [[first, second, correlation], ...].
+/// Reads the correlations of the varied quantities, [[first, second, correlation], ...].
 void read_correlation(const SceneFile::Impl& file, DeviceSpread& spread) {
   const auto count = static_cast<Eigen::Index>(spread.variables.size());
   spread.correlation = Eigen::MatrixXd::Identity(count, count);
@@ -437,7 +439,7 @@ void read_correlation(const SceneFile::Impl& file, DeviceSpread& spread) {
   }
 }
 
-/// Checks that no two variables set the same key.
+/// Checks that no two varied quantities set the same key.
 void check_keys_once(const SceneFile::Impl& file, const DeviceSpread& spread) {
   std::set<std::string> seen;
   for (const SpreadVariable& variable : spread.variables) {

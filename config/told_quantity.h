@@ -1,4 +1,4 @@
-// Reads a quantity that an option gives.
+// Reads a quantity, such as "2 us", that a command-line option gives.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 
 namespace softland {
 
-/// Reads a quantity of this dimension, at least 0 [SI unit]. Throws InvalidRequest that names `what`, such as
+/// Reads a quantity of this dimension, at least 0 [SI unit]. Throws InvalidRequest that names the option `what`, such as
 /// requested("marker"), the text and the rule.
 [[nodiscard]] inline double told_quantity(std::string_view what, const std::string& text, const Dimension& due) {
   Quantity given;

@@ -18,9 +18,9 @@ namespace {
 struct Symbol {
   std::string_view name;
   Dimension dimension;
-  int exponent = 0;  ///< power of ten that converts the unit to SI
+  int exponent = 0;  ///< power of ten by which a number in the unit is multiplied to get SI
   bool takes_prefix = false;
-  double factor = 1;  ///< factor that is not a power of ten
+  double factor = 1;  ///< further factor on a number in the unit, not a power of ten
 };
 
 constexpr std::array symbols{
@@ -60,24 +60,24 @@ constexpr std::array prefixes{Prefix{'y', -24}, Prefix{'z', -21}, Prefix{'a', -1
                               Prefix{'p', -12}, Prefix{'n', -9},  Prefix{'u', -6},  Prefix{'m', -3},
                               Prefix{'k', 3},   Prefix{'M', 6},   Prefix{'G', 9},   Prefix{'T', 12}};
 
-/// A printed character, as used in reports, and the ASCII text that the grammar has for it.
+/// A printed character, as used in reports, and the ASCII text that replaces it when a quantity is read.
 struct Spelling {
   std::string_view printed;
   std::string_view plain;
 };
-constexpr std::array spellings{Spelling{"\u00b5", "u"},   // micro sign
-                               Spelling{"\u03bc", "u"},   // Greek mu
-                               Spelling{"\u2212", "-"},   // minus sign
-                               Spelling{"\u00a0", " "},   // no-break space
-                               Spelling{"\u202f", " "},   // narrow no-break space
-                               Spelling{"\u00b7", "*"},   // middle dot
-                               Spelling{"\u00b2", "^2"},  // superscripts
+constexpr std::array spellings{Spelling{"\u00b5", "u"},   // micro sign (U+00B5) becomes u
+                               Spelling{"\u03bc", "u"},   // Greek mu (U+03BC) becomes u
+                               Spelling{"\u2212", "-"},   // minus sign becomes a hyphen
+                               Spelling{"\u00a0", " "},   // no-break space becomes a blank
+                               Spelling{"\u202f", " "},   // narrow no-break space becomes a blank
+                               Spelling{"\u00b7", "*"},   // middle dot becomes an asterisk
+                               Spelling{"\u00b2", "^2"},  // superscripts become powers
                                Spelling{"\u00b3", "^3"}};
 
 std::string plainly_spelt(std::string_view text) {
   std::string plain(text);
   const auto is_ascii = [](char c) { return static_cast<unsigned char>(c) < 0x80; };
-  if (std::all_of(plain.begin(), plain.end(), is_ascii)) return plain;  // fast path for long lists of numbers
+  if (std::all_of(plain.begin(), plain.end(), is_ascii)) return plain;  // fast path without a copy, for long lists of numbers
   for (const Spelling& spelling : spellings) {
     for (auto at = plain.find(spelling.printed); at != std::string::npos; at = plain.find(spelling.printed, at)) {
       plain.replace(at, spelling.printed.size(), spelling.plain);
@@ -182,14 +182,15 @@ int parse_power(std::string_view text, std::string_view factor) {
   return power;
 }
 
-/// True when a digit after this factor is its power: "m3" is a volume, and no symbol ends with a digit.
+/// Returns true when a digit after this factor of a unit is its power: "m3" is a volume, and no symbol of a unit ends with a
+/// digit.
 bool has_digit_power(std::string_view factor) {
   if (factor.empty() || factor.back() < '2' || factor.back() > '9') return false;
   const auto unit = look_up(factor.substr(0, factor.size() - 1));
   return unit && unit->dimension == dimension::length;
 }
 
-/// Multiplies `scale` by one factor such as "um^2" or "um2", raised to `sign`.
+/// Multiplies `scale` by one factor of a unit, such as "um^2" or "um2", raised to `sign`.
 void apply_factor(UnitScale& scale, std::string_view factor, int sign) {
   const auto caret = factor.find('^');
   const auto end = has_digit_power(factor) ? factor.size() - 1 : caret;
@@ -200,7 +201,7 @@ void apply_factor(UnitScale& scale, std::string_view factor, int sign) {
   if (!unit) throw InvalidInput(fmt::format("unknown unit '{}'", shortened(name)));
   for (std::size_t i = 0; i < scale.dimension.powers.size(); ++i) {
     scale.dimension.powers[i] += power * unit->dimension.powers[i];
-    // The power is limited, because a quantity may be written in base units and must be readable again.
+    // The power of a base unit is limited, because a quantity may be written in base units and must be readable again.
     if (std::abs(scale.dimension.powers[i]) > largest_power) {
       throw InvalidInput(fmt::format("with '{}' the power of {} in the unit is {}; it must lie between -{} and {}",
                                      shortened(factor), base_units[i], scale.dimension.powers[i], largest_power, largest_power));
@@ -210,7 +211,7 @@ void apply_factor(UnitScale& scale, std::string_view factor, int sign) {
   if (unit->factor != 1) scale.factor *= std::pow(unit->factor, power);
 }
 
-/// Multiplies `scale` by factors joined by blanks or single asterisks, each raised to `sign`.
+/// Multiplies `scale` by the factors of a unit, joined by blanks or single asterisks, each raised to `sign`.
 void apply_factors(UnitScale& scale, std::string_view text, int sign, std::string_view unit) {
   while (true) {
     const auto star = text.find('*');
@@ -275,7 +276,7 @@ std::size_t number_length(std::string_view text) {
   return i;
 }
 
-/// Returns true if this character may follow a number directly: "100um", but neither "2,5 um" nor "1_000 um".
+/// Returns true if this character may follow a number directly: "100um" is a quantity, "2,5 um" and "1_000 um" are not.
 bool begins_unit(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%'; }
 
 /// Returns number * 10^exponent, rounded once.
@@ -315,7 +316,7 @@ Quantity parse_quantity(std::string_view given) {
   }
   if (unit.empty()) return {scaled_number(number, 0), dimension::none};
   if (unit == "degC") {
-    constexpr double zero_celsius = 273.15;  // [K]
+    constexpr double zero_celsius = 273.15;  // 0 degrees Celsius [K]
     return {scaled_number(number, 0) + zero_celsius, dimension::temperature};
   }
   const UnitScale scale = parse_unit(unit);
@@ -369,7 +370,7 @@ std::string percent_text(double value) {
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::scientific).ptr;
   const std::string_view text(buffer.data(), static_cast<std::size_t>(end - buffer.data()));
   const auto e = text.find('e');
-  int exponent = 0;  // from_chars accepts no leading plus
+  int exponent = 0;  // from_chars accepts no plus sign in front
   std::from_chars(text.data() + e + (text[e + 1] == '+' ? 2 : 1), end, exponent);
   return exponent == -2 ? fmt::format("{} %", text.substr(0, e)) : fmt::format("{}e{} %", text.substr(0, e), exponent + 2);
 }

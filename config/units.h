@@ -63,28 +63,28 @@ inline constexpr Dimension damping{{0, 1, -1}};
 }  // namespace dimension
 
 struct Quantity {
-  double value = 0;  ///< [SI unit of the dimension]
+  double value = 0;  ///< number of the quantity [SI unit of the dimension]
   Dimension dimension;
 };
 
 /// Reads a quantity; its value is finite. Throws InvalidInput with the broken rule only ("unknown unit 'u'"): the caller adds
-/// the key.
+/// the key to the message.
 [[nodiscard]] Quantity parse_quantity(std::string_view given);
 
-/// Returns the SI symbol: "m", "kg/m^3"; empty for a plain number; base units where no usual name exists.
+/// Returns the SI symbol of a dimension: "m", "kg/m^3"; empty for a plain number; base units where no usual name exists.
 [[nodiscard]] std::string unit_symbol(const Dimension& dimension);
-/// Returns a noun for messages: "a length", "a plain number".
+/// Returns a noun for a dimension in messages: "a length", "a plain number".
 [[nodiscard]] std::string_view noun(const Dimension& dimension);
-/// Returns a description for messages: "a length [m]", "a plain number".
+/// Returns a description of a dimension for messages: "a length [m]", "a plain number".
 [[nodiscard]] std::string describe(const Dimension& dimension);
 /// Returns an example for messages, a text of this dimension such as "2 um"; empty if the dimension has no usual example.
 [[nodiscard]] std::string_view example(const Dimension& dimension);
 
 /// Returns the shortest decimal text that reads back to the same bits.
 [[nodiscard]] std::string number_text(double value);
-/// Returns "2e-06 m", which reads back to the same bits. `value` [SI unit of `dimension`].
+/// Returns a value as text, "2e-06 m", which reads back to the same bits. `value` is in the SI unit of `dimension`.
 [[nodiscard]] std::string quantity_text(double value, const Dimension& dimension);
-/// Returns "1.5e1 %" for 0.15, which reads back to the same bits.
+/// Returns a ratio as text in percent, "1.5e1 %" for 0.15, which reads back to the same bits.
 [[nodiscard]] std::string percent_text(double value);
 
 }  // namespace softland

@@ -23,10 +23,10 @@
 namespace softland::internal {
 namespace {
 
-/// Lines of the file that hold numbers alone.
+/// Lines of a .rom file that hold numbers alone.
 struct Row {
   std::size_t line = 0;
-  bool is_real = false;  ///< true if a number has a decimal point
+  bool is_real = false;  ///< true if a number of the line has a decimal point
   std::vector<double> numbers;
 };
 
@@ -51,7 +51,7 @@ class RomReader {
       }
       if (row.numbers.empty()) {
         end_ = row.line;
-        break;  // the names of the model's functions follow the last numbers
+        break;  // the names of the reduced-order model's functions follow the last numbers
       }
       rows_.push_back(std::move(row));
     }
@@ -96,7 +96,7 @@ class RomReader {
     return static_cast<long long>(value);
   }
 
-  // Returns the first `count` numbers of a row; the rest of the row must be 0.
+  // Returns the first `count` numbers of a line; the rest of the line must be 0.
   std::vector<double> reals(std::size_t at, std::size_t count, const char* what) const {
     if (at >= rows_.size()) refusals_.fail(fmt::format("the file ends before the {}", what));
     const Row& row = rows_[at];
@@ -106,7 +106,7 @@ class RomReader {
     return {row.numbers.begin(), row.numbers.begin() + static_cast<std::ptrdiff_t>(count)};
   }
 
-  // Reads the numbers of the nodes, ten per line, then their directions in the same form, then three rows of positions.
+  // Reads the numbers of the mesh nodes, ten per line, then their directions in the same form, then three rows of positions.
   void read_nodes(NodalModes& made, std::size_t at) {
     std::size_t end = at;
     while (end < rows_.size() && !rows_[end].is_real) ++end;

@@ -17,7 +17,7 @@ namespace softland::internal {
 namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-// Largest number of rows that may have settings of a preamble beside their numbers.
+// Largest number of rows of numbers beside which a file may have settings, such as "Sample interval, 1e-6".
 constexpr std::size_t longest_preamble = 64;
 
 class BlockReader {
@@ -57,16 +57,16 @@ class BlockReader {
   const ReadKeys& keys_;
   DecimalSign decimal_;
   char separator_ = ',';
-  bool pairs_ = false;        // true: the comma is both the decimal sign and the separator
-  bool may_be_pairs_ = true;  // true while every row could consist of numbers with a decimal comma
+  bool pairs_ = false;        // true: the comma of the file is both the decimal sign and the separator
+  bool may_be_pairs_ = true;  // true while every row so far could consist of numbers with a decimal comma
   std::vector<bool> is_numeric_;
   Block block_;
-  CellList headings_;  // headings of all columns, above the numbers
+  CellList headings_;  // headings of all columns of the file, above the numbers
   std::string_view first_row_;
-  std::size_t width_ = 0;  // cells of a row
+  std::size_t width_ = 0;  // number of cells of a row
   std::size_t rows_with_words_ = 0;
-  std::vector<std::optional<Unit>> cell_units_;  // unit written beside the numbers of each column
-  std::size_t last_length_ = 0;                  // length of the last cell of all rows so far; 0 where they differ
+  std::vector<std::optional<Unit>> cell_units_;  // unit written beside the numbers of each column, as in "5.0 V"
+  std::size_t last_length_ = 0;                  // length of the last cell, if equal in all rows so far, otherwise 0
 };
 
 void BlockReader::find_layout() {
@@ -92,7 +92,7 @@ bool BlockReader::begins_block(const CellList& cells) const {
     if (!may_be_value(cells[i])) return false;
     has_number |= holds_number(cells[i]);
   }
-  // A row that has a key in front of the only column of numbers is a setting, and the number is its value.
+  // A row that has a text in front of the only column of numbers is a setting of the file, and the number is its value.
   const std::size_t last = is_numeric_.size() - 1;
   const bool is_only = std::count(is_numeric_.begin(), is_numeric_.end(), true) == 1;
   const bool has_key = is_only && std::any_of(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(last),
@@ -100,7 +100,7 @@ bool BlockReader::begins_block(const CellList& cells) const {
   return has_number && !has_key;
 }
 
-// Joins pairs of cells to numbers with a decimal comma: the whole and the fraction.
+// Joins pairs of cells to numbers with a decimal comma: the first cell is the whole part, the second the fraction.
 CellList BlockReader::paired(const CellList& cells, std::size_t line) const {
   std::size_t count = cells.size();
   while (count > 0 && cells[count - 1].empty()) --count;
@@ -144,7 +144,7 @@ void BlockReader::take_beside(const CellList& cells, std::size_t line, std::stri
   }
   if (!has_others) return;
   ++rows_with_words_;
-  if (cells.size() != width_ && !block_.lines.empty()) return;  // read_row() refuses a row of another width
+  if (cells.size() != width_ && !block_.lines.empty()) return;  // read_row() refuses a row with another number of cells
   if (block_.lines.size() >= longest_preamble) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
       if (!others[i].empty())
@@ -154,7 +154,7 @@ void BlockReader::take_beside(const CellList& cells, std::size_t line, std::stri
   block_.preamble.take_line(text, others);
 }
 
-// Returns the number of characters of a number without its sign.
+// Returns the number of characters of a number's text without the sign.
 std::size_t digits_in(std::string_view cell) { return cell.size() - (cell.starts_with('-') || cell.starts_with('+') ? 1 : 0); }
 
 // Returns true if the file may end within its last number: the last cell is shorter than the last cells of all other rows.
@@ -168,7 +168,7 @@ void BlockReader::take_number(std::size_t k, const Cell& cell, std::string_view 
   block_.values[k].push_back(cell.kind == CellKind::number ? cell.value : not_a_number);
   Missing& missing = block_.missing[k];
   if (cell.kind == CellKind::number) {
-    // Count digits only in rows whose number is a power of two, to save time.
+    // Count significant digits only in rows whose number is a power of two, to save time.
     if ((row & (row - 1)) == 0 || unended) block_.digits[k] = std::max(block_.digits[k], significant_digits(text));
   } else if (missing.count++ == 0) {
     missing.line = line;
@@ -204,7 +204,7 @@ void BlockReader::take_unit(std::size_t k, Cell& cell, std::string_view text, st
 
 void BlockReader::read_row(const CellList& cells, std::size_t line, bool unended) {
   const auto cut = [&](const std::string& why) {
-    // A row that is cut by the end of the file is shorter than a full row.
+    // A row that the end of the file cuts is shorter than a full row.
     if (cells.back().data() + cells.back().size() - cells.front().data() > static_cast<std::ptrdiff_t>(2 * first_row_.size()))
       fail(line, 0, why);
     block_.left_out.push_back(fmt::format("line {}: {}: the file ends in the middle of it", line, why));
@@ -243,14 +243,14 @@ void BlockReader::read_row(const CellList& cells, std::size_t line, bool unended
   block_.lines.push_back(static_cast<std::uint32_t>(line));
 }
 
-// Returns true if a line has a cell for nearly every column of numbers.
+// Returns true if a line above the numbers has a cell for nearly every column of numbers, so that it may name the columns.
 bool BlockReader::may_be_headings(const CellList& cells) const {
   const auto filled = std::count_if(cells.begin(), cells.end(), [](std::string_view cell) { return !cell.empty(); });
   const auto due = std::count(is_numeric_.begin(), is_numeric_.end(), true);
   return filled > 0 && filled + 1 >= due && !(due > 1 && cells.size() == 1);
 }
 
-// Returns the cells of a line if all cells above columns of numbers are units; else none.
+// Returns the cells of a line if all its cells above columns of numbers are units; otherwise none.
 CellList BlockReader::units_in(const CellList& cells) const {
   bool has_unit = false;
   for (std::size_t i = 0; i < std::min(cells.size(), is_numeric_.size()); ++i) {
@@ -261,7 +261,8 @@ CellList BlockReader::units_in(const CellList& cells) const {
   return has_unit ? cells : CellList{};
 }
 
-// Refuses units beyond the last column: a name then contains the separator, and the names behind it are shifted.
+// Refuses units beyond the last column of numbers: a column name then contains the separator, and the names after it are
+// shifted.
 void BlockReader::refuse_shifted(const CellList& cells, std::size_t line) const {
   for (std::size_t i = is_numeric_.size(); i < cells.size(); ++i) {
     if (unit_of(cells[i]) || heading_of(cells[i]).unit)
@@ -272,8 +273,8 @@ void BlockReader::refuse_shifted(const CellList& cells, std::size_t line) const 
   }
 }
 
-// Reads names and units above the numbers. The last line has units if all its cells are units, and the line above has the
-// names; otherwise the last line has the names.
+// Reads names and units of columns above the numbers. If all cells of the last line are units, the line above it has the names;
+// otherwise the last line has the names.
 void BlockReader::take_headings(const std::vector<Line>& above) {
   std::vector<CellList> cells(above.size());
   for (std::size_t i = 0; i < above.size(); ++i) {
@@ -287,7 +288,7 @@ void BlockReader::take_headings(const std::vector<Line>& above) {
   if (next > 0 && may_be_headings(cells[next - 1])) units = units_in(cells[next - 1]);
   if (!units.empty()) --next;
   CellList names;
-  // A comment, or a single key with its value, is not a line of names.
+  // A comment line, or a single key with its value, does not name the columns.
   const bool is_comment =
       next > 0 && std::string_view("#;%").find(trimmed(above[next - 1].text).front()) != std::string_view::npos;
   if (next > 0 && may_be_headings(cells[next - 1]) && !is_comment) {
@@ -304,7 +305,7 @@ void BlockReader::take_headings(const std::vector<Line>& above) {
     block_.names.emplace_back(i < names.size() ? names[i] : std::string_view());
     block_.units.emplace_back(i < units.size() ? units[i] : std::string_view());
   }
-  // A name beyond the columns of numbers may have a value in the row of units.
+  // A column name beyond the columns of numbers may have a value in the row of units.
   for (std::size_t i = 0; i < std::min(names.size(), units.size()); ++i) {
     if ((i >= is_numeric_.size() || !is_numeric_[i]) && !names[i].empty()) block_.preamble.take(names[i], units[i]);
   }

@@ -1,4 +1,4 @@
-// Reads the columns of numbers of a file, and the lines above them. Internal to exchange/.
+// Reads the columns of numbers of an instrument file, and the lines above the numbers. Internal to exchange/.
 #pragma once
 
 #include <cstdint>
@@ -14,26 +14,26 @@
 namespace softland::internal {
 
 struct Block {
-  std::vector<int> columns;                 ///< number of each column in the file, from 1
-  std::vector<std::vector<double>> values;  ///< values by column and row; NaN where a number is missing
+  std::vector<int> columns;                 ///< number of each column of numbers in the file, from 1
+  std::vector<std::vector<double>> values;  ///< numbers by column and row; NaN where a number is missing
   std::vector<Missing> missing;
-  std::vector<std::uint32_t> lines;  ///< line of each row
+  std::vector<std::uint32_t> lines;  ///< line of the file in which each row is
   std::vector<std::string> names,
       units;                ///< name and unit of each column, from its heading or its cells; empty without a heading
-  std::vector<int> digits;  ///< number of significant digits in each column, from some of its rows
+  std::vector<int> digits;  ///< number of significant digits in each column, from some of its numbers
   bool has_headings = false;
   Preamble preamble;
   std::vector<std::string> left_out, notes;
 };
 
-/// Note on a last line without a line end.
+/// Note for a file whose last line has no line end.
 inline constexpr std::string_view may_be_cut = "the last line has no line end: its last number may have been cut";
 
-/// Reads columns of numbers below any other lines. Throws InvalidInput with line, column and rule.
+/// Reads columns of numbers below other lines of a file. Throws InvalidInput with line, column and the broken rule.
 [[nodiscard]] Block read_block(std::string_view text, const Refusals& refusals, const ReadKeys& keys);
 
-/// Reads a text in which every channel is a row: an optional name, then numbers. Returns none for any other text. Throws
-/// InvalidInput for rows of different lengths.
+/// Reads a text in which every channel is a row of numbers, with or without a name in front. Returns none for any other text.
+/// Throws InvalidInput for rows of different lengths.
 [[nodiscard]] std::optional<Block> read_lying_rows(std::string_view text, const Refusals& refusals, const ReadKeys& keys);
 
 }  // namespace softland::internal

@@ -43,7 +43,8 @@ bool is_not_finite(std::string_view cell) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-// Converts a text that begins with a digit, a point or a minus; none if not all of it is a number.
+// Converts a text that begins with a digit, a point or a minus to a number; none if any part of the text is not part of the
+// number.
 std::optional<double> converted(const char* first, const char* last) {
   double value = 0;
   const auto [stop, error] = std::from_chars(first, last, value);
@@ -117,7 +118,7 @@ Cell read_cell(std::string_view cell, DecimalSign& decimal) {
     if (decimal.sign == '\0') decimal.sign = sign;
     if (decimal.sign != sign) return {.kind = CellKind::other_sign, .value = *value};
   }
-  // SCPI instruments write 9.9E+37 for an overflow and 9.91E+37 for an unknown value.
+  // Numbers at which SCPI instruments mark a value: 9.9E+37 for an overflow and 9.91E+37 for an unknown value.
   constexpr double scpi_overflow = 9.9e37;
   if (std::abs(*value) >= scpi_overflow) return {.kind = CellKind::not_finite};
   return {.kind = CellKind::number, .value = *value};

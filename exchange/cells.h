@@ -1,4 +1,4 @@
-// Splits a line into cells, and reads the numbers in cells.
+// Splits a line of a file into cells, and reads the numbers in cells.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +9,9 @@
 
 namespace softland::internal {
 
-/// The decimal sign of a file. If it is not given, the first cell with a decimal sign decides.
+/// The decimal sign of a file, point or comma. If the user does not give it, the first cell with a decimal sign decides.
 struct DecimalSign {
-  char sign = '\0';  ///< '.', ',' or not known yet
+  char sign = '\0';  ///< decimal sign of the file: '.', ',' or '\0' for not known yet
   bool is_given = false;
 };
 
@@ -21,16 +21,16 @@ void split_cells(std::string_view line, char separator, std::vector<std::string_
 
 enum class CellKind {
   number,
-  blank,       ///< empty, or a dash
-  not_finite,  ///< inf, nan, overrange
-  other_sign,  ///< a number with a decimal sign other than that of the file
+  blank,       ///< the cell is empty, or a dash
+  not_finite,  ///< the cell is inf, nan or overrange
+  other_sign,  ///< the cell is a number with a decimal sign other than that of the file
   no_number,
 };
 struct Cell {
   CellKind kind = CellKind::blank;
   double value = 0;
 };
-/// Reads a cell. The first decimal sign found is stored in `decimal`.
+/// Reads a cell as a number or one of the other kinds. The first decimal sign found is stored in `decimal`.
 [[nodiscard]] Cell read_cell(std::string_view cell, DecimalSign& decimal);
 
 /// Returns the text with its ASCII letters in lower case.
@@ -43,7 +43,7 @@ struct Cell {
 /// Returns true if a cell is a number, with a decimal point or a decimal comma.
 [[nodiscard]] bool looks_like_number(std::string_view cell);
 
-/// Returns the number of significant digits as written: 5 for "-9.9998e+00", 3 for "0.00120".
+/// Returns the number of significant digits of a number as written: 5 for "-9.9998e+00", 3 for "0.00120".
 [[nodiscard]] int significant_digits(std::string_view cell);
 
 }  // namespace softland::internal

@@ -25,7 +25,7 @@ constexpr std::string_view own_format = "softland CSV";
 // jump in such a file.
 bool is_contact_state(std::string_view name) { return name == "closed" || name.ends_with("_closed"); }
 
-/// Makes a recording from columns of numbers and from the lines above them.
+/// Makes a recording (times and channels) from columns of numbers and from the lines above the columns.
 class RecordingMaker {
  public:
   RecordingMaker(Block block, const Refusals& refusals, const ReadKeys& keys)
@@ -53,7 +53,7 @@ class RecordingMaker {
   Recording made_;
 };
 
-// Returns the unit of a column from the row of units, else from its heading.
+// Returns the unit of a column from the row of units, or else from the column's heading.
 std::optional<Unit> RecordingMaker::unit_of_column(std::size_t k) const {
   std::optional<Unit> unit = unit_of(block_.units[k]);
   return unit ? unit : heading_of(block_.names[k]).unit;
@@ -103,20 +103,21 @@ std::optional<std::size_t> RecordingMaker::time_place() const {
     }
     return std::nullopt;
   };
-  // A column of row numbers is used only if there is no column of times.
+  // Names of columns of times. A column of row numbers is used only if the file has no column of times.
   constexpr std::array<std::string_view, 11> times{"time",      "t",    "x",     "x-axis", "xpos",  "times",
                                                    "timestamp", "zeit", "temps", "tempo",  "tiempo"};
   constexpr std::array<std::string_view, 3> rows{"index", "sample", "n"};
   if (const auto time = named_one_of(times)) return time;
   if (const auto row = named_one_of(rows)) return row;
   if (block_.has_headings || count < 2) return std::nullopt;
-  // Without names, the first column is the times if it never decreases and is not constant.
+  // In a file without column names, the first column is the times if it never decreases and is not constant.
   const std::vector<double>& first = block_.values.front();
   const bool rises = std::is_sorted(first.begin(), first.end()) && first.front() < first.back();
   return rises ? std::optional<std::size_t>(0) : std::nullopt;
 }
 
-// Returns true if a column is a second column of times. The times of both must be equal, unless a key selects a column.
+// Returns true if a column is a second column of times. The times of both columns must be equal, unless the user selects a
+// column.
 bool RecordingMaker::is_second_time(std::size_t k, std::size_t time) const {
   const bool is_said = !keys_.time_column.empty() || keys_.time_column_number > 0;
   if (is_said || !block_.has_headings || block_.names[time].empty() || block_.names[k] != block_.names[time]) return false;
@@ -158,7 +159,8 @@ void RecordingMaker::scale_codes() {
     fail("the volts per division of these codes are not known; save one channel per file");
   if (made_.channels.size() != 1) return;
   Channel& channel = made_.channels.front();
-  double full_scale = 1, factor = 1, offset = 0;  // the voltage at full scale is exactly offset + factor
+  // The voltage of code 0 is offset; at full scale it is exactly offset + factor.
+  double full_scale = 1, factor = 1, offset = 0;
   if (preamble_.high && preamble_.low && made_.format == "Keysight arb") {
     const bool is_short = preamble_.text.find("short") != std::string::npos;
     if (is_short) full_scale = largest_code;

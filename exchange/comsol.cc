@@ -24,7 +24,7 @@ constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 
 std::string shown(std::string_view text) { return printable_line(shortened(text, 60)); }
 
-/// Reads a number such as "1.5", "-3E-5-0.004i" or "2i"; returns NaN for a missing value.
+/// Reads a complex number such as "1.5", "-3E-5-0.004i" or "2i"; returns NaN for a missing value.
 std::optional<Complex> complex_number(std::string_view text) {
   if (lower_case(text) == "nan") return Complex(nan_value, nan_value);
   if (!text.ends_with('i')) {
@@ -54,9 +54,9 @@ std::optional<double> metres(std::string_view unit) {
 /// A column of a displacement, named for example "solid.w (m) @ freq=27513, p=1".
 struct Column {
   std::string heading, parameters;
-  int component = -1;  ///< 0, 1 or 2 for u, v or w
+  int component = -1;  ///< component of the displacement: 0, 1 or 2 for u, v or w
   double per_unit = 1;
-  double frequency = nan_value;  ///< [Hz]
+  double frequency = nan_value;  ///< frequency of the mode [Hz]
 };
 
 class ComsolReader {
@@ -106,7 +106,8 @@ class ComsolReader {
 
   void cells_of(std::string_view line) { split_cells(line, is_csv_ ? ',' : ' ', cells_); }
 
-  // Splits the header into as many names as a row has numbers. In a CSV, a comma ends a name unless a parameter follows.
+  // Splits the header line into as many column names as a row has numbers. In a CSV, a comma ends a name unless a parameter
+  // follows.
   void name_columns(std::string_view line, std::size_t count) {
     std::vector<std::string> names;
     if (is_csv_) {
@@ -188,7 +189,7 @@ class ComsolReader {
     return std::abs(value->real());
   }
 
-  // The line that ended the header is the first row.
+  // The first line that does not begin with '%' ended the header and is the first row of numbers.
   void read_rows() {
     values_.resize(columns_.size());
     do {
@@ -235,7 +236,7 @@ class ComsolReader {
     for (std::size_t k = 0; k < row.size(); ++k) values_[k].push_back(row[k] * columns_[k].per_unit);
   }
 
-  // Makes modes: columns with equal parameters are the components of one mode.
+  // Makes modes of the columns: columns with equal parameters are the components of one mode.
   void make_modes() {
     made_.holds = {false, false, false};
     std::vector<std::string> order;
@@ -264,8 +265,8 @@ class ComsolReader {
     }
   }
 
-  // Returns the real motion of a complex mode. A mode is known up to a phase; the phase that leaves the smallest imaginary part
-  // is removed.
+  // Returns the real motion of a complex mode. A mode is known up to a complex phase; the phase that leaves the smallest
+  // imaginary part is removed.
   std::vector<Vector3> in_phase(const std::array<const std::vector<Complex>*, 3>& parts, const std::string& parameters) {
     constexpr double rounding = 1e-6, most = 0.1;
     Complex squares = 0;
@@ -302,7 +303,7 @@ class ComsolReader {
   std::optional<double> nodes_;
   std::vector<std::size_t> positions_;
   std::vector<Column> columns_;
-  std::vector<std::vector<Complex>> values_;  // motion by column and node [m]
+  std::vector<std::vector<Complex>> values_;  // motion of the mesh by column and node [m]
   std::vector<std::string_view> cells_;
 };
 

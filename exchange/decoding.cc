@@ -58,7 +58,7 @@ int zero_bytes(std::string_view bytes) {
     first += bytes[2 * i] == '\0';
     second += bytes[2 * i + 1] == '\0';
   }
-  const std::size_t most = count - count / 8;  // an eighth of the characters may not be ASCII
+  const std::size_t most = count - count / 8;  // number of ASCII characters that UTF-16 must have; an eighth may be others
   if (second >= most && first == 0) return 1;
   if (first >= most && second == 0) return 0;
   return -1;
@@ -88,7 +88,7 @@ bool Lines::next() {
   const char* const begin = rest_.data();
   const auto* end = static_cast<const char*>(std::memchr(begin, '\n', rest_.size()));
   const std::size_t to_feed = end == nullptr ? rest_.size() : static_cast<std::size_t>(end - begin);
-  // A carriage return ends a line even without a line feed after it.
+  // A carriage return ends a line even without a subsequent line feed.
   const auto* carriage = static_cast<const char*>(std::memchr(begin, '\r', to_feed));
   const std::size_t length = carriage == nullptr ? to_feed : static_cast<std::size_t>(carriage - begin);
   line_ = rest_.substr(0, length);

@@ -7,8 +7,9 @@
 
 namespace softland::internal {
 
-/// Returns the content as UTF-8, without a byte order mark. UTF-16 is recognised by its mark, or by zeros in every other byte of
-/// its beginning. `storage` holds converted text; a description of what cannot be decoded is added to `left_out`.
+/// Returns the content of a file as UTF-8, without a byte order mark. UTF-16 is recognised by its byte order mark, or by zeros
+/// in every other byte at its beginning. `storage` holds converted text; a description of what cannot be decoded is added to
+/// `left_out`.
 [[nodiscard]] std::string_view decoded(std::string_view content, std::string& storage, std::vector<std::string>& left_out);
 
 /// Returns true if the bytes are binary data, not text.
@@ -22,7 +23,7 @@ class Lines {
   bool next();
   [[nodiscard]] std::string_view line() const { return line_; }
   [[nodiscard]] std::size_t number() const { return number_; }
-  /// Returns true if the end of the file ended the line, without a line end.
+  /// Returns true if the current line ends with the file, without a line end.
   [[nodiscard]] bool is_unended() const { return is_unended_; }
 
  private:

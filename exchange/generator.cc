@@ -16,15 +16,15 @@ namespace {
 struct VoltageRange {
   double low, high;
 };
-// Returns the range of the samples. The range of constant samples is extended to 0 V, that of zeros to 1 V.
+// Returns the voltage range of the samples. The range of constant samples is extended to 0 V, that of zeros to 1 V.
 VoltageRange range_of(const std::vector<double>& volts) {
   const auto [low, high] = std::ranges::minmax(volts);
   if (low < high) return {low, high};
   return low == 0 ? VoltageRange{0, 1} : VoltageRange{std::min(0.0, low), std::max(0.0, low)};
 }
 
-// Source: Keysight 33500 Series Operating and Service Guide, "Arbitrary waveform file format": codes from -32767 to 32767
-// between the low and the high level.
+// Writes a Keysight file: codes from -32767 to 32767 between the low and the high level. Source: Keysight 33500 Series
+// Operating and Service Guide, "Arbitrary waveform file format".
 std::string keysight_arb(const GeneratorSamples& s) {
   constexpr double full_scale = 32767;
   const auto [low, high] = range_of(s.volts);
@@ -37,7 +37,7 @@ std::string keysight_arb(const GeneratorSamples& s) {
   return text;
 }
 
-// Writes the format of EasyWave, in which the record is one period.
+// Writes the CSV of Siglent's EasyWave, in which the samples cover one period.
 std::string siglent_csv(const GeneratorSamples& s) {
   const auto [low, high] = range_of(s.volts);
   const auto count = static_cast<double>(s.volts.size());
@@ -54,7 +54,7 @@ void append_rows(std::string& text, const GeneratorSamples& s) {
     fmt::format_to(std::back_inserter(text), "{},{}\n", static_cast<double>(k) / s.rate, s.volts[k]);
 }
 
-// Writes times and volts below the preamble of an oscilloscope file, which ArbExpress and ArbBuilder import.
+// Writes times and volts below the preamble of an oscilloscope file, which Tektronix ArbExpress and ArbBuilder import.
 std::string tektronix_csv(const GeneratorSamples& s) {
   std::string text = fmt::format("Record Length,{}\nSample Interval,{}\nVertical Units,V\nHorizontal Units,s\n\nTIME,{}\n",
                                  s.volts.size(), 1 / s.rate, s.name);
@@ -62,7 +62,7 @@ std::string tektronix_csv(const GeneratorSamples& s) {
   return text;
 }
 
-// Writes the format of Ultra Station, in which the volts follow an empty cell.
+// Writes the CSV of Rigol's Ultra Station, in which the volts follow an empty cell.
 std::string rigol_csv(const GeneratorSamples& s) {
   const auto [low, high] = range_of(s.volts);
   std::string text = fmt::format(
@@ -72,7 +72,7 @@ std::string rigol_csv(const GeneratorSamples& s) {
   return text;
 }
 
-// Writes the CSV that the oscilloscope of WaveForms exports and its generator imports.
+// Writes the CSV that the oscilloscope of Digilent WaveForms exports and its generator imports.
 std::string digilent_csv(const GeneratorSamples& s) {
   std::string text =
       fmt::format("#Digilent WaveForms\n#Sample rate: {}Hz\n#Samples: {}\n\nTime (s),{} (V)\n", s.rate, s.volts.size(), s.name);

@@ -1,5 +1,5 @@
-// Writes files for arbitrary waveform generators: samples at a constant rate, each held until the next. recording.h reads
-// these files.
+// Writes voltage samples to files for arbitrary waveform generators: samples at a constant rate, each held until the next. The
+// reader in recording.h reads these files.
 #pragma once
 
 #include <cstddef>
@@ -13,12 +13,12 @@ namespace softland {
 
 struct GeneratorSamples {
   std::string name;
-  double rate = 0;                         ///< [Hz]
-  std::vector<double> volts;               ///< samples at the output of the generator
-  std::optional<std::size_t> marker = {};  ///< sample at which the sync output of the generator falls
+  double rate = 0;                         ///< sample rate of the generator [Hz]
+  std::vector<double> volts;               ///< voltage samples at the output of the generator [V]
+  std::optional<std::size_t> marker = {};  ///< number of the sample at which the sync output of the generator falls
 };
 
-/// A file format, with the smallest and the largest number of samples that the named instrument accepts.
+/// A file format of waveform generators, with the smallest and the largest number of samples that the named instrument accepts.
 struct GeneratorFormat {
   std::string_view name, instrument;
   std::size_t fewest = 1, most = 1;
@@ -27,8 +27,8 @@ struct GeneratorFormat {
 };
 [[nodiscard]] std::span<const GeneratorFormat> generator_formats();
 
-/// Returns the content of the file. If there are too few samples for the instrument, the last sample is repeated. Throws
-/// InvalidInput for no samples, for too many, or for a marker that the format cannot hold.
+/// Returns the content of a generator file. If there are too few samples for the instrument, the last sample is repeated.
+/// Throws InvalidInput for no samples, for too many, or for a marker that the format cannot hold.
 [[nodiscard]] std::string generator_file(const GeneratorFormat& format, GeneratorSamples samples);
 
 }  // namespace softland

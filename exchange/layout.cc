@@ -100,7 +100,7 @@ char separator_of(const std::vector<Line>& lines) {
 std::vector<bool> numeric_columns(const std::vector<Line>& last, char separator) {
   std::vector<bool> is_numeric;
   for (const bool without_prose : {true, false}) {
-    std::vector<int> excess;  // count of numbers in each column minus that of words and missing cells
+    std::vector<int> excess;  // cells with numbers less cells with words or nothing, in each column
     CellList cells;
     int lines = 0;
     for (const Line& line : last) {

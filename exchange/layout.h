@@ -16,13 +16,13 @@ struct Line {
   std::size_t number = 0;
 };
 
-/// Throws InvalidInput with the name of the file, and the line and column where they are known.
+/// Throws InvalidInput with the name of the file that is read, and the line and column where they are known.
 class Refusals {
  public:
   explicit Refusals(std::string file) : file_(std::move(file)) {}
   /// Throws InvalidInput "file:line: column 2: rule"; column 0: the message names no column.
   [[noreturn]] void fail(std::size_t line, std::size_t column, const std::string& rule) const;
-  /// Throws InvalidInput "file: rule".
+  /// Throws InvalidInput with the text "file: rule".
   [[noreturn]] void fail(const std::string& rule) const;
   [[nodiscard]] const std::string& file() const { return file_; }
 
@@ -30,9 +30,9 @@ class Refusals {
   std::string file_;
 };
 
-/// Returns the beginning of a cell, as messages show it.
+/// Returns the beginning of a cell for a message.
 [[nodiscard]] std::string shown_cell(std::string_view cell);
-/// Splits a line into cells. A number and its unit, "5.0 V", are one cell even if blanks separate the cells.
+/// Splits a line into cells at the separator. A number and its unit, "5.0 V", are one cell even if blanks separate the cells.
 void split_row(std::string_view line, char separator, CellList& cells);
 [[nodiscard]] bool is_blank(const CellList& cells);
 /// Returns true if a cell is a number, with or without a unit.
@@ -41,12 +41,12 @@ void split_row(std::string_view line, char separator, CellList& cells);
 [[nodiscard]] bool may_be_value(std::string_view cell);
 [[nodiscard]] std::size_t numbers_in(const CellList& cells);
 
-/// Returns the last lines of a text that are not blank, from the last one upwards, without the first `skip` lines. A last line
-/// without a line end, which may be incomplete, comes at the end of the list. In a long text, line numbers do not count from its
-/// beginning.
+/// Returns the last lines of a text that are not blank, from the last line upwards, without the first `skip` lines of the text.
+/// A last line without a line end, which may be incomplete, comes at the end of the list. In a long text, line numbers do not
+/// count from the beginning of the text.
 [[nodiscard]] std::vector<Line> last_lines(std::string_view text, std::size_t skip);
 
-/// Returns the separator for which most lines consist of numbers only or, if there are none, contain a number.
+/// Returns the separator of cells for which most lines consist of numbers only or, if no line does, contain a number.
 [[nodiscard]] char separator_of(const std::vector<Line>& lines);
 
 /// Returns true for each column that has more numbers than words in the last lines of the text. If there are lines without

@@ -12,13 +12,13 @@
 namespace softland {
 namespace {
 
-// Removes intervals of the state `state` that are shorter than `least`.
+// Removes intervals of the contact state `state` (closed or open) that are shorter than `least`.
 void merge_short(std::vector<LevelEdge>& edges, bool state, double least) {
   std::vector<LevelEdge> kept;
   for (std::size_t k = 0; k < edges.size(); ++k) {
     const bool is_short = edges[k].closed == state && k + 1 < edges.size() && edges[k + 1].time - edges[k].time < least;
     if (is_short) {
-      ++k;  // the edge that ends the interval
+      ++k;  // also remove the closing or opening that ends the short interval
     } else {
       kept.push_back(edges[k]);
     }

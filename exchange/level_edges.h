@@ -1,6 +1,6 @@
 // Finds the times at which a contact closes and opens, from a recorded voltage that crosses a threshold.
 //
-//   closed while the trace is beyond the threshold; it must pass the threshold by hysteresis / 2 to change the state
+//   closed while the recorded voltage is beyond the threshold; it must pass the threshold by hysteresis / 2 to change the state
 //
 // The time of an edge is that of the last crossing of the threshold before the edge, by linear interpolation between rows.
 // States that last for less than `merge` are ignored: first short openings, then short contacts.
@@ -14,22 +14,24 @@
 namespace softland {
 
 struct ThresholdKeys {
-  /// Threshold [unit of the trace]; NaN if not given: contact_edges() then uses 1/2 for a channel of states 0 and 1.
+  /// Threshold of the recorded voltage [unit of the trace]; NaN if not given: contact_edges() then uses 1/2 for a channel of
+  /// states 0 and 1.
   double threshold = 0;
-  double hysteresis = 0;         ///< [unit of the trace], not negative
-  bool is_closed_below = false;  ///< true if closed below rather than above
-  double merge = 0;              ///< [s]
+  double hysteresis = 0;  ///< width of the band about the threshold that a change of state must cross [unit of the trace], >= 0
+  bool is_closed_below = false;  ///< true if the contact is closed while the voltage is below the threshold
+  double merge = 0;              ///< duration below which a contact state is ignored [s]
 };
 
 struct LevelEdge {
-  double time = 0;      ///< [s]
-  bool closed = false;  ///< true if the contact is closed from then on
+  double time = 0;      ///< time at which the contact closes or opens [s]
+  bool closed = false;  ///< true if the contact closes at this time, false if it opens
 };
 
-/// Returns the edges in order, alternately closing and opening. A trace that begins closed has its first edge at its first row.
+/// Returns the closing and opening times of the contact in order, alternately closing and opening. A trace that begins closed
+/// has its first closing at its first row.
 [[nodiscard]] std::vector<LevelEdge> level_edges(const Trace& trace, const ThresholdKeys& keys);
 
-/// The shift of the times of a file.
+/// The shift of the times of a recorded file.
 struct TimeShift {
   bool first_is_zero = false;  ///< true: times are shifted so that the first row is at t = 0
   double shift = 0;            ///< time added to all times if first_is_zero is false [s]
@@ -41,11 +43,11 @@ struct ContactTraceKeys {
   TimeShift shift = {};
   ThresholdKeys contact;
 };
-/// Returns the edges of the contact from t = 0 on, when the drives begin, from the voltage in a file of an instrument. Throws
-/// as read_recording() and trace_of(). Throws InvalidInput for a contact that is closed at t = 0, and for a missing threshold
-/// unless the channel holds states 0 and 1.
+/// Returns the closing and opening times of the contact from t = 0 on, when the drives begin, from the voltage in a file of an
+/// instrument. Throws InvalidInput as read_recording() and trace_of() do, for a contact that is closed at t = 0, and for a
+/// missing threshold unless the channel holds states 0 and 1.
 [[nodiscard]] std::vector<LevelEdge> contact_edges(const std::string& file, const ContactTraceKeys& keys);
-/// Returns the edges of a trace; `name` names the trace in messages.
+/// Returns the closing and opening times of the contact from a recorded trace; `name` is the name of the trace in messages.
 [[nodiscard]] std::vector<LevelEdge> contact_edges(const Trace& trace, const ThresholdKeys& keys, const std::string& name);
 
 }  // namespace softland

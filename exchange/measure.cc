@@ -12,7 +12,7 @@ namespace softland::internal {
 namespace {
 
 struct UnitRow {
-  std::string_view word;  ///< the unit as written; the case of letters is ignored for more than three letters
+  std::string_view word;  ///< unit as written; for more than three letters their case is ignored
   Measure measure;
   std::string_view symbol;
   double per_si = 1;
@@ -100,7 +100,7 @@ std::string_view without_brackets(std::string_view text) {
   return text;
 }
 
-// Splits a heading: the text before `at` is the name, `rest` is the unit.
+// Splits the heading of a column: the text before `at` is the name, `rest` is the unit.
 std::optional<Heading> split_heading(std::string_view text, std::size_t at, std::string_view rest) {
   std::optional<Unit> unit = unit_of(trimmed(rest));
   if (!unit) return std::nullopt;
@@ -139,14 +139,14 @@ Heading heading_of(std::string_view text) {
   if (text.size() > 5 && same_letters(text.substr(0, 5), "time_")) {
     if (auto heading = split_heading(text, 4, text.substr(5))) return *heading;
   }
-  // Split headings such as "main_mV" and "resistance_ohm".
+  // Split headings of columns such as "main_mV" and "resistance_ohm".
   if (const std::size_t at = text.rfind('_');
       at != std::string_view::npos && at > 0 && (text.ends_with('V') || text.ends_with("_ohm"))) {
     auto heading = split_heading(text, at, text.substr(at + 1));
     if (heading && (heading->unit->measure == Measure::voltage || heading->unit->symbol == "ohm")) return *heading;
   }
   Heading heading{.name = std::string(text), .unit = {}};
-  // Split headings such as "CH1V".
+  // Split headings of columns such as "CH1V" into name and unit.
   if (text.size() > 3 && same_letters(text.substr(0, 2), "ch") && text.ends_with('V') &&
       text.find_first_not_of("0123456789", 2) == text.size() - 1)
     return {.name = std::string(text.substr(0, text.size() - 1)), .unit = unit_of("V")};
@@ -186,7 +186,8 @@ std::optional<Measured> measured_value(std::string_view text, const std::optiona
 
 bool is_unit_of_cells(const std::optional<Unit>& unit) {
   if (!unit) return false;
-  const bool is_suffix = unit->symbol == "m" || unit->symbol == "g";  // m and g are also scale suffixes of numbers in SPICE
+  // M and g are units here, and also scale suffixes of numbers in SPICE.
+  const bool is_suffix = unit->symbol == "m" || unit->symbol == "g";
   return unit->measure == Measure::time || unit->measure == Measure::voltage || (unit->measure == Measure::other && !is_suffix);
 }
 

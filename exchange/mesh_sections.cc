@@ -14,9 +14,9 @@
 namespace softland::internal {
 namespace {
 
-constexpr double printed = 2e-5;             // rounding of six printed digits, as a share of the length
+constexpr double printed = 2e-5;  // rounding error of positions printed with six digits, as a share of the structure's length
 constexpr std::size_t nodes_of_section = 3;  // least number of nodes for the mean of a section
-constexpr std::size_t nearby = 3;            // number of evenly spaced places on either side that a fit uses
+constexpr std::size_t nearby = 3;            // number of evenly spaced places on either side whose nodes a local fit uses
 constexpr int place_digits = 6;
 
 }  // namespace
@@ -36,7 +36,7 @@ MeshSections::MeshSections(const std::vector<Vector3>& nodes, Way axis, Way dire
   if (lacks_sections()) divide_evenly();
 }
 
-// Division instead of multiplication makes 100 um exactly 1e-4 m.
+// Division by 1 / length unit, instead of multiplication, makes 100 um exactly 1e-4 m.
 double MeshSections::along_axis(const Vector3& v) const { return axis_.sign * v[axis_.direction] / (1 / length_unit_); }
 
 void MeshSections::gather() {
@@ -58,7 +58,7 @@ void MeshSections::gather() {
 }
 
 void MeshSections::measure_extent() {
-  constexpr double rounding = 1e-9;  // tolerance, as a share of the length
+  constexpr double rounding = 1e-9;  // rounding tolerance of a position, as a share of the structure's length
   for (std::size_t d = 0; d < 3; ++d) {
     const auto [low, high] =
         std::minmax_element(nodes_.begin(), nodes_.end(), [d](const Vector3& a, const Vector3& b) { return a[d] < b[d]; });
@@ -109,7 +109,7 @@ std::vector<double> MeshSections::widths() const {
   const double rounding = printed * sections_.back().place;
   std::vector<double> all;
   for (std::size_t k = 0; k < sections_.size(); ++k) {
-    // In an irregular mesh, nodes near a place give its width.
+    // In an irregular mesh, where most places have fewer than three nodes, nodes near a place give its width.
     const std::size_t reach = is_irregular() ? nearby : 0;
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (std::size_t s = k - std::min(k, reach); s <= std::min(k + reach, sections_.size() - 1); ++s) {
@@ -158,7 +158,7 @@ void MeshSections::add_motion(const Section& section, const NodalMode& mode, Sec
   }
   for (const std::size_t node : section.nodes) {
     for (std::size_t d = 0; d < 3; ++d) {
-      // Differences of the motion along the axis within a section are its rotation in bending, not torsion.
+      // Differences of the motion along the axis within a section are the section's rotation in bending, not torsion.
       if (d != axis_.direction) motion.torsion += std::pow(mode.motion[node][d] - mean[d], 2);
     }
   }
@@ -206,7 +206,7 @@ double MeshSections::fitted(std::size_t place, const NodalMode& mode) const {
   return *value;
 }
 
-// Returns true if the motion at the first place is zero within the printed digits of the file.
+// Returns true if the motion at the first place of the axis is zero within the printed digits of the file.
 bool MeshSections::stands_still_at_first(const NodalMode& mode) const {
   const double rounding = printed * (sections_.back().place - sections_.front().place);
   double most = 0, here = 0;

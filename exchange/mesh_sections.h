@@ -15,42 +15,45 @@
 
 namespace softland::internal {
 
-/// A coordinate direction of a file (0, 1 or 2 for x, y or z) with its sign.
+/// A coordinate direction of a mesh file (0, 1 or 2 for x, y or z) with its sign.
 struct Way {
   std::size_t direction = 0;
   double sign = 1;
 };
 
-/// Motion of the sections in one mode, in the unit of the mode, and the squared motion of all nodes by kind.
+/// Motion of the sections of a mesh in one mode, in the unit of the mode, and the squared motion of all nodes by kind.
 struct SectionMotion {
-  std::vector<double> along, across, axial;  ///< motion by place in the direction of motion, the third direction, the axis
-  std::vector<double> twist;                 ///< motion by rotation about the axis, half the extent of the mesh from its middle
+  /// Mean motion of each section in the direction of motion, in the third direction, along the axis.
+  std::vector<double> along, across, axial;
+  /// Motion of each section by rotation about the axis, half the extent of the mesh from its middle.
+  std::vector<double> twist;
   double bending = 0, in_plane = 0, axial_share = 0, torsion = 0;
   [[nodiscard]] double all() const { return bending + in_plane + axial_share + torsion; }
 };
 
 class MeshSections {
  public:
-  /// `clamp` [m] is the position of the clamp on the axis; none: the clamp is at the first node. Throws InvalidInput for fewer
-  /// than three places, including the clamp, and for an irregular mesh with too few nodes to find the motion at some place.
+  /// Sorts the nodes of a mesh into sections. `clamp` [m] is the position of the clamp on the axis; none: the clamp is at the
+  /// first node. Throws InvalidInput for fewer than three places, including the clamp, and for an irregular mesh with too few
+  /// nodes to find the motion at some place.
   MeshSections(const std::vector<Vector3>& nodes, Way axis, Way direction, double length_unit, std::optional<double> clamp,
                const Refusals& refusals);
 
-  [[nodiscard]] std::vector<double> places() const;      ///< distances from the clamp [m]
-  [[nodiscard]] double first() const { return first_; }  ///< place of the first node on the axis [m]
+  [[nodiscard]] std::vector<double> places() const;      ///< distances of the sections from the clamp [m]
+  [[nodiscard]] double first() const { return first_; }  ///< position of the first node on the axis [m]
   [[nodiscard]] bool is_irregular() const { return step_ > 0; }
   [[nodiscard]] std::vector<double> widths()
-      const;  ///< extent across the axis and the direction of motion, by place [m]; NaN if there is none
+      const;  ///< width of each section, across the axis and the direction of motion [m]; NaN for a line of nodes
   [[nodiscard]] std::vector<double> offsets()
-      const;  ///< height of the face in the direction of motion, by place, relative to the first place [m]
+      const;  ///< height of each section's face in the direction of motion, relative to the first section [m]
   [[nodiscard]] SectionMotion motion(const NodalMode& mode) const;
 
  private:
   struct Section {
-    double place = 0;  ///< distance from the clamp [m]
+    double place = 0;  ///< distance of the mesh section from the clamp [m]
     std::vector<std::size_t> nodes;
   };
-  [[nodiscard]] double along_axis(const Vector3& v) const;  ///< component along the axis [m]
+  [[nodiscard]] double along_axis(const Vector3& v) const;  ///< component of a position along the axis [m]
   [[nodiscard]] double across_of(const Vector3& v) const { return v[3 - axis_.direction - direction_.direction]; }
   void gather();
   [[nodiscard]] bool lacks_sections() const;
@@ -63,13 +66,13 @@ class MeshSections {
 
   const std::vector<Vector3>& nodes_;
   Way axis_, direction_;
-  double length_unit_;  // [m]
+  double length_unit_;  // length unit of the mesh file [m]
   const Refusals& refusals_;
   std::vector<Section> sections_;
   double first_ = 0, clamp_ = 0;  // positions of the first node and of the clamp on the axis [m]
   double step_ = 0;               // spacing of the fitted places of an irregular mesh [m]; 0 for a mesh with sections
-  Vector3 middle_{};              // middle of the mesh, in the unit of the file
-  double extent_ = 0;             // the larger extent across the axis, in the unit of the file; 0 for a line
+  Vector3 middle_{};              // middle of the mesh, in the length unit of the file
+  double extent_ = 0;             // larger extent of the mesh across the axis, in the length unit of the file; 0 for a line
 };
 
 }  // namespace softland::internal

@@ -1,4 +1,4 @@
-// The facts about a file of modes that the user supplies because the file lacks them.
+// The facts about a file of vibration modes that the user supplies because the file lacks them.
 #pragma once
 
 #include <optional>
@@ -7,10 +7,12 @@
 
 namespace softland {
 
-/// Members that are not given are empty, 0 or none; no number is NaN.
+/// Facts that the user supplies about a file of vibration modes. Members that are not given are empty, 0 or none; no number is
+/// NaN.
 struct ModeKeys {
-  std::string axis = {};       ///< axis from the clamp to the far end, "x" or "-y"; empty for a table of softland only
-  std::string direction = {};  ///< direction of motion towards the near electrode, "-z"; empty for a table of softland only
+  /// Axis of the structure from the clamp to the far end, "x" or "-y"; may be empty for a table of softland.
+  std::string axis = {};
+  std::string direction = {};  ///< direction of motion towards the near electrode, "-z"; may be empty for a table of softland
   std::optional<double> length_unit = {};  ///< unit of the file's positions [m]
   std::optional<double> mass_unit = {};    ///< unit of mass in which the file's modes are normalised [kg]
   std::optional<double> mass =
@@ -20,9 +22,9 @@ struct ModeKeys {
   std::vector<double> frequencies = {};  ///< frequencies of the modes of a file that does not hold them [Hz]
 
   // The following members form the names of keys in messages, such as "structure.mass" or "--mass".
-  std::string prefix = {};    ///< "structure.", "--"
-  char word_separator = '_';  ///< separator of the words of a name: '_' or '-'
-  /// Returns the name of a key for a message.
+  std::string prefix = {};    ///< beginning of the keys' names in messages: "structure.", "--"
+  char word_separator = '_';  ///< separator of the words of a key's name: '_' or '-'
+  /// Returns the full name of a key for a message, such as "structure.mass_unit".
   [[nodiscard]] std::string name(std::string key) const {
     for (char& c : key) {
       if (c == '_') c = word_separator;

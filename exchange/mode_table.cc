@@ -139,7 +139,7 @@ class TableMaker {
           fmt::format("an irregular mesh: motions on the axis are fitted at {} even places", made_.places.size()));
   }
 
-  // Classifies a mode by the squared motions of its nodes.
+  // Classifies a mode (bending, in-plane, axial, torsional) by the squared motions of its nodes.
   void judge(std::size_t k) {
     const NodalMode& mode = read_.modes[k];
     SectionMotion motion = sections_->motion(mode);
@@ -225,7 +225,7 @@ class TableMaker {
   static void scale(std::vector<double>& shape, double factor) {
     for (double& value : shape) value *= factor;
   }
-  // Returns the mean square of a shape over the length; the shape is a cubic spline clamped at the first place.
+  // Returns the mean square of a mode shape over the length; the shape is a cubic spline clamped at the first place.
   [[nodiscard]] double mean_square(const std::vector<double>& shape) const;
 
   NodalModes read_;
@@ -233,7 +233,7 @@ class TableMaker {
   Refusals refusals_;
   ModeTable made_;
   Way axis_, direction_;
-  double length_unit_ = 1;  // [m]
+  double length_unit_ = 1;  // length unit of the file [m]
   std::optional<internal::MeshSections> sections_;
   std::vector<double> modal_masses_;
 };
@@ -256,7 +256,7 @@ double TableMaker::mean_square(const std::vector<double>& shape) const {
   return ClampedSpline(made_.positions, shape, far_end_of(made_)).integral_of_square() / made_.positions.back();
 }
 
-// Checks a table from any source. Modes are made positive at the far end, and exactly 0 at the clamp.
+// Checks a table of modes from any source. Mode shapes are made positive at the far end, and exactly 0 at the clamp.
 void check(ModeTable& table, const ModeKeys& keys) {
   constexpr std::size_t fewest = 3;
   const auto fail = [&](const std::string& rule) { throw InvalidInput(fmt::format("{}: {}", table.file, rule)); };

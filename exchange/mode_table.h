@@ -18,14 +18,16 @@ namespace softland {
 
 enum class ModeKind { bending, in_plane, axial, torsional, unused };
 
-/// One mode of a file and its kind. Motions are means over the nodes of a section, in the unit of the file.
+/// One mode of a file and its kind. Motions are means over the nodes of a section, in the length unit of the file.
 struct ModeFound {
-  int number = 0;        ///< number in the file, from 1
-  double frequency = 0;  ///< [Hz]
+  int number = 0;        ///< number of the mode in the file, from 1
+  double frequency = 0;  ///< frequency of the mode [Hz]
   ModeKind kind = ModeKind::bending;
   double share = 0;  ///< share of the mode's kind in the squared motion of all nodes; 1 if the file holds one direction only
-  std::vector<double> along, across, axial;  ///< motion by section in the direction of motion, the third direction, the axis
-  std::vector<double> twist;                 ///< motion by rotation about the axis, half the extent of the mesh from its middle
+  /// Mean motion of each section in the direction of motion, in the third direction, along the axis.
+  std::vector<double> along, across, axial;
+  /// Motion of each section by rotation about the axis, half the extent of the mesh from its middle.
+  std::vector<double> twist;
   /// Returns the name of the mode's kind, such as "bending" or "in-plane".
   [[nodiscard]] std::string name() const;
 };
@@ -33,27 +35,30 @@ struct ModeFound {
 struct ModeTable {
   std::string file;
   std::string format;
-  std::vector<double> positions;            ///< [m], from 0, the clamp, rising
-  std::vector<double> widths;               ///< width by position [m]; NaN where the file does not give it
-  std::vector<double> rest_offsets;         ///< height of the face, towards the direction of motion, at rest [m], by position
-  std::vector<double> frequencies;          ///< [Hz], rising
-  std::vector<std::vector<double>> shapes;  ///< mass-normalised [kg^(-1/2)]: of each mode by position, positive at the far end
-  SplineEnd far_end = SplineEnd::free;      ///< clamped if the far end does not move in any mode, and mode_1 has no slope there
+  std::vector<double> positions;  ///< positions along the axis, rising from the clamp at 0 [m]
+  std::vector<double> widths;     ///< width of the structure at each position [m]; NaN where the file does not give it
+  /// Height of the structure's face at each position, towards the direction of motion, at rest [m].
+  std::vector<double> rest_offsets;
+  std::vector<double> frequencies;  ///< frequencies of the modes, rising [Hz]
+  /// Mass-normalised shape of each mode at each position, positive at the far end [kg^(-1/2)].
+  std::vector<std::vector<double>> shapes;
+  /// End condition of the shapes: clamped if the far end moves in no mode, and the first shape has no slope there.
+  SplineEnd far_end = SplineEnd::free;
 
-  std::size_t nodes = 0;            ///< number of nodes of the mesh; 0 for a table
-  std::vector<ModeFound> found;     ///< every mode of a mesh, used or not; empty for a table
-  std::vector<double> places = {};  ///< places of the sections of `found`, from the clamp [m]
+  std::size_t nodes = 0;            ///< number of nodes of the mesh; 0 for a table of modes
+  std::vector<ModeFound> found;     ///< every mode of a mesh file, used or not; empty for a table of modes
+  std::vector<double> places = {};  ///< distances of the mesh sections in `found` from the clamp [m]
   std::vector<std::string> left_out = {};
   std::vector<std::string> notes = {};  ///< assumptions about facts that the file does not contain
 };
 
-/// Reads a file. Throws InvalidInput with file, line and rule for an unreadable file, for a file without modes (a static
-/// result, a pressure), and for an ambiguous file, with the key that decides.
+/// Reads a file of vibration modes. Throws InvalidInput with file, line and rule for an unreadable file, for a file without
+/// modes (a static result, a pressure), and for an ambiguous file, with the key that decides.
 [[nodiscard]] ModeTable read_mode_table(const std::string& file, const ModeKeys& keys);
-/// Reads the content of a file; `file` names it in messages.
+/// Reads the content of a file of vibration modes; `file` is the name of the file in messages.
 [[nodiscard]] ModeTable parse_mode_table(std::string_view content, const std::string& file, const ModeKeys& keys);
 
-/// Returns one line with format, nodes, sections, length, modes, frequencies, and what was left out.
+/// Returns one line about a file of modes: format, nodes, sections, length, modes, frequencies, and what was left out.
 [[nodiscard]] std::string summary(const ModeTable& table);
 
 }  // namespace softland

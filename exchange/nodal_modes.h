@@ -16,26 +16,28 @@ using Vector3 = std::array<double, 3>;
 inline constexpr Vector3 no_motion{0, 0, 0};
 
 struct NodalMode {
-  double frequency = std::numeric_limits<double>::quiet_NaN();  ///< frequency [Hz]; NaN if the file does not give it
+  /// Frequency of the mode [Hz]; NaN if the file does not give it.
+  double frequency = std::numeric_limits<double>::quiet_NaN();
   double modal_mass =
       std::numeric_limits<double>::quiet_NaN();  ///< modal mass in the unit of the file; NaN if the file does not give it
-  std::vector<Vector3> motion;                   ///< motion by node, in any unit
-  std::string name;                              ///< "mode 1", as messages name it
+  std::vector<Vector3> motion;                   ///< motion of each node in the mode, in any unit
+  std::string name;                              ///< name of the mode in messages, such as "mode 1"
   bool is_used = true;                           ///< false for a mode that a reduced-order model does not use
 };
 
 struct NodalModes {
   std::string format;
-  std::vector<Vector3> nodes;    ///< positions in the unit of length; NaN in a direction that the file does not hold
+  std::vector<Vector3> nodes;    ///< positions of the nodes in the unit of length; NaN in a direction that the file lacks
   std::vector<NodalMode> modes;  ///< modes in the order of the file
   std::array<bool, 3> holds{true, true, true};  ///< true for the directions of motion that the file holds
-  std::optional<double> length_unit = {};       ///< unit of length that the file names [m]
+  std::optional<double> length_unit = {};       ///< unit of length of the node positions that the file names [m]
   bool needs_length_unit = false;               ///< true if the format has no usual unit of length, so that the user must give it
   std::string normalised_by = {};               ///< text of the file on the normalisation of its modes; may be empty
   std::vector<std::string> left_out = {}, notes = {};
 };
 
-// Functions that recognise or read one file format each. Readers throw InvalidInput with file, line and rule.
+// Functions that recognise or read one file format of vibration modes each. Readers throw InvalidInput with file, line and
+// rule.
 [[nodiscard]] bool is_frd(std::string_view text);
 [[nodiscard]] NodalModes read_frd(std::string_view text, const std::string& file);
 

@@ -16,7 +16,7 @@ namespace {
 constexpr std::string_view position_name = "x_m", width_name = "width_m", offset_name = "rest_offset_m",
                            frequency_name = "frequency_Hz", mode_name = "mode_";
 
-/// Reads the next line that is neither blank nor a comment.
+/// Reads the next line of a table of modes that is neither blank nor a comment.
 bool next_row(Lines& lines, std::vector<std::string_view>& cells) {
   while (lines.next()) {
     const std::string_view line = trimmed(lines.line());

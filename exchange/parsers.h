@@ -1,4 +1,5 @@
-// Parsers of the kinds of recordings. Internal to exchange/.
+// Parsers of the kinds of recorded files: columns, SPICE sources, value change dumps, Universal File Format. Internal to
+// exchange/.
 #pragma once
 
 #include <optional>
@@ -9,10 +10,10 @@
 
 namespace softland::internal {
 
-/// Returns the kind of a file that is known but not a record over time, such as a mesh or a picture; empty for other files.
+/// Returns the kind of a file that is known but not a record over time, such as "mesh" or "picture"; empty for other files.
 [[nodiscard]] std::string refused_kind(std::string_view text);
 
-/// Reads columns of numbers, or channels written as rows of numbers.
+/// Reads a recording from columns of numbers, or from channels written as rows of numbers.
 [[nodiscard]] Recording read_columns(std::string_view text, const std::string& file, const ReadKeys& keys);
 
 /// Returns true if a text holds the breakpoints of SPICE sources (PWL), not plain columns of numbers.

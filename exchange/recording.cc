@@ -22,7 +22,7 @@ std::string names_of(const Recording& recording) {
   return names;
 }
 
-/// Sets evenly spaced times with the interval that the user gives, from the first time of the file on.
+/// Sets evenly spaced times of the rows with the interval that the user gives, from the first time of the file on.
 void take_even_times(Recording& made, double interval) {
   const double first = made.times.empty() ? 0 : made.times.front();
   made.interval = interval;

@@ -16,55 +16,55 @@
 
 namespace softland {
 
-/// The facts about a file that the user supplies because the file lacks them.
+/// The facts about a recorded file that the user supplies because the file lacks them.
 struct ReadKeys {
-  std::string column = {};              ///< name of the channel; empty: see channel_of()
-  int column_number = 0;                ///< number of the column of the channel, from 1; 0: selected by name
-  std::string time_column = {};         ///< name of the column of times; empty: found by the heading
+  std::string column = {};              ///< name of the channel to read; empty: see channel_of()
+  int column_number = 0;                ///< number of the channel's column, from 1; 0: selected by name
+  std::string time_column = {};         ///< name of the column of times; empty: found by its heading
   int time_column_number = 0;           ///< number of the column of times, from 1; 0: selected by name
-  int skip = 0;                         ///< number of lines at the beginning that are skipped
-  std::string unit = {};                ///< unit of the channel, such as "mV"; empty: that of the file, else V
-  std::string time_unit = {};           ///< unit of the times; empty: that of the file, else s
-  char decimal = '\0';                  ///< decimal sign, '.' or ','; '\0': found from the numbers
+  int skip = 0;                         ///< number of lines at the beginning of the file that are skipped
+  std::string unit = {};                ///< unit of the channel, such as "mV"; empty: the unit in the file, or else V
+  std::string time_unit = {};           ///< unit of the times; empty: the unit in the file, or else s
+  char decimal = '\0';                  ///< decimal sign of the file, '.' or ','; '\0': found from the numbers
   std::optional<double> interval = {};  ///< interval between rows, which replaces the times of the file [s]
   bool uneven = false;                  ///< true: the times are used as written, and two rows of the same time are a jump
 };
 
-/// Missing numbers of a column.
+/// The missing numbers in a column of a recording: line of the first, and kind.
 struct Missing {
   std::size_t count = 0;
-  std::size_t line = 0;       ///< line of the first missing number
+  std::size_t line = 0;       ///< line of the first missing number in the file
   bool is_overrange = false;  ///< true if the first missing number is written as infinite or not a number, instead of blank
 };
 
 struct Channel {
-  std::string name;     ///< name as in the file, without the unit; "column 2" where it has none
-  std::string heading;  ///< the whole heading
-  std::string unit;     ///< usual symbol, "V", "mV"; empty where the file names none
+  std::string name;     ///< name of the channel as in the file, without the unit; "column 2" where it has none
+  std::string heading;  ///< whole heading of the channel's column
+  std::string unit;     ///< unit of the channel, as "V" or "mV"; empty where the file names none
   bool is_voltage = false;
-  bool is_state = false;       ///< true for states 0 and 1 of a logic channel or a contact, without a unit
-  double per_si = 1;           ///< number of units that make one SI unit
-  int column = 0;              ///< number in the file, from 1
-  std::vector<double> values;  ///< values, one per row [unit]; NaN where missing
+  bool is_state = false;       ///< true for a channel of states 0 and 1, of logic or of a contact, without a unit
+  double per_si = 1;           ///< how many of the channel's unit are one SI unit: 1000 for mV
+  int column = 0;              ///< number of the channel's column in the file, from 1
+  std::vector<double> values;  ///< values of the channel, one per row, in its unit; NaN where missing
   Missing missing = {};
 };
 
 struct Recording {
   std::string file;
   std::string format;
-  std::vector<double> times = {};  ///< times, one per row [s]; empty if the file has neither times nor an interval
+  std::vector<double> times = {};  ///< times of the rows [s]; empty if the file has neither times nor an interval
   bool has_times = false;          ///< true if the file holds the times; false if they follow from the interval
   bool times_have_unit = false;
-  double last_digit = 0;                  ///< unit of the last digit of the times in the file [s]
-  std::optional<double> interval = {};    ///< interval that the file states beside the times [s]
+  double last_digit = 0;                  ///< value of the last written digit of the times [s]
+  std::optional<double> interval = {};    ///< sampling interval that the file states beside the times [s]
   bool is_breakpoints = false;            ///< true if straight lines connect the rows, and two rows of the same time are a jump
-  std::vector<std::uint32_t> lines = {};  ///< line of each row
+  std::vector<std::uint32_t> lines = {};  ///< line of the file in which each row is
   std::vector<Channel> channels = {};
   std::vector<std::string> left_out = {};
-  std::vector<std::string> notes = {};  ///< assumptions made while reading
+  std::vector<std::string> notes = {};  ///< assumptions made while reading the file
 
   [[nodiscard]] std::size_t rows() const { return channels.empty() ? 0 : channels.front().values.size(); }
-  /// Returns the place of a row, such as "scope.csv:17".
+  /// Returns file and line of a row, such as "scope.csv:17".
   [[nodiscard]] std::string place(std::size_t row) const;
 };
 
@@ -72,23 +72,24 @@ struct Recording {
 /// names of the channels if no such channel exists.
 [[nodiscard]] const Channel& channel_of(const Recording& recording, const ReadKeys& keys, const std::string& usual);
 
-/// Reads a file. Throws InvalidInput with file, line, column and rule for an unreadable file, for a file without a record over
-/// time (a spectrum, logic states, a mesh), and for an ambiguous file.
+/// Reads a recorded file. Throws InvalidInput with file, line, column and rule for an unreadable file, for a file without a
+/// record over time (a spectrum, logic states, a mesh), and for an ambiguous file.
 [[nodiscard]] Recording read_recording(const std::string& file, const ReadKeys& keys = {});
-/// Reads the content of a file; `file` names it in messages.
+/// Reads the content of a recorded file; `file` is the name of the file in messages.
 [[nodiscard]] Recording parse_recording(std::string_view content, const std::string& file, const ReadKeys& keys = {});
 
 /// Properties of the times of a recording.
 struct TimeAxis {
-  double first = std::numeric_limits<double>::quiet_NaN();     ///< [s]
-  double last = std::numeric_limits<double>::quiet_NaN();      ///< [s]
-  double interval = std::numeric_limits<double>::quiet_NaN();  ///< interval that the file states, else the mean interval [s]
-  std::size_t repeated = 0;                                    ///< number of rows with the same time as the row above
-  std::optional<std::size_t> back = {};                        ///< first row whose time is before that of the row above
+  double first = std::numeric_limits<double>::quiet_NaN();  ///< time of the first row [s]
+  double last = std::numeric_limits<double>::quiet_NaN();   ///< time of the last row [s]
+  /// Sampling interval that the file states, or else the mean interval [s].
+  double interval = std::numeric_limits<double>::quiet_NaN();
+  std::size_t repeated = 0;              ///< number of rows with the same time as the row above
+  std::optional<std::size_t> back = {};  ///< first row whose time is before that of the row above
 };
 [[nodiscard]] TimeAxis time_axis(const Recording& recording);
 
-/// Returns one line with format, channels, samples, interval, first and last time, and what was left out.
+/// Returns one line about a recording: format, channels, samples, interval, first and last time, and what was left out.
 [[nodiscard]] std::string summary(const Recording& recording);
 
 }  // namespace softland

@@ -27,14 +27,14 @@ struct Token {
   std::size_t line = 0;
 };
 
-/// A number of SPICE. Letters after the digits are a scale suffix, or a unit, which is ignored.
+/// A number in the syntax of SPICE. Letters after the digits are a scale suffix, or a unit, which is ignored.
 struct SpiceNumber {
   double value = 0;
   bool has_suffix = false;
   bool has_plus = false;
 };
 
-// A scale suffix as an exact multiplier and an exact divisor, so that 199.999m becomes the double nearest to 0.199999.
+// A scale suffix of SPICE as an exact multiplier and an exact divisor, so that 199.999m becomes the double nearest to 0.199999.
 struct Suffix {
   std::string_view word;
   double times, over;
@@ -85,12 +85,12 @@ void add_tokens(std::string_view line, std::size_t number, std::vector<Token>& t
   }
 }
 
-// Removes the mark of a continuation line, a plus and a blank. "+1u 5" is instead a time relative to the time before.
+// Removes the mark of a SPICE continuation line, a plus and a blank. "+1u 5" is instead a time relative to the time before.
 std::string_view without_continuation(std::string_view line) {
   return line.starts_with("+ ") || line.starts_with("+\t") || line == "+" ? trimmed(line.substr(1)) : line;
 }
 
-/// The numbers between the brackets of one PWL( ) of a netlist.
+/// The numbers between the brackets of one PWL( ) source of a SPICE netlist.
 struct Source {
   std::string name;
   std::vector<Token> tokens;
@@ -134,7 +134,7 @@ class NetlistReader {
     tell_numbers_in_comment(given, line);
     take_numbers(line.substr(open + 1));
   }
-  // Adds a note about numbers in a comment among the points: the comment may hide points by mistake.
+  // Adds a note about numbers in a comment between the points of a PWL source: the comment may hide points by mistake.
   void tell_numbers_in_comment(std::string_view given, std::string_view line) {
     std::string_view comment = trimmed(given);
     comment.remove_prefix(line.size());
@@ -202,10 +202,10 @@ Recording points_of(const Source& source, const std::string& file) {
   return made;
 }
 
-/// Properties of times without a suffix, in lines of two numbers.
+/// Properties of the times in a text of two numbers per line, whose times have no scale suffix.
 struct PlainTimes {
   std::vector<double> all;
-  std::size_t repeated = 0;  ///< number of rows with the same time as the row above
+  std::size_t repeated = 0;  ///< number of rows with the same time as the row before
   bool thrice = false;       ///< true if three rows have the same time
 
   void take(double time) {
@@ -215,7 +215,8 @@ struct PlainTimes {
     thrice |= repeats && count > 1 && all[count - 2] == time;
     all.push_back(time);
   }
-  // Returns true if the times seem rounded: three rows of one time, or every time twice. A jump has two rows of a time.
+  // Returns true if the times seem rounded: three rows of equal time, or every time twice. A voltage jump has two rows of equal
+  // time.
   [[nodiscard]] bool are_rounded() const {
     constexpr std::size_t fewest = 8;
     return thrice || (all.size() >= fewest && 2 * repeated + 1 >= all.size());

@@ -15,16 +15,16 @@ namespace {
 
 using Of = TimeClaim::Of;
 
-// Relative rounding of an interval or a time that is written with few digits.
+// Relative rounding error of an interval or a time that a file gives with few digits.
 constexpr double printed_digits = 1e-5;
-// Relative rounding of times that some instruments compute in single precision.
+// Relative rounding error of times that some instruments compute in single precision.
 constexpr double single_precision = 1.2e-7;
 
 std::string seconds(double time) { return engineering(time, "s", 6); }
 std::string quoted(const std::string& key) { return "\"" + printable_line(key) + "\""; }
 
-/// An interval that the file states. If the file names no unit, `value` assumes seconds, and `in_units` assumes the horizontal
-/// unit of the file.
+/// A sampling interval that the file states. If the file names no unit, `value` assumes seconds, and `in_units` assumes the
+/// horizontal unit of the file.
 struct Interval {
   std::string source;
   double value = 0;
@@ -68,12 +68,12 @@ class RowTimer {
   const Preamble& preamble_;
   const ReadKeys& keys_;
   const Refusals& refusals_;
-  std::optional<Unit> unit_, unit_above_;  // unit of the column, and unit of the horizontal axis in the preamble
+  std::optional<Unit> unit_, unit_above_;  // unit of times in the column, and unit of the horizontal axis in the preamble
   std::vector<Interval> intervals_;
   RowTimes made_;
 };
 
-// Returns true for a file of a generator, which states the period; the samples cover one period.
+// Returns true for a file of a waveform generator that states the period; the samples cover one period.
 bool RowTimer::is_generator() const {
   return (column_ == nullptr || column_->name == "xpos") &&
          (column_ != nullptr || preamble_.text.find("rigol:dg") != std::string::npos || preamble_.first(Of::interval) == nullptr);
@@ -99,7 +99,7 @@ void RowTimer::take_unit() {
   }
 }
 
-// Refuses more samples than the file states; `last` is the number of samples, or the number of the last sample.
+// Refuses more rows than the samples that the file states; `last` is the number of samples, or the number of the last sample.
 void RowTimer::require_count(double last) const {
   if (is_decided()) return;
   for (const TimeClaim& claim : preamble_.claims) {
@@ -126,7 +126,7 @@ void RowTimer::find_intervals() {
   }
 }
 
-// Requires all stated intervals to be equal, unless the times show which interval is right.
+// Requires all stated sampling intervals to be equal, unless the times show which interval is right.
 void RowTimer::require_same_intervals() {
   if (intervals_.empty()) return;
   const Interval& first = intervals_.front();
@@ -171,12 +171,12 @@ void RowTimer::require_same_starts() const {
   }
 }
 
-// Sets the times that follow from the interval; `first_sample` is the number of the sample in the first row.
+// Sets the times of the rows from the sampling interval; `first_sample` is the number of the sample in the first row.
 void RowTimer::set_even(double first_sample) {
   require_same_intervals();
   if (!made_.interval) return;
   if (!is_decided()) require_same_starts();
-  // The file gives the start by a time, else by the number of a sample, else by the middle of the record.
+  // Start of the record: stated by the file as a time, or as the number of a sample, or as the middle of the record.
   double start = 0;
   for (const Of of : {Of::start, Of::trigger_sample, Of::centre}) {
     if (const TimeClaim* const claim = preamble_.first(of)) {
@@ -184,7 +184,7 @@ void RowTimer::set_even(double first_sample) {
       break;
     }
   }
-  // If the first sample is a whole number of intervals from t = 0, one sample is set to exactly 0.
+  // If the first sample is a whole number of intervals from t = 0, the time of one sample is set to exactly 0.
   constexpr double whole = 1e-6;
   const double steps = start / *made_.interval, rounded = std::round(steps);
   made_.times.resize(count_);
@@ -194,7 +194,7 @@ void RowTimer::set_even(double first_sample) {
   }
 }
 
-// Returns true if the column numbers the samples, and the file states their interval.
+// Returns true if the column of times numbers the samples, and the file states the sampling interval.
 bool RowTimer::is_sample_count() const {
   if (unit_) return unit_->measure == Measure::samples;
   const std::vector<double>& raw = column_->raw;
@@ -210,7 +210,7 @@ void RowTimer::set_even_from_numbers() {
           column_->lines[i], static_cast<std::size_t>(column_->column),
           fmt::format("the number of the sample is {}, and that above is {}; numbers must be consecutive", raw[i], raw[i - 1]));
   }
-  // Sample numbers begin at 0 in a column with this unit, at 1 for a generator, and at 0 or 1 otherwise.
+  // Sample numbers begin at 0 in a column with a unit of samples, at 1 in a file of a generator, and at 0 or 1 otherwise.
   const bool counts_from_one = !unit_ && (raw.front() == 1 || (column_->name == "xpos" && raw.front() > 1));
   const double first = raw.front() - (counts_from_one ? 1 : 0);
   require_count(first + static_cast<double>(count_));
@@ -269,7 +269,8 @@ void RowTimer::require_start() const {
   if (is_decided() || count_ < 2) return;
   const double interval = made_.interval.value_or(std::abs(duration()) / intervals());
   for (const TimeClaim& claim : preamble_.claims) {
-    // A middle of the record has a known meaning in GW Instek files only. A start without a unit may refer to another quantity.
+    // A stated middle of the record has a known meaning in GW Instek files only. A start without a unit may refer to another
+    // quantity.
     const bool is_axis = claim.of == Of::centre ? preamble_.text.find("sampling period") != std::string::npos
                                                 : claim.has_unit || !intervals_.empty();
     if (!is_start(claim) || !is_axis) continue;

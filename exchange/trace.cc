@@ -20,7 +20,7 @@ using internal::Unit;
 using internal::unit_of;
 
 constexpr int digits = 6;
-// Relative rounding of times that some instruments compute in single precision.
+// Relative rounding error of times that some instruments compute in single precision.
 constexpr double single_precision = 1.2e-7;
 
 std::string seconds(double time) { return engineering(time, "s", digits); }
@@ -57,7 +57,7 @@ double deviation(const std::vector<double>& times, double interval) {
   return most;
 }
 
-/// Returns the rounding error of the written times [s].
+/// Returns the rounding error of the times as written in the file [s].
 double rounding(const Recording& recording) {
   const std::vector<double>& t = recording.times;
   return 1.01 * recording.last_digit + single_precision * std::max(std::abs(t.front()), std::abs(t.back()));
@@ -106,7 +106,7 @@ void require_no_repeats(const Recording& recording, const TimeAxis& axis) {
                   recording.place(row), seconds(t[row]), axis.repeated));
 }
 
-// Returns the times of the rows according to the keys and to the file.
+// Returns the times of the rows according to the user's keys and to the file.
 std::vector<double> resolved_times(const Recording& recording, const ReadKeys& keys, std::string& told) {
   const std::size_t count = recording.rows();
   require(!recording.times.empty(), [&] {
@@ -114,7 +114,7 @@ std::vector<double> resolved_times(const Recording& recording, const ReadKeys& k
         "{}: the file has neither times nor an interval; give interval = \"...\", the time between rows, or time_column",
         recording.file);
   });
-  if (keys.interval) return recording.times;  // times from a given interval are evenly spaced
+  if (keys.interval) return recording.times;  // an interval that the user gives makes the times evenly spaced
   const TimeAxis axis = time_axis(recording);
   if (keys.uneven || recording.is_breakpoints) {
     require_not_back(recording, axis);
@@ -122,7 +122,7 @@ std::vector<double> resolved_times(const Recording& recording, const ReadKeys& k
   }
   if (!recording.has_times) return recording.times;
   if (recording.interval) {
-    constexpr double printed = 1e-5;  // error of an interval that is written with few digits, relative
+    constexpr double printed = 1e-5;  // relative rounding error of an interval that is written with few digits
     const double off = deviation(recording.times, *recording.interval), duration = std::abs(axis.last - axis.first);
     if (!(off <= rounding(recording) + printed * duration)) {
       throw InvalidInput(
@@ -130,7 +130,8 @@ std::vector<double> resolved_times(const Recording& recording, const ReadKeys& k
                       "interval = \"{}\" uses that interval, interval = \"uneven\" the times",
                       recording.file, seconds(*recording.interval), seconds(off), seconds(*recording.interval)));
     }
-    constexpr double exact = 1e-3;  // share of the interval; times that deviate less from even spacing are used as written
+    // Deviation from even spacing, as a share of the interval, below which times are used as written.
+    constexpr double exact = 1e-3;
     if (axis.repeated == 0 && !axis.back && off <= exact * *recording.interval) return recording.times;
     told += fmt::format("; times are rounded to {}: replaced by even times from the first one with the interval of the file",
                         seconds(recording.last_digit));
@@ -149,7 +150,8 @@ std::vector<double> resolved_times(const Recording& recording, const ReadKeys& k
   return recording.times;
 }
 
-// Removes rows without a number at both ends. Between other rows, a blank is skipped, and a value out of range is refused.
+// Removes rows without a value of the channel at both ends. Between other rows, a blank is skipped, and a value out of range is
+// refused.
 void drop_missing(const Recording& recording, const Channel& channel, Trace& trace, std::string& told) {
   if (channel.missing.count == 0) return;
   std::size_t first = 0, last = trace.values.size();

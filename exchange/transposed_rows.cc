@@ -12,16 +12,16 @@
 namespace softland::internal {
 namespace {
 
-/// Lines of numbers that are one channel each, and the lines above the channels.
+/// Lines of a file that hold the numbers of one channel each, and the lines above these.
 struct LyingRows {
   std::vector<Line> above, places;
   std::vector<CellList> rows;
-  std::size_t width = 0;  ///< number of values in the longest row
-  bool named = false;     ///< true if every row begins with a name
+  std::size_t width = 0;  ///< number of values in the longest row of a channel
+  bool named = false;     ///< true if every row of a channel begins with a name
   char separator = ',';
 };
 
-// Returns the lines of a text of few lines; none if the text has more.
+// Returns the lines of a text of few lines; none if the text has more lines than a file with one channel per row.
 std::vector<Line> few_lines(std::string_view text, const ReadKeys& keys, bool& ends_unended) {
   constexpr std::size_t most = 64;
   std::vector<Line> all;
@@ -58,7 +58,7 @@ LyingRows rows_in(const std::vector<Line>& all) {
   return found;
 }
 
-// Returns true if each row is a channel. Rows without names must be long, and not have names of columns above.
+// Returns true if each row is a channel. Rows without names must be long, and must not have column names above them.
 bool are_channels(const LyingRows& found) {
   constexpr std::size_t fewest_named = 3, fewest_unnamed = 16;
   if (found.rows.size() < 2) return false;

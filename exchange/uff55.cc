@@ -1,4 +1,5 @@
-// Reads modes in the Universal File Format: data sets 55 (motion of nodes), 15 or 2411 (positions of nodes) and 164 (units).
+// Reads vibration modes in the Universal File Format: data sets 55 (motion of nodes), 15 or 2411 (positions of nodes) and 164
+// (units).
 //
 // Fields of numbers have 13 or more columns, without blanks between them; their signs separate them. Source: Structural
 // Dynamics Research Corporation, Universal File Datasets 15, 55, 164, 2411.
@@ -24,7 +25,7 @@
 namespace softland::internal {
 namespace {
 
-/// Motion of some nodes in one mode.
+/// Motion of some mesh nodes in one mode, from a data set 55.
 struct Set55 {
   double frequency = 0, modal_mass = 0;
   long long mode = 0;
@@ -101,8 +102,8 @@ class Uff55Reader {
     if (!places_.emplace(number, place).second) fail(fmt::format("node {} is given twice", number));
   }
 
-  // Reads nodes. Data set 15 has number, two coordinate systems, colour and position on one line; 2411 has the position on a
-  // second line.
+  // Reads mesh nodes. Data set 15 has number, two coordinate systems, colour and position on one line; 2411 has the position on
+  // a second line.
   void read_nodes(bool in_one_line) {
     while (true) {
       if (!lines_.next()) fail("the file ends within the nodes");
@@ -126,7 +127,7 @@ class Uff55Reader {
     }
   }
 
-  // Reads the units. Dividing positions by the factor of length converts them to metres.
+  // Reads the units of the file. Dividing positions by the factor of length converts them to metres.
   void read_units() {
     due("the name of the units");
     due("the factors of the units");
@@ -163,7 +164,7 @@ class Uff55Reader {
     if (reals.size() != count || count < (is_normal ? 1U : 2U))
       fail(fmt::format("the mode has {} numbers; it must have {}, beginning with the frequency", reals.size(), of_mode[1]));
     Set55 set{.mode = of_mode[3]};
-    // The eigenvalue of a complex mode is in rad/s.
+    // The eigenvalue of a complex mode is an angular frequency in rad/s.
     set.frequency = is_normal ? reals[0] : std::hypot(reals[0], reals[1]) / (2 * std::numbers::pi);
     set.modal_mass = is_normal && reals.size() > 1 ? reals[1] : 0;
     if (!(set.frequency >= 0)) fail("the frequency must not be negative");

@@ -45,7 +45,7 @@ constexpr std::array function_names{"a general or unknown function",
                                     "a spectrum",
                                     "a cumulative frequency distribution"};
 
-/// Reads bytes line by line, and binary data as a whole.
+/// Reads the bytes of a file line by line, and binary data as a whole.
 class Reader {
  public:
   Reader(std::string_view bytes, const std::string& file) : rest_(bytes), file_(file) {}
@@ -62,7 +62,7 @@ class Reader {
     return text;
   }
   void skip(std::size_t bytes) { rest_.remove_prefix(std::min(bytes, rest_.size())); }
-  /// Returns true if the end of the file ended the last line.
+  /// Returns true if the last line ends with the file, without a line end.
   [[nodiscard]] bool is_cut() const { return is_cut_; }
   [[noreturn]] void fail(const std::string& rule) const { throw InvalidInput(fmt::format("{}:{}: {}", file_, number_, rule)); }
 
@@ -108,7 +108,7 @@ double real(const Reader& in, std::string_view text, std::string_view what) {
   return *value;
 }
 
-// Returns the label and the unit of an axis, in columns 27 to 46 and 48 to 67.
+// Returns the label and the unit of an axis, in columns 27 to 46 and 48 to 67 of the line.
 std::pair<std::string, std::string> axis_prose(std::string_view line) {
   const auto field = [&](std::size_t from) {
     return from < line.size() ? std::string(trimmed(line.substr(from, 20))) : std::string();
@@ -182,7 +182,7 @@ void refuse_other_functions(const Reader& in, const Header& header) {
     in.fail(fmt::format("the abscissa is in {}; give a record over time", unit->symbol));
 }
 
-// Reads numbers in columns. There may be no blank before a number with a sign.
+// Reads numbers in columns of a line. There may be no blank before a number with a sign.
 std::vector<double> ascii_numbers(Reader& in, std::size_t due, std::vector<std::string>& left_out) {
   std::vector<double> numbers;
   numbers.reserve(std::min<std::size_t>(due, in.rest().size() / 6 + 1));
@@ -240,14 +240,14 @@ double binary_number(std::string_view bytes, bool big_endian) {
 }
 
 struct Values {
-  std::vector<double> abscissas, ordinates;  // abscissas are empty if they are even
+  std::vector<double> abscissas, ordinates;  // abscissas (times) and ordinates; abscissas are empty if evenly spaced
 };
 
 Values binary_values(Reader& in, const Header& header, std::vector<std::string>& left_out) {
   const std::size_t size = header.is_double() ? 8 : 4;
   if (header.count > header.bytes / size)
     in.fail(fmt::format("{} bytes cannot hold {} values of {} bytes", header.bytes, header.count, size));
-  // Uneven abscissas have four bytes in some files, and the size of the values in others.
+  // Unevenly spaced abscissas have four bytes in some files, and the size of the values in others.
   const std::size_t row = header.bytes / header.count, abscissa = row - size;
   const bool fits = row * header.count == header.bytes && (header.is_even ? abscissa == 0 : abscissa == 4 || abscissa == size);
   if (!fits) in.fail(fmt::format("{} bytes do not hold {} values of {} bytes", header.bytes, header.count, size));
@@ -295,7 +295,8 @@ std::vector<double> times_of(const Header& header, const Values& values) {
   return times;
 }
 
-// Checks the header of uneven abscissas: its first abscissa and increment must be 0 or agree with the abscissas.
+// Checks the header of unevenly spaced abscissas: the first abscissa and the increment in the header must be 0 or agree with
+// the abscissas.
 void require_same_axis(const Header& header, const Values& values, const std::vector<double>& times, std::size_t line,
                        const Refusals& refusals, const ReadKeys& keys) {
   if (header.is_even || (header.first == 0 && header.step == 0)) return;
@@ -334,7 +335,7 @@ void add_channel(Recording& made, const Header& header, Values values) {
   made.channels.push_back(std::move(channel));
 }
 
-// Skips the rest of a data set of another kind.
+// Skips the rest of a data set that is not used.
 void pass(Reader& in) {
   while (!in.at_end() && !is_mark(in.line())) continue;
 }

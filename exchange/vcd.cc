@@ -1,7 +1,8 @@
 // Reads value change dumps (VCD), as logic analysers and simulators of digital circuits write them.
 //
-// A variable keeps its value until the next change. Every time of a change becomes two rows, with the values before and after,
-// so that straight lines between rows are steps. Variables with the same identifier have the same values.
+// A variable of a dump keeps its value until the next change. Every time of a change becomes two rows of the recording, with
+// the values before and after, so that straight lines between rows are steps. Variables with the same identifier have the same
+// values.
 //
 // The states x and z, and the states W, U and '-' of VHDL, are missing numbers; vectors are whole numbers.
 //
@@ -46,7 +47,7 @@ class Words {
   }
   [[nodiscard]] std::string_view word() const { return word_; }
   [[nodiscard]] std::size_t line() const { return line_; }
-  /// Returns true if the file ends within the word or directly after it.
+  /// Returns true if the file ends within the current word or directly after it.
   [[nodiscard]] bool is_unended() const { return at_ == text_.size(); }
 
  private:
@@ -56,28 +57,28 @@ class Words {
   std::size_t at_ = 0, line_ = 1;
 };
 
-/// A scope of variables, with a link to the enclosing scope.
+/// A scope (module) of variables in a value change dump, with a link to the enclosing scope.
 struct Scope {
   std::size_t around = 0;  ///< index of the enclosing scope; 0: the file
   std::string_view name = {};
-  std::size_t length = 0;  ///< length of the path of the scope
+  std::size_t length = 0;  ///< length of the path of the scope, in characters
 };
 
 struct Variable {
-  std::string name;  ///< name with its range, such as "data[7:0]"
+  std::string name;  ///< name of the variable with its range, such as "data[7:0]"
   std::size_t scope = 0, signal = 0;
   bool is_state = false;
 };
 
 struct Change {
-  std::uint64_t time = 0;  ///< time in time steps of the file
+  std::uint64_t time = 0;  ///< time of a change, in time steps of the file
   double value = missing_number;
 };
 
-/// The changes of all variables with one identifier.
+/// The changes of all variables that share one identifier.
 struct DumpedSignal {
   std::vector<Change> changes;
-  std::size_t bits = 0;  ///< number of bits; 0: a real number
+  std::size_t bits = 0;  ///< number of bits of the variable; 0: a real number
   bool has_sign = false, is_wanted = false, is_left_out = false;
 };
 
@@ -137,7 +138,7 @@ class VcdReader {
   std::vector<Variable> variables_;
   std::vector<DumpedSignal> signals_;
   std::unordered_map<std::string_view, std::size_t> identifiers_;
-  std::vector<std::size_t> chosen_;  // variables that become channels
+  std::vector<std::size_t> chosen_;  // indices of the variables that become channels
 
   bool has_begun_ = false;
   std::uint64_t first_ = 0, now_ = 0;
@@ -145,7 +146,7 @@ class VcdReader {
     std::uint64_t time;
     std::uint32_t line;
   };
-  std::vector<Moment> moments_;  // times of changes, in order
+  std::vector<Moment> moments_;  // times at which variables change, in order
 };
 
 void VcdReader::declarations() {
@@ -214,7 +215,7 @@ bool VcdReader::is_called(const Variable& variable, std::string_view name) const
          (scopes_[variable.scope].length + variable.name.size() == name.size() && path(variable) == name);
 }
 
-// Selects the variables that the keys name, or all variables.
+// Selects the variables that the user's keys name, or all variables.
 void VcdReader::choose() {
   if (steps_ == 0) {
     if (keys_.time_unit.empty()) fail("the file has no $timescale; give the unit of the times, such as time_unit = \"ns\"");
@@ -298,7 +299,7 @@ void VcdReader::take_time() {
   const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), time);
   if (error != std::errc() || stop != digits.data() + digits.size()) fail_at_word("must be a time, a whole number below 2^64");
   if (!has_begun_) {
-    // Changes before the first time count as changes at that time.
+    // Changes of variables before the first time count as changes at that time.
     for (DumpedSignal& signal : signals_)
       for (Change& change : signal.changes) change.time = time;
     moments_.assign(1, {.time = time, .line = static_cast<std::uint32_t>(words_.line())});
@@ -329,7 +330,7 @@ double VcdReader::vector_value(std::string_view digits, const DumpedSignal& sign
   return std::isfinite(value) ? value : missing_number;
 }
 
-// Stores a change of a variable. Of several changes at one time, the last one is used.
+// Stores a change of a variable. Of several changes at one time, the last change is used.
 void VcdReader::change(std::string_view identifier, double value) {
   DumpedSignal& signal = signal_of(identifier);
   if (!signal.is_wanted) return;

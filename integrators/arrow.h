@@ -12,12 +12,12 @@ namespace softland {
 
 class ArrowEquations {
  public:
-  /// Takes `size` unknowns: the first `core` of them form the dense core, the rest blocks of `block` unknowns.
+  /// Takes `size` unknowns. The first `core` unknowns form the dense core; the others form blocks of `block` unknowns each.
   ArrowEquations(Eigen::Index size, Eigen::Index core, Eigen::Index block)
       : size_(size), core_(core), block_(block), blocks_(static_cast<std::size_t>((size - core) / block)) {}
 
-  /// Factorises a column-major matrix of size x size; entries outside the arrow are ignored. Returns false for a singular
-  /// matrix.
+  /// Factorises a column-major matrix of size x size; entries outside the core, the diagonal blocks and their coupling with the
+  /// core are ignored. Returns false for a singular matrix.
   bool factor(const double* matrix) {
     const Eigen::Map<const Eigen::MatrixXd> a(matrix, size_, size_);
     const Eigen::Index rest = size_ - core_;
@@ -47,8 +47,8 @@ class ArrowEquations {
  private:
   Eigen::Index size_, core_, block_;
   std::vector<Eigen::PartialPivLU<Eigen::MatrixXd>> blocks_;
-  Eigen::MatrixXd upper_;       // block B of the matrix
-  Eigen::MatrixXd eliminated_;  // D^-1 E, from the elimination of the blocks D
+  Eigen::MatrixXd upper_;       // upper right block B of the matrix [C B; E D]
+  Eigen::MatrixXd eliminated_;  // D^-1 E of the matrix [C B; E D], whose block diagonal part D is eliminated
   Eigen::PartialPivLU<Eigen::MatrixXd> core_equations_;
 };
 

@@ -1,4 +1,4 @@
-// Integrators of the equations of motion, and their names.
+// Integration methods for the equations of motion, and their names.
 #pragma once
 
 #include <array>
@@ -8,20 +8,20 @@ namespace softland {
 
 enum class Integrator {
   automatic,   ///< the caller chooses a method that suits its equations; make_stepper() refuses this value
-  lawson,      ///< explicit Runge-Kutta 5(4) for the deviation from the free motion of the modes, own implementation
-  arkode_erk,  ///< explicit Runge-Kutta 5(4) for the whole motion, ARKODE
-  esdirk,      ///< diagonally implicit Runge-Kutta 5(4), ARKODE, exact Jacobian
-  bdf,         ///< CVODE, exact Jacobian
-  adams,       ///< CVODE, functional iteration
+  lawson,      ///< explicit Runge-Kutta 5(4) for the deviation of the modes from their free oscillation, own implementation
+  arkode_erk,  ///< explicit Runge-Kutta 5(4) for the whole motion, by ARKODE
+  esdirk,      ///< diagonally implicit Runge-Kutta 5(4), by ARKODE, with the exact Jacobian
+  bdf,         ///< backward differentiation formulas, by CVODE, with the exact Jacobian
+  adams,       ///< Adams-Moulton method, by CVODE, with functional iteration
 };
 
 struct IntegratorDescriptor {
   Integrator integrator;
   std::string_view name;
-  bool implicit;  ///< solves equations with the Jacobian in every step
+  bool implicit;  ///< true when every step solves equations with the Jacobian
 };
 
-/// Names and properties, one line per integrator except `automatic`.
+/// Name and properties of every integrator except `automatic`, one line each.
 inline constexpr std::array integrator_descriptors{
     IntegratorDescriptor{Integrator::lawson, "lawson", false}, IntegratorDescriptor{Integrator::arkode_erk, "arkode-erk", false},
     IntegratorDescriptor{Integrator::esdirk, "esdirk", true},  IntegratorDescriptor{Integrator::bdf, "bdf", true},

@@ -57,7 +57,7 @@ void Lawson::turn_to_nodes(double h) {
   for (std::size_t b = 0; b < omega_.size(); b += lanes) {
     const Lane phase = h * lane(omega_, b);
     for (std::size_t s = 1; s < stages; ++s) {
-      if (s == last) {  // this stage is at the time of the stage before
+      if (s == last) {  // the last two stages are at the same time
         for (const auto member : {&Stage::cosine, &Stage::sine, &Stage::slack})
           lane(k_[s].*member, b) = lane(k_[s - 1].*member, b);
         continue;
@@ -176,7 +176,8 @@ bool Lawson::step(double t_stop) {
       most = 1;
       continue;
     }
-    const float log_error = std::log2(static_cast<float>(std::clamp(e2, 1e-36, 1e36))) / 2;  // a step size needs no more digits
+    // A step size needs no more digits than a float has.
+    const float log_error = std::log2(static_cast<float>(std::clamp(e2, 1e-36, 1e36))) / 2;
     const double growth =
         Pair::safety * static_cast<double>(std::exp2(Pair::integral * last_error_ - Pair::proportional * log_error));
     if (e2 <= 1) {
@@ -184,7 +185,7 @@ bool Lawson::step(double t_stop) {
       y_.swap(trial_);
       rates_.swap(next_rates_);
       last_error_ = std::max(log_error, Pair::least_error);
-      // The error of a step that t_stop shortened says little about the next step, which begins with a restart anyway.
+      // The error of a step that was shortened to end at t_stop says little about the next step, which begins with a restart.
       h_ = h * std::clamp(growth, Pair::least_growth, most);
       first_ = false;
       return true;

@@ -1,8 +1,9 @@
-// Explicit Runge-Kutta steps of the pair 5(4) for the deviation from the free motion of the modes.
+// Explicit Runge-Kutta steps of the pair 5(4) for the deviation of the modes of a beam from their free oscillation.
 //
 // The modes oscillate faster than the forces on them change: two periods of the fourth mode pass while the gap hardly moves. So
 // a step contains the exact motion of every mode under the force at the start of the step, and the Runge-Kutta method
-// integrates only the effect of the change of the force. With theta = omega t and a the acceleration at the start of the step,
+// integrates only the effect of the change of the force. With omega the angular frequency of a mode, theta = omega t, q and v
+// its coordinate and velocity, and a the acceleration at the start of the step,
 //
 //   q = q0 + (a / omega^2) (1 - cos theta) + P cos theta + (v0 + R) sin theta / omega
 //   v = (v0 + R) cos theta + (a / omega) sin theta - P omega sin theta
@@ -12,8 +13,8 @@
 // 1960). The pair: Dormand & Prince 1980, RK5(4)7M; the solution of fifth order is used, and the last stage is the first of the
 // next step. Step size control: proportional-integral (Gustafsson 1991) with the exponents of Hairer & Wanner 1996, IV.2. The
 // error of a step is the root mean square, over the unknowns, of the embedded estimate over the absolute tolerances. An
-// estimate that is not a number rejects the step. The pair alone integrates the unknowns that follow the modes in the state.
-// The phase of the fastest mode advances by two radians per step at the most.
+// estimate that is not a number rejects the step. Unknowns that are not modes, such as gas pressures, are integrated by the
+// pair alone. The phase of the fastest mode advances by two radians per step at the most.
 //
 // The last two stages, which are at the same time, show how stiff the equations are: stiffness is the ratio of the difference
 // of their slopes to the difference of their states (Hairer & Wanner 1996, IV.2).
@@ -43,12 +44,13 @@ class Lawson final : public Stepper {
 
  private:
   static constexpr std::size_t stages = 7;
-  using Modal = std::vector<double>;  // one value per mode, padded to whole lanes
+  using Modal = std::vector<double>;  // one value per mode, padded to a multiple of the number of SIMD lanes
 
   struct Stage {
-    Modal q, v;                 // rates P' and R' of each mode's deviation from its free motion
-    Modal cosine, sine, slack;  // functions of the phase up to the stage's node; slack: (1 - cosine) / omega^2
-    std::vector<double> rest;   // time derivatives of the unknowns after the modes
+    Modal q, v;  // rates P' and R', which the force on a mode adds to its free oscillation
+    // of the mode's phase theta from the start of the step to the stage; slack: (1 - cos theta) / omega^2
+    Modal cosine, sine, slack;
+    std::vector<double> rest;  // time derivatives of the unknowns that are not modes
   };
 
   void turn_to_nodes(double h);
@@ -61,12 +63,12 @@ class Lawson final : public Stepper {
   Modal omega_, inverse_;
   double fastest_ = 0;
   std::vector<double> y_, trial_, rates_, next_rates_, weight_;
-  Modal q_, v_, a_;  // q, v and a of each mode at the start of the step
+  Modal q_, v_, a_;  // coordinate, velocity and acceleration of each mode at the start of the step
   Modal q_weight_, v_weight_;
   std::array<Stage, stages> k_;
-  double turned_ = 0;  // step length for which the stages' phases were computed [s]
+  double turned_ = 0;  // step length for which cosine, sine and slack of the stages were computed [s]
   double t_ = 0, h_ = 0, max_step_ = 0;
-  float last_error_ = 0;  // error of the last step, as a binary logarithm
+  float last_error_ = 0;  // error estimate of the last step, as a binary logarithm
   bool first_ = true;
   std::string message_;
 };

@@ -1,7 +1,7 @@
-// Motion of one point of the beam within a step. Every mode moves by its exact motion under the force at the start of the step
-// (integrators/phase.h). A quintic is added, so that position, velocity and acceleration are right at the end. The force
-// changes little in a step, so this interpolation is accurate over steps of a radian and more of the fastest mode, for which
-// the quintic through both ends is not.
+// Motion of one point of the beam within an integration step. Every mode moves by its exact motion under the force at the start
+// of the step (integrators/phase.h). A quintic polynomial is added, so that position, velocity and acceleration are right at
+// the end of the step. The force changes little in a step, so this interpolation is accurate over steps of a radian and more of
+// the fastest mode. Quintic interpolation between both ends alone would not be.
 #pragma once
 
 #include <array>
@@ -11,10 +11,11 @@
 
 namespace softland {
 
-/// The quintic that starts from rest at 0 and has position p, velocity v and acceleration a at the end of a step of length 1.
+/// The quintic polynomial that starts from rest at 0 and has position p, velocity v and acceleration a at the end of a step of
+/// length 1.
 template <class T>
 struct Remainder {
-  std::array<T, 3> factors{};  ///< coefficients of the powers 3 to 5
+  std::array<T, 3> factors{};  ///< coefficients of the quintic's powers 3 to 5; the lower powers are absent
 
   Remainder() = default;
   Remainder(const T& p, const T& v, const T& a) : factors{10 * p - 4 * v + a / 2, -15 * p + 7 * v - a, 6 * p - 3 * v + a / 2} {}
@@ -26,18 +27,20 @@ struct Remainder {
 class ModalMotion {
  public:
   struct Sample {
-    double position, velocity, acceleration;  ///< [m], [m/s], [m/s^2]
+    /// Position [m], velocity [m/s] and acceleration [m/s^2] of the point of the beam.
+    double position, velocity, acceleration;
   };
 
-  /// Takes angular frequencies [rad/s] and values of the modes at the point [kg^(-1/2)].
+  /// Takes angular frequencies [rad/s] of the beam's modes and the values of the mode shapes at the point [kg^(-1/2)].
   ModalMotion(const std::vector<double>& frequencies, const std::vector<double>& shape)
       : modes_(frequencies.size()), omega_(padded_to_lanes(frequencies, 1)), shape_(padded_to_lanes(shape, 0)) {
     pull_.resize(omega_.size());
     push_.resize(omega_.size());
   }
 
-  /// Sets a step of `length` [s], divided into equal pieces. q, v and a are coordinates, velocities and accelerations of the
-  /// modes at the start of the step, `end` is the motion of the point at its end. No phase of a mode may exceed largest_phase.
+  /// Sets a step of `length` [s], divided into `pieces` equal intervals. q, v and a are coordinates, velocities and
+  /// accelerations of the modes at the start of the step, `end` is the motion of the point at the end of the step. No phase of
+  /// a mode may exceed largest_phase.
   void set(double length, int pieces, const double* q, const double* v, const double* a, const Sample& end) {
     per_length_ = 1 / length;
     Lane start = Lane::Zero();
@@ -62,10 +65,10 @@ class ModalMotion {
     for (int k = 1; k <= pieces; ++k) add_rest(static_cast<double>(k) / pieces, knots_[static_cast<std::size_t>(k) - 1]);
   }
 
-  /// Returns the motion after k pieces, 1 <= k <= pieces.
+  /// Returns the motion at the end of the k-th of the equal intervals into which set() divided the step, 1 <= k <= pieces.
   [[nodiscard]] const Sample& knot(int k) const { return knots_[static_cast<std::size_t>(k) - 1]; }
 
-  /// Returns the motion at `time` after the start of the step, at most its length [s].
+  /// Returns the motion at `time` after the start of the step [s]; `time` is at most the length of the step.
   [[nodiscard]] Sample at(double time) const {
     Sample s{start_, 0, 0};
     for (std::size_t b = 0; b < omega_.size(); b += lanes) add_free(b, turn(lane(omega_, b) * time), s);
@@ -81,7 +84,7 @@ class ModalMotion {
     s.acceleration += (omega * omega * (pull * turned.cosine - push * turned.sine)).sum();
   }
 
-  // Adds the quintic after the share x of the step to `s`.
+  // Adds the quintic part of the motion, at the share x of the step, to `s`.
   void add_rest(double x, Sample& s) const {
     s.position += rest_.position(x);
     s.velocity += per_length_ * rest_.velocity(x);
@@ -91,7 +94,7 @@ class ModalMotion {
   std::size_t modes_;
   std::vector<double> omega_, shape_, pull_, push_;
   std::vector<Sample> knots_;
-  Remainder<double> rest_;  // quintic, in units of the step's length
+  Remainder<double> rest_;  // quintic part of the motion, for a step of length 1
   double start_ = 0, per_length_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// Rotation of the phases of free modes: the exact motion between two instants of q'' = -omega^2 q + constant, for a lane of
-// modes at once.
+// Rotation of the phases of free modes: the exact motion between two instants of q'' = -omega^2 q + constant, for several modes
+// at once, one per SIMD lane.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace softland {
 
-/// Largest phase for which turn() is exact to rounding.
+/// Largest phase of a mode [rad] for which turn() is exact to rounding.
 inline constexpr double largest_phase = 2;
 
 struct Turn {
@@ -17,10 +17,10 @@ struct Turn {
   Lane slack;  ///< 1 - cosine of the phase, without cancellation
 };
 
-/// Returns the rotation by a phase: Taylor series of cosine and sine at half the phase; the first omitted term is below 1e-18.
+/// Returns cosine and sine of a phase: Taylor series at half the phase, whose first omitted term is below 1e-18.
 [[nodiscard]] inline Turn turn(const Lane& phase) {
   constexpr std::size_t degree = 18;
-  constexpr auto factors = [] {  // (-1)^(k/2) / k!, alternating even and odd k
+  constexpr auto factors = [] {  // coefficients (-1)^(k/2) / k! of the Taylor series, alternating even and odd k
     std::array<double, degree + 2> f{1, 1};
     for (std::size_t k = 2; k < degree + 2; ++k) f[k] = -f[k - 2] / static_cast<double>(k * (k - 1));
     return f;

@@ -1,5 +1,5 @@
-// Quintic Hermite interpolation of a motion between two knots with position, velocity and acceleration: error of sixth order in
-// the step.
+// Quintic Hermite interpolation of a motion between two times at which position, velocity and acceleration are given. The error
+// is of sixth order in the interval.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace softland {
 
 class Quintic {
  public:
-  /// Matches position [m], velocity [m/s] and acceleration [m/s^2] at time t0 and t1 > t0 [s].
+  /// Takes position [m], velocity [m/s] and acceleration [m/s^2] at the times t0 and t1 > t0 [s].
   Quintic(double t0, double p0, double v0, double a0, double t1, double p1, double v1, double a1) : begin_(t0), length_(t1 - t0) {
     const double h = length_, d = p1 - p0;
     const double v0h = v0 * h, v1h = v1 * h, a0h = a0 * h * h, a1h = a1 * h * h;
@@ -35,15 +35,15 @@ class Quintic {
     const double s = (t - begin_) / length_;
     return (2 * c_[2] + s * (6 * c_[3] + s * (12 * c_[4] + s * 20 * c_[5]))) / (length_ * length_);
   }
-  /// Returns the times in (begin, end) at which the velocity changes sign, in order.
+  /// Returns the times between both ends at which the velocity changes sign, in ascending order.
   [[nodiscard]] SignChanges<4> turns() const {
     SignChanges<4> turns = sign_changes(std::array{c_[1], 2 * c_[2], 3 * c_[3], 4 * c_[4], 5 * c_[5]});
     for (double& t : turns.at) t = begin_ + t * length_;
     return turns;
   }
-  /// Bounds of the position on [begin, end]: the curve stays between the control points of its Bernstein form.
+  /// Bounds of the position between both ends: the curve stays between the control points of its Bernstein form.
   struct Bounds {
-    double least = 0, most = 0;  ///< [m]
+    double least = 0, most = 0;  ///< bounds of the interpolated position [m]
   };
   [[nodiscard]] Bounds bounds() const {
     const auto [c0, c1, c2, c3, c4, c5] = c_;

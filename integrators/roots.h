@@ -25,7 +25,7 @@ double bracketed_zero(const F& f, double low, double high) {
       {&f, [](const void* object, double at) -> double { return (*static_cast<const F*>(object))(at); }}, low, high);
 }
 
-/// Roots in (0, 1) in ascending order, at most N.
+/// Roots of a polynomial in (0, 1) in ascending order, at most N.
 template <std::size_t N>
 struct SignChanges {
   std::array<double, N> at{};

@@ -78,8 +78,8 @@ class Context {
   SUNContext context_ = nullptr;
 };
 
-/// The common part of the SUNDIALS steppers: context, vectors, tolerances, the equations as callbacks of the library, and its
-/// messages. The equations must not throw.
+/// The common part of the steppers of SUNDIALS: context, vectors, tolerances, messages, and the equations as callbacks. The
+/// equations must not throw exceptions.
 class SundialsStepper : public Stepper {
  public:
   explicit SundialsStepper(const OdeSystem& system) : system_(system), y_(new_vector()), weights_(new_vector()) {
@@ -93,14 +93,14 @@ class SundialsStepper : public Stepper {
   bool restart(double t, const double* y, const double* rates, const std::vector<double>& absolute, double first_step,
                double max_step) final {
     load(t, y, rates, absolute);
-    const double longest = std::isfinite(max_step) ? max_step : 0;  // 0: unbounded
+    const double longest = std::isfinite(max_step) ? max_step : 0;  // SUNDIALS takes 0 as unbounded
     if (ready_) return reinitialize(t) && set_steps(first_step, longest);
     ready_ = create(t) && set_up();
     return ready_ && set_steps(first_step, longest);
   }
   [[nodiscard]] double time() const final { return t_; }
   [[nodiscard]] const double* state() const final { return N_VGetArrayPointer(y_.get()); }
-  // The last stage of many methods is the right-hand side at the end of the step.
+  // The last stage of many Runge-Kutta methods is the right-hand side at the end of the step.
   [[nodiscard]] const double* rates() final {
     if (!last_.is_at(t_, state())) evaluate(t_, state());
     return last_.rates.data();
@@ -108,14 +108,14 @@ class SundialsStepper : public Stepper {
   [[nodiscard]] std::string message() const final { return message_; }
 
  protected:
-  /// Allocates the library's memory for equations that start at (t, y_).
+  /// Allocates the memory of SUNDIALS for equations that start at (t, y_).
   virtual bool create(double t) = 0;
-  /// Sets the options of the method.
+  /// Sets the options of the integration method in SUNDIALS.
   virtual bool set_up() = 0;
   virtual bool reinitialize(double t) = 0;
   virtual bool set_steps(double first, double longest) = 0;
 
-  /// Returns true when a call of the library succeeded; otherwise keeps the library's message.
+  /// Returns true when a call of SUNDIALS succeeded; otherwise stores the message of SUNDIALS.
   bool ok(int flag, std::string_view function) {
     if (flag >= 0) return true;
     message_ =
@@ -134,7 +134,7 @@ class SundialsStepper : public Stepper {
     auto* me = static_cast<SundialsStepper*>(self);
     const double* state = N_VGetArrayPointer(y);
     double* out = N_VGetArrayPointer(dydt);
-    // A step begins at the end of the last step, where the right-hand side has been computed.
+    // A step begins where the last step ended; the right-hand side has been computed there.
     const Evaluation& known = me->last_.is_at(t, state)    ? me->last_
                               : me->begin_.is_at(t, state) ? me->begin_
                                                            : me->evaluate(t, state);
@@ -142,8 +142,7 @@ class SundialsStepper : public Stepper {
     std::copy_n(state + modes, modes, out);
     std::copy(known.rates.begin(), known.rates.end(), out + modes);
     for (std::size_t i = 0; i < me->system_.size; ++i) {
-      if (!std::isfinite(out[i]))
-        out[i] = 1e100;  // fails the error test: an explicit method has no other way to ask for a shorter step
+      if (!std::isfinite(out[i])) out[i] = 1e100;  // fails the error test, so that an explicit method makes a shorter step
     }
     return 0;
   }
@@ -151,7 +150,8 @@ class SundialsStepper : public Stepper {
     static_cast<SundialsStepper*>(self)->system_.jacobian(t, N_VGetArrayPointer(y), SUNDenseMatrix_Data(j));
     return 0;
   }
-  // SUNDIALS refuses a tolerance below the rounding error of the unknown. In a stiff contact, tolerances are that small.
+  // SUNDIALS refuses a tolerance below the rounding error of an unknown; in a stiff contact, absolute tolerances are that
+  // small.
   static int error_weights(N_Vector y, N_Vector ewt, void* self) {
     constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
     const auto* me = static_cast<SundialsStepper*>(self);
@@ -173,7 +173,7 @@ class SundialsStepper : public Stepper {
   double t_ = 0;
 
  private:
-  // A point at which the right-hand side was evaluated, and its value.
+  // A point (t, y) at which the right-hand side was evaluated, and the value there.
   struct Evaluation {
     double t = std::numeric_limits<double>::quiet_NaN();
     std::vector<double> y, rates;
@@ -194,7 +194,7 @@ class SundialsStepper : public Stepper {
 
   void load(double t, const double* y, const double* rates, const std::vector<double>& absolute) {
     t_ = t;
-    last_.t = std::numeric_limits<double>::quiet_NaN();  // the last evaluation is of another smooth stretch
+    last_.t = std::numeric_limits<double>::quiet_NaN();  // the last evaluation was before the discontinuity
     begin_.t = t;
     begin_.y.assign(y, y + system_.size);
     begin_.rates.assign(rates, rates + last_.rates.size());
@@ -207,12 +207,13 @@ class SundialsStepper : public Stepper {
   std::string message_, said_;
 };
 
-constexpr long unbounded_steps = -1;               // the caller bounds the work
-constexpr double smallest_change_of_step = 1e-10;  // relative change of the step above which the matrix is factorised again
+constexpr long unbounded_steps = -1;  // SUNDIALS does not limit the steps; the caller does
+// Relative change of the step length above which the matrix is factorised again.
+constexpr double smallest_change_of_step = 1e-10;
 constexpr int steps_of_a_jacobian = 2;
-// Predictors of the iteration for a stage: trivial is the state before the step, the other an extrapolation from the last step
-// whose order is lower for later stages. On a compressible film trivial needs half the time at a tolerance of 1e-4,
-// extrapolation 0.4 of the time at 1e-8, and both need the same time at 1e-5.
+// Predictors of ARKODE for the iteration of a stage. The trivial predictor is the state before the step; the other extrapolates
+// the last step, with a lower order for later stages. For a compressible gas film the trivial predictor needs half the time at
+// a tolerance of 1e-4, the extrapolation 0.4 of the time at 1e-8; at 1e-5 the times are equal.
 constexpr int predictor_trivial = 0, predictor_of_falling_order = 2;
 constexpr double extrapolates_below = 3e-6;  // relative tolerance below which the predictor extrapolates
 
@@ -239,7 +240,7 @@ class ErkStepper final : public SundialsStepper {
            ok(ERKStepSetTableNum(memory_, ARKODE_DORMAND_PRINCE_7_4_5), "ERKStepSetTableNum") &&
            ok(ERKStepWFtolerances(memory_, &SundialsStepper::error_weights), "ERKStepWFtolerances") &&
            ok(ERKStepSetMaxNumSteps(memory_, unbounded_steps), "ERKStepSetMaxNumSteps") &&
-           // Steppers do not use the interpolant of the library.
+           // The steppers interpolate without SUNDIALS, so use its cheapest interpolant.
            ok(ERKStepSetInterpolantType(memory_, ARK_INTERP_LAGRANGE), "ERKStepSetInterpolantType") &&
            ok(ERKStepSetInterpolantDegree(memory_, 0), "ERKStepSetInterpolantDegree");
   }
@@ -332,7 +333,7 @@ class CvodeStepper final : public SundialsStepper {
   }
   bool reinitialize(double t) override { return ok(CVodeReInit(memory_, t, y_.get()), "CVodeReInit"); }
   bool set_steps(double first, double longest) override {
-    // A restart begins at order 1.
+    // BDF and Adams methods restart at order 1, so divide the suggested first step by 100.
     return ok(CVodeSetInitStep(memory_, first / 100), "CVodeSetInitStep") &&
            ok(CVodeSetMaxStep(memory_, longest), "CVodeSetMaxStep");
   }

@@ -1,5 +1,5 @@
-// The integrators of SUNDIALS as steppers: Hindmarsh et al. (2005), Gardner et al. (2022). Every return value of the library is
-// checked; its message about a failure is the stepper's message.
+// The integrators of the library SUNDIALS: Hindmarsh et al. (2005), Gardner et al. (2022). Every return value of the library is
+// checked; the library's message about a failure becomes the message of the stepper.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 namespace softland {
 
 /// Makes a diagonally implicit Runge-Kutta 5(4) with eight stages (Kennedy & Carpenter 2003), ARKODE. At tight tolerances the
-/// iteration for a stage starts from an extrapolation of the last step.
+/// nonlinear iteration for a stage starts from an extrapolation of the last step.
 [[nodiscard]] std::unique_ptr<Stepper> make_esdirk(const OdeSystem& system, double tolerance);
 /// Makes backward differentiation formulas of orders 1 to 5, CVODE.
 [[nodiscard]] std::unique_ptr<Stepper> make_bdf(const OdeSystem& system);

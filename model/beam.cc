@@ -23,7 +23,8 @@ constexpr int functions = element_functions;
 constexpr int shortest_count = 6;     // least number of elements over the length of a beam
 constexpr double least_pivot = 2e-3;  // smallest pivot of the elimination, whose inverse magnifies rounding errors
 
-// Returns combinations of the shape functions that the supports permit, orthonormal in the elastic energy of the beam.
+// Returns combinations of the shape functions that the supports of the beam permit, orthonormal in the elastic energy of the
+// beam.
 Eigen::MatrixXd permitted(const NormalisedModes::Beam& beam, const Eigen::MatrixXd& end, const Eigen::MatrixXd& slopes) {
   Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(slopes.rows(), slopes.rows());
   if (beam.far_clamp) basis = orthogonal_complement(end);
@@ -48,14 +49,14 @@ struct WavePhase {
   WavePhase(const NormalisedModes::Beam& beam, double square) {
     for (const NormalisedModes::Beam::Section& s : beam.sections) {
       const double n = beam.axial_force / (2 * s.rigidity), root = std::sqrt(n * n + s.mass * square / s.rigidity);
-      const double number = std::sqrt(root - n);  // wave number: EI k^4 + N k^2 = mu omega^2
+      const double number = std::sqrt(root - n);  // wave number k: EI k^4 + N k^2 = mu omega^2
       value += (s.end - s.begin) * number;
       slope += (s.end - s.begin) * s.mass / (4 * s.rigidity * root * number);
     }
   }
 };
 
-// Estimates omega^2 of a mode from that of a similar beam.
+// Estimates omega^2 of a mode from that of a similar beam, which has nearly the same wave phase.
 double carried_over(double square, const NormalisedModes::Beam& from, const NormalisedModes::Beam& to) {
   constexpr int steps = 3;
   const double phase = WavePhase(from, square).value;
@@ -66,8 +67,8 @@ double carried_over(double square, const NormalisedModes::Beam& from, const Norm
   return square;
 }
 
-// Finds four poles of the receptance at once by Newton's method, with the motions there; none without convergence, or where
-// rounding may be large.
+// Finds four poles of the receptance (squared frequencies of four modes) at once by Newton's method, with the motions there;
+// none without convergence, or where rounding may be large.
 std::optional<Receptance::Answer> nearest_poles(Receptance& receptance, double place, const Lane& rounding, Lane& squares) {
   constexpr int most_steps = 10;
   constexpr double least_motion = 1e-3;  // least motion of the place in a normalised mode, whose mean square over the beam is 1
@@ -164,10 +165,11 @@ NormalisedModes::NormalisedModes(Beam beam, const NormalisedModes* near) : beam_
   for (const Beam::Section& s : beam_.sections) {
     // Waves are shorter where the beam is thin; elements are shorter there when the wave length is below half of the largest.
     double shorter = std::max(1.0, std::sqrt(std::sqrt(s.mass / s.rigidity / lowest)) / 2);
-    if (s.taper != 0) shorter *= 1.5;  // a curvature over a linear rigidity is not a polynomial
+    if (s.taper != 0) shorter *= 1.5;  // more elements: a curvature over a linear rigidity is not a polynomial
     const int parts = std::max(1, static_cast<int>(std::ceil((s.end - s.begin) * shorter * count - 1e-9)));
     for (int k = 0; k < parts; ++k) {
-      const double larger = 1 + s.taper * ((2 * k + 1.0) / parts - 1);  // rigidity over that in the middle of the section
+      // Rigidity of the element over that in the middle of the section.
+      const double larger = 1 + s.taper * ((2 * k + 1.0) / parts - 1);
       elements_.push_back({.begin = s.begin + (s.end - s.begin) * k / parts,
                            .end = k + 1 == parts ? s.end : s.begin + (s.end - s.begin) * (k + 1) / parts,
                            .rigidity = s.rigidity * larger,
@@ -181,7 +183,7 @@ NormalisedModes::NormalisedModes(Beam beam, const NormalisedModes* near) : beam_
 }
 
 void NormalisedModes::search() {
-  const GaussRule rule = gauss_rule(functions + 2);  // exact for squares of polynomials of degree 9
+  const GaussRule rule = gauss_rule(functions + 2);  // Gauss rule that is exact for squares of polynomials of degree 9
   const auto points = static_cast<Eigen::Index>(rule.points.size()), total = shape(1, 0).size();
   Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(total, total), slopes = mass;
   for (const BeamElement& element : elements_) {
@@ -198,13 +200,14 @@ void NormalisedModes::search() {
     mass += gram(element.mass, element.taper, 0);
     slopes += gram(1, 0, 1);
   }
-  Eigen::MatrixXd end(total, 2);  // values and slopes of the functions at the far end
+  Eigen::MatrixXd end(total, 2);  // values and slopes of the shape functions at the far end
   end << shape(1, 0).transpose(), shape(1, 1).transpose();
   const bool is_general = beam_.is_general();
   const Eigen::MatrixXd basis = is_general ? permitted_motions(end, slopes) : permitted(beam_, end, slopes);
   if (is_general || beam_.far_clamp || beam_.axial_force != 0) mass = basis.transpose() * mass * basis;
 
-  // Solve M x = x / omega^2: the low modes, which are needed, have the largest and so the most accurate eigenvalues.
+  // Solve M x = x / omega^2 for the modes: the low modes, which are needed, have the largest and so the most accurate
+  // eigenvalues.
   const SymmetricEigen modes = symmetric_eigen(mass);
   inverse_squares_.resize(beam_.modes);
   shapes_.resize(total, beam_.modes);
@@ -228,7 +231,7 @@ bool NormalisedModes::Beam::is_general() const {
          std::any_of(sections.begin(), sections.end(), [](const Section& s) { return s.taper != 0; });
 }
 
-// A stiff spring at the far end must not cost digits: motions that deflect the spring are separated from those that leave the
+// A stiff spring at the far end must not cost digits: motions that deflect the spring are separated from motions that leave the
 // end at rest, beginning with the stiffer spring.
 Eigen::MatrixXd NormalisedModes::permitted_motions(const Eigen::MatrixXd& end, const Eigen::MatrixXd& slopes) const {
   const Eigen::Index total = slopes.rows();
@@ -247,7 +250,7 @@ Eigen::MatrixXd NormalisedModes::permitted_motions(const Eigen::MatrixXd& end, c
 
   const double translation = beam_.far_clamp ? Anchor::rigid : beam_.far_translation,
                rotation = beam_.far_clamp ? Anchor::rigid : beam_.far_rotation;
-  std::vector<std::pair<double, Eigen::Index>> springs;  // springs at the far end, with their columns of `end`
+  std::vector<std::pair<double, Eigen::Index>> springs;  // springs at the far end, each with its column of `end`
   std::vector<Eigen::Index> held;
   for (const auto& [stiffness, column] : {std::pair{translation, 0}, std::pair{rotation, 1}}) {
     if (std::isinf(stiffness)) held.push_back(column);
@@ -257,7 +260,8 @@ Eigen::MatrixXd NormalisedModes::permitted_motions(const Eigen::MatrixXd& end, c
   Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(total, total);
   if (!held.empty()) basis = orthogonal_complement(end(Eigen::all, held));
   const auto count = static_cast<Eigen::Index>(springs.size());
-  // The columns of `along` are orthonormal motions; those of `by_spring` are the deflections of each spring in these motions.
+  // The columns of `along` are orthonormal motions of the beam; those of `by_spring` are the deflections of each end spring in
+  // these motions.
   Eigen::MatrixXd along(basis.cols(), count), by_spring = Eigen::MatrixXd::Zero(count, count);
   for (Eigen::Index k = 0; k < count; ++k) {
     Eigen::VectorXd left = basis.transpose() * end.col(springs[static_cast<std::size_t>(k)].second);
@@ -293,7 +297,8 @@ Eigen::MatrixXd NormalisedModes::slope_products() const {
 
 bool NormalisedModes::follow(const NormalisedModes& near) {
   const int modes = beam_.modes;
-  constexpr double least_end = 0.05;  // share of the length: a clamp at the far end of a shorter element costs digits
+  // Least length of the last element, as a share of the beam's: a clamp on a shorter element costs digits.
+  constexpr double least_end = 0.05;
   if (beam_.is_general() || near.beam_.is_general() || near.beam_.modes != modes || near.beam_.far_clamp != beam_.far_clamp ||
       near.beam_.sections.size() != beam_.sections.size() || (beam_.far_clamp && 2 * elements_.back().half() < least_end)) {
     return false;
@@ -317,8 +322,8 @@ bool NormalisedModes::follow(const NormalisedModes& near) {
   }
   orient();
 
-  // The modes found are the lowest ones if they differ, no mode is below the first of them, and no other mode is below the
-  // last.
+  // Relative differences of squared frequencies for the check that the modes found are the lowest: they differ, no mode is
+  // below the first of them, and no other mode is below the last.
   constexpr double apart = 1e-7, margin = 1e-8;
   for (int i = 1; i < modes; ++i) {
     if (!(inverse_squares_[i] * (1 + apart) < inverse_squares_[i - 1])) return false;
@@ -330,7 +335,8 @@ bool NormalisedModes::follow(const NormalisedModes& near) {
 }
 
 void NormalisedModes::orient() {
-  constexpr double close_to_the_clamp = 1e-3;  // share of the length: far below the first zero of the first forty modes
+  // Distance from the clamp, as a share of the length: far below the first zero of the first forty modes.
+  constexpr double close_to_the_clamp = 1e-3;
   const bool is_held = beam_.far_clamp || beam_.far_rotation != 0 || beam_.far_translation != 0;
   const Eigen::RowVectorXd positive = shape(is_held ? close_to_the_clamp : 1, 0);
   for (Eigen::Index i = 0; i < shapes_.cols(); ++i) {
@@ -361,7 +367,7 @@ Eigen::RowVectorXd NormalisedModes::shape(const BeamElement& element, double xi,
     const double half = other.half();
     const bool inside = other.begin == element.begin;
     ElementRow local = (inside ? element_integrals(xi, derivative) : ends[derivative]) * (derivative == 0 ? half * half : half);
-    // Beyond the right end of its element a shape function continues straight.
+    // Beyond the right end of its element the deflection by a shape function continues straight.
     if (!inside && derivative == 0) local += (x - other.end) * half * ends[1];
     row.segment<functions>(functions * static_cast<Eigen::Index>(e)) = local.array() * (orders / (half * other.rigidity)).sqrt();
   }
@@ -376,11 +382,12 @@ Eigen::RowVectorXd NormalisedModes::shape(double x, int derivative) const {
   return shape(*element, 2 * (x - element->begin) / (element->end - element->begin) - 1, derivative);
 }
 
-// The receptance a grows from minus infinity at the first frequency to infinity at the second. When the second mode does not
-// move at x, a has no zero between the frequencies; the second frequency is then the result. Newton's method solves (lambda_2 -
-// lambda) a = 0, whose left side is nearly linear.
+// The receptance a (deflection at x by a unit force there) grows from minus infinity at the first frequency to infinity at the
+// second. When the second mode does not move at x, a has no zero between the frequencies; the second frequency is then the
+// result. Newton's method solves (lambda_2 - lambda) a = 0, whose left side is nearly linear.
 double NormalisedModes::pinned_inverse_square(double x, std::optional<double> near) const {
-  constexpr double rounding = 1e-12, last_step = 1e-8;  // a Newton step after one of this length is rounding
+  // Changes below which Newton's method has converged: the step after one of size last_step is rounding.
+  constexpr double rounding = 1e-12, last_step = 1e-8;
   constexpr int most_steps = 100;
   if (beam_.is_general()) return general_pinned_inverse_square(shape(x, 0) * all_motions_, all_inverse_squares_);
   Receptance receptance(elements_, beam_.axial_force, beam_.far_clamp);
@@ -437,7 +444,8 @@ BeamModes::BeamModes(const std::vector<BeamSection>& sections, int modes, const 
   frequencies_ = frequency_scale_ / normalised_->inverse_squares().array().sqrt();
 }
 
-// The moment m of the layer is linear over a stretch, so the integral of m phi'' is that of (m phi')' - m' phi'.
+// The moment m of the piezo layer is linear over each part of the beam, so the integral of m phi'' is that of (m phi')' - m'
+// phi'.
 Eigen::VectorXd piezo_forces(const Device& device, const BeamModes& modes) {
   Eigen::VectorXd forces = Eigen::VectorXd::Zero(modes.count());
   for (const BeamSection& s : beam_sections(device)) {

@@ -1,5 +1,5 @@
 // Bending modes of a beam (Euler-Bernoulli) under an axial force. Rigidity and mass of the beam are constant or linear over
-// each of its stretches. The beam is clamped at x = 0 and free or clamped at its far end, or stands on springs at either end.
+// each of its sections. The beam is clamped at x = 0 and free or clamped at its far end, or rests on springs at either end.
 //
 //   (EI(x) phi'')'' - N phi'' = omega^2 mu(x) phi,   phi(0) = phi'(0) = 0
 //   free:     (EI phi'')(L) = (EI phi'')'(L) - N phi'(L) = 0          clamped:  phi(L) = phi'(L) = 0
@@ -10,11 +10,11 @@
 // between two clamps they leave x = 0 towards positive values.
 //
 // Discretisation: the curvature is a polynomial of degree 7 on each element, written in Legendre polynomials, and integrated
-// twice from the clamped end; nodes stand at every change of section. These functions are orthonormal in the bending energy, so
+// twice from the clamped end; nodes are at every change of section. These functions are orthonormal in the bending energy, so
 // the stiffness is the unit matrix whatever the lengths of the elements, and a handful of long elements reaches 1e-9. A far
 // clamp permits only combinations of the functions without value and slope there. Under an axial force the combinations are
 // made orthonormal in the elastic energy, so that the stiffness is the unit matrix again. This fails at the buckling load in
-// compression, where the straight beam stops being stable. Springs and linear stretches add their energies to the unit matrix,
+// compression, where the straight beam stops being stable. Springs and linear sections add their energies to the unit matrix,
 // and springs at x = 0 add the two motions of a rigid beam to the functions.
 //
 // Source: textbook Ritz-Galerkin; integrated Legendre shape functions: Szabo & Babuska, Finite Element Analysis, 1991, sec. 6;
@@ -44,7 +44,7 @@ namespace softland {
 /// have the same normalised modes, whatever their size and material.
 class NormalisedModes {
  public:
-  /// The properties that the modes depend on.
+  /// The properties of a beam on which its normalised modes depend.
   struct Beam {
     struct Section {
       double begin = 0, end = 0, rigidity = 0, mass = 0, taper = 0;
@@ -53,69 +53,74 @@ class NormalisedModes {
     std::vector<Section> sections;
     int modes = 0;
     bool far_clamp = false;
-    double axial_force = 0;                        ///< axial force N L^2 / EI
-    double near_rotation = Anchor::rigid;          ///< rotational stiffness c L / EI at x = 0
-    double near_translation = Anchor::rigid;       ///< translational stiffness k L^3 / EI at x = 0
-    double far_rotation = 0, far_translation = 0;  ///< stiffnesses of the far end in the same units; not used with far_clamp
-    /// Returns true when the rigidity of a section changes linearly or an end stands on springs.
+    double axial_force = 0;                   ///< normalised axial force N L^2 / EI of the beam
+    double near_rotation = Anchor::rigid;     ///< rotational stiffness of the support at x = 0, c L / EI
+    double near_translation = Anchor::rigid;  ///< translational stiffness of the support at x = 0, k L^3 / EI
+    /// Stiffnesses of the support at the far end, in units of EI / L and EI / L^3; not used with far_clamp.
+    double far_rotation = 0, far_translation = 0;
+    /// Returns true when the rigidity of a beam section changes linearly or an end rests on springs.
     [[nodiscard]] bool is_general() const;
     [[nodiscard]] bool operator==(const Beam&) const = default;
   };
-  /// Finds the modes. The search starts from the modes of a similar beam `near` with as many sections and modes if this
-  /// converges quickly, and is a full search otherwise. Both searches give the same modes up to rounding. Throws InvalidInput
-  /// for a compression beyond the buckling load.
+  /// Finds the modes of the beam. The search starts from the modes of a similar beam `near` with as many sections and modes if
+  /// this converges quickly, and is a full search otherwise. Both searches give the same modes up to rounding. Throws
+  /// InvalidInput for a compression beyond the buckling load.
   explicit NormalisedModes(Beam beam, const NormalisedModes* near = nullptr);
 
   [[nodiscard]] const Beam& beam() const { return beam_; }
   /// Returns 1 / omega^2 of the modes (omega: angular frequency), in descending order.
   [[nodiscard]] const Eigen::VectorXd& inverse_squares() const { return inverse_squares_; }
-  /// Return values and slopes of all modes at x in [0, 1].
+  /// Returns the values of all modes at x in [0, 1]; slope() returns their slopes.
   [[nodiscard]] Eigen::VectorXd value(double x) const { return (shape(x, 0) * shapes_).transpose(); }
   [[nodiscard]] Eigen::VectorXd slope(double x) const { return (shape(x, 1) * shapes_).transpose(); }
-  /// Returns the integrals of the products of the modes' slopes.
+  /// Returns the integrals over the beam of the products of the modes' slopes.
   [[nodiscard]] Eigen::MatrixXd slope_products() const;
   /// Returns 1 / omega^2 of the first mode of the beam that is also held at deflection 0 at x. The search starts from `near`,
   /// the result for a similar beam.
   [[nodiscard]] double pinned_inverse_square(double x, std::optional<double> near = {}) const;
 
  private:
-  // Searches all modes at once by Ritz's method.
+  // Searches all modes of the beam at once by Ritz's method.
   void search();
   // Iterates Rayleigh quotients that begin with the frequencies of `near`. Returns false when the result is not certain to be
   // the modes of lowest frequency.
   [[nodiscard]] bool follow(const NormalisedModes& near);
-  // Returns a place at which no mode has a node.
+  // Returns a position on the beam at which no mode has a node.
   [[nodiscard]] double moving_place() const;
-  // Return the values of all shape functions or of a derivative: at x in units of the length; at xi in [-1, 1] over an element.
+  // Returns the values of all shape functions, or of a derivative, at x in units of the beam's length, or at xi in [-1, 1] over
+  // an element.
   [[nodiscard]] Eigen::RowVectorXd shape(double x, int derivative) const;
   [[nodiscard]] Eigen::RowVectorXd shape(const BeamElement& element, double xi, int derivative) const;
   // Returns combinations of the shape functions that the supports of the beam permit, orthonormal in its elastic energy.
   [[nodiscard]] Eigen::MatrixXd permitted_motions(const Eigen::MatrixXd& end, const Eigen::MatrixXd& slopes) const;
-  // Makes the modes positive at a free end; between two clamps, positive near x = 0.
+  // Makes the mode shapes positive at a free end; between two clamps, positive near x = 0.
   void orient();
 
   Beam beam_;
   std::vector<BeamElement> elements_;
-  Eigen::MatrixXd shapes_;  // functions x modes
+  Eigen::MatrixXd shapes_;  // coefficients of the shape functions for each mode, one column per mode
   Eigen::VectorXd inverse_squares_;
   double moving_place_ = 1;
-  // Scales of the rigid translation and rotation among the shape functions; 0 when the support at x = 0 prevents the motion.
+  // Scales of the rigid translation and rotation of the beam among the shape functions; 0 when the support at x = 0 prevents
+  // the motion.
   double shift_ = 0, turn_ = 0;
-  // All motions of a beam on springs or with linear sections by Ritz's method, each with unit elastic energy; omega^-2 of each.
+  // All motions of a beam on springs or with linear sections, found by Ritz's method, each with unit elastic energy; 1 /
+  // omega^2 of each.
   Eigen::MatrixXd all_motions_;
   Eigen::VectorXd all_inverse_squares_;
 };
 
 class BeamModes {
  public:
-  /// Finds the first `modes` modes. The normalised modes `known` are used if they belong to this beam; otherwise the search
-  /// starts from them. Throws InvalidInput unless sections join and are positive, modes is in [1, 40], and the axial force is
-  /// above the buckling load.
+  /// Finds the first `modes` modes of a beam. The normalised modes `known` are used if they belong to this beam; otherwise the
+  /// search starts from `known`. Throws InvalidInput unless sections join and are positive, modes is in [1, 40], and the axial
+  /// force is above the buckling load.
   BeamModes(const std::vector<BeamSection>& sections, int modes, const BeamSupport& support = {},
             std::shared_ptr<const NormalisedModes> known = {});
 
   [[nodiscard]] int count() const { return static_cast<int>(frequencies_.size()); }
-  [[nodiscard]] const Eigen::VectorXd& angular_frequencies() const { return frequencies_; }  ///< [rad/s], rising
+  /// Returns the angular frequencies of the modes [rad/s], rising.
+  [[nodiscard]] const Eigen::VectorXd& angular_frequencies() const { return frequencies_; }
   /// Returns the shapes phi_i of all modes at x in [0, L] [m] [kg^(-1/2)].
   [[nodiscard]] Eigen::VectorXd value(double x) const { return scale_ * normalised_->value(x / length_); }
   /// Returns the slopes phi_i' of all modes at x [m] [kg^(-1/2)/m].
@@ -128,12 +133,11 @@ class BeamModes {
   }
 
   [[nodiscard]] const std::shared_ptr<const NormalisedModes>& normalised() const { return normalised_; }
-  [[nodiscard]] double length() const { return length_; }  ///< [m]
-  [[nodiscard]] double scale() const {
-    return scale_;
-  }                                                                          ///< mode shape over the normalised mode shape
-                                                                             ///< [kg^(-1/2)]
-  [[nodiscard]] double frequency_scale() const { return frequency_scale_; }  ///< [rad/s]
+  [[nodiscard]] double length() const { return length_; }  ///< length of the beam [m]
+  /// Returns mode shape over normalised mode shape, a constant [kg^(-1/2)].
+  [[nodiscard]] double scale() const { return scale_; }
+  /// Angular frequency over the normalised angular frequency [rad/s].
+  [[nodiscard]] double frequency_scale() const { return frequency_scale_; }
 
  private:
   double length_;
@@ -143,11 +147,11 @@ class BeamModes {
   Eigen::VectorXd frequencies_;
 };
 
-/// Returns the modal force per volt of the piezo layer on a beam with sections or layers: the integral of its moment per volt
-/// and phi_i''.
+/// Returns the modal forces per volt of the piezo layer on a beam with sections or layers: the integral of the layer's moment
+/// per volt and phi_i''.
 [[nodiscard]] Eigen::VectorXd piezo_forces(const Device& device, const BeamModes& modes);
 
-/// Returns the stretching of a beam between two clamps.
+/// Returns the law of mid-plane stretching of a beam between two clamps.
 [[nodiscard]] MidPlaneStretching stretching_of(const BeamModes& modes, const Structure& structure);
 
 /// Returns the modes of a device whose structure is a beam.

@@ -14,13 +14,13 @@ namespace {
 // Returns the axial force that a stress, equal everywhere before release, leaves in a beam between its anchors [N]: the
 // sections stretch each other until the force is the same in all of them.
 double axial_force(const Structure& s, double stress) {
-  double shrinks = 0;  // shortening of the beam without its anchors [m]
+  double shrinks = 0;  // shortening of the beam without its anchors, by the released stress [m]
   for (const LocalSection& local : local_sections(s)) shrinks += stress / local.youngs_modulus * (local.end - local.begin);
   return shrinks / stretch_per_force(s);
 }
 
-// Returns the stretches of a beam of sections and layers, between the edges of all parts, under a stress that grows by
-// `gradient` [Pa/m] over the thickness of the beam without its layers. A piezo layer lies outside of all other layers.
+// Returns the parts of a beam of sections and layers, between the edges of all sections and layers, under a stress that grows
+// by `gradient` [Pa/m] over the thickness of the beam without its layers. A piezo layer lies outside of all other layers.
 std::vector<BeamSection> built_sections(const Device& device, double gradient) {
   const Structure& s = device.structure;
   const Beam& beam = part_of<Beam>(s);
@@ -29,7 +29,7 @@ std::vector<BeamSection> built_sections(const Device& device, double gradient) {
                piezo_end = device.piezo ? std::min(device.piezo->end.on(s.length), s.length) : 0;
   if (device.piezo) edges.insert(edges.end(), {piezo_begin, piezo_end});
   std::ranges::sort(edges);
-  // Two edges that differ by rounding are the same edge.
+  // Two edges of sections or layers that differ by rounding are the same edge.
   const auto same = [&](double a, double b) { return b - a < 1e-9 * s.length; };
   edges.erase(std::unique(edges.begin(), edges.end(), same), edges.end());
   edges.back() = s.length;
@@ -51,7 +51,7 @@ std::vector<BeamSection> built_sections(const Device& device, double gradient) {
                     .stress = layer.stress});
     }
     const bool has_piezo = device.piezo && middle > piezo_begin && middle < piezo_end;
-    double piezo_middle = 0;  // height of the middle of the piezo layer above the near face
+    double piezo_middle = 0;  // height of the middle of the piezo layer above the beam's near face [m]
     if (has_piezo) {
       for (const Lamina& l : stack) piezo_middle += l.thickness;
       piezo_middle += device.piezo->thickness / 2;
@@ -83,7 +83,7 @@ double stretch_per_force(const Structure& s) {
   for (const LocalSection& local : local_sections(s)) {
     const double length = local.end - local.begin, growth = local.end_width / local.width - 1;
     const double per_width = local.youngs_modulus * local.thickness * ligament_efficiency(local.holes);
-    // Take the mean of 1 / width over a linear width.
+    // Take the mean of 1 / width over a section with linear width.
     const double mean = growth == 0 ? 1 / local.width : std::log1p(growth) / (growth * local.width);
     sum += length * mean / per_width;
   }
@@ -160,7 +160,8 @@ double curl(const Device& device, double gradient, double x) {
   double offset = 0;
   for (const BeamSection& section : s.is_built() ? built_sections(device, gradient) : beam_sections(device)) {
     if (section.begin >= x) break;
-    const double near = x - section.begin, far = std::max(0.0, x - section.end);  // distances of x from both ends
+    // Distances of the position x from both ends of the section [m].
+    const double near = x - section.begin, far = std::max(0.0, x - section.end);
     offset += (s.is_built() ? section.curvature : moment / section.rigidity) * (near * near - far * far) / 2;
   }
   return offset;
@@ -169,8 +170,7 @@ double curl(const Device& device, double gradient, double x) {
 double lowest_curl(const Device& device, double gradient) {
   double lowest = 0, offset = 0, slope = 0;
   for (const BeamSection& section : built_sections(device, gradient)) {
-    const double length = section.end - section.begin, flat = -slope / section.curvature;  // distance at which the slope of the
-                                                                                           // curl is 0
+    const double length = section.end - section.begin, flat = -slope / section.curvature;  // flat: where the curl's slope is 0
     if (flat > 0 && flat < length) lowest = std::min(lowest, offset + slope * flat / 2);
     offset += (slope + section.curvature * length / 2) * length;
     slope += section.curvature * length;

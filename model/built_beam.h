@@ -1,8 +1,8 @@
-// Local size of a beam of sections and layers (model/structure/beam_parts.h), and the rules for these parts.
+// Local size of a beam of sections and layers (model/structure/beam_parts.h), and the rules for sections and layers.
 //
 // The lower faces of all sections and layers lie in one plane before release, as on a flat sacrificial layer: gaps count from
-// that plane. A section's width is constant or linear, so that rigidity, mass and moments of a stretch grow in proportion to
-// the width.
+// this plane. A section's width is constant or linear, so rigidity, mass and moments of a section grow in proportion to the
+// width.
 //
 // Square holes of side s in a square pattern of pitch p leave the share 1 - (s/p)^2 of the area; mass and electrode area fall
 // by this factor. The stiffness falls by the ligament efficiency
@@ -23,12 +23,12 @@
 
 namespace softland {
 
-/// One stretch of a structure with linear width and constant other properties.
+/// One part of a structure with linear width and constant other properties.
 struct LocalSection {
-  double begin = 0, end = 0;                               ///< [m]
-  double width = 0, end_width = 0;                         ///< width across the beam at both ends, with its holes [m]
-  double thickness = 0;                                    ///< [m]
-  double youngs_modulus = not_given, density = not_given;  ///< Young's modulus and density of a beam [Pa], [kg/m^3]
+  double begin = 0, end = 0;        ///< begin and end of the part along the structure [m]
+  double width = 0, end_width = 0;  ///< width across the structure at begin and end of the part, with its holes [m]
+  double thickness = 0;             ///< thickness of the part [m]
+  double youngs_modulus = not_given, density = not_given;  ///< Young's modulus [Pa] and density [kg/m^3] of a beam's part
   Holes holes = {};
 
   [[nodiscard]] double width_at(double x) const {
@@ -37,17 +37,17 @@ struct LocalSection {
   [[nodiscard]] bool is_even() const { return end_width == width; }
 };
 
-/// Returns the share of the area that holes leave.
+/// Returns the share of a structure's area that remains beside the holes.
 [[nodiscard]] double area_left(const Holes& holes);
-/// Returns the ligament efficiency k, the share of the stiffness along the beam that holes leave.
+/// Returns the ligament efficiency k, the share of the stiffness along the beam that remains beside the holes.
 [[nodiscard]] double ligament_efficiency(const Holes& holes);
 
-/// Returns the stretches of a structure from end to end: a single one unless it has sections, or is a table of modes with
-/// widths.
+/// Returns the parts of a structure from end to end, each with linear width: a single part unless the structure has sections,
+/// or is a table of modes with widths.
 [[nodiscard]] std::vector<LocalSection> local_sections(const Structure& structure);
-/// Returns the stretch at this place; where two stretches meet, the one further from the clamp.
+/// Returns the part of the structure at x, with its width and thickness; where two parts meet, the part further from the clamp.
 [[nodiscard]] LocalSection section_at(const Structure& structure, double x);
-/// Returns the width across the structure at this place, with its holes [m].
+/// Returns the width across the structure at x, with its holes [m].
 [[nodiscard]] double width_at(const Structure& structure, double x);
 /// Returns the edges of sections and layers of a beam, from 0 to its length [m]; for all other structures 0 and the length.
 [[nodiscard]] std::vector<double> edges_of_parts(const Structure& structure);
@@ -57,10 +57,10 @@ struct LocalSection {
 
 /// A section, layer or hole pattern that a device cannot have, and the reason.
 struct PartConflict {
-  std::string key;  ///< key of the part: "layers[2].span"
+  std::string key;  ///< key of the conflicting part: "layers[2].span"
   std::string rule;
 };
-/// Returns a conflict of the parts of a device; none when the beam can be built.
+/// Returns a conflict of the sections, layers and holes of a device; none when the beam can be built.
 [[nodiscard]] std::optional<PartConflict> part_conflict(const Device& device);
 
 }  // namespace softland

@@ -12,14 +12,14 @@ using namespace statics;
 
 namespace {
 
-// Returns the stiffness of the static forces: a symmetric matrix up to rounding, since contact and fields have potentials.
+// Returns the stiffness matrix of the static forces; it is symmetric up to rounding, since contact and fields have potentials.
 Eigen::MatrixXd stiffness_at(const Switch& model, const Eigen::VectorXd& q, std::span<const double> volts,
                              const ContactState& contact) {
   const Eigen::Index n = model.modes();
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(n);
   Eigen::MatrixXd by_q(n, n), by_v(n, n), force(n, 1);
   Switch::Workspace work = model.workspace();
-  model.accelerations(q.data(), still.data(), volts, contact, work, force.data());  // sets the gap field in `work`
+  model.accelerations(q.data(), still.data(), volts, contact, work, force.data());  // the call sets the gap field in `work`
   model.jacobian(q.data(), still.data(), volts, contact, work, by_q, by_v);
   return -(by_q + by_q.transpose()) / 2;
 }
@@ -65,7 +65,7 @@ ClosedEquilibrium closed_at(const Switch& model, const Eigen::VectorXd& q, doubl
           .smallest_eigenvalue = smallest_closed_eigenvalue(model, q, volts)};
 }
 
-// Returns depths, one step apart, between which f first rises to zero from below. Just before a beam collapses onto the
+// Returns depths, one step apart, between which f, going deeper, first rises to zero. Just before a beam collapses onto the
 // electrode f may rise to zero and fall again within one step.
 template <class F>
 std::optional<Steps> first_enough(F&& f, double depth, double step) {
@@ -87,11 +87,11 @@ double static_push(const Switch& model, const Eigen::VectorXd& q) {
 // share, so that the search does not jump over the maximum of the potential before a soft face.
 std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<const double> volts, Eigen::VectorXd q) {
   constexpr int most_steps = 1000;
-  constexpr double longest = 0.05, shortest = 1e-9;           // steps, in shares of the gaps of the field
-  constexpr double least_gap = 0.25;                          // least gap of the field, over the dielectric's depth
-  constexpr double rounding = 1e-12;                          // share of the bending energy
-  constexpr double least_stiffness = 1e-9, at_saddle = 1e-2;  // least eigenvalue over a mode's stiffness; at a saddle: share of
-                                                              // a step
+  constexpr double longest = 0.05, shortest = 1e-9;  // limits of a Newton step, in shares of the gaps of the field
+  constexpr double least_gap = 0.25;                 // least gap that limits a Newton step, over the dielectric's depth
+  constexpr double rounding = 1e-12;                 // relative change of the potential energy that counts as rounding
+  // Least eigenvalue over a mode's stiffness; size of a step, relative to its limit, at a saddle of the potential.
+  constexpr double least_stiffness = 1e-9, at_saddle = 1e-2;
   Statics statics(model);
   Switch::Workspace work = model.workspace();
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(model.modes());
@@ -115,7 +115,7 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
                                       .cwiseQuotient(along.values.cwiseAbs().cwiseMax(least_stiffness));
     Eigen::VectorXd step = (along.vectors * parts).cwiseProduct(compliance);
     double reach = reach_of(step);
-    if (along.values[0] < 0 && reach < at_saddle * radius) {  // no force indicates the direction of descent
+    if (along.values[0] < 0 && reach < at_saddle * radius) {  // a saddle: no force indicates the descent
       step = along.vectors.col(0).cwiseProduct(compliance);
       step *= radius / reach_of(step);
       reach = radius;
@@ -135,7 +135,7 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
     radius = std::min(2 * radius, longest);
   }
   if (!contact_at(q).active) return std::nullopt;
-  // Newton's method may oscillate when the edge of the part in touch lies at a quadrature point.
+  // Newton's method may oscillate when the edge of the touching part of the beam is at a quadrature point.
   if (const auto found = statics.closed(volts, q)) q = *found;
   const double push = static_push(model, q);
   if (!(push > 0)) return std::nullopt;
@@ -143,8 +143,9 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
   return found.smallest_eigenvalue > 0 ? std::optional(found) : std::nullopt;
 }
 
-// The search begins where a force holds the beam at the plane of the first contact. A second search begins on the face when the
-// first contact is not the face: the beam may move from the face to this contact.
+// Find the closed equilibrium with a search that begins where a force holds the beam at the plane of the first contact. A
+// second search begins on the dielectric's face when the first contact is not the face: the beam may move from the face to this
+// contact.
 std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<const double> volts) {
   const Eigen::VectorXd squares = model.basis().angular_frequencies().cwiseAbs2();
   const auto held_at = [&](std::size_t c) {
@@ -168,13 +169,13 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::sp
     if (!held || !(held->unknown > 0)) return std::nullopt;
     return closed_at(model, held->q, held->unknown, volts);
   }
-  // Returns the contact force at a depth beyond the plane, less the force with which the beam presses on the contact.
+  // Returns the contact force at a depth beyond the contact plane, less the force with which the beam presses on the contact.
   const auto excess = [&](double depth) {
     const auto held = statics.pinned(volts, plane + depth);
     if (!held) return no_equilibrium;
     return (model.has_spread_contact() ? 0 : contact_force(model.contact(), depth)) - held->unknown;
   };
-  // At the depth of the least excess() the beam must press harder than the contact pushes back; the equilibrium lies deeper,
+  // At the depth of the least excess() the beam must press harder than the contact pushes back; the equilibrium is deeper,
   // where both forces are equal.
   const auto hardest = first_minimum(excess, step);
   if (!hardest || !(hardest->value < 0)) return std::nullopt;

@@ -17,8 +17,8 @@
 namespace softland {
 namespace {
 
-// Residuals of the energy audit for a warning and for a failure, as shares of the energy that bends the beam by the contact
-// gap.
+// Residuals of the energy audit for a warning and for a failure of the run, as shares of the energy that bends the beam by the
+// contact gap.
 constexpr double worth_warning = 0.01, not_credible = 0.2;
 
 class ClosingRun {
@@ -108,11 +108,13 @@ class ClosingRun {
     check_interval(step->field);
   }
 
-  // Handles an event: computes the energies, records the event, and enters the next phase.
+  // Handles an event of a contact, such as touch or separation: computes the energies, records the event, and selects the
+  // branch of the contact law that acts next.
   void on_event(const Event& event) {
     FollowedContact& c = parts_.contacts[event.contact];
     TrajectoryPoint& p = c.pending_knots.last_waiting();
-    if (event.edge) p.position = event.edge->level;  // equals the position up to rounding
+    // Put the contact point exactly on the position of the event, from which it differs by rounding.
+    if (event.edge) p.position = event.edge->level;
     if (p.position == c.plane && !model_.has_spread_contact(event.contact)) p.contact_force = 0;
     audit_.settle(here());
     if (c.touches.note(event, p)) {
@@ -130,7 +132,8 @@ class ClosingRun {
       c.phase.enter(event.edge->next, event.edge->zone);
     } else {
       change.kind = PhaseChange::Kind::turn;
-      // Add the distance over which the contact point still decelerates to rest.
+      // Switch the contact law to unloading; its deepest point includes the distance over which the contact point still
+      // decelerates to rest.
       c.phase.turn(p.position - c.plane - (p.acceleration < 0 ? p.velocity * p.velocity / (2 * p.acceleration) : 0));
     }
     change.after = c.phase.law();
@@ -156,7 +159,7 @@ class ClosingRun {
     parts_.push(here());
   }
 
-  // Keeps the plate at rest until its drives no longer press it on the contact.
+  // Simulates a rigid plate at rest on its rigid contact until the drives no longer press the plate on the contact.
   void stay() {
     const RestingPlate::Stay stay = parts_.plate.stay(here(), stop_);
     stepping_.count_step();
@@ -173,8 +176,8 @@ class ClosingRun {
     check_interval(field);
   }
 
-  // Returns true when the gap is below its floor over an electrode: a beam that lands on a dielectric's face may swing lower
-  // beside the electrode.
+  // Returns true when the gap over an electrode is below the smallest valid gap: a beam that closes on a dielectric's face may
+  // swing lower beside the electrode.
   [[nodiscard]] bool is_over_electrode() {
     const Device& device = model_.device();
     if (!device.lands_along_face() || device.structure.is_rigid()) return true;
@@ -191,8 +194,8 @@ class ClosingRun {
     return false;
   }
 
-  // Ends the run after a step when the switch has failed, or an option requires the end; `field` is the gap field at the end of
-  // the step.
+  // Ends the run after a step when the switch has failed, or an option requires the end; `field` has figures of the gap between
+  // beam and electrode at the end of the step.
   void check_interval(const FieldFigures& field) {
     if (ended_) return;
     if (field.smallest_gap < model_.gap_floor() && is_over_electrode()) {
@@ -274,7 +277,7 @@ class ClosingRun {
     }
   }
 
-  // Collects the results of the contacts and, if there are several, of their connection.
+  // Collects the outcomes of the contacts and, if there are several, of the connection that they make.
   void gather_contacts() {
     if (parts_.electrical) {
       if (!parts_.closing_is_over) parts_.electrical->finish(here().time);
@@ -306,11 +309,11 @@ class ClosingRun {
   const Switch& model_;
   const ClosingOptions& options_;
   std::span<const Signal> signals_;
-  double plane_;  // plane of first touch [m]
+  double plane_;  // position of the contact plane (plane of first touch) [m]
   ClosingParts parts_;
   Stepping stepping_;
   EnergyAudit audit_;
-  double stop_ = 0;  // end of the stretch [s]
+  double stop_ = 0;  // end of the interval between two waveform breakpoints [s]
   bool ended_ = false;
   Trajectory out_;
 };

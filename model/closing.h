@@ -7,9 +7,9 @@
 // integrated until the drives pull the plate off.
 //
 // Within a step the contact point moves as the free modes do, plus a quintic (integrators/modal_motion.h). Contact events are
-// the zeros between the extrema of that motion, searched in pieces of a fraction of a radian of the fastest mode (grazing
-// touches do not hide between steps). A step with an event is repeated until it ends there. The trajectory has a knot at the
-// end of every piece.
+// the zeros between the extrema of that motion, searched in pieces of the step, each a fraction of a radian of the fastest mode
+// (so no grazing touch is missed). A step with an event is repeated so that it ends at the event. The trajectory has a knot
+// (point of the simulated motion) at the end of every piece.
 //
 // Error weights: a mode's coordinate counts by the deflection that it causes at the contact point, its velocity by this
 // deflection times the frequency of the mode. In flight the tolerance is relative to the contact gap, in contact to the
@@ -42,10 +42,10 @@
 
 namespace softland {
 
-/// The equilibrium in which a run begins, under the drives' values before t = 0.
+/// The equilibrium in which a run begins, under the drives' voltages before t = 0.
 enum class StartState { open, closed };
 
-/// Returns the integrator with which `automatic` begins: lawson, or esdirk for a compressible gas film.
+/// Returns the integrator with which a run begins if the user chooses none: lawson, or esdirk for a compressible gas film.
 [[nodiscard]] Integrator automatic_integrator(const Switch& model);
 
 struct ClosingOptions {
@@ -55,21 +55,21 @@ struct ClosingOptions {
   double after_contact = std::numeric_limits<double>::infinity();  ///< time from the first touch to the end of the run [s]
   double no_end_before = 0;  ///< earliest end of a run after a touch, whatever after_contact is [s]
   double no_contact_before = std::numeric_limits<double>::infinity();  ///< time at which a run without a touch ends [s]
-  long max_steps = 2'000'000;  ///< largest number of steps: a run that needs more ends as numerical_failure
-  /// If false, the integrator does not stop at make and break of contact: the contact force sets in within a step, and the
-  /// times of make and break are as exact as the interpolant. The tolerances of contact apply throughout. Studies set false to
-  /// measure the effect of these stops; see why_always_restarted().
+  long max_steps = 2'000'000;  ///< largest number of integration steps: a run that needs more ends as numerical_failure
+  /// If false, the integrator does not stop at make and break of contact: the contact force begins within a step, and the times
+  /// of make and break are as exact as the interpolant. The tolerances of contact apply throughout. Studies set false to
+  /// measure the effect of the stops; see why_always_restarted().
   bool restart_at_contact = true;
   /// Potential of the closed equilibrium under the hold levels [J]; if given, Trajectory::landing_excess is computed relative
   /// to this potential.
   double closed_potential = std::numeric_limits<double>::quiet_NaN();
-  /// Contact force that counts as steady [N]; if given, Trajectory::steady_force_time is measured.
+  /// Contact force above which the force counts as steady [N]; if given, Trajectory::steady_force_time is computed.
   double steady_force = std::numeric_limits<double>::quiet_NaN();
-  /// Modal coordinates [m kg^(1/2)] of a closed equilibrium under the drives' values before t = 0; if given, the run begins in
-  /// this equilibrium. The contact at the start counts as a touch that began at t = 0 with impact velocity 0.
+  /// Modal coordinates [m kg^(1/2)] of a closed equilibrium under the drives' voltages before t = 0; if given, the run begins
+  /// in this equilibrium. The contact at the start counts as a touch that began at t = 0 with impact velocity 0.
   std::span<const double> begins_closed = {};
-  /// Equilibrium at the start when begins_closed is empty: `closed` is the stable closed equilibrium under the drives' values
-  /// before t = 0.
+  /// Equilibrium at the start of the run when begins_closed is empty: `closed` is the stable closed equilibrium under the
+  /// drives' voltages before t = 0.
   StartState start = StartState::open;
   /// Time at which the drives command a closed switch to open [s]. Figures of the closing, such as
   /// Trajectory::steady_force_time and the electrical state, describe the motion before opens_at.
@@ -83,14 +83,15 @@ struct ClosingOptions {
 /// Returns the reason why a closing of this switch cannot be run with restart_at_contact = false; empty when it can.
 [[nodiscard]] std::string why_always_restarted(const Switch& model);
 
-/// Simulates a closing. Numerical trouble is never an exception: see Trajectory::status, which is collapsed_at_rest when the
+/// Simulates a closing. A numerical failure is never an exception: see Trajectory::status, which is collapsed_at_rest when the
 /// equilibrium that `start` requires does not exist. Throws InvalidInput unless there is one signal per drive of the switch,
 /// duration and tolerance are positive and tolerance <= 0.1. Throws InvalidInput also when begins_closed has a wrong number of
 /// coordinates, when a run should begin closed and the switch has no contact, and when restart_at_contact is false although
 /// why_always_restarted() gives a reason.
 [[nodiscard]] Trajectory simulate_closing(const Switch& model, std::span<const Signal> drives, const ClosingOptions& options);
 
-/// Simulates a closing for an observer, which receives motion and touches; the trajectory that is returned has neither.
+/// Simulates a closing for an observer, which receives motion and touches; the returned trajectory has neither motion nor
+/// touches.
 [[nodiscard]] Trajectory observe_closing(const Switch& model, std::span<const Signal> drives, const ClosingOptions& options,
                                          ClosingObserver& observer);
 

@@ -31,11 +31,12 @@ void span(double begin, double end, double length, const std::string& name) {
   });
 }
 
-/// Checks the numbers of `owner`, a part of the device; optional numbers may have the values that they have in `unset`.
+/// Checks the ranges of the numbers in `owner`, a part of the device; optional numbers may have the values that they have in
+/// `unset`.
 template <class Owner>
 void check_fields(const std::string& part, Owner owner, Owner unset, std::span<const Field<Owner>> fields) {
   for (const Field<Owner>& field : fields) {
-    // Skip numbers without a range, numbers whose range only scene files check, and numbers with a rule of their own.
+    // Skip numbers of the device without a range, numbers whose range only scene files check, and numbers with a separate rule.
     if (field.in == nullptr || !field.beyond.empty() || field.range == Range{}) continue;
     const double value = field.in(owner), missing = field.in(unset);
     const bool may_miss = !field.required || !field.instead_of.empty() || !field.unless.empty();
@@ -148,7 +149,7 @@ void check_gap_and_electrodes(const Device& d) {
   }
 }
 
-/// Checks that a structure with a given rest shape touches neither an electrode nor its contact at rest.
+/// Checks that a structure with a given shape at rest touches neither an electrode nor a contact at rest.
 void check_rest_shape(const Device& d) {
   const double lowest = std::visit(
       [&](const auto& kind) {
@@ -216,7 +217,7 @@ void check_contact(const Device& d, std::size_t i) {
   require(!rigid || !d.gas || !is_compressible(*d.gas), [&] {
     return path + ".model = rigid: not with gas.model = reynolds, whose film still flows under a plate that rests";
   });
-  // A contact needs no pad when neither the place nor the area of a pad has an effect.
+  // A contact needs no pad size when neither the place nor the area of the pad has an effect.
   const bool no_pad = c.along_face || (s.is_rigid() && !acts_per_area(c.model) && c.pad_length == 0);
   require(no_pad || (c.pad_length > 0 && c.pad_length < s.length), [&] {
     return fmt::format("{}.pad_length = {}: must be positive and below structure.length = {}", path,
@@ -303,14 +304,14 @@ std::optional<ElectrodeConflict> electrode_conflict(const Structure& s, const st
   const double rounding = 1e-12 * s.length;
   for (const Side side : {Side::near, Side::far}) {
     const std::string_view side_name = side == Side::near ? "near" : "far";
-    std::vector<Pad> here;  // pads in order from the clamped end
+    std::vector<Pad> here;  // pads of electrodes on one side, in order from the clamped end
     for (std::size_t k = 0; k < electrodes.size(); ++k) {
       if (electrodes[k].side != side && electrodes[k].side != Side::both) continue;
       for (const Stretch& pad : electrodes[k].pads(s.length)) here.push_back({k, pad});
     }
     const bool plate = s.is_rigid();
     if (!plate) std::ranges::stable_sort(here, {}, [](const Pad& pad) { return pad.at.begin; });
-    double taken = 0;  // length that pads occupy: up to this place on a beam, in total on a plate
+    double taken = 0;  // length that pads occupy so far: up to this position on a beam, in total on a plate [m]
     for (std::size_t i = 0; i < here.size(); ++i) {
       const Stretch& pad = here[i].at;
       if (i > 0 && (plate ? taken + pad.end - pad.begin > s.length + rounding : pad.begin < taken - rounding)) {
@@ -359,7 +360,8 @@ std::optional<ContactConflict> contact_conflict(const Device& d) {
 }
 
 std::string why_not_along_pad(const Structure& structure, const Contact& contact) {
-  constexpr double longest = 0.1;  // share of the beam's length: the first mode is then straight along the pad to 5e-5
+  // Largest pad length, as a share of the beam's: the first mode is then straight along the pad to 5e-5.
+  constexpr double longest = 0.1;
   if (structure.is_rigid()) return "a plate touches with all of its pad at once, as at the centre";
   if (contact.at) return "needs a pad that ends at the free end: 'at' says another place";
   if (structure.has_far_clamp()) {

@@ -16,29 +16,29 @@
 
 namespace softland {
 
-/// The beam at the quadrature points, and at idle points that fill the last vector lane (base/lanes.h): local gap h [m] and
+/// The beam at the quadrature points, and at idle points that fill the last SIMD vector (base/lanes.h): local gap h [m] and
 /// velocity towards the electrode [m/s].
 struct GapField {
   Eigen::ArrayXd gap;
   Eigen::ArrayXd velocity;
-  double smallest_gap = 0;  ///< [m]
+  double smallest_gap = 0;  ///< smallest local gap of all points [m]
 };
 
 class DistributedLaw {
  public:
   virtual ~DistributedLaw() = default;
-  /// Adds drive * law to the load [N/m] at the points on which the law acts; a law that no drive scales ignores `drive`. `load`
-  /// is as long as the arrays of the field.
+  /// Adds drive * law to the load [N/m] at the points on which the force law acts; a law that no drive scales ignores `drive`.
+  /// `load` is as long as the arrays of the gap field.
   virtual void add_load(const GapField& field, double drive, double* load) const = 0;
-  /// Adds derivatives of the load with respect to deflection and velocity at the points on which the law acts. The arrays are
-  /// as long as those of the field.
+  /// Adds derivatives of the load with respect to deflection and velocity at the points on which the force law acts. The arrays
+  /// are as long as those of the gap field.
   virtual void add_derivatives(const GapField& field, double drive, double* by_deflection, double* by_velocity) const = 0;
-  /// Adds second derivatives of the load at the points on which the law acts: by deflection twice, by deflection and velocity,
-  /// by velocity twice. Adds nothing at points below the gap floor, where the load continues by its tangent.
+  /// Adds second derivatives of the load at the points on which the force law acts: by deflection twice, by deflection and
+  /// velocity, by velocity twice. Adds nothing at points below the smallest valid gap, where the load continues by its tangent.
   virtual void add_curvatures(const GapField& field, double drive, double* by_deflections, double* by_both,
                               double* by_velocities) const = 0;
-  /// Returns the integral of the potential per length over the points on which the law acts, at unit drive [J]; 0 for laws that
-  /// dissipate.
+  /// Returns the integral of the potential per length over the points on which the force law acts, at unit drive [J]; 0 for
+  /// laws that dissipate.
   [[nodiscard]] virtual double potential(const GapField& field, const Eigen::ArrayXd& weights) const = 0;
 };
 
@@ -47,8 +47,8 @@ class DistributedLawOf final : public DistributedLaw {
   static constexpr Eigen::Index lanes = softland::lanes;
 
  public:
-  /// Acts at the points [begin, end). Below the gap `floor` [m] the load is continued by its tangent, the potential by the
-  /// parabola whose slope is this tangent.
+  /// The force law acts at the quadrature points [begin, end). Below the gap `floor` [m] the load is continued by its tangent,
+  /// the potential by the parabola whose slope is this tangent.
   DistributedLawOf(Law law, Eigen::Index begin, Eigen::Index end, double floor)
       : law_(law), begin_(begin), end_(end), floor_(floor), share_(Eigen::ArrayXd::Zero((end + lanes - 1) / lanes * lanes)) {
     share_.segment(begin, end - begin).setOnes();
@@ -58,21 +58,22 @@ class DistributedLawOf final : public DistributedLaw {
     const double* gap = field.gap.data();
     const double* velocity = field.velocity.data();
     const double factor = Law::drive_depends ? drive : 1;
-    const Law law = law_;  // a local copy lets the compiler keep the parameters in registers
+    const Law law = law_;  // a local copy lets the compiler keep the law's parameters in registers
     if (field.smallest_gap >= floor_) {
-      // Loop over whole lanes, so that the compiler uses vector instructions; a scalar loop over left-over points would take as
-      // long.
+      // Loop over whole SIMD vectors, so that the compiler uses vector instructions; a scalar loop over left-over points would
+      // take as long.
       const double* share = share_.data();
       for (Eigen::Index p = begin_ / lanes * lanes; p < share_.size(); p += lanes) {
         double sum[lanes];
         for (Eigen::Index k = 0; k < lanes; ++k)
           sum[k] = load[p + k] + factor * share[p + k] * law.load(gap[p + k], velocity[p + k]);
-        for (Eigen::Index k = 0; k < lanes; ++k) load[p + k] = sum[k];  // a loop: memcpy would prevent vector instructions
+        // A loop, because memcpy would prevent vector instructions.
+        for (Eigen::Index k = 0; k < lanes; ++k) load[p + k] = sum[k];
       }
       return;
     }
     for (Eigen::Index p = begin_; p < end_; ++p) {
-      if (!Law::drive_depends && gap[p] >= floor_) {  // at most a few points of a film are below the gap floor
+      if (!Law::drive_depends && gap[p] >= floor_) {  // at most a few points of a gas film are below the smallest valid gap
         load[p] += law.load(gap[p], velocity[p]);
         continue;
       }
@@ -99,7 +100,7 @@ class DistributedLawOf final : public DistributedLaw {
         }
       }
       for (Eigen::Index k = 0; k < lanes; ++k) {
-        by_deflection[p + k] -= factor * share[p + k] * by_gap[k];  // the gap shrinks as the beam deflects
+        by_deflection[p + k] -= factor * share[p + k] * by_gap[k];  // minus sign: the gap shrinks as the beam deflects
         if constexpr (!Law::drive_depends) by_velocity[p + k] += share[p + k] * by_rate[k];
       }
     }
@@ -120,7 +121,7 @@ class DistributedLawOf final : public DistributedLaw {
       };
       by_deflections[p] += factor * mixed(1, 1);
       if constexpr (!Law::drive_depends) {
-        by_both[p] -= factor * mixed(1, 0);  // the gap shrinks as the beam deflects
+        by_both[p] -= factor * mixed(1, 0);  // minus sign: the gap shrinks as the beam deflects
         by_velocities[p] += factor * mixed(0, 0);
       }
     }
@@ -155,8 +156,8 @@ class DistributedLawOf final : public DistributedLaw {
         by_deflection[p] -= by_gap, by_velocity[p] += by_rate;
         continue;
       }
-      // The outer direction of the dual numbers is the gap, the inner the velocity: the slope of the tangent depends on the
-      // velocity too.
+      // The outer direction of the dual numbers is the gap, the inner the velocity: the slope of the load's tangent depends on
+      // the velocity too.
       const double gap = std::max(field.gap[p], floor_);
       const auto at = law_.load(DualOf<Dual>(gap, 1), DualOf<Dual>(Dual(field.velocity[p], 1)));
       by_deflection[p] -= factor * at.slope.value;
@@ -168,10 +169,10 @@ class DistributedLawOf final : public DistributedLaw {
   Law law_;
   Eigen::Index begin_, end_;
   double floor_;
-  Eigen::ArrayXd share_;  // 1 at points on which the law acts, 0 at points that fill a vector lane
+  Eigen::ArrayXd share_;  // 1 at points on which the law acts, 0 at points that fill the last SIMD vector
 };
 
-/// One law on several stretches of the beam.
+/// One force law on several parts of the beam, such as the pads of an electrode.
 class LawOnPads final : public DistributedLaw {
  public:
   explicit LawOnPads(std::vector<std::shared_ptr<const DistributedLaw>> pads) : pads_(std::move(pads)) {}

@@ -1,6 +1,7 @@
 // Forward-mode dual numbers: evaluating a law with them gives the law's exact derivatives. A plain dual number has the slope in
 // one direction. A dual of duals has two directions: its value.slope and slope.value are the first derivatives, its slope.slope
-// is the mixed second one. A dual whose slope is Directions<N> has N directions at once, for one evaluation of the value.
+// is the mixed second derivative. A dual whose slope is Directions<N> has N directions at once, for one evaluation of the
+// value.
 #pragma once
 
 #include <array>
@@ -12,12 +13,12 @@
 
 namespace softland {
 
-/// Slopes in N directions.
+/// Slopes of a dual number in N directions.
 template <std::size_t N, class T = double>
 struct Directions {
   std::array<T, N> along = {};
 
-  /// Returns the unit vector of direction k.
+  /// Returns the unit vector of direction `k`: slope 1 in this direction, 0 in the others.
   static constexpr Directions unit(std::size_t k) {
     Directions d;
     d.along[k] = T(1);
@@ -56,7 +57,7 @@ struct DualOf {
   T value = 0;
   Slope slope = {};
 
-  constexpr DualOf(T v = 0, Slope s = {}) : value(v), slope(s) {}  // implicit, since formulas mix dual and plain numbers
+  constexpr DualOf(T v = 0, Slope s = {}) : value(v), slope(s) {}  // not explicit, since formulas mix dual and plain numbers
 
   friend constexpr DualOf operator+(DualOf a, DualOf b) { return {a.value + b.value, a.slope + b.slope}; }
   friend constexpr DualOf operator-(DualOf a, DualOf b) { return {a.value - b.value, a.slope - b.slope}; }
@@ -89,7 +90,7 @@ struct DualOf {
     using std::cos, std::sin;
     return {cos(a.value), -sin(a.value) * a.slope};
   }
-  /// Returns a power of positive a.
+  /// Returns a^exponent for a positive dual number a.
   friend DualOf power(DualOf a, double exponent) {
     const T raised = power(a.value, exponent);
     return {raised, T(exponent) * raised / a.value * a.slope};

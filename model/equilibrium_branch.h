@@ -1,5 +1,5 @@
 // Static equilibria of a switch whose contact point is held at a given deflection: the branch of equilibria from rest to the
-// contact plane and beyond, past the fold. See model/pull_in.h.
+// contact plane and beyond, past the fold at pull-in. See model/pull_in.h.
 #pragma once
 
 #include <boost/math/tools/minima.hpp>
@@ -20,7 +20,7 @@ namespace softland::statics {
 inline constexpr double no_equilibrium = std::numeric_limits<double>::quiet_NaN();
 
 // A static equilibrium with the contact point held at a given deflection. `unknown` is the strength of the drive that holds the
-// point (V^2 of an electrode, the factor of the dispersion force), or the force of an ideal support there [N].
+// contact point (V^2 of an electrode, the factor of the dispersion force), or the force of an ideal support there [N].
 struct Held {
   Eigen::VectorXd q;
   double unknown = 0;
@@ -34,17 +34,17 @@ class Statics {
         rest_(Eigen::VectorXd::Zero(model.modes())),
         squares_(model.basis().angular_frequencies().cwiseAbs2()) {}
 
-  // Returns the modal coordinates of the beam under a force at the contact point that deflects this point by s.
+  // Returns the modal coordinates of the beam under a force at the contact point that deflects this point by s [m].
   [[nodiscard]] Eigen::VectorXd pushed(double s) const {
     const Eigen::VectorXd shape = model_.basis().contact_shape().cwiseQuotient(squares_);
     return shape * (s / model_.basis().contact_shape().dot(shape));
   }
 
-  // Finds the equilibrium in which `drive` holds the contact point at deflection s against the contact force P(s - dt), with
-  // the other drives at `bias`.
+  // Finds the equilibrium in which `drive` holds the contact point at deflection s [m] against the contact force, with the
+  // other drives at `bias`.
   std::optional<Held> on_branch(std::size_t drive, std::span<const double> bias, double s, Held start) {
-    // The force at unit strength is a difference of two evaluations, at strengths near the result, so that the other forces do
-    // not dominate the difference.
+    // The force at unit strength of the drive is a difference of two evaluations, at strengths near the result, so that the
+    // other forces do not dominate the difference.
     const double scale = start.unknown > 0 ? start.unknown : 1;
     std::vector<double> some(bias.begin(), bias.end()), none = some;
     some[drive] = model_.value_of_strength(drive, scale);
@@ -65,8 +65,8 @@ class Statics {
                   });
   }
 
-  // Finds the equilibrium in which a support keeps the contact point at deflection s under constant voltages. `unknown` is the
-  // force of the beam on the support, without the force that a contact along the pad carries.
+  // Finds the equilibrium in which a support keeps the contact point at deflection s [m] under constant voltages. `unknown` is
+  // the force of the beam on the support, without the force that a contact along the pad carries.
   std::optional<Held> pinned(std::span<const double> volts, double s) {
     std::optional<Held> h = Held{.q = pushed(s)};
     std::vector<double> part(volts.begin(), volts.end());
@@ -81,7 +81,7 @@ class Statics {
     return h;
   }
 
-  // Finds the equilibrium of pinned() by Newton's method from a state near this equilibrium.
+  // Finds the equilibrium of pinned(volts, s) by Newton's method from a state near this equilibrium.
   std::optional<Held> pinned(std::span<const double> volts, double s, Held near) {
     return newton(s, std::move(near),
                   [&](const Held& at, Eigen::VectorXd& residual, Eigen::MatrixXd& by_q, Eigen::VectorXd& by_unknown) {
@@ -91,7 +91,7 @@ class Statics {
                   });
   }
 
-  // Finds an equilibrium on the contact by Newton's method from a state near this equilibrium.
+  // Finds an equilibrium of the beam on the contact by Newton's method from a state near this equilibrium.
   std::optional<Eigen::VectorXd> closed(std::span<const double> volts, Eigen::VectorXd near) {
     Eigen::VectorXd force;
     Eigen::MatrixXd by_q;
@@ -112,7 +112,8 @@ class Statics {
  private:
   static constexpr int most_iterations = 60;
 
-  // Computes static modal forces and their derivative, without the force of a contact that acts at the held point.
+  // Computes static modal forces and their derivative by the modal coordinates, without the force of a contact that acts at the
+  // held point.
   void evaluate(const Eigen::VectorXd& q, std::span<const double> volts, Eigen::VectorXd& force, Eigen::MatrixXd& by_q) {
     evaluate(q, volts, model_.has_spread_contact(), force, by_q);
   }
@@ -137,7 +138,7 @@ class Statics {
     Eigen::VectorXd right(n + 1);
     for (int i = 0; i < most_iterations; ++i) {
       equations(h, residual, by_q, by_unknown);
-      // Rows are in units of each mode's own stiffness: in common units they span ten decades.
+      // Rows of the matrix are in units of each mode's stiffness: in common units the rows span ten decades.
       bordered.topLeftCorner(n, n) = squares_.cwiseInverse().asDiagonal() * by_q;
       bordered.topRightCorner(n, 1) = by_unknown.cwiseQuotient(squares_);
       bordered.bottomLeftCorner(1, n) = shape.transpose() / largest;
@@ -156,8 +157,8 @@ class Statics {
   [[nodiscard]] bool has_converged(const Eigen::VectorXd& step) const {
     return step.cwiseProduct(model_.basis().contact_shape()).cwiseAbs().sum() < 1e-13 * model_.device().gap.electrode;
   }
-  // Returns true when the beam in the state evaluated last is above the gap floor. Below the floor the force laws do not hold,
-  // and no equilibrium is accepted.
+  // Returns true when the last evaluated state of the beam is above the smallest valid gap. Below this gap the force laws do
+  // not hold, and no equilibrium is accepted.
   [[nodiscard]] bool is_above_floor() const { return Switch::smallest_gap(work_) > model_.gap_floor(); }
 
   const Switch& model_;
@@ -165,7 +166,7 @@ class Statics {
   Eigen::VectorXd rest_, squares_;
 };
 
-// Returns the values of all drives at a bias, with `drive` itself at 0.
+// Returns the values of all drives at a bias (constant voltages of the other drives), with `drive` itself at 0.
 std::vector<double> standing(const Switch& model, std::size_t drive, Bias bias) {
   require(bias.empty() || bias.size() == model.drives(), "a bias needs a value for every drive of the switch");
   std::vector<double> values(bias.begin(), bias.end());
@@ -180,8 +181,8 @@ class EquilibriumBranch {
   EquilibriumBranch(const Switch& model, std::size_t drive, Bias bias)
       : statics_(model), drive_(drive), bias_(standing(model, drive, bias)), goes_in_steps_(model.device().lands_along_face()) {}
 
-  // Returns the strength of the drive at deflection s; NaN without an equilibrium. The search starts from the last equilibrium
-  // found, so call this operator in small steps of s.
+  // Returns the strength of the drive in the equilibrium at deflection s [m]; NaN without an equilibrium. The search starts
+  // from the last equilibrium found, so call this operator in small steps of s.
   double operator()(double s) {
     if (start_.q.size() == 0) start_ = {.q = statics_.pushed(s)};
     if (!reaches(s) && !(goes_in_steps_ && walks(s))) return no_equilibrium;
@@ -199,11 +200,11 @@ class EquilibriumBranch {
     return true;
   }
 
-  // Finds the equilibrium at s in short steps: near the face of a thin dielectric the field grows so fast that Newton's method
-  // needs short steps.
+  // Finds the equilibrium at deflection s [m] in short steps: near the face of a thin dielectric the field grows so fast that
+  // Newton's method needs short steps.
   bool walks(double s) {
     constexpr int most_steps = 100;
-    constexpr double shortest = 1e-6;  // shortest step, as a share of the distance to s
+    constexpr double shortest = 1e-6;  // shortest step of the deflection, as a share of the distance to s
     const double least = shortest * std::abs(s - here_);
     double step = (s - here_) / 2;
     for (int k = 0; k < most_steps && std::abs(step) > least; ++k) {
@@ -224,7 +225,7 @@ class EquilibriumBranch {
   std::vector<double> bias_;
   bool goes_in_steps_;
   Held start_;
-  double here_ = 0;  // deflection of the last equilibrium found [m]
+  double here_ = 0;  // deflection of the contact point in the last equilibrium found [m]
 };
 
 inline constexpr int branch_steps = 64;
@@ -234,8 +235,8 @@ struct Steps {
   double before, last, next;
 };
 
-// Steps from `depth` deeper in growing steps until stop(f at a depth, f one step deeper) is true. The steps are halved where f
-// becomes NaN (the beam would reach the electrode); the function returns nothing when the search ends there.
+// Searches from `depth` deeper in growing steps until stop(f at a depth, f one step deeper) is true. The steps are halved where
+// f becomes NaN (the beam would reach the electrode); the function returns nothing when the search ends there.
 template <class F, class Stop>
 std::optional<Steps> walk(F&& f, double depth, double step, Stop&& stop) {
   constexpr double growth = 1.2;
@@ -267,7 +268,7 @@ template <class F>
 std::optional<Minimum> first_minimum(F&& f, double step) {
   const auto around = walk(f, 0, step, [](double value, double here) { return here > value; });
   if (!around) return std::nullopt;
-  // Depths are in units of the step, because Brent's tolerance is partly absolute.
+  // Depths are in units of the step, because the tolerance of Brent's method is partly absolute.
   const auto [at, value] = boost::math::tools::brent_find_minima([&](double x) { return f(x * step); }, around->before / step,
                                                                  around->next / step, 30);
   const double known = f(around->last);

@@ -1,4 +1,4 @@
-// The faces of dielectrics on which a beam or plate may land, and the contact along them.
+// The faces of dielectrics on which a beam or plate may close, and the contact along the faces.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -56,7 +56,7 @@ Place first_touch_on(const Device& d) {
   return nearest;
 }
 
-// Returns the length of all pads on whose face the beam may land [m].
+// Returns the total length of the electrode pads on whose dielectric the beam may close [m].
 double length_of_faces(const Device& d) {
   double sum = 0;
   for (const Electrode& e : d.electrodes) {
@@ -73,7 +73,7 @@ void set_face_contact(Device& d) {
   if (landing == nullptr) return;
   const double plane = d.gap.electrode - landing->begin();
   const auto set = [&](Contact& face) {
-    // The stiffness of a wall is computed from the modes of the switch; the stiffness here is a placeholder.
+    // The stiffness of a wall's face is computed from the modes of the switch; the stiffness here is a placeholder.
     face.model = LinearSpring{.stiffness = landing->is_wall() ? 1 : landing->stiffness};
     if (landing->asperities) face.model = *landing->asperities, face.pad_length = length_of_faces(d);
     if (!d.structure.is_rigid()) face.at = first_touch_on(d);

@@ -3,8 +3,8 @@
 //   f(h, v) = -law(H - h, -v)       H = d0 + d_far
 //
 // h is the local gap on the near side [m], v the velocity towards the near side [m/s], d0 and d_far the rest gaps of both sides
-// [m]. Below `floor` the law is continued by its tangent: a run that gets there ends. Laws of the velocity are linear in the
-// velocity.
+// [m]. Below the far gap `floor` the law is continued by its tangent: a run ends at this gap. Laws of the velocity are linear
+// in the velocity.
 #pragma once
 
 #include "model/dual.h"
@@ -14,13 +14,13 @@ namespace softland {
 template <class Law, class P = double>
 struct FarSide {
   Law law = {};
-  P both_gaps = 0;  ///< sum H of both rest gaps [m]
-  P floor = 0;      ///< far gap below which the law is continued by its tangent [m]
-  /// Value and slope of the law at the floor, for v = 1 m/s: the tangent that continues the law.
+  P both_gaps = 0;  ///< sum of the gaps at rest on both sides of the moving part [m]
+  P floor = 0;      ///< gap on the far side below which the law is continued by its tangent [m]
+  /// Value and slope of the force law at the gap `floor`, for a velocity of 1 m/s: the tangent that continues the law.
   DualOf<P> at_floor = law.load(DualOf<P>(floor, 1), DualOf<P>(1));
   static constexpr bool drive_depends = Law::drive_depends;
 
-  /// Returns the load [N/m]; for a law that a drive scales, at unit drive.
+  /// Returns the load of the far side on the beam [N/m]; for a law that a drive scales, at unit drive.
   template <class S>
   S load(S gap, S velocity) const {
     const S far = S(both_gaps) - gap;
@@ -32,7 +32,8 @@ struct FarSide {
         },
         [&]() -> S { return -law.load(far, -velocity); });
   }
-  /// Returns the potential [J/m] at unit drive; below the floor it is the parabola whose slope is the tangent.
+  /// Returns the potential of the far side [J/m] at unit drive; below the gap `floor` it is the parabola whose slope is the
+  /// tangent.
   [[nodiscard]] double potential(double gap) const requires(Law::drive_depends) {
     const double far = both_gaps - gap, below = far - floor;
     if (below >= 0) return law.potential(far);

@@ -16,21 +16,21 @@
 
 namespace softland {
 
-/// A layer of the stack; layers are in order from the near face.
+/// A layer of a stack of bonded layers; the layers are in order from the near face of the stack.
 struct Lamina {
-  double modulus = 0;    ///< modulus in bending: E, or E / (1 - nu^2) of its own material [Pa]
-  double density = 0;    ///< [kg/m^3]
-  double thickness = 0;  ///< [m]
-  double stress = 0;     ///< stress before release, positive in tension [Pa]
-  double gradient = 0;   ///< gradient of this stress over the thickness, away from the near face [Pa/m]
+  double modulus = 0;    ///< modulus of the layer in bending: Young's modulus E, or E / (1 - nu^2) of its material [Pa]
+  double density = 0;    ///< density of the layer [kg/m^3]
+  double thickness = 0;  ///< thickness of the layer [m]
+  double stress = 0;     ///< stress in the layer before release, positive in tension [Pa]
+  double gradient = 0;   ///< gradient of the layer's stress over its thickness, away from the near face [Pa/m]
 };
 
-/// The properties of a stack of layers, per width.
+/// The bending properties of a stack of bonded layers, per width.
 struct Laminate {
-  double neutral_axis = 0;  ///< height above the near face [m]
-  double rigidity = 0;      ///< EI [N m]
-  double mass = 0;          ///< [kg/m^2]
-  double curvature = 0;     ///< curvature at rest, positive away from the near face [1/m]
+  double neutral_axis = 0;  ///< height of the neutral axis above the near face of the stack [m]
+  double rigidity = 0;      ///< bending rigidity per width [N m]
+  double mass = 0;          ///< mass per area [kg/m^2]
+  double curvature = 0;     ///< curvature of the stack at rest, positive away from the near face [1/m]
 
   explicit Laminate(std::span<const Lamina> layers) {
     double stiffness = 0, weighted = 0, bottom = 0;

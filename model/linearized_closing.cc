@@ -19,9 +19,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double longest_angle = 2.5;  // largest norm of A times the duration of a part of a step
-constexpr int most_parts = 4096;       // largest number of parts of a step
-constexpr int parts_at_edge = 6;       // number of parts of a step that begins or ends where a contact begins or ends
+constexpr double longest_angle = 2.5;  // bound of the part's duration times the norm of the linearised equations' matrix A
+constexpr int most_parts = 4096;       // largest number of parts into which an integration step is divided
+constexpr int parts_at_edge = 6;  // number of parts of an integration step that begins or ends where a contact begins or ends
 constexpr Index lane_size = lanes;
 
 // Returns the number of terms after which the Taylor series of the exponential of a matrix with this norm is accurate to
@@ -40,7 +40,7 @@ int terms_of_exponential(double norm) {
   return std::max(fewest, static_cast<int>(found - largest_norm.begin()) + 1);
 }
 
-// Returns the largest sum of magnitudes in a column of a matrix whose rows are whole lanes.
+// Returns the largest sum of magnitudes in a column of a matrix whose rows are padded to whole SIMD vectors.
 double column_norm(const double* x, Index size, Index stride) {
   Lane largest = Lane::Zero();
   for (Index c = 0; c < stride; c += lane_size) {
@@ -51,8 +51,8 @@ double column_norm(const double* x, Index size, Index stride) {
   return largest.maxCoeff();
 }
 
-// Returns the shares of a step at which its parts end. A contact's stiffness grows, and falls, like the root of the time from
-// the edge of the contact phase.
+// Returns the shares of an integration step at which its parts end. A contact's stiffness grows, and falls, like the root of
+// the time from the beginning or end of contact.
 std::vector<double> shares_of_parts(int parts, bool after_edge, bool before_edge) {
   std::vector<double> ends;
   for (int k = 1; k <= parts; ++k) {
@@ -126,7 +126,7 @@ void LinearizedClosing::note_passage(const PhaseChange& change) {
   if (!arcs_.empty() && change.kind == PhaseChange::Kind::turn) arcs_.back().turns = true;
 }
 
-// Adds one set of numbers of pieces for each drive that enters its next piece at time t.
+// Adds one set of indices of signal pieces for the drives that enter their next piece at time t.
 void LinearizedClosing::enter_pieces(double t) {
   for (std::size_t k = 0; k < signals_.size(); ++k) {
     const std::vector<SignalPiece>& all = signals_[k].pieces();
@@ -193,7 +193,7 @@ void LinearizedClosing::linearize_step() {
   add_parts(step, contact.active && after_edge, contact.active && before_edge);
 }
 
-// The rest position at the start depends on the parameters such that the static forces remain 0.
+// Computes the derivative of the rest position at the start by each parameter, such that the static forces remain 0.
 void LinearizedClosing::begin_at_rest() {
   rest_ = MatrixXd::Zero(size_, moving_);
   const std::vector<double> before = values_before(signals_);
@@ -212,7 +212,7 @@ void LinearizedClosing::begin_at_rest() {
   }
 }
 
-// Computes the values of the drives at time t.
+// Computes the voltages of the drives at time t.
 void LinearizedClosing::set_volts(double t) {
   for (std::size_t k = 0; k < volts_.size(); ++k) volts_[k] = signals_[k].pieces()[pieces_[on_][k]].voltage(t);
 }
@@ -249,7 +249,8 @@ void LinearizedClosing::set_node(Node& node, double t, const double* q, const do
   }
 }
 
-// With A = (0, fastest; K, D) at the nodes, compute h / 6 (A0 + 4 A1 + A2) - h^2 / 12 [A1, A2 - A0] block by block.
+// With the matrices A = (0, fastest; K, D) of the linearised equations at begin, middle and end of a part, compute h / 6 (A0 +
+// 4 A1 + A2) - h^2 / 12 [A1, A2 - A0] of Magnus' series block by block.
 void LinearizedClosing::add_transition(double begin, double end, std::size_t arc) {
   using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_modes, most_modes>;
   const std::size_t at = numbers_.size();
@@ -279,7 +280,7 @@ LinearizedClosing::Transition LinearizedClosing::transition(std::size_t part) co
   return {.magnus = here, .begin = here + magnus, .middle = here + magnus + each, .end = here + magnus + 2 * each};
 }
 
-// Returns the times at which the parts of a step end; every part is short enough for Magnus' series.
+// Returns the times at which the parts of an integration step end; every part is short enough for Magnus' series.
 std::vector<double> LinearizedClosing::ends_of_parts(double t0, double t1, bool after_edge, bool before_edge) const {
   const double h = t1 - t0;
   const double norm =
@@ -321,7 +322,8 @@ void LinearizedClosing::add_parts(std::size_t step, bool after_edge, bool before
   }
 }
 
-// Adds the jump of d = dy/dp at a breakpoint of the drives, at which the right-hand side f changes.
+// Adds the jump of the derivative d of the state by the parameters at a breakpoint of the drives, at which the right-hand side
+// f changes.
 void LinearizedClosing::jump_at_pieces(const RecordedMotion::Motion& here, const ContactState& contact, std::size_t entered) {
   if (on_ == entered) return;
   Jump jump{.parts = parts_.size(), .matrix = {}, .moved = {}};
@@ -346,7 +348,7 @@ void LinearizedClosing::jump_at(const RecordedMotion::PhaseEvent& passage, const
   jumps_.back().parts = parts_.size();
 }
 
-// Returns the jump of d = dy/dp when a plate comes to rest and stays on the contact plane.
+// Returns the jump of the derivative d of the state by the parameters when a plate comes to rest on the contact plane.
 LinearizedClosing::Jump LinearizedClosing::at_rest(const Arc& before) const {
   Jump jump{.matrix = MatrixXd::Zero(size_ + 1, size_ + 1), .moved = {}, .by_device = MatrixXd::Zero(size_ + 1, moving_)};
   for (Index j = 0; j < moving_; ++j) {
@@ -356,7 +358,8 @@ LinearizedClosing::Jump LinearizedClosing::at_rest(const Arc& before) const {
   return jump;
 }
 
-// Returns the jump of d = dy/dp when a contact with memory begins to unload: the dent depends on the deepest interference.
+// Returns the jump of the derivative d of the state by the parameters when a contact with memory begins to unload: the dent
+// depends on the deepest interference.
 LinearizedClosing::Jump LinearizedClosing::turned(const Arc& before) const {
   Jump jump{.matrix = MatrixXd::Identity(size_ + 1, size_ + 1), .moved = {}, .by_device = MatrixXd::Zero(size_ + 1, moving_)};
   const double deepest = model_.contact_deflection(before.q.data()) - model_.contact_gap(), step = 1e-5 * deepest;
@@ -372,7 +375,8 @@ LinearizedClosing::Jump LinearizedClosing::turned(const Arc& before) const {
   return jump;
 }
 
-// Returns the jump of d = dy/dp at an edge of the contact's phases, or at an impact.
+// Returns the jump of the derivative d of the state by the parameters where the contact law changes its branch, or at an
+// impact.
 LinearizedClosing::Jump LinearizedClosing::crossed(const RecordedMotion::PhaseEvent& passage, const Arc& before) {
   const PhaseChange& change = passage.change;
   Jump jump{.matrix = MatrixXd::Identity(size_ + 1, size_ + 1), .moved = {}, .by_device = MatrixXd::Zero(size_ + 1, moving_)};
@@ -402,7 +406,8 @@ LinearizedClosing::Jump LinearizedClosing::crossed(const RecordedMotion::PhaseEv
     jump.by_device.col(j).head(size_) -=
         lost * (by_device_->interference(parameter, before.q.data()) - by_device_->edge(parameter, level));
   }
-  if (change.before.shift != 0 && change.after.shift == 0) matrix.bottomRows<1>().setZero();  // the contact has lost its dent
+  // The dent of the contact has vanished, and so does its derivative.
+  if (change.before.shift != 0 && change.after.shift == 0) matrix.bottomRows<1>().setZero();
   return jump;
 }
 

@@ -1,4 +1,4 @@
-// The derivative of a closing with respect to the parameters of its drives.
+// The derivative of a simulated closing with respect to the parameters of its drives.
 //
 //   d' = A(t) d + sum over drives k of b_k(t) dV_k/dp        A = df/dy, b_k = df/dV_k along the closing y' = f(y, V)
 //
@@ -33,48 +33,50 @@
 
 namespace softland {
 
-/// The derivative of a figure by a parameter p: weights of d = dy/dp, y the state, at the end of a step of the recorded motion,
-/// before an event at this time. A figure measured at a time that depends on when a waveform piece begins also has `moved`: its
-/// derivatives by the beginnings of pieces. A figure that depends on the device at fixed q and v also has derivatives by each
-/// of SwitchSlopes::moving().
+/// The derivative of a figure of merit by a parameter p, as weights of d = dy/dp, the derivative of the state y, at the end of
+/// a step of the recorded motion (an arc), before an event at this time. A figure measured at a time that depends on when a
+/// signal piece begins also has `moved`: its derivatives by the beginnings of pieces. A figure that depends on the device at
+/// fixed q and v also has derivatives by each of SwitchSlopes::moving().
 struct FigureSlope {
   struct Weights {
-    std::size_t arc = 0;  ///< index in LinearizedClosing::arcs()
+    std::size_t arc = 0;  ///< index of an arc (step of the motion) in LinearizedClosing::arcs()
     Eigen::VectorXd by_q, by_v;
-    double by_shift = 0;  ///< weight of the residual interference of a contact with memory
+    double by_shift = 0;  ///< weight of the derivative of the residual interference of a contact with memory
   };
   struct Moved {
     std::size_t drive = 0, piece = 0;
-    double rate = 0;  ///< derivative of the figure by the time at which the piece begins [1/s]
+    double rate = 0;  ///< derivative of the figure by the time at which a signal piece begins [1/s]
   };
   std::vector<Weights> weights = {};
   std::vector<Moved> moved = {};
-  Eigen::VectorXd by_device = {};  ///< derivatives of the figure at fixed q and v; empty means 0
+  Eigen::VectorXd by_device = {};  ///< derivatives of the figure by device parameters at fixed q and v; empty means 0
 };
 
 class LinearizedClosing {
  public:
-  using Modal = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_modes, 1>;  ///< one number per mode, without an allocation
+  /// One number per mode, stored without an allocation.
+  using Modal = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_modes, 1>;
 
-  /// A step of the recorded motion; a step in which the velocity of the contact point changes sign is split there.
+  /// A step of the recorded motion; a step in which the velocity of the contact point changes sign is split at this time into
+  /// two.
   struct Arc {
-    double begin = 0, end = 0;  ///< [s]
-    Modal q, v;                 ///< modal coordinates and velocities at `end`
-    Modal accelerations;        ///< modal accelerations at `end`
-    bool turns = false;         ///< true when the contact point's velocity changes sign at `end`
+    double begin = 0, end = 0;  ///< begin and end of the arc (step of the motion) [s]
+    Modal q, v;                 ///< modal coordinates and velocities at the end of the arc (step of the motion)
+    Modal accelerations;        ///< modal accelerations at the end of the arc (step of the motion)
+    bool turns = false;         ///< true when the contact point's velocity changes sign at the end of the arc
     ContactState contact;
-    std::size_t step = 0;            ///< step of the recorded motion
-    std::size_t pieces_entered = 0;  ///< index of the set of waveform pieces that the drives are on: see pieces()
+    std::size_t step = 0;            ///< index of the step of the recorded motion to which the arc belongs
+    std::size_t pieces_entered = 0;  ///< index of the set of signal pieces on which the drives are: see pieces()
   };
-  /// An event of the recorded motion, after the first `arcs` elements of arcs().
+  /// A change of the contact law's branch in the recorded motion, after the first `arcs` elements of arcs().
   struct PhaseEvent {
     std::size_t arcs = 0;
     PhaseChange change;
   };
 
-  /// Linearises a closing that was run with restart_at_contact, under these signals. Keeps references to its arguments.
-  /// `refinement` is the least number of parts of a step. `by_device` gives the derivatives of the switch by the parameters, as
-  /// many as those of the signals; null when the parameters do not change the switch.
+  /// Linearises a closing that was simulated with restart_at_contact, under these drive signals. Keeps references to its
+  /// arguments. `refinement` is the least number of parts of a step. `by_device` gives the derivatives of the switch by the
+  /// parameters, as many as those of the signals; null when the parameters do not change the switch.
   LinearizedClosing(const Switch& model, std::span<const Signal> signals, const RecordedMotion& tape, int refinement = 1,
                     SwitchSlopes* by_device = nullptr);
 
@@ -82,13 +84,13 @@ class LinearizedClosing {
   [[nodiscard]] static std::string refusal(const Switch& model);
 
   [[nodiscard]] const std::vector<Arc>& arcs() const { return arcs_; }
-  /// Returns the number of the waveform piece on which each drive is during a step of the recorded motion.
+  /// Returns the index of the signal piece on which each drive is during an arc of the recorded motion.
   [[nodiscard]] const std::vector<std::size_t>& pieces(const Arc& arc) const { return pieces_[arc.pieces_entered]; }
   [[nodiscard]] const std::vector<PhaseEvent>& passages() const { return passages_; }
   /// Returns the derivatives of the switch by the parameters; null when the parameters do not change the switch.
   [[nodiscard]] const SwitchSlopes* by_device() const { return by_device_; }
 
-  /// Returns derivatives of figures, one row each, with respect to the parameters, in adjoint mode.
+  /// Returns derivatives of figures of merit, one row each, with respect to the parameters, in adjoint mode.
   [[nodiscard]] Eigen::MatrixXd backward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes);
   /// Returns the derivatives that backward() returns, in forward mode.
   [[nodiscard]] Eigen::MatrixXd forward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes);
@@ -96,40 +98,41 @@ class LinearizedClosing {
  private:
   using Index = Eigen::Index;
 
-  // The derivatives of the accelerations at one state, in units in which q is multiplied by the fastest frequency.
+  // The derivatives of the accelerations at one state of the motion, in units in which modal coordinates are multiplied by the
+  // fastest frequency.
   struct Node {
     Eigen::MatrixXd by_q, by_v;
-    Eigen::MatrixXd inputs;  // inputs: drives, residual interference, parameters of the device
+    Eigen::MatrixXd inputs;  // derivatives by the inputs: drives, residual interference, device parameters
   };
-  // A part of a step of the recorded motion, short enough for Magnus' series.
+  // A part of an integration step of the recorded motion, short enough for Magnus' series.
   struct Part {
-    double begin = 0, end = 0;  // [s]
+    double begin = 0, end = 0;  // begin and end of the part [s]
     std::size_t arc = 0;
     bool ends_arc = false;
-    int terms = 0;  // number of terms in the series of the exponential
+    int terms = 0;  // number of terms in the Taylor series of the matrix exponential
   };
   // Magnus' series of a part of a step, and the inputs of drives and of the contact's dent: pointers into numbers_.
   struct Transition {
-    const double* magnus;  // rows of whole lanes
-    const double* begin;   // inputs at the start of the part, modes x inputs
-    const double* middle;  // inputs in the middle of the part
-    const double* end;     // inputs at the end of the part
+    const double* magnus;  // matrix of Magnus' series; rows are padded to whole SIMD vectors
+    const double* begin;   // inputs at the start of the part, a matrix modes x inputs
+    const double* middle;  // inputs in the middle of the part, modes x inputs
+    const double* end;     // inputs at the end of the part, modes x inputs
   };
   // The change of d = dy/dp at an event, with the derivative of the contact's residual interference as the last row: d becomes
   // matrix * d + by_device + sum over moved pieces. Without a matrix the first term is d.
   struct Jump {
-    std::size_t parts = 0;                                              // number of parts before the event
-    std::optional<Eigen::MatrixXd> matrix;                              // square, of size 2 modes + 1
-    std::vector<std::pair<FigureSlope::Moved, Eigen::VectorXd>> moved;  // adds vector * d(begin of the piece)/dp to d
-    Eigen::MatrixXd by_device = {};                                     // one column per moving parameter, or none
+    std::size_t parts = 0;                                              // number of parts of steps before the event
+    std::optional<Eigen::MatrixXd> matrix;                              // square matrix of size 2 modes + 1; none: unit matrix
+    std::vector<std::pair<FigureSlope::Moved, Eigen::VectorXd>> moved;  // adds vector * d(begin of the signal piece)/dp to d
+    Eigen::MatrixXd by_device = {};  // derivatives by device parameters that change the switch, one column each, or none
   };
 
-  // Computes the arcs and events of the recorded motion, without derivatives.
+  // Computes the arcs of the recorded motion and the changes of the contact law, without derivatives.
   void follow_tape();
   void enter_pieces(double t);
   void add_arcs(std::size_t step);
   void note_passage(const PhaseChange& change);
-  // Computes the derivatives of the recorded motion, up to the last time on which the figures depend.
+  // Computes the derivatives of the recorded motion, up to the last time on which the figures of merit depend.
   void linearize_for(const std::vector<FigureSlope>& figures);
   void linearize_step();
   void begin_at_rest();
@@ -145,7 +148,7 @@ class LinearizedClosing {
   [[nodiscard]] Jump at_rest(const Arc& before) const;
   [[nodiscard]] Jump crossed(const RecordedMotion::PhaseEvent& passage, const Arc& before);
   [[nodiscard]] Transition transition(std::size_t part) const;
-  // Returns the column of the gradient for a parameter that changes the switch.
+  // Returns the column of the gradient for the device parameter number `moving`, among those that change the switch.
   [[nodiscard]] Index column(Index moving) const {
     return static_cast<Index>(by_device_->moving()[static_cast<std::size_t>(moving)]);
   }
@@ -158,25 +161,26 @@ class LinearizedClosing {
   std::span<const Signal> signals_;
   const RecordedMotion& tape_;
   Index n_, size_;  // number of modes; number of unknowns, 2 modes
-  Index stride_;    // size_ rounded up to whole lanes
+  Index stride_;    // size_ rounded up to whole SIMD vectors
   SwitchSlopes* by_device_;
-  Index dent_, moving_, inputs_;  // numbers of drives (index of the residual interference), of moving parameters, of inputs
-  double fastest_;                // [rad/s]
+  // Number of drives (index of the residual interference), of parameters that change the switch, of inputs.
+  Index dent_, moving_, inputs_;
+  double fastest_;  // angular frequency of the fastest mode [rad/s]
   Switch::Workspace work_;
   int refinement_;
-  std::vector<std::vector<std::size_t>> pieces_;  // numbers of the present pieces of all drives; a set per breakpoint
+  std::vector<std::vector<std::size_t>> pieces_;  // indices of the current signal pieces of all drives, a set per breakpoint
   std::vector<Arc> arcs_;
   std::vector<PhaseEvent> passages_;
 
   std::size_t steps_ = 0;         // number of linearised steps of the recorded motion
-  std::size_t next_arc_ = 0;      // index of the first arc after the linearised steps
-  std::size_t next_passage_ = 0;  // index of the next event of the recorded motion
-  std::size_t on_ = 0;            // index of the current pieces of the drives in pieces_
-  std::vector<double> volts_;     // current values of the drives
+  std::size_t next_arc_ = 0;      // index in arcs() of the first arc after the linearised steps
+  std::size_t next_passage_ = 0;  // index of the next change of the contact law in the recorded motion
+  std::size_t on_ = 0;            // index in pieces_ of the current signal pieces of the drives
+  std::vector<double> volts_;     // current voltages of the drives
   std::vector<Part> parts_;
-  std::vector<double> numbers_;  // Magnus' series and inputs of the parts
+  std::vector<double> numbers_;  // Magnus' series and inputs of the parts of steps
   std::vector<Jump> jumps_;
-  Eigen::MatrixXd rest_;  // derivative of the rest position at the start, one column per moving parameter
+  Eigen::MatrixXd rest_;  // derivatives of the rest position at the start by device parameters, one column each
   Node from_, middle_, to_;
   bool goes_on_ = false;  // true when the next part of a step begins in the state from_
 };

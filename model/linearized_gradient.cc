@@ -12,10 +12,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index row_lanes = lanes;               // rows are whole lanes
-constexpr Index most_unknowns = 2 * most_modes;  // largest number of unknowns, in whole lanes
+constexpr Index row_lanes = lanes;               // rows are padded to whole SIMD vectors
+constexpr Index most_unknowns = 2 * most_modes;  // largest number of unknowns, a multiple of the SIMD lanes
 
-// Adds value += gain for very many small gains: `left` stores the part that rounding cuts off for the next gain (Kahan 1965).
+// Adds value += gain for very many small gains: `left` stores the part that rounding cuts off, for the next gain (Kahan 1965).
 // The sum is value - left.
 template <class Value, class Left, class Gain>
 void add_compensated(Value&& value, Left&& left, const Gain& gain) {
@@ -28,7 +28,7 @@ void add_compensated(Value&& value, Left&& left, const Gain& gain) {
   }
 }
 
-// Computes row w times (exp(x) - 1), and w phi_j(x) = sum over k of w x^k / (k + j)!, j = 1, 2, 3.
+// Computes, for a row vector w and a matrix x, w (exp(x) - 1) and w phi_j(x) = sum over k of w x^k / (k + j)!, j = 1, 2, 3.
 struct RowSeries {
   using Row = Eigen::Array<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, most_unknowns>;
   Row gain, phi1, phi2, phi3;
@@ -59,7 +59,8 @@ struct RowSeries {
   }
 };
 
-// Advances columns d along y' = x y + u1 + u2 s + u3 s^2 from s = 0 to 1. Rows are whole lanes; u is 0 in their upper half.
+// Advances columns d along y' = x y + u1 + u2 s + u3 s^2 from s = 0 to 1. Rows are padded to whole SIMD vectors; u is 0 in
+// their upper half.
 using Columns = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 struct ColumnSeries {
   Columns gain, term, next;
@@ -96,7 +97,7 @@ VectorXd LinearizedClosing::scaled(const FigureSlope::Weights& weights) const {
   return all;
 }
 
-// Adds the derivatives of figures by the begin of pieces of the drives, and by the device at fixed q and v.
+// Adds the derivatives of figures of merit by the beginnings of signal pieces, and by the device at fixed q and v.
 void LinearizedClosing::add_moved(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes, MatrixXd& gradient) const {
   for (std::size_t f = 0; f < figures.size(); ++f) {
     for (const FigureSlope::Moved& m : figures[f].moved) {
@@ -107,7 +108,8 @@ void LinearizedClosing::add_moved(const std::vector<FigureSlope>& figures, const
   }
 }
 
-// Calls add(input, parameter, a, b, c), with the input's derivatives by the parameter at begin, middle and end of a part.
+// Calls add(input, parameter, a, b, c) for every input of the linearised equations (such as a voltage), with its derivatives by
+// a parameter at begin, middle and end of a part of a step.
 template <class Add>
 void LinearizedClosing::for_inputs(const Part& part, const SignalSlopes& slopes, Add&& add) const {
   const std::vector<std::size_t>& on = pieces(arcs_[part.arc]);
@@ -126,7 +128,7 @@ MatrixXd LinearizedClosing::backward(const std::vector<FigureSlope>& figures, co
   const auto count = static_cast<Index>(figures.size());
   MatrixXd gradient = MatrixXd::Zero(count, static_cast<Index>(slopes.parameters()));
   MatrixXd weights = MatrixXd::Zero(count, size_ + 1), left = weights;
-  std::vector<std::pair<std::size_t, std::pair<Index, VectorXd>>> given;  // arc; figure and weights
+  std::vector<std::pair<std::size_t, std::pair<Index, VectorXd>>> given;  // arc number; row of the figure and its weights
   for (std::size_t f = 0; f < figures.size(); ++f) {
     for (const FigureSlope::Weights& w : figures[f].weights) given.push_back({w.arc, {static_cast<Index>(f), scaled(w)}});
   }

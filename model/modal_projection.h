@@ -5,7 +5,8 @@
 //
 // phi are mass-normalised modes [kg^(-1/2)], q modal coordinates [m kg^(1/2)], y is the deflection [m], F the force at x [N],
 // or load per length times a quadrature weight, Q the modal force [N kg^(-1/2)]. The right-hand side of one device does both
-// for many places at once, in lanes of places (switch.cc); this file does both for duals and for lanes of devices.
+// for many places at once, one per SIMD lane (switch.cc); this file does both for dual numbers and for several devices, one per
+// SIMD lane.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +14,7 @@
 
 namespace softland {
 
-/// Returns the deflection at a place from modal coordinates, or the velocity from their rates.
+/// Returns the deflection of the beam at a place from modal coordinates, or the velocity from their rates.
 template <class P, class S>
 [[nodiscard]] S deflection(std::span<const P> shape, const S* q) {
   S sum = S(0);
@@ -21,7 +22,7 @@ template <class P, class S>
   return sum;
 }
 
-/// Adds the contribution of a force at a place to every modal force.
+/// Adds the contribution of a force at a place of the beam to every modal force.
 template <class P, class S>
 void add_modal_force(std::span<const P> shape, const S& force, S* modal) {
   for (std::size_t i = 0; i < shape.size(); ++i) modal[i] = modal[i] + S(shape[i]) * force;

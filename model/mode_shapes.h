@@ -1,4 +1,4 @@
-// The modes of a switch along its length, for plots.
+// The mode shapes of a switch along its length, for plots.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,12 +8,12 @@
 namespace softland {
 
 struct ModeShapes {
-  Eigen::VectorXd places;  ///< places from the clamped end [m]
-  Eigen::MatrixXd shapes;  ///< modal deflections phi_i at the places, a row for each place [kg^(-1/2)]
+  Eigen::VectorXd places;  ///< positions along the beam from its clamped end [m]
+  Eigen::MatrixXd shapes;  ///< mode shapes at the positions, a row for each position [kg^(-1/2)]
 };
 
-/// Returns the modes at this number of places from end to end for a beam or a structure from a table of modes; for a plate at
-/// the quadrature points of the switch. Throws InvalidInput when `places` is below two.
+/// Returns the mode shapes at this number of places from end to end for a beam or a structure from a table of modes; for a
+/// plate at the quadrature points of the switch. Throws InvalidInput when `places` is below two.
 [[nodiscard]] ModeShapes mode_shapes(const Switch& model, int places);
 /// Returns the modal deflections phi_i of any structure at these places from 0 to its length [m], a row for each place
 /// [kg^(-1/2)].

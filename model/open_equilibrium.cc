@@ -18,8 +18,8 @@ std::optional<Eigen::VectorXd> Switch::open_equilibrium(std::span<const double> 
   return loaded_equilibrium(values);
 }
 
-// Finds the equilibrium in one Newton iteration if possible, and otherwise in increments of the load: a beam that stretches is
-// far stiffer when bent than Newton's method predicts from the straight beam.
+// Finds the open equilibrium in one Newton iteration if possible, and otherwise in increments of the load: a beam that
+// stretches is far stiffer when bent than Newton's method predicts from the straight beam.
 std::optional<Eigen::VectorXd> Switch::loaded_equilibrium(std::span<const double> values) const {
   Eigen::VectorXd q = Eigen::VectorXd::Zero(modes());
   if (std::optional<Eigen::VectorXd> found = equilibrium_from(q, values)) return found;
@@ -37,11 +37,12 @@ std::optional<Eigen::VectorXd> Switch::loaded_equilibrium(std::span<const double
   return step > shortest ? std::optional(q) : std::nullopt;
 }
 
-// Finds the equilibrium by Newton's method from q. The load grows ever faster as the gap closes, so the iterates stay on the
-// stable side, before the equilibrium. If the tangent at an iterate is not stable, no stable equilibrium exists.
+// Finds the open equilibrium by Newton's method from the modal coordinates q. The load grows ever faster as the gap closes, so
+// the iterates stay on the stable side, before the equilibrium. If the tangent at an iterate is not stable, no stable
+// equilibrium exists.
 std::optional<Eigen::VectorXd> Switch::equilibrium_from(Eigen::VectorXd q, std::span<const double> values) const {
-  constexpr int most_iterations = 200;  // near the fold an iteration halves the distance at best
-  constexpr double rounding = 1e-14;    // share of the gap
+  constexpr int most_iterations = 200;  // near the pull-in voltage an iteration halves the distance at best
+  constexpr double rounding = 1e-14;    // change of the deflection that counts as rounding, as a share of the gap
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(modes());
   Workspace work = workspace();
   Eigen::VectorXd force(modes());
@@ -50,7 +51,7 @@ std::optional<Eigen::VectorXd> Switch::equilibrium_from(Eigen::VectorXd q, std::
     accelerations(q.data(), zero.data(), values, false, work, force.data());
     jacobian(q.data(), zero.data(), values, false, work, by_q, by_v);
     if (!(smallest_gap(work) > gap_floor())) return std::nullopt;
-    // Each equation is in units of its mode's own stiffness.
+    // Each equation is in units of its mode's stiffness.
     const std::optional<Eigen::VectorXd> moved =
         solve_definite(-(basis_.angular_frequencies().cwiseInverse().asDiagonal() * by_q *
                          basis_.angular_frequencies().cwiseInverse().asDiagonal()),

@@ -10,10 +10,11 @@ enum class Side { near, far, both };
 inline constexpr auto sides = std::to_array<Named<Side>>({{Side::near, "near"}, {Side::far, "far"}, {Side::both, "both"}});
 static_assert(is_complete<sides>());
 
-/// A place on the beam, from the clamped end: a distance [m], or a share of the beam's length, which scales with this length.
+/// A position along the beam, from the clamped end: a distance [m], or a share of the beam's length, which scales with the
+/// length.
 struct Place {
   constexpr Place() = default;
-  constexpr Place(double distance) : value(distance) {}  // implicit: a plain number is a distance
+  constexpr Place(double distance) : value(distance) {}  // not explicit: a plain number is a distance from the clamped end
   [[nodiscard]] static constexpr Place share(double of_length) {
     Place place(of_length);
     place.is_share = true;

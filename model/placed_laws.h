@@ -1,4 +1,4 @@
-// Ranges of quadrature points, and the distributed laws that act on them.
+// Ranges of quadrature points along the structure, and the distributed force laws that act on these ranges.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,28 +18,29 @@ struct PointRange {
   Eigen::Index begin, end;
 };
 
-/// Points of a range under a structure of one width and thickness, and with one pattern of holes.
+/// A range of quadrature points under a structure of one width and thickness, and with one pattern of holes.
 struct EvenRange {
   PointRange points;
-  double width;      ///< without the holes [m]
-  double thickness;  ///< [m]
+  double width;      ///< width of the structure without its holes [m]
+  double thickness;  ///< thickness of the structure [m]
   Holes holes = {};
-  double full_width = width;  ///< with the holes [m]
+  double full_width = width;  ///< width of the structure with its holes [m]
 };
 
-/// Returns the points between two places [m].
+/// Returns the range of quadrature points between two positions along the structure [m].
 [[nodiscard]] PointRange points_in(const Eigen::ArrayXd& positions, double begin, double end);
-/// Returns ranges of points between two places, each with constant sizes of the structure. A uniform structure has one range;
-/// when the width changes along the structure each point is a range of its own.
+/// Returns ranges of quadrature points between two positions along the structure, each with constant sizes of the structure. A
+/// uniform structure has one range; when the width changes along the structure each point is a separate range.
 [[nodiscard]] std::vector<EvenRange> even_ranges(const Structure& structure, const Eigen::ArrayXd& positions, double begin,
                                                  double end);
 
-/// Returns a law that acts on a range; `floor` is the gap below which its tangent continues it [m].
+/// Returns a force law that acts on a range of quadrature points; `floor` is the gap below which the tangent of the law
+/// continues it [m].
 template <class Law>
 std::shared_ptr<const DistributedLaw> erased(Law law, PointRange range, double floor) {
   return std::make_shared<const DistributedLawOf<Law>>(law, range.begin, range.end, floor);
 }
-/// Combines the laws of all pads of an electrode.
+/// Combines the force laws of all pads of an electrode in one law.
 [[nodiscard]] std::shared_ptr<const DistributedLaw> one_law(std::vector<std::shared_ptr<const DistributedLaw>> pads);
 
 /// Calls `make` with the force law of an electrode that has this fringing field.

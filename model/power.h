@@ -1,5 +1,5 @@
-// x^y for laws along the beam. For doubles it is written so that a loop over points becomes vector instructions. The library's
-// pow is a call per point, which takes many times as long as the rest of a film law.
+// The power x^y for force laws along the beam. For doubles it is written so that a loop over points becomes vector
+// instructions. The standard library's pow is a call per point, which takes many times as long as the rest of a film law.
 //
 //   x = 2^e m, sqrt(1/2) <= m < sqrt(2);   log2 x = e + (2 / ln 2) (f + f^3/3 + ... + f^21/21),  f = (m - 1)/(m + 1)
 //   2^z = 2^n (1 + r + ... + r^13/13!),    n = round z,  r = (z - n) ln 2
@@ -48,12 +48,13 @@ requires std::same_as<S, double> || LaneOfNumbers<S>
                           [](double number) { return std::bit_cast<double>((std::bit_cast<std::int64_t>(number) << 52) + one); });
 }
 
-/// Returns h^(-1/4) of a positive normal number, or of every number of a lane, to rounding. It avoids division and root, the
-/// slowest instructions:
+/// Returns h^(-1/4) of a positive normal number, or of every number of a SIMD vector, to rounding. The function avoids division
+/// and root, the slowest instructions:
 ///
 ///   w <- w (1 - e)^(-1/4),   e = 1 - h w^4,   the power by its series in e
 ///
-/// from a guess good to 4 %, the exponent divided by -4. The fifth order leaves an error of 2e-6, the second order then 1e-17.
+/// The first guess of w is good to 4 %: the exponent divided by -4. The fifth order leaves an error of 2e-6, the second order
+/// then 1e-17.
 template <class S>
 requires std::same_as<S, double> || LaneOfNumbers<S>
 [[nodiscard, gnu::always_inline]] inline S inverse_fourth_root(const S& h) {
@@ -66,14 +67,14 @@ requires std::same_as<S, double> || LaneOfNumbers<S>
   return w + (w * e) * (0.25 + e * (5.0 / 32));
 }
 
-/// Computes h^(-1/4) by roots for other scalars.
+/// Computes h^(-1/4) by roots for scalars other than double and SIMD vectors.
 template <class S>
 [[nodiscard]] S inverse_fourth_root(const S& h) {
   using std::sqrt;
   return S(1) / sqrt(sqrt(h));
 }
 
-/// Calls the library's pow for other scalars (complex numbers in tests).
+/// Computes x^y by the standard library's pow for scalars other than double and SIMD vectors (complex numbers in tests).
 template <class S>
 [[nodiscard]] S power(const S& x, double y) {
   using std::pow;

@@ -17,7 +17,7 @@ using namespace statics;
 
 namespace {
 
-// Simulations of constant steps of one drive, from rest.
+// Simulations of constant steps of one drive, from rest, that test whether the switch closes.
 class StepTrial {
  public:
   StepTrial(const Switch& model, std::size_t drive, const StaticPullIn& static_result, Bias bias, double tolerance)
@@ -32,8 +32,8 @@ class StepTrial {
         work_(model.workspace()) {}
 
   [[nodiscard]] bool has_rest() const { return rest_.has_value(); }
-  // Returns true when a step to `value` reaches the contact plane. Calls tell(share) from time to time with the elapsed share
-  // of the simulated time.
+  // Returns true when a step of the drive to `value` reaches the contact plane. Calls tell(share) from time to time with the
+  // elapsed share of the simulated time.
   template <class Tell>
   bool reaches(double value, const std::atomic<bool>* stop, Tell&& tell) {
     std::vector<double> all = bias_;
@@ -49,7 +49,8 @@ class StepTrial {
                            .stop = stop};
     int step = 0;
     options.observer = [&](double time, const double* q, const double* v) {
-      if (++step % 8 != 0) return false;  // a more frequent check costs more than it saves
+      // Check every eighth step: a more frequent check of the energy costs more than it saves.
+      if (++step % 8 != 0) return false;
       tell(time / options.duration);
       return model_.contact_deflection(q) < barrier.deflection && model_.basis().kinetic_energy(v) +
                                                                           model_.potential(q, all, model_.untouched(q), work_) +
@@ -64,9 +65,10 @@ class StepTrial {
     double deflection, potential;
   };
 
-  // Returns the barrier of a step to `value`: the unstable equilibrium between rest and contact plane, or the state held at the
-  // plane if the plane comes first. Damping only reduces the energy, and no shape with this deflection of the contact point has
-  // less energy. So a run that falls below the energy of the barrier before its deflection never reaches the plane.
+  // Returns the energy barrier of a step of the drive to `value`: the unstable equilibrium between rest and contact plane, or
+  // the state held at the plane if the plane comes first. Damping only reduces the energy, and no shape with this deflection of
+  // the contact point has less energy. So a run whose energy falls below the barrier before it gets there never reaches the
+  // plane.
   Pass pass(double value, std::span<const double> all) {
     const double plane = model_.contact_gap(), strength = model_.strength(drive_, value);
     if (static_.kind == StaticKind::fold && branch_(plane) < strength) {
@@ -99,8 +101,8 @@ std::string_view to_string(StaticKind kind) { return kind == StaticKind::fold ? 
 
 StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias) {
   if (!pulls_in(model.device(), drive)) return {.status = Status::no_contact};
-  // The branch of an electrode begins at the equilibrium without the electrode's field, that of the dispersion force at factor
-  // 0.
+  // The branch of equilibria of an electrode begins at the equilibrium without the electrode's field; the branch of the
+  // dispersion force begins at force factor 0.
   std::vector<double> at_begin = standing(model, drive, bias);
   if (model.neutral_voltage(drive) != 0 && !model.open_equilibrium(at_begin)) return {.status = Status::collapsed_at_rest};
   at_begin[drive] = model.value_of_strength(drive, 0);
@@ -115,11 +117,12 @@ StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias) {
     const double s = place(k), strength = branch(s);
     if (!std::isfinite(strength)) return {.status = Status::numerical_failure};
     if (strength <= best) {
-      // The deflection is in units of the gap, because Brent's tolerance is partly absolute. The maximum is flat, so that the
-      // tolerance of the deflection is far tighter than the voltage needs.
+      // The deflection is in units of the gap, because the tolerance of Brent's method is partly absolute. The maximum is flat,
+      // so the tolerance of the deflection is far tighter than the voltage needs.
       const auto [at, value] = boost::math::tools::brent_find_minima([&](double x) { return -branch(x * end); },
                                                                      std::max(1e-6, place(k - 2) / end), s / end, 30);
-      // A drive that pulls away from the contact has no pull-in: the strength falls along its branch from the start.
+      // A drive that pulls away from the contact has no pull-in: its strength falls along its branch of equilibria from the
+      // start.
       if (!(-value > 0)) return {.status = Status::no_contact};
       return {.status = Status::done,
               .voltage = model.value_of_strength(drive, -value),
@@ -167,7 +170,8 @@ ReleasePoint release_point(const Switch& model, std::size_t drive, Bias bias) {
   follow_to_plane(branch, plane);
   if (model.rigid_contact() != nullptr) return released(branch(plane), plane);
   if (model.contact_reach() > 0) {
-    // Adhesion at larger depth may cause a second minimum that is lower than the first.
+    // Number of depths at which a second minimum of the voltage is sought: adhesion at larger depth may cause a minimum lower
+    // than the first.
     constexpr int looks = 256;
     const double step = largest_interference(model.device().contacts.front().model) / looks;
     double best = branch(plane), at = 0;
@@ -175,13 +179,14 @@ ReleasePoint release_point(const Switch& model, std::size_t drive, Bias bias) {
       const double value = branch(plane + k * step);
       if (value < best) best = value, at = k * step;
     }
-    // Depths are in units of the step, because Brent's tolerance is partly absolute.
+    // Depths are in units of the step, because the tolerance of Brent's method is partly absolute.
     const double low = std::max(0.0, at / step - 1);
     const auto [depth, value] =
         boost::math::tools::brent_find_minima([&](double x) { return branch(plane + x * step); }, low, at / step + 1, 30);
     return value < best ? released(value, plane + depth * step) : released(best, plane + at);
   }
-  // The contact is soft at first touch, so the strength may still fall beyond the plane before the contact force makes it rise.
+  // The contact is soft at first touch, so the strength of the drive may still fall beyond the plane before the contact force
+  // makes it rise.
   const auto lowest = first_minimum([&](double depth) { return branch(plane + depth); }, model.penetration_scale() / 16);
   return lowest ? released(lowest->value, plane + lowest->depth) : ReleasePoint{};
 }
@@ -196,13 +201,14 @@ std::optional<StablePath> stable_path(const Switch& model, std::size_t drive, Bi
   EquilibriumBranch branch(model, drive, bias);
   const double begin = model.contact_deflection(rest->data()), end = model.contact_gap();
   StablePath path{.deflections = {begin}, .values = {0.0}};
-  double direction = 0;  // value at the first step: all values must change in its direction
+  double direction = 0;  // value of the drive at the first step; all values must change in the same direction
   for (int k = 1; k <= steps; ++k) {
     const double s = begin + (end - begin) * k / steps, strength = branch(s);
     if (!std::isfinite(strength) || (model.drive_kind(drive) == DriveKind::electrode && !(strength > 0))) return std::nullopt;
     const double value = model.value_of_strength(drive, strength);
     if (k == 1) direction = value;
-    if (!((value - path.values.back()) * direction > 0)) return std::nullopt;  // the branch has a fold
+    // The branch of equilibria turns back here (pull-in).
+    if (!((value - path.values.back()) * direction > 0)) return std::nullopt;
     values[drive] = value;
     if (!(open_tangent_eigenvalue(model, branch.q(), values) > 0)) return std::nullopt;
     path.deflections.push_back(s);
@@ -220,7 +226,7 @@ bool step_closes(const Switch& model, std::size_t drive, double value, Bias bias
 
 namespace {
 
-// Returns true when damping prevents oscillation of the first mode about the open rest position.
+// Returns true when damping prevents oscillation of the first mode about the open position at rest.
 bool is_overdamped(const Switch& model) {
   if (!model.rest()) return false;
   const Eigen::Index n = model.modes();
@@ -239,11 +245,12 @@ DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const Stat
   if (static_result.status != Status::done) return {.status = static_result.status};
   StepTrial steps(model, drive, static_result, bias, tolerance);
   if (!steps.has_rest()) return {.status = Status::collapsed_at_rest};
-  const double halvings = 1 + std::log2(0.5 / precision);  // trials: the first one, and those that halve the bracket
+  // Number of simulated voltage steps: the first one, and those that halve the bracket of the dynamic pull-in voltage.
+  const double halvings = 1 + std::log2(0.5 / precision);
   double trials = halvings, done = 0, shown = 0;
   const auto reaches = [&](double value) {
     return steps.reaches(value, progress.stop, [&](double part) {
-      // A bracket that has to be extended downwards needs more trials than expected.
+      // A bracket of the voltage that has to be extended downwards needs more simulations than expected.
       shown = std::max(shown, std::min(1.0, (done + part) / trials));
       progress.tell("dynamic pull-in voltage", shown);
     });
@@ -251,7 +258,7 @@ DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const Stat
 
   double low = 0.5 * static_result.voltage, high = static_result.voltage;
   if (is_overdamped(model)) {
-    // If damping prevents every overshoot, one trial shows that the static pull-in voltage is the smallest that closes the
+    // If damping prevents every overshoot, one simulation shows that the static pull-in voltage is the smallest that closes the
     // switch.
     trials = 1;
     if (!reaches(high * (1 - precision))) low = high;

@@ -32,73 +32,75 @@ enum class StaticKind { fold, contact };
 
 struct StaticPullIn {
   Status status = Status::not_run;
-  double voltage = std::numeric_limits<double>::quiet_NaN();     ///< static pull-in voltage Vsp [V]; for the dispersion force
-                                                                 ///< its factor minus 1
-  double deflection = std::numeric_limits<double>::quiet_NaN();  ///< deflection of the contact point at this voltage [m]
-  StaticKind kind = StaticKind::fold;  ///< fold of the branch, or contact when the contact plane comes before the fold
+  double voltage = std::numeric_limits<double>::quiet_NaN();     ///< static pull-in voltage [V]; for dispersion its factor - 1
+  double deflection = std::numeric_limits<double>::quiet_NaN();  ///< deflection of the contact point at the pull-in voltage [m]
+  /// Whether the branch of equilibria turns back (fold), or the contact plane comes before the fold.
+  StaticKind kind = StaticKind::fold;
 };
 
-/// Constant values of the other drives: one value per drive, as in Switch::drives(); the value of the drive under study is
-/// ignored. If empty, all other drives are at 0.
+/// Constant values of the other drives: one value per drive, as in Switch::drives(); the value of the drive whose pull-in is
+/// computed is ignored. If empty, all other drives are at 0.
 using Bias = std::span<const double>;
 
-/// Finds the fold of the static branch of `drive`, or the voltage at which the contact point reaches the contact plane if that
-/// comes first. The branch of an electrode begins at the open equilibrium under the bias, with this electrode at V0, where it
-/// does not pull. The status is collapsed_at_rest when this equilibrium, or the one with this electrode at 0 V, does not exist,
-/// and no_contact for an electrode on the far side. The branch of the dispersion force begins at factor 0, so that a negative
-/// result shows by how much the nominal force is too strong. Throws InvalidInput when the bias has another number of drives.
+/// Finds the static pull-in voltage of `drive`: at the fold of its branch of equilibria, or where the contact point reaches the
+/// contact plane if the plane comes first. The branch of an electrode begins at the open equilibrium under the bias, with this
+/// electrode at its neutral voltage V0, where it does not pull. The status is collapsed_at_rest when this equilibrium, or the
+/// one with this electrode at 0 V, does not exist, and no_contact for an electrode on the far side. The branch of the
+/// dispersion force begins at factor 0, so that a negative result shows by how much the nominal force is too strong. Throws
+/// InvalidInput when the bias has another number of drives.
 [[nodiscard]] StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias = {});
 
 /// An equilibrium, stable or not, in which a drive holds the contact point.
 struct HeldEquilibrium {
-  Eigen::VectorXd q;                                          ///< modal coordinates [m kg^(1/2)]
-  double voltage = std::numeric_limits<double>::quiet_NaN();  ///< voltage of the drive [V]
+  Eigen::VectorXd q;                                          ///< modal coordinates of the equilibrium [m kg^(1/2)]
+  double voltage = std::numeric_limits<double>::quiet_NaN();  ///< voltage of the drive that holds the contact point [V]
 };
 /// Returns the equilibrium whose contact point has this deflection [m], on the branch of static_pull_in() and
 /// release_voltage(). Returns none when the branch could not be computed up to this deflection, or the drive would have to
-/// push. Throws as static_pull_in() does.
+/// push. Throws InvalidInput as static_pull_in() does.
 [[nodiscard]] std::optional<HeldEquilibrium> held_by_drive(const Switch& model, std::size_t drive, double deflection,
                                                            Bias bias = {});
 
 /// The stable open equilibria through which one drive moves the contact point from rest to the contact plane, with the other
-/// drives at a bias. The path of an electrode on the near side ends at the fold when the contact plane lies beyond the fold.
+/// drives at a bias. The equilibria of an electrode on the near side end at pull-in when the contact plane is beyond the
+/// pull-in deflection.
 struct StablePath {
-  /// Deflections of the contact point, from rest under the bias to the plane, evenly spaced [m].
+  /// Deflections of the contact point, from rest under the bias to the contact plane, evenly spaced [m].
   std::vector<double> deflections;
-  std::vector<double> values;  ///< values of the drive at these deflections, from 0 V on, monotone [V]
+  std::vector<double> values;  ///< voltage of the drive at each deflection, from 0 V on, monotone [V]
   [[nodiscard]] double reaches() const { return values.back(); }
-  /// Returns the slope of the deflection by the drive's value at the contact plane [m/V].
+  /// Returns the slope of the contact point's deflection by the drive's voltage at the contact plane [m/V].
   [[nodiscard]] double slope() const {
     const std::size_t last = values.size() - 1;
     return (deflections[last] - deflections[last - 1]) / (values[last] - values[last - 1]);
   }
 };
-/// Returns the stable path of a drive; none when the path does not exist or could not be computed. Throws as static_pull_in()
-/// does.
+/// Returns the stable open equilibria of a drive up to the contact plane; none when they do not exist or could not be computed.
+/// Throws InvalidInput as static_pull_in() does.
 [[nodiscard]] std::optional<StablePath> stable_path(const Switch& model, std::size_t drive, Bias bias = {});
 
-/// The least voltage of the closed branch, and the deflection of the contact point there.
+/// The least voltage at which an equilibrium on the contact exists, and the deflection of the contact point there.
 struct ReleasePoint {
-  double voltage = std::numeric_limits<double>::quiet_NaN();     ///< voltage as release_voltage() returns it [V]
-  double deflection = std::numeric_limits<double>::quiet_NaN();  ///< [m]
+  double voltage = std::numeric_limits<double>::quiet_NaN();     ///< release voltage as release_voltage() returns it [V]
+  double deflection = std::numeric_limits<double>::quiet_NaN();  ///< deflection of the contact point at release [m]
 };
 [[nodiscard]] ReleasePoint release_point(const Switch& model, std::size_t drive, Bias bias = {});
-/// Returns the release voltage [V]: the smallest voltage with a closed equilibrium, counted from V0, at which the electrode
-/// does not pull. The voltage is 0 when the dispersion force, or the bias, keeps the switch closed by itself, and negative when
-/// a charge on the dielectric keeps the switch closed at 0 V. The voltage is NaN without a contact law, when the contact is too
-/// soft to keep the beam off the electrode at any voltage, and when the branch could not be computed. Throws as
-/// static_pull_in() does.
+/// Returns the release voltage [V]: the smallest voltage with a closed equilibrium, counted from the neutral voltage V0, at
+/// which the electrode does not pull. The voltage is 0 when the dispersion force, or the bias, keeps the switch closed by
+/// itself, and negative when a charge on the dielectric keeps the switch closed at 0 V. The voltage is NaN without a contact
+/// law, when the contact is too soft to keep the beam off the electrode at any voltage, and when the branch could not be
+/// computed. Throws InvalidInput as static_pull_in() does.
 [[nodiscard]] double release_voltage(const Switch& model, std::size_t drive, Bias bias = {});
 
 /// An equilibrium of the beam on the contact.
 struct ClosedEquilibrium {
-  Eigen::VectorXd q;         ///< modal coordinates [m kg^(1/2)]
-  double contact_force = 0;  ///< [N]
-  double potential = 0;      ///< Switch::potential of the equilibrium [J]
+  Eigen::VectorXd q;         ///< modal coordinates of the equilibrium [m kg^(1/2)]
+  double contact_force = 0;  ///< force of the contact [N]
+  double potential = 0;      ///< energy of the equilibrium, Switch::potential() [J]
   /// Smallest eigenvalue of the tangent stiffness of the static forces, over all motions that the contact allows [rad^2/s^2];
   /// infinite when the contact allows no motion. The equilibrium is unstable when the eigenvalue is not positive.
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
-  /// Returns the coordinates for ClosingOptions::begins_closed; valid during the lifetime of this object.
+  /// Returns the modal coordinates for ClosingOptions::begins_closed; valid during the lifetime of this object.
   [[nodiscard]] std::span<const double> coordinates() const { return {q.data(), static_cast<std::size_t>(q.size())}; }
 };
 /// Returns the closed equilibrium under constant voltages nearest to the contact plane, if one exists with a contact force
@@ -117,10 +119,10 @@ struct ClosedEquilibrium {
 /// Returns true when the closed equilibrium exists and is stable, as far as the modes of the switch show this.
 [[nodiscard]] bool keeps_closed(const Switch& model, const std::optional<ClosedEquilibrium>& closed);
 
-/// Returns the voltage of `drive`, above V0, from which the closed switch collapses onto the electrode [V], with the other
-/// drives at `volts`: above this voltage the closed equilibrium is unstable or does not exist. The search begins at the value
-/// of `drive` in `volts`, or at the release voltage if that is larger, and covers a tenth to ten times this value, counted from
-/// V0. The result is NaN if the collapse is not in this range. The relative precision is `precision`.
+/// Returns the voltage of `drive`, above its neutral voltage V0, from which the closed switch collapses onto the electrode [V],
+/// with the other drives at `volts`: above this voltage the closed equilibrium is unstable or does not exist. The search begins
+/// at the value of `drive` in `volts`, or at the release voltage if that is larger, and covers a tenth to ten times this value,
+/// counted from V0. The result is NaN if the collapse is not in this range. The relative precision is `precision`.
 [[nodiscard]] double pull_through_voltage(const Switch& model, std::size_t drive, std::span<const double> volts,
                                           double precision = 1e-6);
 
@@ -137,20 +139,23 @@ struct ClosedEquilibrium {
 /// Default relative width of the bracket of a dynamic pull-in voltage; the result is the bracket's upper end.
 inline constexpr double dynamic_pull_in_precision = 1e-7;
 
-/// Dynamic pull-in voltage Vdp [V]: the smallest constant step from rest under the bias whose contact point reaches the contact
-/// plane within 100 periods of the first mode, whether or not the switch stays closed, to `precision`. Vdp is at most the
-/// static pull-in voltage, at which the switch closes whatever its damping. Vdp is NaN with a status when static pull-in under
-/// the same bias fails, or `progress` asks to stop. Throws as static_pull_in() does.
+/// Dynamic pull-in voltage Vdp [V]: the smallest constant voltage step, from rest under the bias of the other drives, under
+/// which the contact point reaches the contact plane within 100 periods of the first mode, whether or not the switch stays
+/// closed, to `precision`. Vdp is at most the static pull-in voltage, at which the switch closes whatever its damping. Vdp is
+/// NaN with a status when static pull-in under the same bias fails, or `progress` asks to stop. Throws InvalidInput as
+/// static_pull_in() does.
 struct DynamicPullIn {
   Status status = Status::not_run;
-  double voltage = std::numeric_limits<double>::quiet_NaN();  ///< [V]; for the dispersion force its factor minus 1
+  /// Dynamic pull-in voltage [V]; for the dispersion force its factor minus 1.
+  double voltage = std::numeric_limits<double>::quiet_NaN();
 };
 [[nodiscard]] DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const StaticPullIn& static_result,
                                             Bias bias = {}, const Progress& progress = {}, double tolerance = 1e-8,
                                             double precision = dynamic_pull_in_precision);
 
 /// Returns true when a constant step of `drive` to `value` from rest under the bias reaches the contact plane: `value` is then
-/// at least the dynamic pull-in voltage. Returns true when the bias leaves no open state. Throws as static_pull_in() does.
+/// at least the dynamic pull-in voltage. Returns true when the bias leaves no open state. Throws InvalidInput as
+/// static_pull_in() does.
 [[nodiscard]] bool step_closes(const Switch& model, std::size_t drive, double value, Bias bias = {},
                                const Progress& progress = {}, double tolerance = 1e-8);
 

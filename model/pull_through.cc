@@ -13,11 +13,12 @@ using namespace statics;
 
 namespace {
 
-// Step and range of the search for pull_through_voltage(), as factors. The functions of this file search for the acting
-// voltage, V - V0 for an electrode whose dielectric is charged.
+// Step and range of the search for the collapse voltage, pull_through_voltage(), as factors. The functions of this file search
+// for the acting voltage, V - V0 for an electrode whose dielectric is charged.
 constexpr double pull_through_factor = 1.05, pull_through_range = 10;
 
-// Searches for closed equilibria upwards or downwards from `start`; each voltage is examined without regard to others.
+// Searches for closed equilibria at voltages upwards or downwards from `start`; each voltage is examined independently of the
+// others.
 double pull_through_by_walk(const Switch& model, std::size_t drive, std::vector<double> levels, double start, double precision) {
   const auto holds = [&](double v) {
     levels[drive] = model.neutral_voltage(drive) + v;
@@ -73,7 +74,8 @@ double pull_through_of_narrow_window(const Switch& model, std::size_t drive, std
   return high;
 }
 
-// Searches upwards by Newton's method from `near`, an equilibrium near that at `start`; returns none without convergence.
+// Searches the collapse voltage upwards by Newton's method from `near`, an equilibrium near that at `start`; returns none
+// without convergence.
 std::optional<double> pull_through_from(const Switch& model, std::size_t drive, std::vector<double> levels, double start,
                                         const ClosedEquilibrium& near, double precision) {
   std::optional<ClosedEquilibrium> last = near;
@@ -95,7 +97,7 @@ std::optional<double> pull_through_from(const Switch& model, std::size_t drive, 
     const double middle = low + (high - low) / 2;
     (follows(middle) ? low : high) = middle;
   }
-  // Newton's method may have failed although a closed equilibrium exists.
+  // Check the voltage again: Newton's method may have failed although a closed equilibrium exists.
   levels[drive] = model.neutral_voltage(drive) + high;
   return keeps_closed(model, closed_equilibrium(model, levels)) ? std::nullopt : std::optional(high);
 }
@@ -112,7 +114,7 @@ double acting_pull_through(const Switch& model, std::size_t drive, std::span<con
   const auto found =
       keeps_closed(model, closed) ? pull_through_from(model, drive, levels, start, *closed, precision) : std::nullopt;
   if (found) return *found;
-  const bool is_above = start > given;  // the given level may still keep the switch closed
+  const bool is_above = start > given;  // the given voltage may still keep the switch closed
   if (is_above && !keeps_closed(model, closed)) {
     const double narrow = pull_through_of_narrow_window(model, drive, levels, release, precision);
     if (std::isfinite(narrow)) return narrow;
@@ -122,7 +124,8 @@ double acting_pull_through(const Switch& model, std::size_t drive, std::span<con
   return pull_through_of_narrow_window(model, drive, std::move(levels), release, precision);
 }
 
-// Returns true when the beam lands on a wall of this drive's electrode: the beam then does not move below the face.
+// Returns true when the beam closes on a rigid dielectric face (wall) of this drive's electrode: the beam then does not move
+// below the face.
 bool lands_on_wall(const Switch& model, std::size_t drive) {
   const Device& device = model.device();
   if (drive >= device.electrodes.size() || !device.electrodes[drive].dielectric || device.face_contact() != 0) return false;
@@ -141,7 +144,8 @@ double pull_through_voltage_near(const Switch& model, std::size_t drive, std::sp
   if (lands_on_wall(model, drive)) return no_equilibrium;
   const double neutral = model.neutral_voltage(drive);
   const double given = std::abs(volts[drive] - neutral);
-  if (given == 0) return pull_through_voltage(model, drive, volts, precision);  // a search by factors would not leave 0
+  // A search by factors of the given voltage would not leave 0.
+  if (given == 0) return pull_through_voltage(model, drive, volts, precision);
   const auto found = pull_through_from(model, drive, {volts.begin(), volts.end()}, given, near, precision);
   return found ? neutral + *found : pull_through_voltage(model, drive, volts, precision);
 }

@@ -11,8 +11,8 @@
 namespace softland {
 namespace {
 
-// Integrals over [-1, 1] of products of an element's motions, and of their slopes. The motions are 1, 1 + xi, and the shape
-// functions sqrt(m + 1/2) times the integrals of P_m.
+// Integrals over [-1, 1] of products of a beam element's motions, and of the products of their slopes. The motions are 1, 1 +
+// xi, and the shape functions, sqrt(m + 1/2) times the integrals of the Legendre polynomials P_m.
 struct ElementProducts {
   static constexpr int size = 2 + element_functions;
   using Row = Eigen::Matrix<double, 1, size>;
@@ -29,7 +29,8 @@ struct ElementProducts {
       ElementProducts p;
       p.values.setZero();
       p.slopes.setZero();
-      const GaussRule rule = gauss_rule(element_functions + 2);  // exact for squares of polynomials of degree 9
+      // Gauss rule that is exact for squares of polynomials of degree 9.
+      const GaussRule rule = gauss_rule(element_functions + 2);
       for (std::size_t g = 0; g < rule.points.size(); ++g) {
         const Row value = row(rule.points[g], 0), slope = row(rule.points[g], 1);
         p.values += rule.weights[g] * value.transpose() * value;
@@ -41,17 +42,19 @@ struct ElementProducts {
   }
 };
 
-// Shape functions with the right end at rest are even or odd. The integral of an even times an odd function is 0.
+// Returns whether the product of two motions has an integral: shape functions with the right end at rest are even or odd, and
+// the integral of an even times an odd function is 0.
 constexpr bool act_on_each_other(int i, int j) { return i < 4 || j < 4 || (i - j) % 2 == 0; }
 
-// Values at the right end: 1, 2 and the factors of the first two shape functions in its deflection, and in half its rotation.
+// Values at the right end of an element: 1, 2 and the factors of the first two shape functions in its deflection, and in half
+// its rotation.
 const double first_at_end = std::sqrt(2.0), second_at_end = -std::sqrt(2.0 / 3), first_turn = std::sqrt(2.0);
 
 }  // namespace
 
 ElementRow element_integrals(double xi, int derivative) {
   constexpr int most = element_functions + 1;
-  std::array<double, most + 1> p;  // Legendre polynomials
+  std::array<double, most + 1> p;  // values of the Legendre polynomials at xi
   p[0] = 1;
   p[1] = xi;
   for (int k = 2; k <= most; ++k) {
@@ -154,7 +157,8 @@ void Receptance::load(double x) {
   }
 }
 
-// Adds the stiffness [deflection, both, slope] and the force of the beam beyond the right end to an element's motions.
+// Adds the stiffness [deflection, both, slope] and the force of the beam beyond an element's right end to the element's
+// motions.
 void Receptance::add_beyond(Stage& stage, const ElementKind& kind, const Lane* stiffness, const Lane* force) const {
   const double deflection[kept] = {1, 2, kind.reach * first_at_end, kind.reach * second_at_end};
   const double slope[kept] = {0, 1 / kind.half, kind.reach * first_turn / kind.half, 0};
@@ -166,13 +170,13 @@ void Receptance::add_beyond(Stage& stage, const ElementKind& kind, const Lane* s
   }
 }
 
-// Holds the right end at rest: the factors of the first two shape functions then follow from the motion of the left end, since
-// these functions alone move the right end.
+// Holds the right end of the last element at rest: the factors of the first two shape functions then follow from the motion of
+// the left end, since these functions alone move the right end.
 void Receptance::fix_end(Stage& stage, const ElementKind& kind) const {
   const double first = -1 / (kind.reach * first_turn), second = -1 / (kind.reach * second_at_end);
   auto& f = stage.form;
   auto& p = stage.load;
-  // s_0 = first * rotation, s_1 = second * (deflection + rotation)
+  // The factors of the first two shape functions are s_0 = first * rotation and s_1 = second * (deflection + rotation).
   const Lane f00 = f[0][0] + 2 * second * f[3][0] + second * second * f[3][3];
   const Lane f10 = f[1][0] + first * f[2][0] + second * (f[3][0] + f[3][1] + first * f[3][2]) + second * second * f[3][3];
   const Lane f11 = f[1][1] + 2 * first * f[2][1] + 2 * second * f[3][1] + first * first * f[2][2] + 2 * first * second * f[3][2] +
@@ -196,7 +200,8 @@ void Receptance::sweep_to_clamp(Answer& answer) {
       fix_end(stage, kind);
     } else {
       add_beyond(stage, kind, stiffness, force);
-      // Eliminate two shape functions at once: one of them alone may have a zero pivot although no pole is near.
+      // Eliminate two shape functions at once: one of them alone may have a zero pivot although no pole of the receptance is
+      // near.
       auto& f = stage.form;
       const Lane determinant = f[2][2] * f[3][3] - f[3][2].square(), over = determinant.inverse();
       stage.inverse[0] = f[3][3] * over;

@@ -2,12 +2,13 @@
 //
 //   a(lambda) = sum over modes of phi_i(x)^2 / (lambda_i - lambda),   lambda = omega^2
 //
-// Its poles are the natural frequencies, its zeros those of the beam that is also held at x. Units and functions are those of
-// NormalisedModes (model/beam.h). The quadratic form of elastic less kinetic energy is eliminated element by element from the
-// far end to the clamp at x = 0, as in a linear-quadratic control problem. The part beyond a node acts as a stiffness of two by
-// two at the node, so that short elements cost no digits. The time is proportional to the number of elements. There are as many
-// negative pivots as natural frequencies below lambda (Sylvester's law of inertia; Wittrick & Williams, Q. J. Mech. Appl. Math.
-// 24 (1971) 263). When the motion is nearly a mode, a over its derivative is the step to the Rayleigh quotient.
+// The poles of the receptance are the natural frequencies, its zeros those of the beam that is also held at x. Units and
+// functions are those of NormalisedModes (model/beam.h). The quadratic form of elastic less kinetic energy is eliminated
+// element by element from the far end to the clamp at x = 0, as in a linear-quadratic control problem. The part beyond a node
+// acts as a stiffness of two by two at the node, so that short elements cost no digits. The time is proportional to the number
+// of elements. There are as many negative pivots as natural frequencies below lambda (Sylvester's law of inertia; Wittrick &
+// Williams, Q. J. Mech. Appl. Math. 24 (1971) 263). When the motion is nearly a mode, a over its derivative is the step to the
+// Rayleigh quotient.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,14 +29,14 @@ using ElementRow = Eigen::Matrix<double, 1, element_functions>;
 [[nodiscard]] ElementRow element_integrals(double xi, int derivative);
 
 struct BeamElement {
-  double begin = 0, end = 0;  // begin and end in units of the beam's length
+  double begin = 0, end = 0;  // begin and end of the element, in units of the beam's length
   double rigidity = 0, mass = 0;
-  double taper = 0;  // relative growth of rigidity and mass from the middle to the end, linear in between
+  double taper = 0;  // growth of rigidity and mass from the element's middle to its end, relative, linear in between
 
   [[nodiscard]] double half() const { return (end - begin) / 2; }
 };
 
-/// Returns integrals over the beam of the products of slopes of motions. A motion is a column of factors of the shape
+/// Returns integrals over the beam of the products of slopes of its motions. A motion is a column of factors of the shape
 /// functions; `first_slopes` are the slopes of the motions at x = 0, or 0 if absent.
 [[nodiscard]] Eigen::MatrixXd slope_products(const std::vector<BeamElement>& elements, const Eigen::MatrixXd& motions,
                                              const std::optional<Eigen::RowVectorXd>& first_slopes = {});
@@ -43,34 +44,38 @@ struct BeamElement {
 /// Computes the receptance for up to four squared frequencies lambda at once, for elements without taper.
 class Receptance {
  public:
-  /// The axial force is positive in tension.
+  /// Takes the elements of the beam, the axial force, positive in tension, and whether the far end is clamped.
   Receptance(const std::vector<BeamElement>& elements, double axial_force, bool far_clamp);
 
   struct Answer {
-    Lane deflection;   ///< receptance
-    Lane inertia;      ///< derivative of the receptance by lambda, the integral of mu y^2
-    Lane below;        ///< number of natural frequencies below the square root of lambda
+    Lane deflection;   ///< receptance: deflection by a unit force
+    Lane inertia;      ///< derivative of the receptance by the squared frequency, the integral of mass times squared deflection
+    Lane below;        ///< number of natural frequencies of the beam below the given frequency
     Lane least_pivot;  ///< smallest pivot except the last, which vanishes at a pole: small pivots magnify rounding
   };
-  /// Returns the receptance of the beam at the place x in (0, 1].
+  /// Returns the receptance of the beam at the position x in (0, 1], for one squared frequency per SIMD lane.
   [[nodiscard]] Answer at(const Lane& lambda, double x);
-  /// Returns the motion of the last result in a lane: factors of the shape functions, which are orthonormal in bending energy.
+  /// Returns the motion of the beam for the squared frequency in a SIMD lane of the last call of at(): factors of the shape
+  /// functions, which are orthonormal in bending energy.
   [[nodiscard]] Eigen::VectorXd motion(Eigen::Index lane) const;
 
  private:
-  static constexpr int size = 2 + element_functions;  // motions of an element: two of its left end, then its shape functions
-  static constexpr int kept = 4;                      // number of motions of an element that move its right end
-  // Elements with equal size and section share their quadratic form, a lower triangle. Its rows beyond `kept` are eliminated.
+  // Number of motions of an element: two of its left end, then its shape functions.
+  static constexpr int size = 2 + element_functions;
+  static constexpr int kept = 4;  // number of motions of an element that move its right end
+  // Elements with equal size and section share their quadratic form of elastic less kinetic energy, a lower triangle. The rows
+  // of the form beyond `kept` are eliminated.
   struct ElementKind {
     double half = 0, rigidity = 0, mass = 0;
-    double reach = 0;  // deflection of a function of unit energy, over that of the dimensionless function
+    double reach = 0;  // deflection of a shape function of unit energy, over that of the dimensionless function
     Lane form[size][size];
-    Lane inverse[size];          // inverse pivots
-    Lane negative, least_pivot;  // number of negative pivots, smallest pivot
+    Lane inverse[size];          // inverse pivots of the element's elimination
+    Lane negative, least_pivot;  // number of negative pivots, and smallest pivot of the elimination
 
     [[nodiscard]] bool holds(const BeamElement& e) const;
   };
-  // The first `kept` rows of the quadratic form and load of an element together with all elements beyond it.
+  // The first `kept` rows of the quadratic form (elastic less kinetic energy) and load of an element together with all elements
+  // beyond it.
   struct Stage {
     std::size_t kind = 0;
     Lane form[kept][kept];
@@ -89,9 +94,9 @@ class Receptance {
   bool far_clamp_;
   std::vector<ElementKind> kinds_;
   std::vector<Stage> stages_;
-  std::vector<double> nodes_;  // ends of the elements
-  std::size_t loaded_ = 0;     // index of the element at x
-  double probe_[size] = {};    // deflections at x of the motions of the element at x
+  std::vector<double> nodes_;  // ends of the elements, in units of the beam's length
+  std::size_t loaded_ = 0;     // index of the element that contains the loaded position x
+  double probe_[size] = {};    // deflections at x of the motions of the loaded element
   Lane load_[size];            // load of a unit force at x, eliminated like the quadratic form
 };
 

@@ -1,4 +1,5 @@
-// The recorded motion of all modes in a closing: smooth arcs, and the events between them.
+// The recorded motion of all modes in a closing: smooth arcs (integration steps), and the changes of the contact law between
+// them.
 #pragma once
 
 #include <cstddef>
@@ -8,27 +9,27 @@
 
 namespace softland {
 
-/// Records the motion of a closing, and passes all calls on to another observer.
+/// Records the motion of a closing, and passes all calls to another observer.
 class RecordedMotion final : public ClosingObserver {
  public:
   struct Arc {
-    double begin = 0, end = 0;  ///< [s]
+    double begin = 0, end = 0;  ///< begin and end of the arc (integration step) [s]
     ContactState contact;
   };
-  /// All modes at one time: pointers into the recorded numbers.
+  /// Modal coordinates, velocities and accelerations at one time: pointers into the recorded numbers.
   struct Motion {
-    double time = 0;  ///< [s]
+    double time = 0;  ///< time of this state of the motion [s]
     const double *q, *v, *accelerations;
   };
-  /// An event before the smooth arc with the number `arc`.
+  /// A change of the contact law's branch before the smooth arc with the number `arc`.
   struct PhaseEvent {
     std::size_t arc = 0;
-    double time = 0;  ///< [s]
+    double time = 0;  ///< time of the change of the contact law [s]
     PhaseChange change;
   };
 
   RecordedMotion() = default;
-  /// Keeps a reference to the observer to which all calls are passed on.
+  /// Keeps a reference to the observer to which all calls are passed.
   explicit RecordedMotion(ClosingObserver& next) : next_(&next) {}
 
   void knot(const TrajectoryPoint& point) override {
@@ -41,7 +42,7 @@ class RecordedMotion final : public ClosingObserver {
   void step(const Knot& begin, const Knot& end, const ContactState& contact) override {
     arcs_.push_back({begin.time, end.time, contact});
     for (const Knot* knot : {&begin, &end}) {
-      modes_ = knot->state.size() - knot->rates.size();  // state: q, v, film; rates: accelerations, film rates
+      modes_ = knot->state.size() - knot->rates.size();  // size of q: state has q, v, film; rates has accelerations, film rates
       numbers_.insert(numbers_.end(), knot->state.data(), knot->state.data() + 2 * modes_);
       numbers_.insert(numbers_.end(), knot->rates.data(), knot->rates.data() + modes_);
     }
@@ -61,7 +62,7 @@ class RecordedMotion final : public ClosingObserver {
 
   ClosingObserver* next_ = nullptr;
   std::vector<Arc> arcs_;
-  std::vector<double> numbers_;  // q, v and accelerations at the start of an arc, then at its end
+  std::vector<double> numbers_;  // modal coordinates, velocities, accelerations at the start of each arc, then at its end
   std::size_t modes_ = 0;
   std::vector<PhaseEvent> passages_;
 };

@@ -1,4 +1,4 @@
-// Normalised modes at the places that a switch uses: at the points of its quadrature, at its contact and at the ends of its
+// Normalised mode shapes at the positions that a switch uses: at its quadrature points, at its contact and at the ends of its
 // piezo layer. Switches with the same lengths share one object, whatever their stiffness and mass.
 #pragma once
 
@@ -22,11 +22,11 @@ namespace softland {
 
 struct SampledModes {
   struct PanelPlaces {
-    std::vector<double> corners;                         // ends of the panels [m]
-    double contact = 0, piezo_begin = 0, piezo_end = 0;  // places of the contact and of both ends of the piezo layer [m]
-    std::vector<double> further_contacts;                // places of the contacts after the first one [m]
+    std::vector<double> corners;                         // ends of the quadrature panels [m]
+    double contact = 0, piezo_begin = 0, piezo_end = 0;  // positions of the contact and of both ends of the piezo layer [m]
+    std::vector<double> further_contacts;                // positions of the contacts after the first [m]
     double points_per_length = 0;
-    int fewest_points = 0;  // least number of points of a panel
+    int fewest_points = 0;  // least number of quadrature points of a panel
 
     [[nodiscard]] static PanelPlaces of(const Device& d, double points_per_length, int fewest_points) {
       std::set<double> corners{0, d.structure.length};
@@ -56,14 +56,14 @@ struct SampledModes {
     [[nodiscard]] bool operator==(const PanelPlaces&) const = default;
   };
   PanelPlaces places;
-  std::vector<GaussRule> rules;                  // Gauss rules of the panels
-  std::shared_ptr<const NormalisedModes> modes;  // null for other structures than beams
-  TabulatedModes::Shapes table = {};             // empty for other structures than tables
-  Eigen::ArrayXd positions, weights;             // [m]
-  Eigen::MatrixXd shapes;                        // mode shapes, points x modes
+  std::vector<GaussRule> rules;                  // Gauss rules of the quadrature panels
+  std::shared_ptr<const NormalisedModes> modes;  // normalised modes of a beam; null for other structures
+  TabulatedModes::Shapes table = {};             // mode shapes of a table of modes; empty for other structures
+  Eigen::ArrayXd positions, weights;             // positions and weights of the quadrature points [m]
+  Eigen::MatrixXd shapes;                        // mode shapes at the quadrature points, points x modes
   Eigen::VectorXd contact_shape, contact_slope, piezo_begin_slope, piezo_end_slope;
   std::vector<Eigen::VectorXd> further_contact_shapes;
-  double pinned_inverse_square = 0;  // omega^-2 of the normalised beam that is also held at its contact
+  double pinned_inverse_square = 0;  // inverse squared first frequency of the normalised beam that is also held at its contact
 
   template <class Modes>
   SampledModes(const Modes& normalised, double length, PanelPlaces at, const SampledModes* near) : places(std::move(at)) {
@@ -71,7 +71,7 @@ struct SampledModes {
     std::vector<double> x, w;
     for (auto corner = places.corners.begin(); std::next(corner) != places.corners.end(); ++corner) {
       const double begin = *corner, panel = *std::next(corner) - begin;
-      if (panel < 1e-9 * end) continue;  // the two ends are one place up to rounding
+      if (panel < 1e-9 * end) continue;  // the two ends of the panel are one position up to rounding
       const int count = std::max(places.fewest_points, static_cast<int>(std::ceil(panel / end * places.points_per_length)));
       const GaussRule* known = near && rules.size() < near->rules.size() ? &near->rules[rules.size()] : nullptr;
       rules.push_back(known && static_cast<int>(known->points.size()) == count ? *known : gauss_rule(count));

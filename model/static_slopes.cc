@@ -15,10 +15,10 @@ using Eigen::VectorXd;
 
 constexpr double no_slope = std::numeric_limits<double>::quiet_NaN();
 
-// Derivatives of static accelerations at an equilibrium.
+// Derivatives of the static modal accelerations at an equilibrium.
 struct Tangent {
-  MatrixXd by_q, by_strength;  // [rad^2/s^2]; by_strength: forces of the drives at unit strength
-  VectorXd scale;              // 1 / omega^2
+  MatrixXd by_q, by_strength;  // derivatives by modal coordinates [rad^2/s^2]; modal forces of the drives at unit strength
+  VectorXd scale;              // 1 / omega^2 of each mode, omega its angular frequency
 
   Tangent(const Switch& model, const VectorXd& q, std::span<const double> volts, const ContactState& contact)
       : by_q(model.modes(), model.modes()),
@@ -34,7 +34,7 @@ struct Tangent {
     model.drive_forces(work, by_strength);
   }
 
-  // Returns the solution x of F_q x = right, with each row in units of its mode's own stiffness.
+  // Returns the solution x of F_q x = right, F_q being `by_q`, with each row in units of its mode's stiffness.
   [[nodiscard]] VectorXd solved(const VectorXd& right) const {
     return solve_linear(scale.asDiagonal() * by_q, scale.cwiseProduct(right));
   }
@@ -48,7 +48,8 @@ VectorXd change_of_accelerations(SwitchSlopes& by, std::size_t j, const VectorXd
   return change;
 }
 
-// Returns the slopes of the voltage at which a drive holds the contact point at a given deflection, at a constant interference.
+// Returns the derivatives, by device parameters, of the voltage at which a drive holds the contact point at a given deflection,
+// at a constant interference.
 std::vector<double> held_slopes(const Switch& model, SwitchSlopes& by, std::size_t drive, double deflection, Bias bias) {
   std::vector<double> slopes(by.moving().size(), no_slope);
   const std::optional<HeldEquilibrium> held = held_by_drive(model, drive, deflection, bias);
@@ -77,7 +78,7 @@ std::vector<double> held_slopes(const Switch& model, SwitchSlopes& by, std::size
   return slopes;
 }
 
-// The open equilibrium of a switch.
+// The open equilibrium of a switch and its derivatives.
 struct Rest {
   VectorXd q;
   ContactState contact;
@@ -101,7 +102,7 @@ MatrixXd symmetric_tangent(const Switch& model, const VectorXd& q, std::span<con
   return -(by_q + by_q.transpose()) / 2;
 }
 
-// Returns true when no drive acts: all values are 0 and no dielectric is charged.
+// Returns true when no drive acts on the switch: all values are 0 and no dielectric is charged.
 bool are_zero(const Switch& model, std::span<const double> values) {
   return !model.device().is_charged() && std::all_of(values.begin(), values.end(), [](double v) { return v == 0; });
 }
@@ -115,9 +116,9 @@ VectorXd motion_by_voltage(const Switch& model, const Tangent& tangent, std::siz
   return -tangent.solved(by_value * force);
 }
 
-// Returns a step along a direction of q that is small against the contact gap but far above rounding.
+// Returns a step along a direction of the modal coordinates that is small against the contact gap but far above rounding.
 double small_step(const Switch& model, const VectorXd& direction) {
-  constexpr double share = 1e-5;  // share of the gap
+  constexpr double share = 1e-5;  // size of the step, as a share of the contact gap
   const double moved = std::abs(model.contact_deflection(direction.data()));
   return moved > 0 ? share * model.contact_gap() / moved : 1;
 }
@@ -202,7 +203,8 @@ std::vector<double> open_capacitance_slopes(const Switch& model, SwitchSlopes& b
   const std::optional<Rest> rest = rest_under(model, values);
   if (!rest) return slopes;
   const Tangent tangent(model, rest->q, values, rest->contact);
-  // The force of an electrode is its strength times by_strength, and minus the gradient of -C (V - V0)^2 / 2: dC/dq follows.
+  // The force of an electrode is its strength times by_strength, and minus the gradient of -C (V - V0)^2 / 2, C the
+  // capacitance: the derivative of C follows.
   const VectorXd by_q = 2 * tangent.by_strength.col(static_cast<Eigen::Index>(drive));
   for (std::size_t j = 0; j < slopes.size(); ++j) {
     const VectorXd motion = -tangent.solved(change_of_accelerations(by, j, rest->q, values, rest->contact, tangent.by_q));

@@ -1,4 +1,4 @@
-// The outcome of a numerical computation. Numerical trouble is a status, never an exception.
+// The outcome of a simulation or other numerical computation. A numerical failure is a status, never an exception.
 #pragma once
 
 #include <string_view>
@@ -8,9 +8,9 @@ namespace softland {
 enum class Status {
   not_run,
   done,
-  open,                      ///< the contact stayed open, as the drives commanded
-  no_contact,                ///< the contact point never reached the contact gap in the window
-  not_settled,               ///< at the end of the window a rebound had not ended, or contact had only just begun
+  open,                      ///< the switch stayed open (no contact), as the drives commanded
+  no_contact,                ///< the contact point never reached the contact plane in the simulated time
+  not_settled,               ///< at the end of the simulated time a rebound had not ended, or contact had only just begun
   collapsed_at_rest,         ///< no stable static equilibrium exists from which a run can start
   collapsed_onto_electrode,  ///< the beam reached the metal of an electrode, or a wall on the far side
   numerical_failure,

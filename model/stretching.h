@@ -5,10 +5,10 @@
 //
 // E is Young's modulus [Pa], A the cross-section [m^2], L the length [m], y the deflection [m], G [1/(kg m)]. The beam's middle
 // line is longer than its chord by int y'^2/2 dx; axial motion is quasi-static, so that the tension EA/(2 L) int y'^2 dx is the
-// same all along. It is a hardening cubic stiffness: the force that holds the middle one thickness down is 1.7 times that of
-// bending alone. E is Young's modulus as given, also with plate_strain: in tension the sides of a beam are free to contract.
-// Valid for slopes well below 1 and rigid anchors. Source: Woinowsky-Krieger 1950, J. Appl. Mech. 17, 35-36; Nayfeh & Mook,
-// Nonlinear Oscillations, 1979, sec. 7.1.
+// same all along. Stretching is a hardening cubic stiffness: the force that holds the middle one thickness down is 1.7 times
+// that of bending alone. E is Young's modulus as given, also with plate_strain: in tension the sides of a beam are free to
+// contract. Valid for slopes well below 1 and rigid anchors. Source: Woinowsky-Krieger 1950, J. Appl. Mech. 17, 35-36; Nayfeh &
+// Mook, Nonlinear Oscillations, 1979, sec. 7.1.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,20 +18,21 @@
 
 namespace softland {
 
-/// `P` is the scalar type of the parameters; the scalar type S of the state must be constructible from P.
+/// The modal forces of mid-plane stretching. `P` is the scalar type of the parameters; the scalar type S of the state must be
+/// constructible from P.
 template <class P>
 struct MidPlaneStretchingOf {
   std::size_t modes = 0;
-  std::vector<P> slopes = {};  ///< integrals G_ij of phi_i' phi_j' [1/(kg m)], column by column
-  P stiffness = P(0);          ///< EA/(2 L) [N/m]
+  std::vector<P> slopes = {};  ///< integrals of the products of the modes' slopes [1/(kg m)], column by column
+  P stiffness = P(0);          ///< half the axial stiffness of the beam, EA/(2 L) [N/m]
 
-  /// Adds the modal forces Q of stretching to `result`.
+  /// Adds the modal forces of stretching to `result`.
   template <class S>
   void add_force(const S* q, S* result) const {
     const S strain = strain_of(q);
     for (std::size_t i = 0; i < modes; ++i) result[i] = result[i] - S(stiffness) * strain * pull(i, q);
   }
-  /// Adds the derivative dQ/dq of the modal forces to `by_q`.
+  /// Adds the derivatives of the modal forces of stretching by the modal coordinates to `by_q`.
   void add_derivative(const double* q, Eigen::Ref<Eigen::MatrixXd> by_q) const requires std::same_as<P, double> {
     const auto n = static_cast<Eigen::Index>(modes);
     const Eigen::Map<const Eigen::MatrixXd> g(slopes.data(), n, n);
@@ -39,7 +40,7 @@ struct MidPlaneStretchingOf {
     const Eigen::VectorXd pulls = g * at;
     by_q -= stiffness * (at.dot(pulls) * g + 2 * pulls * pulls.transpose());
   }
-  /// Adds the second derivatives of the sum of multiplier_i Q_i to `by_q_q`.
+  /// Adds the second derivatives, by modal coordinates, of the sum of multiplier_i times modal force i to `by_q_q`.
   void add_curvature(const double* q, const double* multipliers,
                      Eigen::Ref<Eigen::MatrixXd> by_q_q) const requires std::same_as<P, double> {
     const auto n = static_cast<Eigen::Index>(modes);
@@ -56,7 +57,7 @@ struct MidPlaneStretchingOf {
  private:
   using Coordinates = Eigen::Map<const Eigen::VectorXd>;
 
-  // Returns (G q)_i; for doubles the compiler handles several elements at once.
+  // Returns element i of the matrix of slope products times q; for doubles the compiler handles several elements at once.
   template <class S>
   [[nodiscard]] S pull(std::size_t i, const S* q) const {
     const P* column = slopes.data() + i * modes;
@@ -69,7 +70,7 @@ struct MidPlaneStretchingOf {
       return sum;
     }
   }
-  // Returns q'G q, the integral of the squared slope y'^2.
+  // Returns the integral over the beam of its squared slope [m].
   template <class S>
   [[nodiscard]] S strain_of(const S* q) const {
     S sum = S(0);

@@ -5,8 +5,8 @@
 //
 // E_s is the surface modulus [N/m], of either sign (atoms at a surface have fewer neighbours); tau_0 the residual stress of the
 // surfaces [N/m], positive in tension; a the width, b the thickness [m]. With `wide` faces the side faces are neglected, as in
-// most papers: they contribute b / (3 a) of what the wide faces do. N_s is the pull of upper and lower face. Between two clamps
-// it is a tension of the beam.
+// most papers: they contribute b / (3 a) of the contribution of the wide faces. N_s is the pull of upper and lower face.
+// Between two clamps it is a tension of the beam.
 //
 // In a cantilever the end is free: the faces' pull N_s is balanced by an equal compression of the bulk between them, and the
 // bending moments of the two cancel. So a residual stress changes nothing in small deflections (Gurtin, Markenscoff & Thurston
@@ -34,10 +34,10 @@ namespace softland {
   return surface.elastic_modulus * s.thickness * s.thickness / 2 * (s.width + flanks);
 }
 
-/// Returns the reason why the device cannot have its `surface`; empty when it can.
+/// Returns the reason why the device cannot have its surface skins; empty when the device can.
 [[nodiscard]] std::string why_no_surface(const Device& device);
 
-/// Returns N_s, the pull of the residual stress of upper and lower face [N].
+/// Returns the pull of the residual stress of upper and lower face on the beam [N].
 [[nodiscard]] inline double surface_pull(const Surface& surface, const Structure& s) {
   return 2 * surface.residual_stress * s.width;
 }

@@ -26,7 +26,7 @@
 namespace softland {
 namespace {
 
-// Calls visit(range) for the points over each electrode on whose dielectric the beam may land.
+// Calls visit(range) for the quadrature points over each electrode on whose dielectric the beam may close.
 template <class Visit>
 void for_faces(const Device& device, const Eigen::ArrayXd& positions, Visit&& visit) {
   for (const Electrode& e : device.electrodes) {
@@ -36,10 +36,10 @@ void for_faces(const Device& device, const Eigen::ArrayXd& positions, Visit&& vi
   }
 }
 
-// Returns the number of points over a beam's length that resolve the field when the beam first touches a face; 0 when the beam
-// cannot land on a face. The beam bends over the face like (g / 2) (1 - cos(2 pi x / L)), so that the gap H of the field has
-// doubled at a distance of L sqrt(H / g) / pi: six points lie in this distance, which is our choice. Half as many points give
-// an error of the release voltage of 7e-4, measured on one bridge.
+// Returns the number of quadrature points over a beam's length that resolve the electric field when the beam first touches a
+// dielectric's face; 0 when the beam cannot close on a face. The beam bends over the face like (g / 2) (1 - cos(2 pi x / L)), g
+// gap at rest, so that the gap H of the field has doubled at a distance of L sqrt(H / g) / pi: six points lie in this distance,
+// which is our choice. Half as many points give an error of the release voltage of 7e-4, measured on one bridge.
 double points_to_land(const Device& device) {
   if (!device.lands_along_face()) return 0;
   constexpr double points = 6;
@@ -92,7 +92,7 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
       [&]<class Kind>(const Kind& kind) {
         const auto modes = kind.modes(device_, like != nullptr ? like->sampled_->modes : nullptr);
         if constexpr (requires { Kind::is_rigid; }) {
-          set_modes(modes, 0, 1, nullptr);  // the gap is the same everywhere, so one point per panel suffices
+          set_modes(modes, 0, 1, nullptr);  // the gap of a plate is the same everywhere, so one point per panel suffices
         } else {
           set_modes(modes, std::max(options.points_per_length, points_to_land(device_)), options.points_per_panel, like);
         }
@@ -101,7 +101,7 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
       s.kind);
   const Eigen::Index n = quadrature_.points();
 
-  // Makes the force law of a face on the far side, whose rest gap is `gap`.
+  // Makes the force law of an electrode or film on the far side, whose gap at rest is `gap`.
   const auto on_far_side = [&](const auto& law, double gap) {
     const double both_gaps = device_.gap.electrode + gap, floor = gap / 100;
     most_gap_ = std::min(most_gap_, both_gaps - floor);
@@ -146,7 +146,7 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
     const LocalSection contact = section_at(s, device_.contact_position());
     const double width = contact.width_at(device_.contact_position());
     gas_ = std::make_shared<const GasLaw>(gas_law(*device_.gas, width, contact.thickness, unit_quality));
-    // Calls `make` with the law of the gas film over one range of points.
+    // Calls `make` with the law of the gas film over one range of quadrature points.
     const auto film_on = [&](const EvenRange& even, auto&& make) {
       const GasLaw law = gas_law(*device_.gas, even.full_width, even.thickness, unit_quality);
       const auto* const strip = even.holes.exist() ? std::get_if<StripSqueezeFilm>(&law) : nullptr;
@@ -165,7 +165,7 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
             film_on(even, [&](const auto& law) { return erased(on_far_side(law, gap), even.points, gap_floor()); }));
     }
   }
-  // Find the force that bends the beam by the contact gap at x_c.
+  // Find the force at the contact point that bends the beam by the contact gap.
   const double compliance = basis_.contact_shape().cwiseAbs2().cwiseQuotient(basis_.squares()).sum();
   const double force = contact_gap_ / compliance;
   bending_energy_ = force * contact_gap_ / 2;
@@ -225,8 +225,8 @@ GapField Switch::still_field(const double* q) const {
   return field;
 }
 
-// Returns the interference at which the contact carries a force, by bisection, since forces grow with the interference. The
-// tilt of a pad is that under the same force at the contact point.
+// Returns the interference at which the contact carries a force, by bisection, since contact forces grow with the interference.
+// The tilt of a pad is that under the same force at the contact point.
 double Switch::penetration_under(double force) const {
   const double plane = contact_gap_;
   const Eigen::VectorXd pushed = basis_.contact_shape().cwiseQuotient(basis_.squares()), still = Eigen::VectorXd::Zero(modes());
@@ -271,7 +271,7 @@ void Switch::accelerations(const double* q, const double* v, std::span<const dou
   }
   const double piezo = device_.piezo ? volts.back() : 0;
   for (std::size_t i = 0; i < n; i += lanes) {
-    // Add the terms that need the load last, so that the other terms do not wait for the load.
+    // Add the terms that need the distributed load last, so that the other terms do not wait for the load.
     const Lane own = basis_.forces(i, n, q, v, piezo, push);
     store_lane(own + quadrature_.projected(work.load, i), result, i, n);
   }
@@ -348,7 +348,8 @@ void Switch::add_film_derivatives(const double* state, const Workspace& work, Ei
     const Eigen::Index at = 2 * n + nodes * s;
     const ReynoldsFilm::Derivatives d = film_->derivatives(work.field.gap[s], work.field.velocity[s], film);
     derivatives.block(n, at, n, nodes) += quadrature_.weighted_shapes().row(s).transpose() * film_->load_by_film().transpose();
-    derivatives.block(at, 0, nodes, n) -= d.by_gap * quadrature_.shapes().row(s);  // the gap shrinks as the beam deflects
+    // Minus sign: the gap shrinks as the beam deflects.
+    derivatives.block(at, 0, nodes, n) -= d.by_gap * quadrature_.shapes().row(s);
     derivatives.block(at, n, nodes, n) += d.by_velocity * quadrature_.shapes().row(s);
     derivatives.block(at, at, nodes, nodes) += d.by_film;
   }

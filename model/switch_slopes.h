@@ -25,13 +25,13 @@ namespace softland {
 
 class SwitchSlopes {
  public:
-  /// Recommended step to either side, as a share of the parameter.
+  /// Recommended step of a device parameter to either side, as a share of the parameter.
   static constexpr double step = 3e-5;
 
   struct Neighbours {
     Switch above, below;
     double distance = 0;         ///< difference of the parameter between the two switches [its SI unit]
-    bool acts_in_flight = true;  ///< true when accelerations depend on the parameter while no contact acts
+    bool acts_in_flight = true;  ///< true when modal accelerations depend on the parameter while no contact acts
   };
   /// `neighbours` are the two switches for each parameter; none for a parameter on which the switch does not depend. Keeps a
   /// reference to `model`. Throws InvalidInput when a neighbour has another number of modes or drives, or another kind of
@@ -42,12 +42,13 @@ class SwitchSlopes {
   /// Returns the parameters on which the switch depends. The functions below take the index j in this list.
   [[nodiscard]] const std::vector<std::size_t>& moving() const { return moving_; }
 
-  /// Returns the derivative by parameter j of the interference of the contact point, y(x_c) - dt, at fixed q [m per unit].
+  /// Returns the derivative by parameter j of the interference of the contact point (its deflection less the contact gap) at
+  /// fixed modal coordinates q [m per unit].
   [[nodiscard]] double interference(std::size_t j, const double* q) const;
-  /// Returns the derivative by parameter j of the contact point's velocity at fixed v [m/s per unit].
+  /// Returns the derivative by parameter j of the contact point's velocity at fixed modal velocities v [m/s per unit].
   [[nodiscard]] double velocity(std::size_t j, const double* v) const;
-  /// Returns the derivative by parameter j of the interference at which the contact changes its phase [m per unit]: 0 for the
-  /// plane and for the edge of a dent, where no force sets in; else that of the law's reach or kink.
+  /// Returns the derivative by parameter j of the interference at which the contact law changes its branch [m per unit]: 0 for
+  /// the contact plane and for the end of a dent, where no force begins; otherwise that of the law's reach or kink.
   [[nodiscard]] double edge(std::size_t j, double interference) const;
   /// Returns the derivative by parameter j of a function f(law) of the contact law.
   template <class F>
@@ -62,8 +63,8 @@ class SwitchSlopes {
     const Neighbours& n = neighbours_[j];
     return decltype(f(n.above, n.distance))((f(n.above, n.distance / 2) - f(n.below, -n.distance / 2)) / n.distance);
   }
-  /// Computes the derivative F_p by parameter j of the modal accelerations at fixed q and v. `by_q` is F_q in this state: modes
-  /// x modes.
+  /// Computes the derivative by parameter j of the modal accelerations at fixed modal coordinates q and velocities v. `by_q` is
+  /// their derivative by q in this state: modes x modes.
   void accelerations(std::size_t j, const double* q, const double* v, std::span<const double> volts, const ContactState& contact,
                      const Eigen::Ref<const Eigen::MatrixXd>& by_q, Eigen::Ref<Eigen::VectorXd> result);
 
@@ -71,7 +72,8 @@ class SwitchSlopes {
   const Switch& model_;
   std::size_t parameters_;
   std::vector<std::size_t> moving_;
-  std::vector<Neighbours> neighbours_;            // two switches for each moving parameter
+  // The two switches with a smaller and a larger parameter, for each parameter on which the switch depends.
+  std::vector<Neighbours> neighbours_;
   std::vector<Switch::Workspace> above_, below_;  // workspaces of the two switches
   Eigen::VectorXd deflection_;  // static deflection under a force at the contact point that moves this point by 1 m
 };

@@ -13,12 +13,14 @@
 namespace softland {
 namespace {
 
-constexpr double shear_coefficient = 5.0 / 6;  // kappa of a rectangle
+constexpr double shear_coefficient = 5.0 / 6;  // shear coefficient kappa of a rectangular section
 constexpr double usual_poissons_ratio = 0.3;
-constexpr double most_slender = 1000;  // largest length / thickness: rounding shows beyond; the excess falls with the square
+// Largest length / thickness of a beam for which the frequency difference is computed: it falls with the square, and beyond
+// this value rounding shows.
+constexpr double most_slender = 1000;
 
-// Returns Euler-Bernoulli's wave number beta of a mode, counted from 1: the root of cos(beta) cosh(beta) = 1 between two
-// clamps, -1 with a free end.
+// Returns Euler-Bernoulli's wave number of a mode, counted from 1: the root beta of cos(beta) cosh(beta) = 1 between two
+// clamps, = -1 with a free end.
 double wave_number(int mode, bool both_clamped) {
   const double sign = both_clamped ? -1 : 1;
   double beta = (mode + (both_clamped ? 0.5 : -0.5)) * pi;
@@ -29,7 +31,8 @@ double wave_number(int mode, bool both_clamped) {
   return beta;
 }
 
-// Values and derivatives on [0, 1] of Legendre polynomials times a factor that vanishes at the clamps, a column for each.
+// Values and derivatives on [0, 1] of Legendre polynomials times a factor that vanishes at the clamps, a column for each
+// polynomial.
 struct Basis {
   Eigen::MatrixXd values, slopes;
 };
@@ -38,9 +41,10 @@ Basis basis(const std::vector<double>& points, int functions, bool both_clamped)
   const auto rows = static_cast<Eigen::Index>(points.size());
   Basis b{.values = Eigen::MatrixXd(rows, functions), .slopes = Eigen::MatrixXd(rows, functions)};
   for (Eigen::Index p = 0; p < rows; ++p) {
-    const double z = points[static_cast<std::size_t>(p)], x = (1 + z) / 2;  // z in [-1, 1]
+    const double z = points[static_cast<std::size_t>(p)], x = (1 + z) / 2;  // z: Gauss point in [-1, 1]; x in [0, 1]
     const double held = both_clamped ? x * (1 - x) : x, held_slope = both_clamped ? 1 - 2 * x : 1;
-    double last = 0, now = 1, last_slope = 0, slope = 0;  // P_k at z, and its derivatives by z
+    // Legendre polynomials of degree k - 1 and k at z, and their derivatives by z.
+    double last = 0, now = 1, last_slope = 0, slope = 0;
     for (int k = 0; k < functions; ++k) {
       b.values(p, k) = held * now;
       b.slopes(p, k) = held_slope * now + held * 2 * slope;
@@ -59,9 +63,11 @@ std::vector<double> frequency_excess(const Structure& s) {
   const bool both_clamped = s.has_far_clamp();
   const double nu = std::isnan(beam->poissons_ratio) ? usual_poissons_ratio : beam->poissons_ratio;
   const double beyond = std::min(1.0, most_slender * s.thickness / s.length);
-  const double gyration = std::pow(s.thickness / s.length / beyond, 2) / 12;  // I / (A L^2)
+  // Second moment of area over area and squared length, I / (A L^2).
+  const double gyration = std::pow(s.thickness / s.length / beyond, 2) / 12;
   const double stiffer = beam->plate_strain ? 1 / (1 - nu * nu) : 1;
-  const double shear = gyration * stiffer * 2 * (1 + nu) / shear_coefficient;  // E I / (kappa A G L^2)
+  // Bending over shear stiffness, E I / (kappa A G L^2).
+  const double shear = gyration * stiffer * 2 * (1 + nu) / shear_coefficient;
 
   const int functions = 2 * s.modes + 12;
   const GaussRule rule = gauss_rule(functions + 2);
@@ -71,7 +77,8 @@ std::vector<double> frequency_excess(const Structure& s) {
     return left.transpose() * weights.asDiagonal() * right;
   };
   const Eigen::Index n = functions;
-  Eigen::MatrixXd stiffness(2 * n, 2 * n), mass = Eigen::MatrixXd::Zero(2 * n, 2 * n);  // units: E I / L and its inertia
+  // Matrices in units of bending stiffness E I / L and of the inertia that belongs to it.
+  Eigen::MatrixXd stiffness(2 * n, 2 * n), mass = Eigen::MatrixXd::Zero(2 * n, 2 * n);
   stiffness.topLeftCorner(n, n) = integral(b.slopes, b.slopes) / shear;
   stiffness.topRightCorner(n, n) = -integral(b.slopes, b.values) / shear;
   stiffness.bottomLeftCorner(n, n) = stiffness.topRightCorner(n, n).transpose();

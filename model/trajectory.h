@@ -11,42 +11,44 @@
 
 namespace softland {
 
-/// One knot of the motion. Between knots the position is the quintic Hermite interpolant of (position, velocity, acceleration),
-/// so knots must not straddle a kink: every make and break of contact and every waveform breakpoint is a knot. Two knots of
-/// equal time are a jump of velocity or acceleration.
+/// A knot: one point of the simulated motion of the contact point. Between knots the position is the quintic Hermite
+/// interpolant of (position, velocity, acceleration), so knots must not straddle a kink: every make and break of contact and
+/// every waveform breakpoint is a knot. Two knots of equal time are a jump of velocity or acceleration.
 struct TrajectoryPoint {
-  double time = 0;           ///< [s]
+  double time = 0;           ///< time of this point of the motion [s]
   double position = 0;       ///< position of the contact point, from rest towards the contact [m]
-  double velocity = 0;       ///< [m/s]
-  double acceleration = 0;   ///< [m/s^2]
-  double contact_force = 0;  ///< positive pushes the beam away from the contact [N]
+  double velocity = 0;       ///< velocity of the contact point [m/s]
+  double acceleration = 0;   ///< acceleration of the contact point [m/s^2]
+  double contact_force = 0;  ///< contact force, positive when it pushes the beam away from the contact [N]
 };
 
-/// One interval in which the contact law is active; an instant for an impact on a rigid contact from which the plate rebounds.
+/// A touch: one interval in which the contact law is active; an instant for an impact on a rigid contact from which the plate
+/// rebounds.
 struct Touch {
-  double begin = 0;            ///< [s]
-  double end = 0;              ///< [s]; NaN when the contact is closed at the end of the window
-  double impact_velocity = 0;  ///< velocity at begin [m/s]
-  double peak_force = 0;       ///< [N]; NaN for a rigid contact, which has an impulse instead
-  double peak_energy = 0;      ///< largest energy stored in the contact law; for a rigid contact the kinetic energy [J]
-  /// Largest pressure of the highest summit over the hardness (model/contact/summit_pressure.h); NaN unless both are known.
+  double begin = 0;            ///< time at which contact begins [s]
+  double end = 0;              ///< time at which contact ends [s]; NaN when the contact is closed at the end of the run
+  double impact_velocity = 0;  ///< velocity of the contact point when contact begins [m/s]
+  double peak_force = 0;       ///< largest contact force [N]; NaN for a rigid contact, which has an impulse instead
+  double peak_energy = 0;      ///< largest energy stored in the contact; for a rigid contact the kinetic energy [J]
+  /// Largest pressure of the highest asperity summit over its hardness (model/contact/summit_pressure.h); NaN unless both are
+  /// known.
   double pressure = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The first touch of a contact, or of any contact that makes a connection.
+/// The first touch of a contact, or of any contact that makes an electrical connection.
 struct FirstTouch {
-  double time = std::numeric_limits<double>::quiet_NaN();      ///< [s]; NaN before a touch
-  double velocity = std::numeric_limits<double>::quiet_NaN();  ///< impact velocity [m/s]; NaN before a touch
+  double time = std::numeric_limits<double>::quiet_NaN();      ///< time of the first touch [s]; NaN before a touch
+  double velocity = std::numeric_limits<double>::quiet_NaN();  ///< impact velocity of the first touch [m/s]; NaN before a touch
 
   [[nodiscard]] bool happened() const { return !std::isnan(time); }
-  /// Takes a touch at a time [s] and impact velocity [m/s], unless an earlier touch is known.
+  /// Stores a touch at a time [s] with an impact velocity [m/s], unless an earlier touch is known.
   void take(double at, double impact_velocity) {
     if (!(time <= at)) *this = {.time = at, .velocity = impact_velocity};
   }
 };
 
 struct Work {
-  Integrator integrator = Integrator::automatic;  ///< integrator in use at the end of the run
+  Integrator integrator = Integrator::automatic;  ///< integration method in use at the end of the run
   long steps = 0;
   long rhs_evaluations = 0;
   double wall = 0;  ///< wall-clock time of the run [s]
@@ -54,68 +56,73 @@ struct Work {
 
 /// Energy balance of a run up to some time: work of the sources = change of stored energy + dissipated energy.
 struct EnergyBalance {
-  double source_work = std::numeric_limits<double>::quiet_NaN();  ///< integral of V dQ over all drives [J]
+  double source_work = std::numeric_limits<double>::quiet_NaN();  ///< work of the sources, integral of V dQ over all drives [J]
   double stored = 0;      ///< change of kinetic + elastic + electrostatic + contact energy [J]
   double dissipated = 0;  ///< energy dissipated by gas, modal damping, contact [J]
   [[nodiscard]] double residual() const { return source_work - stored - dissipated; }
 };
 
-/// The times at which a connection was electrically closed in a run: see model/closing/electrical_record.h.
+/// The times at which the electrical connection through the contacts was closed in a run: see
+/// model/closing/electrical_record.h.
 struct ElectricalOutcome {
-  double first_closed = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN when the connection never closes
-  /// Time from which the connection stays closed [s]; NaN when the connection is open at the end.
+  /// Time at which the connection first closes [s]; NaN when it never closes.
+  double first_closed = std::numeric_limits<double>::quiet_NaN();
+  /// Time from which the electrical connection stays closed [s]; NaN when the connection is open at the end.
   double closed_from = std::numeric_limits<double>::quiet_NaN();
-  int openings = 0;  ///< number of openings after first_closed longer than ElectricalClosing::after
+  int openings = 0;  ///< number of electrical openings after first_closed that are longer than ElectricalClosing::after
 };
 
 /// The outcome of one contact of several, at the end of a run.
 struct ContactOutcome {
   std::string name;
-  std::vector<TrajectoryPoint> points;  ///< motion of the place of the contact
+  std::vector<TrajectoryPoint> points;  ///< motion of the beam at the contact
   std::vector<Touch> touches;
-  double gap = 0;                                                             ///< rest distance of the contact to its plane [m]
-  double deepest_penetration = 0;                                             ///< [m]
-  double hold_force = std::numeric_limits<double>::quiet_NaN();               ///< force as in Trajectory::hold_force [N]
-  double steady_force_time = std::numeric_limits<double>::quiet_NaN();        ///< [s]
-  double least_force_after_touch = std::numeric_limits<double>::quiet_NaN();  ///< [N]
-  double hold_resistance = std::numeric_limits<double>::quiet_NaN();  ///< resistance as in Trajectory::hold_resistance [Ohm]
+  double gap = 0;                  ///< distance of the contact from its plane at rest [m]
+  double deepest_penetration = 0;  ///< largest penetration of the contact [m]
+  /// Contact force in the closed equilibrium under the hold levels of the drives [N].
+  double hold_force = std::numeric_limits<double>::quiet_NaN();
+  double steady_force_time = std::numeric_limits<double>::quiet_NaN();  ///< time from which the contact force is steady [s]
+  /// Least contact force after its first maximum [N].
+  double least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
+  /// Contact resistance at rest under the hold levels of the drives [Ohm].
+  double hold_resistance = std::numeric_limits<double>::quiet_NaN();
   ElectricalOutcome electrical = {};
 };
 
-/// The result of a run. The members describe the connection that the contacts make (model/closing/connection.h) when a switch
-/// has several contacts.
+/// The result of a simulated closing or opening. The members describe the connection that the contacts make
+/// (model/closing/connection.h) when a switch has several contacts.
 struct Trajectory {
   Status status = Status::not_run;
-  std::string message;  ///< reason, unless the status is done
+  std::string message;  ///< reason for the status, unless it is `done`
   /// True when the run began in contact (ClosingOptions::start, begins_closed), so that the drives did not cause the first
   /// touch.
   bool began_closed = false;
-  /// Position of the contact point in an equilibrium of the StartState that was not requested, when the requested equilibrium
-  /// does not exist [m].
+  /// Position of the contact point in an equilibrium of the StartState (open or closed) that was not requested, when the
+  /// requested equilibrium does not exist [m].
   double other_start = std::numeric_limits<double>::quiet_NaN();
   bool ends_at_touch = false;  ///< true when the run ended at its first touch because the switch has no contact law
-  double contact_gap = 0;      ///< dt, the distance from rest to the plane of first touch [m]
+  double contact_gap = 0;      ///< distance of the contact point from the plane of first touch at rest [m]
   std::vector<TrajectoryPoint> points;
   std::vector<Touch> touches;
-  /// Period of the lowest mode of the beam held at deflection 0 at x_c [s].
+  /// Period of the lowest mode of the beam held at deflection 0 at its contact point [s].
   double in_contact_period = std::numeric_limits<double>::quiet_NaN();
-  /// Force of the closed equilibrium under the hold levels, if computed [N].
+  /// Contact force of the closed equilibrium under the hold levels of the drives, if computed [N].
   double hold_force = std::numeric_limits<double>::quiet_NaN();
-  /// Resistance of the connection when the switch rests closed under the hold levels [Ohm]; NaN when the switch rests open, or
-  /// a contact of the connection has no given resistivity.
+  /// Resistance of the connection when the switch rests closed under the hold levels of the drives [Ohm]; NaN when the switch
+  /// rests open, or a contact of the connection has no given resistivity.
   double hold_resistance = std::numeric_limits<double>::quiet_NaN();
-  /// Capacitance between the beam and the electrode that closes the switch, at rest under the hold levels [F]: in the closed
-  /// equilibrium, or in the open equilibrium after a run without a touch.
+  /// Capacitance between the beam and the electrode that closes the switch, at rest under the hold levels of the drives [F]: in
+  /// the closed equilibrium, or in the open equilibrium after a run without a touch.
   double hold_capacitance = std::numeric_limits<double>::quiet_NaN();
-  bool is_held = true;  ///< false when a search has found no stable closed equilibrium under the hold levels
+  bool is_held = true;  ///< false when no stable closed equilibrium was found under the hold levels of the drives
   double collapse_time = std::numeric_limits<double>::quiet_NaN();  ///< time at which the beam reached the electrode [s]
   /// Smallest gap of the run from beam to electrode, at any place [m].
   double smallest_gap = std::numeric_limits<double>::quiet_NaN();
   /// Energy above that of the closed equilibrium once the switch has touched and the drives are at their hold levels [J].
-  /// Bouncing or damping must dissipate this energy before the switch rests. The energy includes what impacts on a rigid
-  /// contact have dissipated until then.
+  /// Bouncing or damping must dissipate this energy before the switch rests. The value includes the energy that impacts
+  /// on a rigid contact have dissipated until then.
   double landing_excess = std::numeric_limits<double>::quiet_NaN();
-  double deepest_penetration = 0;  ///< [m]
+  double deepest_penetration = 0;  ///< largest penetration of the contact [m]
   /// Time from which to the end of the run the contact force is not below ClosingOptions::steady_force [s]. NaN when the force
   /// is below steady_force at the end, without a touch, and when no steady force was given.
   double steady_force_time = std::numeric_limits<double>::quiet_NaN();
@@ -126,10 +133,10 @@ struct Trajectory {
   std::vector<ContactOutcome> contacts;
   /// First touch of any of several contacts that makes the connection; unset for a single contact.
   FirstTouch first_touch = {};
-  /// Times of electrical closing, if Device::electrical gives a bound.
+  /// Times of electrical closing of the connection, if Device::electrical gives a bound.
   ElectricalOutcome electrical = {};
-  EnergyBalance energy;     ///< balance at the end of the run
-  double layer_energy = 0;  ///< layer_charging_energy() of the piezo, which is not part of the energy balance [J]
+  EnergyBalance energy;     ///< energy balance at the end of the run
+  double layer_energy = 0;  ///< energy that charging the piezo layer takes, which is not part of the energy balance [J]
   /// Largest residual of the energy balance at any make or break of contact and at the end [J].
   double energy_error = 0;
   Work work;

@@ -101,7 +101,7 @@ double cost(const Aim& aim, const Metrics& m, const CostScale& scale, const Metr
   const double p = m.major_bounce_height / (m.major_bounce_height + 10 * options.significant_rebound);
   const double v = shares.of(&Metrics::largest_impact_velocity);
   // The energy above the closed equilibrium (landing_excess) is unknown when a drive does not come to rest within the run. The
-  // cost then consists of the other figures.
+  // cost then consists of the other figures of the closing.
   const double k = std::isnan(m.landing_excess) ? 0 : shares.of(&Metrics::landing_excess);
   const double s = m.separated / scale.score_window;
   const double t = shares.of(&Metrics::initial_contact_time);
@@ -109,8 +109,8 @@ double cost(const Aim& aim, const Metrics& m, const CostScale& scale, const Metr
   shares.lead = 0.2 * h + 0.15 * v * v + 0.45 * k + 0.1 * s * s + 0.05 * p + 0.02 * late;
   const double excess = scale.judges_hardness && !aim.has_own_objective() ? excess_over_step(m, scale.step) : 0;
   shares.lead += excess;
-  // A closing whose contact opens again at the end, however soft the impact, ranks behind all closings that stay closed and
-  // before those that never reach contact.
+  // Cost of a contact that opens again at the end: above all closings that stay closed and below those that never reach
+  // contact.
   const double reopening = m.reopened ? 5 : 0;
   if (!aim.has_own_cost() && aim.from_the_start() == nullptr) return reopening + shares.lead;
   const double own = aim.mean(m, scale.step, [&](const TargetRow& row) { return row.in(row.nominal, shares); });

@@ -55,21 +55,23 @@
 
 namespace softland {
 
-/// The figures of a closing and those of the plain step, from which the cost of a target is computed.
+/// The figures of a closing and those of the plain step of the voltage, from which the cost of a target is computed.
 struct Shares {
   const Metrics &own, &step;
-  double lead = 0;    ///< cost of the target `bounce`
+  double lead = 0;    ///< cost of the target `bounce` for this closing
   double window = 0;  ///< time after the first touch over which the closing was simulated [s]
 
-  /// Returns a ratio that stays finite when the figure of the plain step is 0; NaN when `value` is NaN.
+  /// Returns `value` over `of_step`, a figure of the plain voltage step; stays finite when `of_step` is 0; NaN when `value` is
+  /// NaN.
   [[nodiscard]] static double ratio(double value, double of_step) {
     if (std::isnan(value)) return value;
     return of_step > 0 ? value / of_step : value > 0 ? 1 : 0;
   }
-  /// Returns a figure over the same figure of the plain step, or over the figure `unit` of the plain step.
+  /// Returns a figure of the closing over the same figure, or the figure `unit`, of the plain voltage step.
   [[nodiscard]] double of(double Metrics::*figure) const { return ratio(own.*figure, step.*figure); }
   [[nodiscard]] double of(double Metrics::*figure, double Metrics::*unit) const { return ratio(own.*figure, step.*unit); }
-  /// Returns a time over the time of first contact of the plain step. NaN counts as later than every time of the run.
+  /// Returns a time of the closing over the first contact time of the plain voltage step. NaN counts as a time after the end of
+  /// the run.
   [[nodiscard]] double of_time(double time) const {
     const double known = std::isfinite(time) ? time : 2 * (own.initial_contact_time + window);
     return ratio(known, step.initial_contact_time);
@@ -77,20 +79,20 @@ struct Shares {
 };
 
 enum class Target { bounce, settling, rebound, count, impact, energy, force, drive, steady, electrical };
-/// A target of a search. A new target needs an enumerator and an entry in `targets`.
+/// Properties of a target of a search. A new target needs an enumerator and an entry in `targets`.
 struct TargetRow {
   using Form = double (*)(const Shares&);
 
   Target value;
   std::string_view name;
-  Figure::Member figure;         ///< figure by which results are compared; it enters the cost when its Form below is null
-  Figure::Member unit = figure;  ///< figure of the plain step by which `figure` is divided in a sum of targets
+  Figure::Member figure;  ///< figure by which results are compared; it enters the cost when the target has no cost function
+  Figure::Member unit = figure;  ///< figure of the plain voltage step that divides `figure` in a sum of targets
   /// True when a search for the target continues with `figure` after the cost of `bounce`; false for figures that cannot
   /// improve further once no rebound is significant.
   bool has_own_cost = true;
-  Form nominal = nullptr;             ///< function for the cost of a search on the nominal device
-  Form robust = nullptr;              ///< function for the cost of a search under process variation
-  std::string_view no_gradient = {};  ///< reason why the cost has no gradient; empty when the cost has one
+  Form nominal = nullptr;  ///< function for the cost of a search on the nominal device; null: `figure` enters the cost
+  Form robust = nullptr;   ///< function for the cost of a search under process variation; null: `figure` enters the cost
+  std::string_view no_gradient = {};  ///< reason why the cost of the target has no gradient; empty when the cost has one
 
   [[nodiscard]] double in(Form form, const Shares& shares) const {
     if (form != nullptr) return form(shares);
@@ -100,7 +102,8 @@ struct TargetRow {
 };
 namespace internal {
 inline double lead(const Shares& s) { return s.lead; }
-/// Returns a time over the first contact time of the plain step; a time that is never reached counts as the end of the run.
+/// Returns a time of the closing over the first contact time of the plain voltage step; a time that is never reached counts as
+/// the end of the run.
 inline double time_or_end(const Shares& s, double Metrics::*time) {
   return s.of(std::isfinite(s.own.*time) ? time : &Metrics::end, &Metrics::initial_contact_time);
 }
@@ -116,7 +119,7 @@ inline constexpr auto targets = std::to_array<TargetRow>({
     {.value = Target::settling,
      .name = "settling",
      .figure = &Metrics::permanent_contact_time,
-     .unit = &Metrics::initial_contact_time,  // the plain step may not settle at all
+     .unit = &Metrics::initial_contact_time,  // the plain voltage step may never settle, so its first contact time divides
      .nominal = [](const Shares& s) { return s.of(&Metrics::last_rebound_end, &Metrics::initial_contact_time); },
      .robust = [](const Shares& s) { return s.of_time(s.own.permanent_contact_time); }},
     {.value = Target::rebound,
@@ -148,7 +151,8 @@ inline constexpr auto targets = std::to_array<TargetRow>({
     {.value = Target::electrical,
      .name = "electrical",
      .figure = &Metrics::electrical_settling,
-     .unit = &Metrics::initial_contact_time,  // the plain step may not close the switch electrically
+     // The plain voltage step may never close electrically, so its first contact time divides.
+     .unit = &Metrics::initial_contact_time,
      .nominal = [](const Shares& s) { return internal::time_or_end(s, &Metrics::electrical_settling); },
      .robust = [](const Shares& s) { return s.of_time(s.own.electrical_settling); },
      .no_gradient = "the time from which the switch is electrically closed has no gradient"},
@@ -156,25 +160,26 @@ inline constexpr auto targets = std::to_array<TargetRow>({
 static_assert(is_complete<targets>());
 [[nodiscard]] constexpr std::string_view to_string(Target target) { return name_of(targets, target); }
 [[nodiscard]] constexpr bool has_own_cost(Target target) { return row_of(targets, target).has_own_cost; }
-/// Returns the figure that a target minimises.
+/// Returns the figure that a search for the target minimises.
 [[nodiscard]] constexpr const Figure& figure_of(Target target) { return figure_of(row_of(targets, target).figure); }
 
-/// The aim of a search: a single target, a user's own objective, or a weighted sum of several.
+/// The aim of a search: a single target, a user's own objective, or a weighted sum of several of them.
 class Aim {
  public:
   struct Part {
     Target target = Target::bounce;
     double weight = 1;
-    std::shared_ptr<const OwnObjective> own = nullptr;  ///< own objective; takes the place of the target
-    double unit = 1;                                    ///< divisor of the values of an own objective
+    std::shared_ptr<const OwnObjective> own = nullptr;  ///< a user's own objective, which replaces the target
+    double unit = 1;                                    ///< divisor of the values of the user's own objective
 
     [[nodiscard]] std::string_view name() const { return own ? own->name() : to_string(target); }
   };
   Aim(Target target) : parts_{{.target = target}} {}  // NOLINT(google-explicit-constructor): a target is an aim
-  /// Throws InvalidInput when the objective is a null pointer.
+  /// Takes a user's own objective. Throws InvalidInput when the objective is a null pointer.
   explicit Aim(std::shared_ptr<const OwnObjective> objective)
       : Aim(std::vector<Part>{{.own = refuse_null(std::move(objective))}}) {}
-  /// Throws InvalidInput unless there is a part, weights are finite and > 0, and no target or own objective occurs twice.
+  /// Takes a weighted sum of targets and own objectives. Throws InvalidInput unless there is a part, weights are finite and >
+  /// 0, and no target or own objective occurs twice.
   explicit Aim(std::vector<Part> parts);
 
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
@@ -183,20 +188,21 @@ class Aim {
   /// TargetRow::has_own_cost for a single target, lands_first() for a single own objective, and true for a sum.
   [[nodiscard]] bool has_own_cost() const;
   [[nodiscard]] bool is_about(Target target) const;
-  /// Returns true when a part is an own objective.
+  /// Returns true when a part of the aim is a user's own objective.
   [[nodiscard]] bool has_own_objective() const;
-  /// Returns true when the cost depends on the drive energy. The cost of a user's own objective may depend on it.
+  /// Returns true when the cost of the aim depends on the drive energy. The cost of a user's own objective may depend on it.
   [[nodiscard]] bool measures_drive_energy() const;
-  /// Returns the own objective that a search minimises from its first evaluation on; null when the search first minimises the
-  /// cost of `bounce`.
+  /// Returns the user's own objective that a search minimises from its first evaluation on; null when the search first
+  /// minimises the cost of `bounce`.
   [[nodiscard]] const OwnObjective* from_the_start() const;
-  /// Returns the same aim with the values of own objectives divided by their value for the plain step, if the value for the
-  /// plain step is below 0.01 or above 100. Throws InvalidInput when this value is not finite.
+  /// Returns the same aim with the values of own objectives divided by their value for the plain voltage step, if the value for
+  /// the plain step is below 0.01 or above 100. Throws InvalidInput when this value is not finite.
   [[nodiscard]] Aim in_units_of(const Metrics& step) const;
   /// Returns the aim as text, for example "bounce" or "0.7 bounce + 0.3 energy".
   [[nodiscard]] std::string text() const;
-  /// Returns the weighted mean of value(row) over the targets, each with its TargetRow. A user's own objective contributes its
-  /// value for this closing, given the plain step; throws InvalidInput when an own objective's value is below 0.
+  /// Returns the weighted mean of value(row) over the targets of the aim, each with its TargetRow. A user's own objective
+  /// contributes its value for this closing, given the plain step. Throws InvalidInput when an own objective's value is below
+  /// 0.
   template <class Value>
   [[nodiscard]] double mean(const Metrics& closing, const Metrics& step, const Value& value) const {
     const auto of = [&](const Part& part) {
@@ -208,8 +214,8 @@ class Aim {
     return sum / weights;
   }
 
-  /// Returns mean() for each of many closings; calls a user's own objective once for all closings. `value` also receives the
-  /// closing.
+  /// Returns mean(), the weighted mean over the targets, for each of many closings; calls a user's own objective once for all
+  /// closings. `value` also receives the closing.
   template <class Value>
   [[nodiscard]] std::vector<double> means(std::span<const Metrics> closings, const Metrics& step, const Value& value) const {
     std::vector<double> sums(closings.size(), 0), of_part(closings.size());
@@ -236,19 +242,21 @@ class Aim {
   std::vector<Part> parts_;
 };
 
-/// Figures that measure how hard a closing is, to compare a closing with the plain step.
+/// Figures that measure how hard a closing is, for the comparison with the plain voltage step.
 inline constexpr auto hard_figures =
     std::to_array({&Metrics::largest_impact_velocity, &Metrics::peak_contact_force, &Metrics::impact_energy});
-/// Returns the largest relative excess of hard_figures over those of the plain step; 0 when no figure exceeds the plain step's.
+/// Returns the largest relative excess of the closing's hard_figures over those of the plain voltage step; 0 when no figure
+/// exceeds that of the step.
 [[nodiscard]] double excess_over_step(const Metrics& closing, const Metrics& step);
 
-/// Scales of the cost. The figures are those of a run that ends a fixed time after first contact.
+/// Reference values by which the figures of a closing are scaled in the cost. The figures are those of a run that ends a fixed
+/// time after first contact.
 struct CostScale {
-  Metrics step;                 ///< figures of the plain step
+  Metrics step;                 ///< figures of the closing by the plain voltage step
   double score_window = 0;      ///< time after first contact over which the cost is computed [s]
   double contact_gap = 0;       ///< distance from the rest position to the contact plane [m]
-  double free_touch = 0;        ///< T_free, largest first contact time that costs little, over that of the plain step
-  bool judges_hardness = true;  ///< false when a closing harder than the plain step has no penalty: see excess_over_step()
+  double free_touch = 0;        ///< largest first contact time that costs little, over that of the plain voltage step
+  bool judges_hardness = true;  ///< false: a closing that hits harder than the plain voltage step has no penalty
 };
 /// Returns the cost of a closing; infinite for a run that could not be simulated to its end.
 [[nodiscard]] double cost(const Aim& aim, const Metrics& figures, const CostScale& scale, const MetricsOptions& options);

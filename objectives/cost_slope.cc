@@ -29,7 +29,7 @@ void add(FigureSlope& to, const FigureSlope& from, double factor = 1) {
   to.by_device += factor * from.by_device;
 }
 
-// Finds touches and rebounds in the motion of the contact point, as MetricsObserver does.
+// Finds touches and rebounds in the linearized motion of the contact point, by the rules of MetricsObserver.
 class SlopeFinder {
  public:
   SlopeFinder(const Switch& model, std::span<const Signal> signals, const LinearizedClosing& motion,
@@ -69,7 +69,7 @@ class SlopeFinder {
   using Arc = LinearizedClosing::Arc;
 
   [[nodiscard]] const Arc& arc(std::size_t i) const { return motion_.arcs()[i]; }
-  // Collects of(j) for every parameter j that changes the switch; empty when no parameter changes the switch.
+  // Collects of(slopes, j) for every parameter j that changes the switch; empty when no parameter changes the switch.
   template <class Of>
   [[nodiscard]] VectorXd by_device(Of&& of) const {
     if (motion_.by_device() == nullptr) return {};
@@ -77,24 +77,27 @@ class SlopeFinder {
     for (Eigen::Index j = 0; j < all.size(); ++j) all[j] = of(*motion_.by_device(), static_cast<std::size_t>(j));
     return all;
   }
-  // Returns the derivative of the contact point's position over the contact plane at a fixed time [m].
+  // Returns the derivative of the contact point's position over the contact plane [m], at the fixed time at which arc i of the
+  // motion ends.
   [[nodiscard]] FigureSlope position(std::size_t i, double factor) const {
     return {.weights = {{.arc = i, .by_q = factor * shape_, .by_v = zero_}},
             .moved = {},
             .by_device =
                 by_device([&](const SwitchSlopes& s, std::size_t j) { return factor * s.interference(j, arc(i).q.data()); })};
   }
-  // Returns the derivative of the contact point's speed when it crosses the contact plane at the end of arc i [m/s].
+  // Returns the derivative of the contact point's speed [m/s] when it crosses the contact plane at the end of arc i of the
+  // motion.
   [[nodiscard]] FigureSlope crossing_speed(std::size_t i) const {
     FigureSlope slope = position(i, -shape_.dot(arc(i).accelerations) / shape_.dot(arc(i).v));
     slope.weights[0].by_v = shape_;
     slope.by_device += by_device([&](const SwitchSlopes& s, std::size_t j) { return s.velocity(j, arc(i).v.data()); });
     return slope;
   }
-  // Returns the derivative of the time at which the contact point crosses a position at the end of arc i [s].
+  // Returns the derivative of the time [s] at which the contact point crosses the position that it has at the end of arc i of
+  // the motion.
   [[nodiscard]] FigureSlope crossing_time(std::size_t i) const { return position(i, -1 / shape_.dot(arc(i).v)); }
 
-  // Updates the extreme values of the motion with the point at the end of arc i.
+  // Updates the smallest gap, depth and height of the motion with the position of the contact point at the end of arc i.
   void consider(std::size_t i) {
     const double at = shape_.dot(arc(i).q);
     if (touches_ == 0) {
@@ -130,7 +133,7 @@ class SlopeFinder {
     force_slope_ = slope_of([&](const ContactLaw& of, double d) { return contact_force(of, d, law, 0); });
   }
 
-  // Returns true when a touch begins at the end of arc i.
+  // Returns true when contact begins at the end of arc (recorded step) i of the motion.
   bool cross(std::size_t i, const PhaseChange& change) {
     using Kind = PhaseChange::Kind;
     if (change.kind == Kind::turn || change.level != plane_) return false;
@@ -235,10 +238,12 @@ class SlopeFinder {
   CostSlopes slopes_;
   long touches_ = 0;
   bool touching_ = false, measured_ = false;
-  double first_speed_ = 0, fastest_ = 0;                      // speed of the first touch, and largest of all touches [m/s]
-  double closest_ = std::numeric_limits<double>::infinity();  // smallest separation before the first touch [m]
-  double depth_ = 0, force_ = 0, largest_force_ = 0;          // depth [m] and force [N] of the current touch; largest force [N]
-  double height_ = 0, highest_ = 0;                           // height of the current rebound and of the highest rebound [m]
+  double first_speed_ = 0, fastest_ = 0;  // impact velocity of the first touch, and largest of all touches [m/s]
+  // Smallest distance to the contact plane before the first touch [m].
+  double closest_ = std::numeric_limits<double>::infinity();
+  // Depth [m] and force [N] of the current touch; largest force of all touches [N].
+  double depth_ = 0, force_ = 0, largest_force_ = 0;
+  double height_ = 0, highest_ = 0;  // height of the current rebound and of the highest rebound [m]
   FigureSlope energy_slope_, force_slope_, height_slope_;
 };
 
@@ -271,11 +276,11 @@ std::optional<FigureSlope> cost_slope(const Aim& aim, const Metrics& figures, co
                             {&Metrics::impact_energy, step.impact_energy},
                             {&Metrics::landing_excess, step.landing_excess},
                             {&Metrics::peak_contact_force, step.peak_contact_force}};
-  FigureSlope sum;  // summed in the order of the parts: another order changes the last bits
+  FigureSlope sum;  // summed in the order of the aim's parts: another order changes the last bits
   for (const CostTerm& part : parts) {
     const double value = figures.*part.figure;
     if (!std::isfinite(value)) continue;
-    // The cost is a closed form of its figures, so that finite differences are accurate to about 1e-10.
+    // The cost is a closed formula of the closing's figures, so that finite differences are accurate to about 1e-10.
     const double size = std::abs(value) > 0 ? std::abs(value) : part.scale;
     if (!(size > 0) || !std::isfinite(size)) continue;
     const double h = 1e-6 * size;

@@ -1,5 +1,5 @@
-// The derivative of a closing's cost: each figure in the cost contributes its derivative by the motion, with its weight in the
-// cost.
+// The derivative of a closing's cost: each figure of merit in the cost contributes its derivative by the motion, with its
+// weight in the cost.
 #pragma once
 
 #include <optional>
@@ -14,24 +14,25 @@ namespace softland {
 /// A crossing of the contact plane is called grazing when its speed is below this share of the speed of the first touch.
 inline constexpr double grazing_share = 0.1;
 
-/// Derivatives of the figures that enter the cost. The time of a crossing of the contact plane depends on the motion; a height
-/// or a depth belongs to a turning point, whose time does not matter. When a closing has several heights or depths, only the
-/// largest counts.
+/// Derivatives of the figures that enter the cost of a closing. The time at which the contact point crosses the contact plane
+/// depends on the motion; a height or a depth belongs to a turning point, whose time does not matter. Of several heights or
+/// depths in a closing, only the largest counts.
 struct CostSlopes {
-  PerFigure<FigureSlope> of;             ///< derivatives of the figures that Figure::slope names
-  PerFigure<std::string_view> why_none;  ///< reason why the figure has no derivative for this closing; empty when it has one
+  PerFigure<FigureSlope> of;             ///< derivatives of the figures of merit named in Figure::slope
+  PerFigure<std::string_view> why_none;  ///< reason why a figure has no derivative for this closing; empty when it has one
   /// True when a rebound has not ended at the end of the run. The derivatives of last_rebound_end and separated leave this
   /// rebound out.
   bool ends_above = false;
-  /// Speed of the slowest crossing of the contact plane over that of the first touch; 1 for a single touch. When this ratio is
-  /// small, a touch is about to begin or to vanish, and derivatives hold in a small neighbourhood only.
+  /// Speed of the slowest crossing of the contact plane over the speed of the first touch; 1 for a single touch. When this
+  /// ratio is small, a touch is about to begin or to vanish, and derivatives hold in a small neighbourhood only.
   double grazing = 1;
 };
 /// Returns the derivatives of the figures of a closing by its motion. The drive energy has no derivative here.
 [[nodiscard]] CostSlopes cost_slopes(const Switch& model, std::span<const Signal> signals, const LinearizedClosing& motion,
                                      const MetricsOptions& options);
 
-/// Returns the derivative of the cost; none when the cost is infinite, or depends on a figure that has no derivative.
+/// Returns the derivative of the cost of a closing; none when the cost is infinite, or depends on a figure that has no
+/// derivative.
 [[nodiscard]] std::optional<FigureSlope> cost_slope(const Aim& aim, const Metrics& figures, const CostScale& scale,
                                                     const MetricsOptions& options, const CostSlopes& slopes);
 

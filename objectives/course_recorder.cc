@@ -10,7 +10,7 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t most_kept = 8;  // largest number of knots that a bucket stores
+constexpr std::size_t most_kept = 8;  // largest number of motion points that a bucket stores
 
 }  // namespace
 
@@ -79,7 +79,7 @@ void CourseRecorder::hand_over(Trajectory& run) {
   run.touches = std::move(touches_);
 }
 
-// Joins pairs of full buckets. The knots after the last pair form the new incomplete bucket.
+// Joins pairs of full buckets of motion points. The points after the last pair form the new incomplete bucket.
 void CourseRecorder::coarsen() {
   const std::vector<TrajectoryPoint> all = std::exchange(points_, {});
   const std::vector<std::size_t> ends = std::exchange(ends_, {});

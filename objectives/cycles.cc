@@ -15,11 +15,11 @@ CycleRecorder::CycleRecorder(double contact_gap, const MetricsOptions& options, 
   cycles_.front().began_open = true;
 }
 
-// A knot at the boundary of two cycles belongs to both cycles.
+// A point of the motion at the boundary of two cycles belongs to both cycles.
 void CycleRecorder::knot(const TrajectoryPoint& point) {
   if (current_ == cycles_.size()) return;
   cycles_[current_].metrics.knot(point);
-  constexpr double last_part = 1.0 / 3;  // share of the time after the command to open
+  constexpr double last_part = 1.0 / 3;  // last share of the time after the command to open in which the swing is measured
   if (times_.begin(current_ + 1) - point.time <= last_part * (times_.period - times_.on_time)) {
     double& swing = cycles_[current_].swing;
     swing = std::max(swing, std::abs(point.position - open_position_));
@@ -35,7 +35,7 @@ void CycleRecorder::touch(const Touch& touch) {
   if (cycle < cycles_.size()) cycles_[cycle].metrics.touch(touch);
 }
 
-// The time span from one closing of the contact to its opening may extend over several cycles.
+// A time span in which the contact is closed may extend over several cycles.
 void CycleRecorder::state(std::optional<std::size_t> contact, bool is_closed, double time) {
   if (contact) return;
   for (std::size_t n = 0; closed_from_ && n < cycles_.size(); ++n) cycles_[n].on_time += closed_in(n, time);

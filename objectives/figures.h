@@ -16,38 +16,39 @@
 
 namespace softland {
 
-/// Tells whether a lower value of a figure is better.
+/// Tells whether a lower value of a figure of merit is better.
 enum class Better { lower, neither };
 
-/// The part of the motion that a figure depends on. This part decides whether the difference between two runs of different
-/// accuracy estimates the error of the figure.
+/// The part of the motion that determines a figure of merit. This part decides whether the difference between two runs of
+/// different accuracy estimates the error of the figure.
 enum class Conditioning {
-  first_touch,   ///< the motion until first contact: the difference between two runs estimates the error
-  high_rebound,  ///< one rebound: the difference estimates the error, unless the runs differ qualitatively before that rebound
-  every_touch,   ///< all touches: the difference estimates the error when both runs have the same touches
-  last_rebound,  ///< the end of a sequence of rebounds, which is chaotic: only an ensemble of runs gives the range
-  open,          ///< the motion of a switch that stays open: the difference between two runs estimates the error
-  rest,          ///< the equilibrium under the hold levels, whose only error is that of the quadrature
-  drives         ///< the drives alone: the figure has no error
+  first_touch,  ///< the motion until first contact: the difference between two runs estimates the figure's error
+  /// One rebound: the difference of two runs estimates the figure's error, unless they differ qualitatively before.
+  high_rebound,
+  every_touch,   ///< all touches: the difference of two runs estimates the figure's error when both have the same touches
+  last_rebound,  ///< the end of a sequence of rebounds, which is chaotic: only an ensemble of runs gives the figure's range
+  open,          ///< the motion of a switch that stays open: the difference between two runs estimates the figure's error
+  rest,          ///< the equilibrium under the hold levels; the only error of the figure is that of the quadrature
+  drives         ///< the drives alone, not the motion: the figure of merit has no error
 };
 
 struct Figure {
   using Member = std::variant<double Metrics::*, int Metrics::*, bool Metrics::*>;
 
-  std::string_view key;     ///< name in every JSON; ends with the unit
-  std::string_view name;    ///< name in tables of a report
-  std::string_view also;    ///< another name in common use; may be empty
-  std::string_view symbol;  ///< short name; may be empty
-  std::string_view unit;    ///< unit; empty for a count and for yes or no
+  std::string_view key;     ///< name of the figure in every JSON; ends with the unit
+  std::string_view name;    ///< name of the figure in tables of a report
+  std::string_view also;    ///< another name of the figure in common use; may be empty
+  std::string_view symbol;  ///< short name of the figure, such as t_b; may be empty
+  std::string_view unit;    ///< unit of the figure; empty for a count and for yes or no
   Better better = Better::neither;
   Conditioning conditioning = Conditioning::first_touch;
   Member member;
-  /// Figure whose derivative counts as that of this figure: last_rebound_end for the permanent contact time. Null when the
+  /// Figure whose derivative serves as that of this figure: last_rebound_end for the permanent contact time. Null when the
   /// figure has no derivative.
   double Metrics::*slope = nullptr;
   bool of_results = true, of_devices = false;  ///< true when results show the figure for one closing, or for varied devices
   bool AskedFigures::*asked = nullptr;         ///< request without which results omit the figure; null: always shown
-  double worst = std::numeric_limits<double>::infinity();  ///< value that is assigned to a device that does not close
+  double worst = std::numeric_limits<double>::infinity();  ///< value of the figure for a device that does not close
 
   [[nodiscard]] constexpr bool is_count() const { return std::holds_alternative<int Metrics::*>(member); }
   [[nodiscard]] constexpr bool is_yes_or_no() const { return std::holds_alternative<bool Metrics::*>(member); }
@@ -56,18 +57,18 @@ struct Figure {
     return conditioning == Conditioning::first_touch || conditioning == Conditioning::high_rebound ||
            conditioning == Conditioning::every_touch || conditioning == Conditioning::open;
   }
-  /// Returns true when results show the figure for a scene with the requests `of_scene`.
+  /// Returns true when results show the figure for a scene that requests the optional figures `of_scene`.
   [[nodiscard]] constexpr bool is_asked(const AskedFigures& of_scene) const { return asked == nullptr || of_scene.*asked; }
-  /// Returns true when certify() estimates an error of the figure.
+  /// Returns true when certify(), which repeats a run at higher accuracy, estimates an error of the figure.
   [[nodiscard]] constexpr bool has_error() const { return !is_yes_or_no() && conditioning != Conditioning::drives; }
 
-  /// Returns the name with the other name in common use, for example "Permanent contact (settling time)".
+  /// Returns the figure's name with its other name in common use, for example "Permanent contact (settling time)".
   [[nodiscard]] std::string label() const;
-  /// Returns the key without its unit, for example "initial_contact_time".
+  /// Returns the figure's key without its unit, for example "initial_contact_time".
   [[nodiscard]] constexpr std::string_view quantity() const {
     return unit.empty() ? key : key.substr(0, key.size() - unit.size() - 1);
   }
-  /// Returns the figure of a closing, 1 for yes and 0 for no; NaN when the figure is not known.
+  /// Returns the value of the figure for a closing, 1 for yes and 0 for no; NaN when the figure is not known.
   [[nodiscard]] double value(const Metrics& metrics) const;
   /// Returns the value of the figure with which closings are compared. A rebound height below the significant height counts as
   /// that height, and a least force below the steady force as the steady force.
@@ -407,15 +408,15 @@ inline constexpr auto device_figures = figures_that_are<internal::is_of_devices>
 inline constexpr auto conditioned_figures = figures_that_are<internal::is_number_of_results>();
 inline constexpr auto derived_figures = figures_that_are<internal::is_derived>();
 
-/// Returns the members of `figures` that a scene with the requests `asked` shows.
+/// Returns the members of `figures` that results show for a scene that requests the optional figures `asked`.
 [[nodiscard]] std::vector<Figure> asked_among(std::span<const Figure> figures, const AskedFigures& asked);
 
-/// Returns the row of figure_table for a member of Metrics.
+/// Returns the entry of figure_table for a member of Metrics.
 [[nodiscard]] constexpr const Figure& figure_of(Figure::Member member) {
   return *std::find_if(figure_table.begin(), figure_table.end(), [&](const Figure& one) { return one.member == member; });
 }
 [[nodiscard]] constexpr std::string_view key_of(Figure::Member member) { return figure_of(member).key; }
-/// Returns the row of figure_table with this key, which must exist.
+/// Returns the entry of figure_table with this key, which must exist.
 [[nodiscard]] constexpr const Figure& figure_of(std::string_view key) {
   return *std::find_if(figure_table.begin(), figure_table.end(), [&](const Figure& one) { return one.key == key; });
 }
@@ -427,7 +428,7 @@ inline constexpr std::array compared_figures{figure_of(&Metrics::initial_contact
 inline constexpr std::array studied_figures{compared_figures[0], compared_figures[1], compared_figures[2],
                                             figure_of(&Metrics::peak_contact_force)};
 
-/// Holds one value of type T for every figure in figure_table.
+/// Holds one value of type T for every figure of merit in figure_table.
 template <class T>
 class PerFigure {
  public:
@@ -445,19 +446,20 @@ class PerFigure {
   }
 };
 
-/// A number for every figure: its value, or its error. NaN when the number is not known.
+/// A number for every figure of merit: its value, or its error. NaN when the number is not known.
 class FigureValues : public PerFigure<double> {
  public:
   constexpr FigureValues() { values_.fill(Metrics::unset); }
   explicit FigureValues(const Metrics& metrics);
 
-  AskedFigures asked = {};  ///< requests of the scene: see Figure::is_asked()
+  AskedFigures asked = {};  ///< optional figures that the scene requests: see Figure::is_asked()
 };
 
-/// Returns the relative change of a figure, (value - reference) / max(|reference|, least); NaN when an argument is NaN.
+/// Returns the relative change of a figure of merit, (value - reference) / max(|reference|, least); NaN when an argument is
+/// NaN.
 [[nodiscard]] double relative_change(double value, double reference, double least = 0);
-/// Returns the absolute relative change of a figure, for comparison with a tolerance: 0 when both values are equal or both are
-/// NaN, infinite when one is NaN.
+/// Returns the absolute relative change of a figure of merit, for comparison with a tolerance: 0 when both values are equal or
+/// both are NaN, infinite when one is NaN.
 [[nodiscard]] double relative_difference(double value, double reference, double least = 0);
 
 }  // namespace softland

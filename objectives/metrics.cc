@@ -17,7 +17,7 @@ std::vector<Rebound> rebounds(const Trajectory& trajectory) {
 
 void LandingFigures::touch(const Touch& touch) {
   touched_ = true;
-  // The largest value must be NaN when a value is NaN; std::max would lose it.
+  // The peak force must be NaN when a touch has NaN; std::max would lose it.
   if (std::isnan(touch.peak_force) || touch.peak_force > peak_force_) peak_force_ = touch.peak_force;
   impact_energy_ += touch.peak_energy;
   largest_impact_velocity_ = std::max(largest_impact_velocity_, touch.impact_velocity);
@@ -29,7 +29,8 @@ void LandingFigures::rebound(const Rebound& rebound) {
   latest_ = rebound;
   if (std::isfinite(rebound.end)) separated_ += rebound.end - rebound.begin;
   if (!(rebound.height > options_.significant_rebound)) return;
-  if (++significant_ == 1) first_duration_ = rebound.end - rebound.begin;  // NaN for a rebound that has not ended
+  // The duration is NaN for a first rebound that has not ended.
+  if (++significant_ == 1) first_duration_ = rebound.end - rebound.begin;
   last_end_ = rebound.end;
 }
 
@@ -82,7 +83,8 @@ Metrics MetricsObserver::metrics(const Trajectory& end) {
   result.release_settling_time = opening.settling_time;
   result.overshoot_open = opening.overshoot;
   result.least_gap_open = opening.least_gap;
-  const double apart = std::isfinite(result.separated) ? result.separated : 0;  // NaN if the run began closed
+  // The time in separation counts as 0 if it is NaN, as for a run that began closed.
+  const double apart = std::isfinite(result.separated) ? result.separated : 0;
   result.closed_time = options_.opening.time - landing_->first_touch.time - apart + opening.opening_time - opening.separated;
   return result;
 }
@@ -116,7 +118,7 @@ Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) con
     if (end.status == Status::done) result.status = result.touched() ? Status::not_settled : Status::no_contact;
     return result;
   }
-  if (end.ends_at_touch) return result;  // the other figures depend on the missing contact law
+  if (end.ends_at_touch) return result;  // the run ended at first touch without a contact law; the other figures need one
   result.hold_force = end.hold_force;
   result.resistance = end.hold_resistance;
   result.electrical_contact = end.electrical.first_closed;

@@ -17,17 +17,18 @@
 
 namespace softland {
 
-/// Figures that appear in results only for scenes that request them.
+/// Optional figures of merit, which appear in results only for scenes that request them.
 struct AskedFigures {
-  bool resistance = false;    ///< true when the contacts that make the connection have a resistivity
-  bool electrical = false;    ///< true when the device requests electrical figures (Device::electrical)
-  bool opening = false;       ///< true when the run opens the switch on command
-  bool pressure = false;      ///< true when a contact that makes the connection has summits and a hardness
-  bool charge = false;        ///< true when the device has a load circuit (Device::load)
-  bool break_charge = false;  ///< true when the device has a load circuit, and the run opens on command
+  bool resistance = false;  ///< true when the contacts that make the connection have a resistivity: show contact resistance
+  bool electrical = false;  ///< true when the device requests figures of electrical closing (Device::electrical)
+  bool opening = false;     ///< true when the run opens the switch on command: show figures of the opening
+  bool pressure = false;    ///< true when a contact has asperity summits and a hardness: show the contact pressure
+  bool charge = false;      ///< true when the device has a load circuit (Device::load): show the charge through the contact
+  /// True when the device has a load circuit, and the run opens on command: show the charge on opening.
+  bool break_charge = false;
   bool operator==(const AskedFigures&) const = default;
 };
-/// Returns the figures that a device requests.
+/// Returns the optional figures of merit that a device requests.
 [[nodiscard]] inline AskedFigures asked_figures(const Device& device) {
   return {.resistance = device.conducts(),
           .electrical = device.electrical.is_asked(),
@@ -37,10 +38,10 @@ struct AskedFigures {
 }
 
 struct MetricsOptions {
-  double significant_rebound = 1e-9;  ///< a rebound counts when it is higher than this [m]
-  double steady_force = 0.1;          ///< the contact force is steady when it is above this share of the hold force
+  double significant_rebound = 1e-9;  ///< height above which a rebound counts [m]
+  double steady_force = 0.1;          ///< share of the hold force above which the contact force counts as steady
   AskedFigures asked = {};
-  OpeningCommand opening = {};    ///< command to open; figures of the closing count until the time of this command
+  OpeningCommand opening = {};    ///< command to open; figures of the closing count until the time of the command
   TransferOptions transfer = {};  ///< load circuit for the transferred charge; set when Device::load is given
 };
 
@@ -57,77 +58,84 @@ struct Metrics {
   double impact_velocity = unset;          ///< v_i, impact velocity of the first touch [m/s]
   double peak_contact_force = unset;       ///< largest contact force of the run [N]
   double impact_energy = unset;            ///< sum over touches of the largest stored contact energy [J]
-  double hold_force = unset;               ///< contact force in the equilibrium under the hold levels [N]
-  double steady_force_time = unset;        ///< Trajectory::steady_force_time [s]
-  double least_force_after_touch = unset;  ///< Trajectory::least_force_after_touch [N]
-  double capacitance = unset;              ///< Trajectory::hold_capacitance [F]
-  double drive_energy = unset;             ///< energy that the drives give [J]
+  double hold_force = unset;               ///< contact force in the closed equilibrium under the hold levels of the drives [N]
+  double steady_force_time = unset;        ///< time from which the contact force is steady, up to the end of the run [s]
+  double least_force_after_touch = unset;  ///< least contact force after its first maximum [N]
+  double capacitance = unset;              ///< capacitance of beam and electrode at rest under the hold levels [F]
+  double drive_energy = unset;             ///< energy that the drives give in the run [J]
   bool settled = false;
-  double resistance = unset;           ///< Trajectory::hold_resistance [Ohm]
-  double electrical_contact = unset;   ///< ElectricalOutcome::first_closed [s]
-  double electrical_settling = unset;  ///< ElectricalOutcome::closed_from [s]
-  int electrical_bounces = 0;          ///< ElectricalOutcome::openings; meaningless when the switch never closes electrically
-  double pressure = unset;             ///< largest Touch::pressure of the run
+  double resistance = unset;           ///< contact resistance at rest under the hold levels [Ohm]
+  double electrical_contact = unset;   ///< time at which the switch first closes electrically [s]
+  double electrical_settling = unset;  ///< time from which the switch stays closed electrically [s]
+  /// Number of electrical openings after the first closing; meaningless when the switch never closes electrically.
+  int electrical_bounces = 0;
+  double pressure = unset;  ///< largest pressure of an asperity summit over its hardness, in any touch
   /// Charge through the contact until the command to open, or the end of the run [C]; see objectives/transferred_charge.h.
   double make_charge = unset;
   double break_charge = unset;  ///< charge through the contact after the command to open [C]
-  AskedFigures asked = {};      ///< MetricsOptions::asked
-  // The following figures are known when the drives command the switch to open: see OpeningOnCommand.
-  double open_command = unset;           ///< time of the command to open [s]
-  double opening_time = unset;           ///< time from the command to open to the last break of the contact [s]
-  int release_bounces = 0;               ///< bounces on opening; meaningless if the run ends closed
-  double release_bounce_height = unset;  ///< highest separation on opening that ends in a touch [m]; 0 without a bounce
+  AskedFigures asked = {};      ///< optional figures of merit that results show
+  // The following figures of the opening are known when the drives command the switch to open.
+  double open_command = unset;  ///< time of the command to open [s]
+  double opening_time = unset;  ///< time from the command to open to the last break of the contact [s]
+  int release_bounces = 0;      ///< number of bounces on opening; meaningless if the run ends closed
+  /// Highest separation after the command to open that ends in a touch [m]; 0 without a bounce.
+  double release_bounce_height = unset;
   double release_settling_time = unset;  ///< time from the command to open to rest in the open state [s]
-  double overshoot_open = unset;         ///< largest excursion beyond the open position, away from the contact [m]
-  double least_gap_open = unset;         ///< smallest separation after the opening [m]
-  double closed_time = unset;            ///< time in contact from the first touch to the last break [s]
+  /// Largest excursion of the contact point beyond its open position, away from the contact [m].
+  double overshoot_open = unset;
+  /// Smallest distance to the contact once the contact point has turned back towards it after the opening [m].
+  double least_gap_open = unset;
+  double closed_time = unset;  ///< time in contact from the first touch to the last break [s]
   /// Largest impact velocity on a back stop after the command to open, 0 without an impact [m/s]; set by simulate().
   double back_stop_velocity = unset;
-  // simulate() sets the following figures when the switch never touches: see set_open_figures().
+  // simulate() sets the following figures when the contact never closes.
   double static_deflection = unset;  ///< position of the contact point in the open equilibrium under the hold levels [m]
-  double overshoot = unset;          ///< largest excursion beyond static_deflection, away from the initial position [m]
-  /// Time from which the contact point stays near static_deflection [s]; NaN when the point does not.
+  /// Largest excursion of the contact point beyond static_deflection, away from its initial position [m].
+  double overshoot = unset;
+  /// Time from which the contact point stays near static_deflection [s]; NaN when the contact point does not.
   double open_settling_time = unset;
-  // simulate() sets the following figures, which depend on the drives.
-  /// Largest |V| of the electrodes' drives in the window; that of the piezo's drive when there is no electrode [V].
+  // simulate() sets the following figures, which depend on the drives. Largest |V| of the electrodes' drives in the simulated
+  // time window; that of the piezo's drive when there is no electrode [V].
   double peak_voltage = unset;
   double peak_slew = unset;                ///< largest |dV/dt| of any drive [V/s]; infinite for a jump of the voltage
-  double largest_impact_velocity = unset;  ///< largest impact velocity of all touches, not only of the first [m/s]
-  // The following figures enter costs; results do not show them.
-  double closest = unset;    ///< smallest separation before the first touch [m]; known also without contact
-  double separated = unset;  ///< time above the first-touch plane after the first touch [s]
+  double largest_impact_velocity = unset;  ///< largest impact velocity of all touches [m/s]
+  // The following figures of a closing enter the cost of a search; results do not show them.
+  double closest = unset;    ///< smallest distance to the contact plane before the first touch [m]; known also without contact
+  double separated = unset;  ///< total time in separation after the first touch [s]
   /// End of the last significant rebound; end of the run when the last rebound has not ended; first contact without a
   /// significant rebound [s].
   double last_rebound_end = unset;
-  double landing_excess = unset;  ///< Trajectory::landing_excess, but not below 0 [J]
-  double end = unset;             ///< end of the run [s]
-  bool reopened = false;          ///< true when the contact is open at the end of the run, by more than half of the contact gap
+  /// Energy above that of the closed equilibrium after the first touch, when the drives are at their hold levels; at least 0
+  /// [J].
+  double landing_excess = unset;
+  double end = unset;     ///< end of the run [s]
+  bool reopened = false;  ///< true when the contact is open at the end of the run, by more than half of the contact gap
 
   [[nodiscard]] bool touched() const { return std::isfinite(initial_contact_time); }
-  /// Returns true when the contact settled without a significant rebound.
+  /// Returns true when the contact closed without a significant rebound.
   [[nodiscard]] bool lands() const { return settled && bounce_count == 0; }
-  /// Returns true when the closing was simulated to the end of its window.
+  /// Returns true when the closing was simulated to the end of its time window.
   [[nodiscard]] bool is_complete() const {
     return status == Status::done || status == Status::no_contact || status == Status::not_settled;
   }
 };
 
-/// Computes the figures of a closing from its touches and rebounds.
+/// Computes the figures of merit of a closing from its touches and rebounds.
 class LandingFigures {
  public:
   explicit LandingFigures(const MetricsOptions& options = {}) : options_(options) {}
   void touch(const Touch& touch);
   void rebound(const Rebound& rebound);
 
-  /// The motion of the contact point up to the end of a run.
+  /// Summary of the contact point's motion up to the end of a run.
   struct Course {
-    bool sound = true;   ///< true when every knot was finite, and the knots were in order of time
-    bool above = false;  ///< true when the last rebound, already passed to rebound(), had not ended at the end of the run
+    bool sound = true;   ///< true when every point of the motion was finite, and the points were in order of time
+    bool above = false;  ///< true when a rebound had not ended at the end of the run; it was passed to rebound()
     FirstTouch first_touch = {};
-    double last_time = 0;             ///< time of the last knot [s]
-    double closest = Metrics::unset;  ///< smallest separation before the first touch [m]
+    double last_time = 0;             ///< time of the last point of the motion [s]
+    double closest = Metrics::unset;  ///< smallest distance to the contact plane before the first touch [m]
   };
-  /// Returns the figures of the run. Call it after the end of the run; see the function metrics() below.
+  /// Returns the figures of merit of the run. Call it after the end of the run; see the function metrics() below.
   [[nodiscard]] Metrics metrics(const Trajectory& end, const Course& course) const;
 
  private:
@@ -139,10 +147,10 @@ class LandingFigures {
   double peak_force_ = 0, impact_energy_ = 0, largest_impact_velocity_ = 0, pressure_ = Metrics::unset;
 };
 
-/// Computes the figures of merit during a closing, without storing its motion.
+/// Computes the figures of merit of a closing while it runs, without storing the motion.
 class MetricsObserver final : public ClosingObserver {
  public:
-  /// `contact_gap` is in [m].
+  /// Takes the distance `contact_gap` from rest to the contact plane [m].
   explicit MetricsObserver(double contact_gap, const MetricsOptions& options = {})
       : options_(options),
         figures_(options),
@@ -154,7 +162,7 @@ class MetricsObserver final : public ClosingObserver {
   void touch(const Touch& touch) override {
     if (touch.begin < options_.opening.time) figures_.touch(touch);
   }
-  /// Returns the figures of the run. Call it after the end of the run; see the function metrics() below.
+  /// Returns the figures of merit of the run. Call it after the end of the run; see the function metrics() below.
   [[nodiscard]] Metrics metrics(const Trajectory& end);
 
  private:
@@ -165,20 +173,22 @@ class MetricsObserver final : public ClosingObserver {
   LandingFigures figures_;
   ReboundFinder rebounds_;
   TransferredCharge charge_;
-  double contact_gap_, closest_;  // contact gap, and smallest separation before the first touch [m]
+  // Distance from rest to the contact plane, and smallest distance to it before the first touch [m].
+  double contact_gap_, closest_;
   TrajectoryPoint last_{.time = Metrics::unset};
-  double make_charge_ = Metrics::unset;            // charge during closing, complete once the opening has begun [C]
-  std::optional<CommandedOpening> opening_;        // opening on command; empty before the command
-  std::optional<LandingFigures::Course> landing_;  // motion of the closing until the command to open
+  double make_charge_ = Metrics::unset;      // charge through the contact during closing, final once the opening has begun [C]
+  std::optional<CommandedOpening> opening_;  // figures of the opening on command; empty before the command
+  std::optional<LandingFigures::Course> landing_;  // motion of the contact point until the command to open
 };
 
-/// Returns all rebounds, significant or not, in order of time, up to the first knot that is not finite. A separation below
-/// 1e-12 of the contact gap does not count. Heights are extrema of the trajectory's interpolant, not of its knots.
+/// Returns all rebounds of a trajectory, significant or not, in order of time, up to the first motion point that is not finite.
+/// A separation below 1e-12 of the contact gap does not count. Heights are extrema of the interpolated motion between its
+/// points.
 [[nodiscard]] std::vector<Rebound> rebounds(const Trajectory& trajectory);
 
-/// Computes the figures of a trajectory. Never throws: the status reports failures. It is the trajectory's own status if that
-/// is not `done`; else done, no_contact, not_settled, or numerical_failure when a knot is not finite or goes back in time. The
-/// known figures depend on the run:
+/// Computes the figures of merit of a trajectory. Never throws: the status reports failures. It is the trajectory's own status
+/// if that is not `done`; else done, no_contact, not_settled, or numerical_failure when a point of the motion is not finite or
+/// goes back in time. The known figures depend on the run:
 ///
 /// - A run that did not reach the end of its window: initial_contact_time and impact_velocity if the switch reached contact,
 /// and no other figure.

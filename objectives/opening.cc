@@ -40,7 +40,8 @@ void BandFollower::reach_end_of_drives(double position) {
   residual_ = std::fmax(residual_, std::abs(position - band_.open_position));
 }
 
-// Adds a monotone piece of the motion, which may enter the band on one side and leave it on the other.
+// Adds a monotone part of the contact point's motion, which may enter the band about the open position on one side and leave it
+// on the other.
 void BandFollower::leave_band(const Quintic& curve, double from, double at_from, double to, double at_to) {
   const double middle = band_.open_position;
   const bool begins_inside = std::abs(at_from - middle) <= band_.width;
@@ -68,7 +69,7 @@ void CommandedOpening::follow(const TrajectoryPoint& a, const TrajectoryPoint& b
   const Quintic curve(a.time, a.position, a.velocity, a.acceleration, b.time, b.position, b.velocity, b.acceleration);
   double from = a.position;
   const auto advance = [&](double to) {
-    if (to > from) nearest_ = std::fmax(nearest_, to);  // the contact point returns towards the contact
+    if (to > from) nearest_ = std::fmax(nearest_, to);  // the contact point moves back towards the contact
     if (to >= contact_gap_) nearest_ = OpeningFigures::unset;
     from = to;
   };

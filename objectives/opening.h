@@ -1,5 +1,5 @@
-// Figures of an opening: how a closed switch opens, and how long it vibrates afterwards. These figures are taken at the contact
-// point, like those of a closing.
+// Figures of merit of an opening: how a closed switch opens, and how long it vibrates afterwards. These figures are taken at
+// the contact point, like those of a closing.
 #pragma once
 
 #include <limits>
@@ -12,24 +12,28 @@ namespace softland {
 
 struct OpeningBand {
   double open_position = 0;  ///< position of the contact point at rest under the open levels of the drives [m]
-  double width = 0;          ///< half-width of the band [m]; the switch is settled once its contact point stays in the band
-  double drives_end = 0;     ///< time from which the drives are at their open levels [s]
+  /// Half-width of the band about open_position [m]; the switch is settled once its contact point stays in the band.
+  double width = 0;
+  double drives_end = 0;  ///< time from which the drives stay at their open levels [s]
 };
 
 /// The settling of the contact point in a band about its open position.
 struct BandFigures {
-  /// Time from which the contact point stays in the band [s]; NaN when the contact point is outside the band at the end.
+  /// Time from which the contact point stays in the band about its open position [s]; NaN when it is outside the band at the
+  /// end.
   double settled_from = std::numeric_limits<double>::quiet_NaN();
-  double below = 0, above = 0;  ///< largest excursion, away from and towards the contact [m]; 0 without an excursion
-  double residual = std::numeric_limits<double>::quiet_NaN();  ///< OpeningFigures::residual_vibration
+  /// Largest excursion from the open position, away from and towards the contact [m]; 0 without one.
+  double below = 0, above = 0;
+  /// Largest distance from the open position after the drives have ended [m].
+  double residual = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Computes BandFigures from the distance of the contact point to the open position, one turning point after another. The
-/// motion between knots is the quintic through the knots.
+/// motion between two knots (points of the simulated motion) is their quintic interpolant.
 class BandFollower {
  public:
   explicit BandFollower(const OpeningBand& band) : band_(band) {}
-  /// Adds the motion between two consecutive knots.
+  /// Adds the motion between two consecutive points of a trajectory.
   void follow(const TrajectoryPoint& a, const TrajectoryPoint& b);
   [[nodiscard]] BandFigures figures() const;
 
@@ -44,75 +48,80 @@ class BandFollower {
 };
 [[nodiscard]] BandFigures band_figures(const Trajectory& course, const OpeningBand& band);
 
-/// A command to open the switch during a run.
+/// A command, during a run, to open the switch.
 struct OpeningCommand {
   double time = std::numeric_limits<double>::infinity();  ///< time of the command to open [s]
-  /// Rest position of the contact point under the levels after the command to open [m]; NaN when no rest position exists.
+  /// Rest position of the contact point under the drives' levels after the command to open [m]; NaN when no rest position
+  /// exists.
   double open_position = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The opening of a closed switch on a command. Times count from the command. All figures are NaN when the contact is closed at
-/// the end of the run.
+/// Figures of the opening of a closed switch on a command. Times count from the command. All figures are NaN when the contact
+/// is closed at the end of the run.
 struct OpeningOnCommand {
-  double command = std::numeric_limits<double>::quiet_NaN();       ///< time of the command to open, counted from t = 0 [s]
-  double opening_time = std::numeric_limits<double>::quiet_NaN();  ///< time from command to last break of contact [s]
-  /// Time from the command from which the contact point stays within settled_band of its rest position [s].
+  double command = std::numeric_limits<double>::quiet_NaN();  ///< time of the command to open, counted from t = 0 [s]
+  /// Time from the command to open to the last break of the contact [s].
+  double opening_time = std::numeric_limits<double>::quiet_NaN();
+  /// Time from the command to open after which the contact point stays within settled_band of its rest position [s].
   double settling_time = std::numeric_limits<double>::quiet_NaN();
-  /// Largest excursion beyond the open position, away from the contact [m].
+  /// Largest excursion of the contact point beyond its open position, away from the contact [m].
   double overshoot = std::numeric_limits<double>::quiet_NaN();
-  /// Smallest separation once the contact point has turned back towards the contact, or the last separation [m].
+  /// Smallest distance to the contact once the contact point has turned back towards it, or the last distance [m].
   double least_gap = std::numeric_limits<double>::quiet_NaN();
-  /// Highest separation after the command that ends in a touch [m]; 0 without a bounce.
+  /// Highest separation after the command to open that ends in a touch [m]; 0 without a bounce.
   double highest_bounce = std::numeric_limits<double>::quiet_NaN();
-  double separated = 0;  ///< total time of separations before the last break of the contact [s]
-  /// Number of separations higher than the significant rebound that end in a touch; meaningless when the contact is closed at
-  /// the end of the run.
+  double separated = 0;  ///< total time in separation before the last break of the contact [s]
+  /// Number of bounces on opening: separations, higher than the significant rebound, that end in a touch; meaningless when the
+  /// contact is closed at the end of the run.
   int bounces = 0;
 };
 
-/// The contact point is at rest when it stays within this share of the contact gap from its open position.
+/// The contact point of an open switch is at rest when it stays within this share of the contact gap from its open position.
 inline constexpr double settled_band = 0.02;
 
 /// Computes the figures of an opening that is commanded during a run.
 class CommandedOpening {
  public:
-  /// `contact_gap` and `significant_rebound` are in [m].
+  /// Takes the distance `contact_gap` from rest to the contact plane and the least height `significant_rebound` of a bounce
+  /// that counts [m].
   CommandedOpening(const OpeningCommand& command, double contact_gap, double significant_rebound);
-  /// Adds the motion between two consecutive knots after the command to open.
+  /// Adds the motion between two consecutive points of a trajectory after the command to open.
   void follow(const TrajectoryPoint& a, const TrajectoryPoint& b);
-  /// Adds a separation that ended in a touch after the command to open.
+  /// Adds a separation of the contact that ended in a touch after the command to open.
   void bounce(const Rebound& rebound);
-  /// Returns the figures after the run has ended at the knot `last`. `under_way` is the separation that has not ended; none
-  /// when the contact is closed.
+  /// Returns the figures of the opening after the run has ended at the motion point `last`. `under_way` is the separation that
+  /// has not ended; none when the contact is closed.
   [[nodiscard]] OpeningOnCommand figures(const std::optional<Rebound>& under_way, const TrajectoryPoint& last) const;
 
  private:
   OpeningCommand command_;
-  double contact_gap_, significant_;  // contact gap, and significant height of a bounce [m]
+  double contact_gap_, significant_;  // distance from rest to the contact plane, and least height of a bounce that counts [m]
   BandFollower band_;
-  double nearest_ = std::numeric_limits<double>::quiet_NaN();  // position nearest to the contact since the point turned back
-                                                               // [m]
-  double highest_ = 0, separated_ = 0;                         // highest bounce [m], and total time of separations [s]
+  double nearest_ = std::numeric_limits<double>::quiet_NaN();  // position nearest to the contact after the turn back [m]
+  double highest_ = 0, separated_ = 0;                         // height of the highest bounce, total time in separation [s]
   int bounces_ = 0;
 };
 
 struct OpeningFigures {
   static constexpr double unset = std::numeric_limits<double>::quiet_NaN();
 
-  /// done: the contact opens, and its point stays in the band until the end of the window. not_settled: at the end the contact
-  /// is closed, or its point is outside the band. Otherwise the status of the run.
+  /// done: the contact opens, and the contact point stays in the band about its open position until the end of the time window.
+  /// not_settled: at the end the contact is closed, or the contact point is outside the band. Otherwise the status of the run.
   Status status = Status::not_run;
   /// Time at which the contact opens for the last time [s]; NaN when the contact is closed at the end of the run.
   double release_time = unset;
-  double settling_time = unset;  ///< time from which the contact point stays in the band [s]; NaN when it ends outside
-  double overshoot = unset;      ///< largest excursion beyond the open position, away from the contact [m]; 0 without one
-  /// Largest distance from the open position after OpeningBand::drives_end [m]; NaN when the run ends before, or closed.
+  /// Time from which the contact point stays in the band about its open position [s]; NaN when outside at the end.
+  double settling_time = unset;
+  /// Largest excursion of the contact point beyond its open position, away from the contact [m]; 0 without one.
+  double overshoot = unset;
+  /// Largest distance of the contact point from its open position after OpeningBand::drives_end [m]; NaN when the run ends
+  /// before drives_end, or closed.
   double residual_vibration = unset;
   int touches = 0;  ///< number of touches of the contact after the first opening
 };
 
-/// Returns the figures of a run that begins closed (ClosingOptions::begins_closed). A run that did not reach its end has only a
-/// status.
+/// Returns the figures of the opening in a run that begins closed (ClosingOptions::begins_closed). A run that did not reach its
+/// end has only a status.
 [[nodiscard]] OpeningFigures release_figures(const Trajectory& opening, const OpeningBand& band);
 
 }  // namespace softland

@@ -28,10 +28,10 @@ class OwnObjective {
 
   /// Returns the name of the objective for messages and results.
   [[nodiscard]] virtual std::string_view name() const = 0;
-  /// Returns F, the value to minimise. F must be >= 0, and should be about 1 for the plain step; F is divided by its value for
-  /// the plain step if that value is below 0.01 or above 100. value() is called only for closings that reach contact and could
-  /// be simulated to their end. NaN makes the candidate infeasible. A value below 0 causes InvalidInput, and so does a value of
-  /// the plain step that is not finite.
+  /// Returns the value F of a closing that a search minimises. F must be >= 0, and should be about 1 for the plain step; F is
+  /// divided by its value for the plain step if that value is below 0.01 or above 100. value() is called only for closings that
+  /// reach contact and could be simulated to their end. NaN makes the candidate infeasible. A value below 0 causes
+  /// InvalidInput, and so does a value of the plain step that is not finite.
   ///
   /// `closing` is in SI units. A figure that is not known is NaN: permanent_contact_time when the contact does not settle;
   /// static_deflection, overshoot and open_settling_time always; landing_excess outside a search on the nominal device;
@@ -39,14 +39,14 @@ class OwnObjective {
   /// plain step to the same hold levels, on the nominal device. If the plain step does not reach contact, `step` holds
   /// estimates for a closing of this switch, and NaN.
   [[nodiscard]] virtual double value(const Metrics& closing, const Metrics& step) const = 0;
-  /// Writes F of the closings of many devices into `values`, one per closing. A search over devices calls values() once per
-  /// candidate. This default calls value() for each closing.
+  /// Writes the values F of the closings of many devices into `values`, one per closing. A search under process variation calls
+  /// values() once per candidate. This default calls value() for each closing.
   virtual void values(std::span<const Metrics> closings, const Metrics& step, std::span<double> values) const {
     for (std::size_t k = 0; k < closings.size(); ++k) values[k] = value(closings[k], step);
   }
-  /// Returns true when a search first seeks a closing without a significant rebound. Otherwise every closing that reaches
-  /// contact and stays closed costs F / (1 + F), with or without rebounds, and the goal is a lower F than that of the plain
-  /// step.
+  /// Returns true when a search first seeks a closing without a significant rebound. If false, every closing that reaches
+  /// contact and stays closed costs F / (1 + F), F being value(), with or without rebounds, and the search seeks a lower F than
+  /// that of the plain voltage step.
   [[nodiscard]] virtual bool lands_first() const { return true; }
 };
 

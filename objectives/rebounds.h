@@ -1,4 +1,4 @@
-// The rebounds of a closing, found during the run without storing past knots.
+// Finds the rebounds of a closing during the run, without storing past points of the motion.
 #pragma once
 
 #include <algorithm>
@@ -15,22 +15,23 @@ namespace softland {
 
 /// A time interval after first contact in which the contact point is above the first-touch plane.
 struct Rebound {
-  double begin = 0;           ///< start of the rebound [s]
-  double end = 0;             ///< end of the rebound [s]; NaN when the rebound has not ended at the end of the window
-  double height = 0;          ///< largest separation of the rebound [m]; a lower bound when the rebound has not ended
-  double time_of_height = 0;  ///< time at which the largest separation occurs [s]
+  double begin = 0;  ///< start of the rebound: the contact opens [s]
+  double end = 0;    ///< end of the rebound: the contact closes [s]; NaN when the rebound has not ended at the end of the run
+  /// Largest distance to the contact plane in the rebound [m]; a lower bound when the rebound has not ended.
+  double height = 0;
+  double time_of_height = 0;  ///< time at which the height of the rebound occurs [s]
 };
 
 /// Finds rebounds in the separation of the contact point from the first-touch plane. Turning points and crossings of the plane
-/// between knots are those of the quintic through the knots. A separation below 1e-12 of the contact gap does not count: the
-/// integrator stops at the plane only to within rounding.
+/// between two knots (points of the simulated motion) are those of the quintic through the knots. A separation below 1e-12 of
+/// the contact gap does not count: the integrator stops at the plane only to within rounding.
 class ReboundFinder {
  public:
-  /// `contact_gap` is in [m].
+  /// Takes the distance `contact_gap` from rest to the contact plane [m].
   explicit ReboundFinder(double contact_gap) : gap_(contact_gap), usable_(std::isfinite(contact_gap)) {}
 
-  /// Adds the next knot and calls found(rebound) for every rebound that ends before this knot. Ignores a knot that is not
-  /// finite or goes back in time, and all later knots, and returns false for them.
+  /// Adds the next point of the motion and calls found(rebound) for every rebound that ends before this point. Ignores a point
+  /// that is not finite or goes back in time, and all later points, and returns false for them.
   template <class Found>
   bool knot(const TrajectoryPoint& next, Found&& found) {
     usable_ = usable_ && std::isfinite(next.time) && std::isfinite(next.position) && std::isfinite(next.velocity) &&
@@ -46,23 +47,24 @@ class ReboundFinder {
     return true;
   }
 
-  /// Returns true when every knot so far was finite and in order of time.
+  /// Returns true when every point of the motion so far was finite and in order of time.
   [[nodiscard]] bool usable() const { return usable_; }
   [[nodiscard]] const FirstTouch& first_touch() const { return first_touch_; }
-  [[nodiscard]] double last_time() const { return last_.time; }  ///< time of the last knot that was not ignored [s]
+  [[nodiscard]] double last_time() const { return last_.time; }  ///< time of the last motion point that was not ignored [s]
   /// Returns the rebound that has not ended yet, if any.
   [[nodiscard]] const std::optional<Rebound>& under_way() const { return under_way_; }
 
  private:
-  /// A point of the motion; the separation is monotone and does not change its sign from here to the next Node.
+  /// A point of the contact point's motion; until the next Node the separation from the contact plane is monotone and does not
+  /// change its sign.
   struct Node {
-    double time = 0;        ///< [s]
-    double separation = 0;  ///< separation from the first-touch plane [m]
-    double velocity = 0;    ///< [m/s]
+    double time = 0;        ///< time of this point of the motion [s]
+    double separation = 0;  ///< separation of the contact point from the first-touch plane [m]
+    double velocity = 0;    ///< velocity of the contact point [m/s]
   };
 
   [[nodiscard]] double snapped(double separation) const {
-    constexpr double on_the_plane = 1e-12;  // share of the contact gap
+    constexpr double on_the_plane = 1e-12;  // separation that counts as contact, as a share of the contact gap
     return std::abs(separation) <= on_the_plane * std::abs(gap_) ? 0.0 : separation;
   }
   [[nodiscard]] Node node(const TrajectoryPoint& p) const { return {p.time, snapped(gap_ - p.position), p.velocity}; }
@@ -105,7 +107,7 @@ class ReboundFinder {
   }
 
   /// Returns true when the control points of the quintic's Bernstein form are in order. This is a cheap sufficient condition
-  /// for a velocity that does not change its sign between the knots.
+  /// for a velocity that does not change its sign between two points of the motion.
   [[nodiscard]] static bool surely_monotone(const TrajectoryPoint& a, const TrajectoryPoint& b) {
     const double h = b.time - a.time;
     const double from_a = a.velocity * h / 5;
@@ -118,7 +120,7 @@ class ReboundFinder {
            std::all_of(differences.begin(), differences.end(), [](double d) { return d <= 0; });
   }
 
-  double gap_;  // contact gap [m]
+  double gap_;  // distance from rest to the contact plane [m]
   bool usable_, began_ = false;
   TrajectoryPoint last_;
   Node node_;

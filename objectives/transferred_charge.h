@@ -23,20 +23,20 @@ namespace softland {
 
 struct TransferOptions {
   SwitchedLoad load = {};
-  /// Steady force, below which charge counts [N]; the charge is NaN when this force is NaN.
+  /// Steady contact force, below which charge counts [N]; the charge is NaN when this force is NaN.
   double light_below = std::numeric_limits<double>::quiet_NaN();
-  std::optional<ContactResistance> contact = {};  ///< contact resistance; counts as 0 if empty
+  std::optional<ContactResistance> contact = {};  ///< resistance of the contact; counts as 0 if empty
 };
 
-/// Computes the charge through a contact during a run.
+/// Computes the charge that flows through a contact during a run.
 class TransferredCharge {
  public:
-  /// `contact_gap` is in [m].
+  /// Takes the distance `contact_gap` from rest to the contact plane [m].
   TransferredCharge(const TransferOptions& options, double contact_gap) : options_(options), contact_gap_(contact_gap) {}
-  /// Adds the motion between two knots, over which the contact is open or closed throughout. The contact force between the
-  /// knots is taken as linear in time.
+  /// Adds the motion between two points of a trajectory, over which the contact is open or closed throughout. The contact force
+  /// between the points is taken as linear in time.
   void follow(const TrajectoryPoint& from, const TrajectoryPoint& to);
-  /// Returns the charge up to the last added knot [C]; NaN when the charge is not known.
+  /// Returns the charge through the contact up to the last added motion [C]; NaN when the charge is not known.
   [[nodiscard]] double charge() const;
 
  private:

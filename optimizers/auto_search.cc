@@ -11,27 +11,33 @@
 namespace softland::internal {
 namespace {
 
-// Shares of the evaluation budget of an epoch, for its steps.
-constexpr double refining = 0.2;  // share of the given budget; with a gradient this share is spent twice
+// Shares of the evaluation budget that the steps of one epoch (cycle of sampling, local searches and refinement) may use.
+// Share of the evaluation budget for the refinement of the best point; with a gradient this share is spent twice.
+constexpr double refining = 0.2;
 constexpr double sampling = 0.15;
-constexpr double hopping = 0.6;  // share of the remaining budget for hops, with a gradient after an earlier search
+// Share of the remaining evaluation budget for local searches near the best point, with a gradient after an earlier search.
+constexpr double hopping = 0.6;
 constexpr double first_heat = 0.4;
 constexpr double later_heat = 0.2;
 
-constexpr long longest_epoch = 5000;  // [evaluations]; beyond this number, other starts are more promising than longer searches
+constexpr long longest_epoch = 5000;  // budget of one epoch; further start points promise more than longer local searches
 constexpr long epochs_with_gradient = 4, shortest_epoch = 600;
 constexpr std::size_t searches_at_once = 4;
 constexpr std::size_t starts_refined = 2;
-constexpr long shortest_refinement = 125;  // [evaluations]
-constexpr long shortest_heat = 20;         // [evaluations]; a simplex or a quadratic model of 7 variables needs as many
+constexpr long shortest_refinement = 125;  // least budget for refining the best point [evaluations]
+// Least budget of a local search [evaluations]; a simplex or a quadratic model of 7 variables needs as many.
+constexpr long shortest_heat = 20;
 
-// Standard deviations of the length of a hop, fractions of the box. A hop is a local search that starts near the best point.
+// Standard deviations of the distance between the best point and the random start of a local search near it (a hop), as
+// fractions of the box of the variables.
 constexpr std::array hop_sizes = {0.0005, 0.002, 0.008, 0.03};
-constexpr std::size_t fewest_hopping = 16;  // [variables]; with fewer variables, sampling the box is more successful than hops
-constexpr long iterations_of_hop = 8;       // [iterations]; plus one for each variable, for a model of the curvature
+// Least number of variables for which hops near the best point beat sampling the box.
+constexpr std::size_t fewest_hopping = 16;
+// Iterations of a local search, plus one per variable, enough for a model of the curvature.
+constexpr long iterations_of_hop = 8;
 constexpr long evaluations_of_iteration = 1 + evaluations_of_gradient;
 
-// Distances of start points and first steps of local searches, as fractions of the box.
+// Distances between start points, and first steps, of local searches, as fractions of the box of the variables.
 constexpr double largest_separation = 0.15;
 constexpr double first_step = 0.25;
 constexpr double polishing_step = 0.02;
@@ -90,7 +96,7 @@ void sample(EvaluationRecord& record, std::uint64_t first, std::size_t count) {
   record.run(tasks);
 }
 
-/// Runs each search that has not converged for `budget` further evaluations.
+/// Runs each local search that has not converged for `budget` further evaluations.
 void advance(EvaluationRecord& record, std::vector<LocalSearch>& searches, long budget) {
   std::vector<EvaluationRecord::Task> tasks;
   for (LocalSearch& search : searches) {
@@ -136,7 +142,8 @@ void hop(EvaluationRecord& record, const Method& method, long budget) {
   }
 }
 
-/// Searches by epochs. `finisher`, if not null, continues the local searches after their first round.
+/// Searches by epochs: sampling, local searches, refinement. `finisher`, if not null, continues the local searches after their
+/// first round.
 void search(EvaluationRecord& record, const std::array<const Method*, searches_at_once>& methods, const Method* finisher,
             const Method& polisher) {
   std::uint64_t points_sampled = 0;
@@ -145,7 +152,7 @@ void search(EvaluationRecord& record, const std::array<const Method*, searches_a
     return LocalSearch(method, start, step, random_bits(record.seed(), Stream::library_seed, searches_begun++));
   };
   std::vector<Point> explored;
-  // Local searches with a gradient need fewer evaluations, and more searches find more local minima.
+  // Local searches with a gradient need fewer evaluations each, so run more searches: more local minima are found.
   const long longest = record.has_gradient()
                            ? std::clamp(record.remaining() / epochs_with_gradient, shortest_epoch, longest_epoch)
                            : longest_epoch;
@@ -155,7 +162,7 @@ void search(EvaluationRecord& record, const std::array<const Method*, searches_a
     const long budget = std::min(record.remaining(), longest_epoch);
     std::vector<Point> starts = promising_points(record.known(), explored);
     starts.resize(std::min(starts.size(), starts_refined));
-    std::vector<LocalSearch> refined;  // empty when the search was stopped before its first evaluation
+    std::vector<LocalSearch> refined;  // refined local searches; empty when stopped before the first evaluation
     const auto go_on = [&] {
       if (refined.empty()) return;
       advance(record, refined, std::max(share_of(budget, refining, refined.size()), shortest_refinement));

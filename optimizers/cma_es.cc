@@ -21,10 +21,11 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Smallest spread in units of the box. A smaller spread would hide the differences of the points in the noise of the objective.
+// Smallest standard deviation of the sampled points in units of the box. A smaller one would hide the differences of the points
+// in the noise of the objective.
 constexpr double smallest_spread = 1e-7;
 
-/// Folds the real line onto [0, 1].
+/// Folds the real line onto [0, 1], by mirroring at both ends.
 double mirror(double u) { return std::abs(std::remainder(u, 2.0)); }
 
 /// Returns the weights of the better half of lambda children, the best child first; the weights add up to 1.
@@ -35,7 +36,7 @@ VectorXd recombination_weights(Eigen::Index lambda) {
   return weights / weights.sum();
 }
 
-// The constants of the strategy, with the names and values of the source.
+// The constants of the evolution strategy, with the names and values of N. Hansen's tutorial.
 struct Strategy {
   Strategy(Eigen::Index n, double population)
       : dimension(static_cast<double>(n)),
@@ -56,12 +57,12 @@ struct Strategy {
 };
 
 struct Child {
-  VectorXd step;  // (point - mean) / sigma
+  VectorXd step;  // (point - mean) / sigma of the sampled point
   double value;
 };
 
-// The points are mean + sigma axes diag(lengths) z, with z from the standard normal distribution. The covariance without sigma
-// is axes diag(lengths)^2 axes^T; only its lower triangle is stored.
+// The normal distribution from which points are drawn: mean + sigma axes diag(lengths) z, with z standard normal. The
+// covariance without sigma is axes diag(lengths)^2 axes^T; only its lower triangle is stored.
 class Distribution {
  public:
   Distribution(const Strategy& strategy, VectorXd mean, double sigma)
@@ -82,8 +83,8 @@ class Distribution {
   [[nodiscard]] double spread() const { return sigma_ * lengths_.maxCoeff(); }
   void shrink(double factor) { sigma_ *= factor; }
 
-  // Moves the mean to the weighted best children and adapts the distribution to their steps; children are sorted, the best
-  // first.
+  // Moves the mean to the weighted best sampled points (children) and adapts the distribution to their steps; children are
+  // sorted, the best first.
   void learn(const std::vector<Child>& children, long generation) {
     const Strategy& s = strategy_;
     VectorXd move = VectorXd::Zero(mean_.size());
@@ -103,7 +104,7 @@ class Distribution {
       lower.rankUpdate(children[static_cast<std::size_t>(j)].step, s.c_mu * s.weights[j]);
     const SymmetricEigen eigen = symmetric_eigen(covariance_);
     axes_ = eigen.vectors;
-    // Smaller eigenvalues are rounding errors of the largest.
+    // Eigenvalues of the covariance below this are rounding errors of the largest eigenvalue.
     const double smallest = std::numeric_limits<double>::epsilon() * eigen.values.maxCoeff();
     lengths_ = eigen.values.cwiseMax(smallest).cwiseSqrt();
 

@@ -19,8 +19,8 @@ using Eigen::VectorXd;
 
 constexpr Index stages = 3;
 
-// The Radau points of a piece [0, 1], and, for the polynomials that are 1 at one of (0, points) and 0 at the others, the slopes
-// at these points.
+// The Radau points of a piece of the mesh, scaled to [0, 1], and the slopes at these points of the polynomials that are 1 at
+// one of (0, points) and 0 at the others.
 struct Radau {
   std::array<double, stages + 1> points = {0, (4 - std::sqrt(6.0)) / 10, (4 + std::sqrt(6.0)) / 10, 1};
   Eigen::Matrix<double, stages, stages + 1> slopes;
@@ -52,20 +52,21 @@ const Radau& radau() {
   return rule;
 }
 
-// The weight of one variable of the nonlinear program in the value of a control at a point.
+// Weight of one variable of the nonlinear program in the value of a control at a point of the mesh.
 struct ControlWeight {
-  Index column;  // column of the controls
+  Index column;  // column of the matrix of control values
   double weight;
 };
 
 struct Place {
   Index piece, stage;
-  double length;  // length of the piece, a fraction of T
-  double at;      // place in the piece, a fraction of T
+  double length;  // length of the piece of the mesh, a fraction of the final time T
+  double at;      // place in the piece of the mesh, a fraction of the final time T
   std::vector<ControlWeight> parts;
 };
 
-// The nonlinear program. Variables: T, the controls column by column, the states point by point.
+// The nonlinear program of the collocation. Its variables are the final time T, the controls column by column and the states
+// point by point.
 class Program final : public Ipopt::TNLP {
  public:
   Program(const ControlProblem& problem, const ControlledCourse& guess, ControlledCourse& result)
@@ -114,7 +115,7 @@ class Program final : public Ipopt::TNLP {
 
   bool get_bounds_info(Ipopt::Index n, Ipopt::Number* lower, Ipopt::Number* upper, Ipopt::Index, Ipopt::Number* row_lower,
                        Ipopt::Number* row_upper) override {
-    constexpr double none = 2e19;  // Ipopt's infinity
+    constexpr double none = 2e19;  // bound beyond which Ipopt takes a variable as unbounded
     std::fill_n(lower, n, -none);
     std::fill_n(upper, n, none);
     lower[0] = problem_.shortest;
@@ -268,7 +269,7 @@ class Program final : public Ipopt::TNLP {
   [[nodiscard]] VectorXd state_of(const double* x, Index point) const {
     return Eigen::Map<const VectorXd>(x + state(point, 0), n_);
   }
-  // Returns the states at the beginning of a piece for j = 0, else at point j of the piece.
+  // Returns the states at the beginning of a piece of the mesh for j = 0, otherwise at its Radau point j.
   [[nodiscard]] VectorXd node_of(const double* x, Index piece, Index j) const {
     const Index point = piece * stages + j - 1;
     return point < 0 ? problem_.start : state_of(x, point);
@@ -300,7 +301,8 @@ class Program final : public Ipopt::TNLP {
     }
   }
 
-  // Calls entry(row, column, value) in the order of the sparse matrix. The values have no meaning when `rates` are not given.
+  // Calls entry(row, column, value) for the entries of the Jacobian of the constraints, in the order of the sparse matrix. The
+  // values have no meaning when `rates` is empty.
   template <class F>
   void for_jacobian(const std::vector<ControlledSystem::Rates>& rates, const double* x, F&& entry) const {
     Index row = 0;
@@ -347,8 +349,8 @@ class Program final : public Ipopt::TNLP {
     });
   }
 
-  // Calls entry for the lower triangle of the Lagrangian's second derivatives; the objective is linear. The values have no
-  // meaning when x is null.
+  // Calls entry(row, column, value) for the lower triangle of the Lagrangian's second derivatives; the objective is linear. The
+  // values have no meaning when x is null.
   template <class F>
   void for_hessian(const double* x, double time, const double* multipliers, F&& entry) {
     MatrixXd curvature = MatrixXd::Zero(n_ + nc_, n_ + nc_);
@@ -390,7 +392,7 @@ class Program final : public Ipopt::TNLP {
   Index columns_ = 0;
   std::vector<Place> points_;
   std::vector<bool> depends_;
-  std::vector<ControlledSystem::Rates> rates_;  // rates f(x, c) and their derivatives at the points of collocation
+  std::vector<ControlledSystem::Rates> rates_;  // rates f(x, c) of the states and their derivatives at the Radau points
 };
 
 void check(const ControlProblem& p, const ControlledCourse& guess) {
@@ -460,15 +462,15 @@ ControlledCourse solve(const ControlProblem& problem, const ControlledCourse& gu
   options->SetIntegerValue("print_level", 0);
   options->SetStringValue("sb", "yes");
   options->SetNumericValue("tol", problem.tolerance);
-  options->SetNumericValue("compl_inf_tol", problem.tolerance);  // otherwise controls stay away from their bounds
+  options->SetNumericValue("compl_inf_tol", problem.tolerance);  // a looser tolerance keeps controls away from their bounds
   options->SetIntegerValue("max_iter", static_cast<int>(problem.max_iterations));
   options->SetNumericValue("bound_relax_factor", 0.0);
   options->SetNumericValue("mu_init", 1e-3);
   options->SetNumericValue("bound_push", 1e-4);
   options->SetNumericValue("bound_frac", 1e-4);
-  // With its default pivot tolerance of 1e-6 MUMPS miscounts the signs of the eigenvalues when states differ by decades, and
-  // Ipopt adds ever more to the Hessian. Minimum degree ordering fills these matrices less than the ordering that MUMPS would
-  // choose.
+  // With its default pivot tolerance of 1e-6 the linear solver MUMPS miscounts the signs of the eigenvalues when states differ
+  // by decades, and Ipopt adds ever more to the Hessian. Minimum degree ordering fills these matrices less than the ordering
+  // that MUMPS would choose.
   options->SetNumericValue("mumps_pivtol", 1e-3);
   options->SetIntegerValue("mumps_pivot_order", 0);
   // The name is empty because otherwise Ipopt would read a file ipopt.opt from the working directory.

@@ -1,9 +1,9 @@
 // Optimal control by direct collocation: among all controls that take a system from its start to its required end, find the
-// control that takes the least time, or ends in the best state.
+// control that takes the least time T, or ends in the best state.
 //
 //   minimise T, or e.x(T)    over T, c(.)    subject to  x' = f(x, c) on [0, T],  x(0) = x_0,
 //                                                         lower <= c <= upper,  |c'| <= slew,
-//                                                         rows on the way and at the end:  lower <= r.x <= upper
+//                                                         state conditions at t <= T:  lower <= r.x <= upper
 //
 // x are the states, c the controls, T the time. Transcription: on each piece of the mesh x is a polynomial of degree three. It
 // fulfils the differential equations at the three Radau points (Radau IIA, of fifth order at the ends of pieces; Hairer &
@@ -22,20 +22,22 @@
 
 namespace softland {
 
-/// A system x' = f(x, c), with derivatives.
+/// A controlled system x' = f(x, c) with states x and controls c, and the derivatives of f.
 class ControlledSystem {
  public:
   virtual ~ControlledSystem() = default;
   [[nodiscard]] virtual Eigen::Index states() const = 0;
   [[nodiscard]] virtual Eigen::Index controls() const = 0;
-  /// Returns true when rate `r` can depend on entry `k` of (x, c); other entries are left out of the sparse matrices.
+  /// Returns true when the rate of state `r` can depend on entry `k` of (states x, controls c); other entries are left out of
+  /// the sparse matrices.
   [[nodiscard]] virtual bool depends(Eigen::Index r, Eigen::Index k) const = 0;
   struct Rates {
-    Eigen::VectorXd value;  ///< f(x, c)
-    Eigen::MatrixXd slope;  ///< derivatives of f by (x, c), one row per state
+    Eigen::VectorXd value;  ///< rates x' = f(x, c) of the states x under the controls c
+    Eigen::MatrixXd slope;  ///< derivatives of the rates f by states and controls (x, c), one row per state
   };
   [[nodiscard]] virtual Rates rates(const Eigen::VectorXd& x, const Eigen::VectorXd& c) = 0;
-  /// Returns the second derivatives of multipliers.f by (x, c): a symmetric matrix.
+  /// Returns the second derivatives of multipliers.f, the weighted sum of the rates f of the states, by states and controls (x,
+  /// c): a symmetric matrix.
   [[nodiscard]] virtual Eigen::MatrixXd curvature(const Eigen::VectorXd& x, const Eigen::VectorXd& c,
                                                   const Eigen::VectorXd& multipliers) = 0;
 };
@@ -50,50 +52,54 @@ struct StateCondition {
 struct ControlBound {
   double lower = 0;
   double upper = 1;
-  /// Largest |c'|. When it is finite, the control is linear between its knots and begins at `before`. When it is infinite, the
+  /// Largest |c'| of the control c. If finite, the control is linear between its knots and begins at `before`. If infinite, the
   /// control is constant between its knots, with jumps.
   double slew = std::numeric_limits<double>::infinity();
   double before = 0;
-  /// Value that a control with a bounded slew must have at the end, t = T; any value when absent.
+  /// Value that a control with a bounded slew must have at the final time T; the value is free when absent.
   std::optional<double> after = {};
 };
 
 struct ControlProblem {
   ControlledSystem* system = nullptr;
-  Eigen::VectorXd start = {};                   ///< x_0, the states at t = 0
-  std::vector<ControlBound> bounds = {};        ///< one per control; all with jumps, or all with a slew
-  std::vector<StateCondition> on_the_way = {};  ///< conditions at the ends of all pieces of the mesh but the last
+  Eigen::VectorXd start = {};                   ///< states at t = 0
+  std::vector<ControlBound> bounds = {};        ///< bounds of each control; all controls have jumps, or all a bounded slew
+  std::vector<StateCondition> on_the_way = {};  ///< conditions on the states at the ends of all pieces of the mesh but the last
   std::vector<StateCondition> at_the_end = {};
-  double shortest = 0, longest = 0;               ///< bounds of T
-  std::optional<Eigen::VectorXd> ends_best = {};  ///< e of the minimised e.x(T); when it is absent T is minimised
-  std::vector<double> knots = {};                 ///< knots of the controls, fractions of T from 0 to 1
-  double longest_piece = 1;                       ///< longest piece of the mesh, a fraction of T
+  double shortest = 0, longest = 0;  ///< bounds of the final time T
+  /// Weights e of the minimised e.x(T), of the final states; when absent the time T is minimised.
+  std::optional<Eigen::VectorXd> ends_best = {};
+  std::vector<double> knots = {};  ///< times at which the controls jump or bend, as fractions of T from 0 to 1
+  double longest_piece = 1;        ///< longest piece of the mesh of the states, a fraction of the final time T
   long max_iterations = 500;
-  double tolerance = 1e-8;                  ///< tolerance of the optimality conditions
-  const std::atomic<bool>* stop = nullptr;  ///< set by another thread; ends the solution with the last iterate as its result
+  double tolerance = 1e-8;                  ///< tolerance of Ipopt's optimality conditions
+  const std::atomic<bool>* stop = nullptr;  ///< set by another thread; ends the solution with Ipopt's last iterate as result
 };
 
-/// A control and the states against time under this control.
+/// Controls against time, and the states of the system under these controls.
 struct ControlledCourse {
   bool converged = false;
   bool interrupted = false;
-  std::string message = {};  ///< message of Ipopt
+  std::string message = {};  ///< message of Ipopt about the end of the solution
   int iterations = 0;
-  double time = 0;                  ///< T, the time that the control takes [unit of the problem]
-  std::vector<double> knots = {};   ///< knots of the controls, fractions of T
-  Eigen::MatrixXd controls = {};    ///< a column per interval between knots, or per knot where a slew is bounded
-  std::vector<double> points = {};  ///< fractions of T: 0, then the points of collocation
-  Eigen::MatrixXd states = {};      ///< a column per point
-  [[nodiscard]] Eigen::VectorXd state_at(double fraction) const;  ///< states, linear between points
+  double time = 0;                 ///< final time T [unit of time of the problem]
+  std::vector<double> knots = {};  ///< times at which the controls jump or bend, fractions of the final time T
+  /// Values of the controls: a column per interval between `knots`, or per knot where a slew is bounded.
+  Eigen::MatrixXd controls = {};
+  std::vector<double> points = {};  ///< times of the states: 0, then the points of collocation, fractions of the final time T
+  Eigen::MatrixXd states = {};      ///< states, a column per time in `points`
+  /// States at a fraction of the final time T, linear between points.
+  [[nodiscard]] Eigen::VectorXd state_at(double fraction) const;
   [[nodiscard]] Eigen::VectorXd control_at(double fraction) const;
 };
 
-/// Solves the problem from a guess with as many states and controls, which need not fulfil any condition. Throws InvalidInput
-/// for a problem or a guess whose sizes or bounds do not fit; numerical trouble is in the result.
+/// Solves the control problem from a guess with as many states and controls, which need not fulfil any condition. Throws
+/// InvalidInput for a problem or a guess whose sizes or bounds do not fit; a numerical failure is reported in the result.
 [[nodiscard]] ControlledCourse solve(const ControlProblem& problem, const ControlledCourse& guess);
 
-/// Returns the knots of `course` with further knots in the middle of some intervals: those in which a control is between its
-/// bounds, those at whose ends a control jumps, and their neighbours. No interval becomes shorter than `shortest`.
+/// Returns the knots of `course`, the times at which its controls jump or bend, with further knots in the middle of some
+/// intervals: those in which a control is between its bounds, those at whose ends a control jumps, and their neighbours. No
+/// interval becomes shorter than `shortest`.
 [[nodiscard]] std::vector<double> refined_knots(const ControlledCourse& course, const std::vector<ControlBound>& bounds,
                                                 double shortest);
 

@@ -2,9 +2,9 @@
 //
 // Work comes in rounds of tasks. A task is sequential and has a fixed budget; the tasks of a round run in parallel. The order
 // of evaluations is (round, task, position within the task), whichever thread makes an evaluation, and when. "First", "best so
-// far" and "already seen" refer to this order, so that results do not depend on the number of jobs. When a task reaches the
-// target, later tasks of the round are stopped and ignored, and earlier tasks complete. Tasks that run one after the other give
-// the same result.
+// far" and "already seen" refer to this order, so results do not depend on the number of jobs. When a task reaches the target,
+// later tasks of the round are stopped and ignored, and earlier tasks complete. Tasks that run one after the other give the
+// same result.
 #pragma once
 
 #include <atomic>
@@ -28,7 +28,8 @@ using Point = std::vector<double>;
 /// Exception by which a BudgetedObjective ends the run of a library. Each backend translates Cut as its library requires.
 struct Cut {};
 
-/// The value of a point as a search receives it. An infeasible point has a finite penalty above all values seen before.
+/// Value of the objective at a point as a search receives it. An infeasible point has a finite penalty above all values seen
+/// before.
 struct Answer {
   double value;
   bool feasible;
@@ -50,28 +51,28 @@ inline constexpr long evaluations_of_gradient = 3;
 
 class EvaluationRecord;
 
-/// The evaluations of one task, made by one thread. Libraries see the problem only through this class.
+/// The evaluations of one task, a sequential part of a search. Optimizer libraries see the problem only through this class.
 class BudgetedObjective {
  public:
-  /// Returns the value at a point. A point that was evaluated before is read from memory and costs nothing. Throws Cut when the
-  /// share of the budget is used up, the minimisation is over, or a search repeats evaluated points very often in succession.
+  /// Returns the objective at a point. A point that was evaluated before is read from memory and costs nothing. Throws Cut when
+  /// the task's share of the budget is used up, the minimisation is over, or a search repeats evaluated points very often in
+  /// succession.
   Answer operator()(std::span<const double> point);
-  /// Returns the value with the conditions of the problem; the value alone if the problem has no conditions. At an infeasible
-  /// point no condition counts as broken. Throws Cut.
+  /// Returns the objective and the conditions of the problem at a point; the objective alone if the problem has no conditions.
+  /// At an infeasible point no condition counts as violated. Throws Cut as operator() does.
   Values values(std::span<const double> point);
-  /// Writes the gradients of all values, one after the other. Central differences replace a gradient that the problem does not
-  /// give. Differences are one-sided at the bounds and next to infeasible points, and 0 where all neighbours are infeasible.
-  /// Throws Cut.
+  /// Writes the gradients of the objective and of all conditions, one after the other. Central differences replace a gradient
+  /// that the problem does not give. Differences are one-sided at the bounds and next to infeasible points, and 0 where all
+  /// neighbours are infeasible. Throws Cut as operator() does.
   void gradients(std::span<const double> point, std::span<double> gradients);
-  /// Returns the number of conditions of the problem.
   [[nodiscard]] std::size_t conditions() const;
 
   /// Returns true when every further evaluation would throw Cut.
   [[nodiscard]] bool over() const;
-  /// Resets the count of repeated points. Call this before every run of a library.
+  /// Resets the count of repeated points. Call it before every run of an optimizer library.
   void begin_search() { repeats_ = 0; }
   [[nodiscard]] long evaluations() const { return static_cast<long>(records_.size()); }
-  /// Returns the lowest feasible value that this task has found; infinite if it has found none.
+  /// Returns the lowest feasible objective that this task has found; infinite if it has found none.
   [[nodiscard]] double best_of_task() const { return best_of_task_; }
   [[nodiscard]] const Point& best_point_of_task() const { return best_point_of_task_; }
 
@@ -80,7 +81,7 @@ class BudgetedObjective {
   struct Record {
     Point point;
     Answer answer;
-    double value;  ///< value as returned by the objective, before it is compressed or replaced by a penalty
+    double value;  ///< objective as the problem returned it, before compression or penalty
   };
   BudgetedObjective(EvaluationRecord& record, std::size_t task, long budget, long first_index);
 
@@ -100,8 +101,8 @@ class BudgetedObjective {
   Point best_point_of_task_;
   Memory memory_;
   std::vector<Record> records_;
-  Numbers values_;     ///< values with conditions, by point
-  Numbers gradients_;  ///< gradients of the problem, by point
+  Numbers values_;     ///< objective and conditions of evaluated points, by point
+  Numbers gradients_;  ///< gradients of objective and conditions that the problem computed, by point
   std::optional<std::string> first_exception_;
 };
 
@@ -109,8 +110,8 @@ class EvaluationRecord {
  public:
   struct Task {
     long budget;
-    std::function<void(BudgetedObjective&)> body;  ///< work of the task; may end by the exception Cut; any other exception is a
-                                                   ///< failure
+    /// Work of the task; it may end by the exception Cut; any other exception is a failure.
+    std::function<void(BudgetedObjective&)> body;
   };
   struct Known {
     Point point;
@@ -126,8 +127,8 @@ class EvaluationRecord {
   [[nodiscard]] bool smooth() const { return options_.smooth; }
   [[nodiscard]] std::uint64_t seed() const { return options_.seed; }
   [[nodiscard]] const std::vector<Point>& starts() const { return starts_; }
-  /// Runs the tasks. When their budgets exceed the remaining budget, the last tasks are shortened first. Returns the number of
-  /// new evaluations.
+  /// Runs the tasks of one round. When their budgets exceed the remaining budget, the last tasks are shortened first. Returns
+  /// the number of new evaluations.
   long run(const std::vector<Task>& tasks);
   [[nodiscard]] long remaining() const {
     return options_.max_evaluations - evaluations_ - evaluations_of_gradient * static_cast<long>(gradients_.size());
@@ -135,11 +136,12 @@ class EvaluationRecord {
   [[nodiscard]] bool over() const { return remaining() <= 0 || target_reached_ || outside_ != Termination::not_run; }
   /// Returns all evaluations of the completed rounds, in order.
   [[nodiscard]] const std::vector<Known>& known() const { return known_; }
-  /// Returns true when work on the current round should end early for a reason other than the evaluation budget. The function
+  /// Returns true when a task of the current round should end early for a reason other than the evaluation budget. The function
   /// is cheap enough for waiting loops.
   [[nodiscard]] bool cut_off(std::size_t task);
 
-  /// Returns the result; `message` is that of the last search, `converged` is true when this search ended by its own criterion.
+  /// Returns the result of the minimisation. `message` is that of the last local search, `converged` is true when this search
+  /// ended by its own criterion.
   [[nodiscard]] OptimizerResult result(bool converged, const std::string& message) const;
 
  private:
@@ -161,7 +163,7 @@ class EvaluationRecord {
   std::chrono::steady_clock::time_point begin_;
   std::vector<std::size_t> free_;  ///< indices of the variables whose bounds differ
   std::vector<Point> starts_;
-  /// Exact values of the user's starts, which scaling would round.
+  /// Exact values of the user's starts, by scaled point; scaling back would round the values.
   std::unordered_map<Point, std::vector<double>, PointHash> exact_;
 
   // Only the code between rounds changes the following members.

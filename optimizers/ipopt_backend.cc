@@ -1,6 +1,6 @@
-// Ipopt 3.11.9 as a quasi-Newton method under bounds and conditions. Ipopt shortens its steps, thousands of times, when the
-// objective cannot be evaluated. So the BudgetedObjective counts the evaluations and ends the run by a Cut. Ipopt catches the
-// Cut, like every exception of a callback, and returns NonIpopt_Exception_Thrown.
+// Ipopt 3.11.9 as a quasi-Newton method for a minimisation under bounds and conditions. Ipopt shortens its steps, thousands of
+// times, when the objective cannot be evaluated. So the BudgetedObjective counts the evaluations and ends the run by the
+// exception Cut. Ipopt catches Cut, like every exception of a callback, and returns NonIpopt_Exception_Thrown.
 #include <IpIpoptApplication.hpp>
 #include <IpTNLP.hpp>
 #include <algorithm>
@@ -51,7 +51,7 @@ class StrandProblem final : public Ipopt::TNLP {
     if (m > 0) std::copy_n(strand_.values(view(x, n)).all.begin() + 1, m, values);
     return true;
   }
-  // Without `values`, sets the positions of the entries of the Jacobian: all entries, row by row.
+  // Without `values`, Ipopt asks for the positions of the entries of the Jacobian of the conditions: all entries, row by row.
   bool eval_jac_g(Ipopt::Index n, const Ipopt::Number* x, bool, Ipopt::Index m, Ipopt::Index, Ipopt::Index* rows,
                   Ipopt::Index* columns, Ipopt::Number* values) override {
     if (m == 0) return true;
@@ -73,7 +73,7 @@ class StrandProblem final : public Ipopt::TNLP {
 
  private:
   static std::span<const double> view(const Ipopt::Number* x, Ipopt::Index n) { return {x, static_cast<std::size_t>(n)}; }
-  // Returns the gradient of the cost, then that of each condition.
+  // Returns the gradient of the objective, then that of each condition.
   [[nodiscard]] std::vector<double> gradients(const Ipopt::Number* x, Ipopt::Index n) {
     std::vector<double> all((1 + strand_.conditions()) * static_cast<std::size_t>(n));
     strand_.gradients(view(x, n), all);
@@ -117,12 +117,12 @@ RunReport run_ipopt(const RunOptions& run, BudgetedObjective& budgeted) {
   options->SetIntegerValue("print_level", 0);
   options->SetStringValue("sb", "yes");
   options->SetStringValue("hessian_approximation", "limited-memory");
-  options->SetNumericValue("bound_relax_factor", 0.0);  // points outside the bounds are never evaluated
+  options->SetNumericValue("bound_relax_factor", 0.0);  // 0: Ipopt never evaluates points outside the bounds
   // Starts are good points, some of them near a bound: Ipopt's default barrier would first push them to the middle of the box.
   options->SetNumericValue("mu_init", 1e-4);
   options->SetNumericValue("bound_push", 1e-6);
   options->SetNumericValue("bound_frac", 1e-6);
-  options->SetNumericValue("tol", 1e-6);  // tolerance of gradients that may be differences
+  options->SetNumericValue("tol", 1e-6);  // tolerance for gradients that may be finite differences
   options->SetIntegerValue("max_iter", 1000);
   // The name is empty because otherwise Ipopt would read a file ipopt.opt from the working directory.
   if (const auto status = application->Initialize(""); status != Ipopt::Solve_Succeeded) return report_of(status);

@@ -8,7 +8,8 @@
 
 namespace softland::internal {
 
-/// Waits until no other solution by Ipopt runs, or until `gave_up()`; in the latter case the returned lock is not held.
+/// Waits until no other solution by Ipopt runs, or until `gave_up()` returns true; in the latter case the returned lock is not
+/// held.
 [[nodiscard]] inline std::unique_lock<std::mutex> ipopt_turn(const std::function<bool()>& gave_up) {
   static std::mutex one_solve_at_a_time;
   constexpr std::chrono::milliseconds look_up{1};  // interval between attempts to take the lock

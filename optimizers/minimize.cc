@@ -46,10 +46,11 @@ void check(const Problem& problem, const OptimizerOptions& options) {
   require(!std::isnan(options.target), "target must not be NaN");
 }
 
-// Number of infeasible starts that are skipped: a search would see only the constant penalty, and another start costs little.
+// Number of infeasible start points that a search skips: it would see only the constant penalty, and another start costs
+// little.
 constexpr std::uint64_t infeasible_starts_skipped = 20;
 
-// Number of runs in succession without a new evaluation after which the search ends: further starts would bring nothing new.
+// Number of local searches in succession without a new evaluation after which the minimisation ends.
 constexpr int idle_runs_allowed = 20;
 
 RunReport search_single_method(EvaluationRecord& record, const Method& method, const OptimizerOptions& options) {

@@ -1,9 +1,11 @@
-// NLopt 2.7.1. Its methods have properties that its interface does not show:
+// Runs the methods of NLopt 2.7.1, which have properties that the interface of NLopt does not show:
 // - NLopt's limits are not enough: several methods report success on NaN, hang, or swallow exceptions. So the BudgetedObjective
 //   counts evaluations, keeps the best point and ends a run; only the message of NLopt's result is used.
 // - Random numbers come from a generator of the calling thread, seeded from the clock unless nlopt::srand is called in it.
-// - MLSL is the variant that starts from random points: the Sobol sequence of the other variant cannot be seeded.
-// - DIRECT divides the box at fixed places; a nonlinear scale per variable, drawn from the seed, moves these places.
+// - MLSL (multi-level single linkage) is used in the variant that starts from random points: the Sobol sequence of the other
+//   variant cannot be seeded.
+// - DIRECT (dividing rectangles) divides the box at fixed places; a nonlinear scale per variable, drawn from the seed, moves
+//   these places.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,10 +18,10 @@
 namespace softland::internal {
 namespace {
 
-// Tolerance in units of the box. It is far below what the noise of an objective allows to resolve, so that no method ends too
-// early in a narrow valley.
+// Step below which a local method of NLopt has converged, in units of the box. It is far below what the noise of an objective
+// allows to resolve, so that no method ends too early in a narrow valley.
 constexpr double step_tolerance = 1e-7;
-// Tolerance inside MLSL, which finds many minima and needs only to distinguish them.
+// Step below which a local search inside MLSL has converged; MLSL finds many minima and needs only to distinguish them.
 constexpr double step_tolerance_inside_mlsl = 1e-4;
 
 struct Callback {
@@ -53,7 +55,7 @@ double call(const std::vector<double>& x, std::vector<double>& gradient, void* d
   }
 }
 
-// Evaluates the conditions for methods with a gradient, whose scale is linear.
+// Evaluates the conditions g_i <= 0 for NLopt's methods with a gradient, whose variables have a linear scale.
 void call_conditions(unsigned count, double* values, unsigned dimension, const double* x, double* gradient, void* data) {
   BudgetedObjective& budgeted = static_cast<Callback*>(data)->budgeted;
   const std::span<const double> point(x, dimension);

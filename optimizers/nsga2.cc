@@ -21,15 +21,15 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int idle_generations_allowed = 100;
-constexpr double least_difference = 1e-14;  // share of the box; two parents with a smaller difference are equal
+constexpr double least_difference = 1e-14;  // difference of two parents, as a share of the box, below which they count as equal
 
-using Point = std::vector<double>;  // variables scaled to [0, 1]
+using Point = std::vector<double>;  // variables of a candidate, each scaled to [0, 1]
 
 struct Member {
   Point point;
   ParetoValue value;
-  std::size_t rank = 0;  // rank of the member's front; 0: the front that no member dominates
-  double crowding = 0;   // distance of the member to its neighbours in the front
+  std::size_t rank = 0;  // rank of the member's Pareto front; 0: the front that no member dominates
+  double crowding = 0;   // crowding distance of the member to its neighbours in its Pareto front
 };
 
 bool is_better(const ParetoValue& a, const ParetoValue& b) {
@@ -37,7 +37,7 @@ bool is_better(const ParetoValue& a, const ParetoValue& b) {
   return dominates(a.objectives, b.objectives);
 }
 
-/// Random numbers for one pair of children.
+/// Random numbers for the two children of one pair of parents.
 class Draws {
  public:
   Draws(std::uint64_t seed, std::uint64_t pair) : seed_(random_bits(seed, Stream::offspring, pair)) {}
@@ -51,7 +51,7 @@ class Draws {
   std::uint64_t count_ = 0;
 };
 
-/// Returns fronts of rising rank: no member of a front is dominated by a member of the same or of a later front.
+/// Returns Pareto fronts of rising rank: no member of a front is dominated by a member of the same or of a later front.
 std::vector<std::vector<std::size_t>> ranked(std::vector<Member>& members) {
   std::vector<std::size_t> better_than_it(members.size(), 0);
   std::vector<std::vector<std::size_t>> beaten(members.size());
@@ -81,8 +81,8 @@ std::vector<std::vector<std::size_t>> ranked(std::vector<Member>& members) {
   return fronts;
 }
 
-/// Sets the crowding of every member of a front: the sum over the objectives of the distance between its two neighbours, over
-/// the range of the front; infinite at the ends of the front.
+/// Sets the crowding distance of every member of a Pareto front: the sum over the objectives of the distance between its two
+/// neighbours, over the range of the front; infinite at the ends of the front.
 void measure_crowding(std::vector<Member>& members, std::vector<std::size_t> front) {
   for (const std::size_t k : front) members[k].crowding = 0;
   const std::size_t objectives = members[front.front()].value.objectives.size();
@@ -97,7 +97,7 @@ void measure_crowding(std::vector<Member>& members, std::vector<std::size_t> fro
   }
 }
 
-/// Returns the best `size` members: whole fronts, and the least crowded members of the first front that does not fit.
+/// Returns the best `size` members: whole Pareto fronts, and the least crowded members of the first front that does not fit.
 std::vector<Member> survivors(std::vector<Member> members, std::size_t size) {
   std::vector<Member> chosen;
   for (std::vector<std::size_t>& front : ranked(members)) {
@@ -120,8 +120,8 @@ const Member& tournament(const std::vector<Member>& members, Draws& draws) {
   return b.crowding > a.crowding ? b : a;
 }
 
-/// Returns the distance of the children from the middle of their parents, in halves of the distance of the parents. `room`, the
-/// same measure of the nearest bound, limits its distribution.
+/// Returns the distance of the children from the middle of their parents, in halves of the distance of the parents. `room` is
+/// the distance of the nearest bound from the middle, in the same unit; it limits the distribution of the children.
 double spread_factor(double u, double room, double index) {
   const double all = 2 - std::pow(room, -(index + 1));
   const double part = u * all;
@@ -165,7 +165,7 @@ class Evaluations {
   [[nodiscard]] bool over() const { return ended_ != Termination::not_run; }
   [[nodiscard]] Termination ended() const { return ended_; }
 
-  /// Returns the members for these points, except points for which evaluations or time did not suffice.
+  /// Returns the members of a population at these points, except points for which evaluations or time did not suffice.
   std::vector<Member> members_at(const std::vector<Point>& points) {
     std::vector<std::vector<double>> fresh;
     std::set<std::vector<double>> seen;
@@ -227,7 +227,7 @@ class Evaluations {
     return x;
   }
 
-  // Returns the value of `evaluate` at a point; an infeasible value when `evaluate` fails.
+  // Returns the objectives at a point; an infeasible value when the problem's function `evaluate` fails.
   [[nodiscard]] ParetoValue value_at(const std::vector<double>& x, std::string& exception) const {
     ParetoValue value;
     try {
@@ -275,7 +275,7 @@ class Evaluations {
   const ParetoOptions& options_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::vector<ParetoEvaluation> log_;
-  std::map<std::vector<double>, std::size_t> known_;  // index of the evaluation in the log, by x
+  std::map<std::vector<double>, std::size_t> known_;  // index of the evaluation in the log, by variables x
   std::string first_exception_;
   Termination ended_ = Termination::not_run;
   std::mutex mutex_;

@@ -28,15 +28,15 @@ namespace softland {
 
 struct ParetoValue {
   Objectives objectives;
-  double violation = 0;  ///< 0 where all constraints hold, else the sum of their violations
+  double violation = 0;  ///< sum of the violations of the constraints; 0 where all constraints hold
 };
 
 struct ParetoProblem {
   std::vector<Variable> variables = {};
   std::size_t objectives = 2;
-  /// Evaluates a point; called from several threads at once when jobs > 1, and must return equal values for equal x. A value
-  /// that is not finite, a wrong number of values, or an exception make the point infeasible beyond any violation; the result
-  /// has the message of the first exception.
+  /// Returns the objectives at a point; called from several threads at once when jobs > 1, and must return equal values for
+  /// equal x. A value that is not finite, a wrong number of values, or an exception make the point infeasible beyond any
+  /// violation; the result has the message of the first exception.
   std::function<ParetoValue(std::span<const double>)> evaluate = {};
   /// Members of the first population; points outside the bounds are moved to the bounds.
   std::vector<std::vector<double>> starts = {};
@@ -49,31 +49,34 @@ struct ParetoEvaluation {
 };
 
 struct ParetoOptions {
-  std::size_t population = 100;  ///< number of members; even, at least 4
+  std::size_t population = 100;  ///< number of members of a generation; even, at least 4
   long max_evaluations = 10000;
-  double max_seconds = std::numeric_limits<double>::infinity();  ///< time budget [s]
+  double max_seconds = std::numeric_limits<double>::infinity();  ///< time budget of the search [s]
   std::uint64_t seed = 1;
   int jobs = 1;
   double crossover_probability = 0.9;
-  double crossover_index = 15;  ///< index of the distribution of children: the larger, the closer children are to their parents
-  double mutation_index = 20;   ///< index of the distribution of mutations; on average, one variable of each child mutates
-  const std::atomic<bool>* stop = nullptr;  ///< set by another thread; ends the search with the front found so far
-  /// Called under a lock after every evaluation, in the order in which evaluations end. Its exceptions end minimize_all().
+  /// Distribution index of simulated binary crossover: the larger, the closer children are to their parents.
+  double crossover_index = 15;
+  double mutation_index = 20;  ///< distribution index of polynomial mutation; on average, one variable of each child mutates
+  const std::atomic<bool>* stop = nullptr;  ///< set by another thread; ends the search with the Pareto front found so far
+  /// Called under a lock after every evaluation, in the order in which evaluations end. An exception of this function ends
+  /// minimize_all().
   std::function<void(const ParetoEvaluation&)> on_evaluation = {};
 };
 
 struct ParetoResult {
   Termination termination = Termination::not_run;
   long evaluations = 0;
-  /// the nondominated points among the evaluated points without violation, in the order of the first objective
+  /// The points that no other evaluated point dominates (Pareto front), among the points without violated constraints, in the
+  /// order of the first objective.
   std::vector<ParetoEvaluation> front;
   std::string first_exception;
 };
 
-/// Returns the front. It depends on the problem, max_evaluations, population, the two indices and seed: not on jobs, and on
-/// time only through max_seconds and stop, which are checked before every evaluation. A child that was evaluated before costs
-/// nothing; the search has converged when a hundred generations have brought no new children. Throws InvalidInput for an
-/// invalid problem or invalid options.
+/// Returns the Pareto front. It depends on the problem, max_evaluations, population, the two distribution indices and seed. It
+/// does not depend on jobs, and on time only through max_seconds and stop, which are checked before every evaluation. A child
+/// that was evaluated before costs nothing; the search has converged when a hundred generations have brought no new children.
+/// Throws InvalidInput for an invalid problem or invalid options.
 [[nodiscard]] ParetoResult minimize_all(const ParetoProblem& problem, const ParetoOptions& options);
 
 }  // namespace softland

@@ -1,4 +1,4 @@
-// A bounded minimisation and its result. The code is independent of switches.
+// A bounded minimisation, its options and its result. The code is independent of switches.
 #pragma once
 
 #include <atomic>
@@ -22,10 +22,11 @@ struct Variable {
 /// comparison of points, use the objective alone: so the objective must rise with the violation.
 struct Conditions {
   std::size_t count = 0;
-  /// Returns {cost, g_1, ... g_count} at a point at which the objective is finite; called from threads like the objective.
+  /// Returns {objective, g_1, ... g_count} at a point at which the objective is finite; called from several threads at once,
+  /// like the objective.
   std::function<std::vector<double>(std::span<const double>)> values = {};
-  /// Returns the derivatives by x of the elements of `values`: those of the cost, then those of g_1 and so on. Differences
-  /// replace a NaN, and the whole function when it is null.
+  /// Returns the derivatives of the objective, of g_1 and so on, by the variables x. Finite differences replace a NaN, and the
+  /// whole function when it is null.
   std::function<std::vector<double>(std::span<const double>)> gradients = {};
 };
 
@@ -33,14 +34,14 @@ struct Conditions {
 /// is constant.
 struct Problem {
   std::vector<Variable> variables = {};
-  /// Called from several threads at once when jobs > 1, each call with its own x, which lies within the bounds exactly. The
-  /// objective must return equal values for equal x: the value of a repeated point is read from memory. A non-finite value or
-  /// an exception makes the point infeasible; the result has the message of the first exception.
+  /// Returns the objective at x. Called from several threads at once when jobs > 1, each call with its own x, which is within
+  /// the bounds exactly. Equal x must give equal values: the value of a repeated point is read from memory. A non-finite value
+  /// or an exception makes the point infeasible; the result has the message of the first exception.
   std::function<double(std::span<const double>)> objective = {};
-  /// Returns the derivatives of the objective by x; may be null. A NaN is replaced by a difference. Several threads may call
-  /// this function at once, like the objective.
+  /// Returns the derivatives of the objective by x; may be null. A NaN is replaced by a finite difference. Several threads may
+  /// call this function at once, like the objective.
   std::function<std::vector<double>(std::span<const double>)> gradient = {};
-  /// Conditions g(x) <= 0. If there are some, `conditions.gradients` replaces `gradient`.
+  /// Conditions g(x) <= 0 of the minimisation. If there are some, `conditions.gradients` replaces `gradient`.
   Conditions conditions;
   /// Starting points that are evaluated first; may be empty. Points outside the bounds are moved to the bounds. Every optimizer
   /// evaluates all starts, as given to the last digit; local methods search from each in turn, `auto` and the methods with a
@@ -52,15 +53,15 @@ struct Evaluation {
   /// Number of the evaluation: unique, and increasing in an order that does not depend on the number of jobs. Numbers are left
   /// out where a search ended before its share of the budget did, so the number may exceed the number of evaluations.
   long index = 0;
-  double value = 0;  ///< value of the objective; non-finite when infeasible (NaN after an exception)
+  double value = 0;  ///< value of the objective; non-finite at an infeasible point (NaN after an exception)
   std::vector<double> x;
-  std::size_t problem = 0;  ///< number of the problem, when several problems share a log
+  std::size_t problem = 0;  ///< number of the minimisation problem, when several problems share a log
 };
 
 struct OptimizerOptions {
   std::string optimizer = "auto";
   long max_evaluations = 2000;
-  double max_seconds = std::numeric_limits<double>::infinity();  ///< time budget [s]
+  double max_seconds = std::numeric_limits<double>::infinity();  ///< time budget of the search [s]
   std::uint64_t seed = 1;
   double step = 0.25;     ///< first step of a local method, as a share of the box; `auto` uses its own
   double population = 1;  ///< points of a generation of cma-es, as a multiple of the usual number
@@ -70,7 +71,7 @@ struct OptimizerOptions {
   bool goes_on = false;
   /// True when the objective is smooth around the starts: `auto` then begins with a gradient method from the starts.
   bool smooth = false;
-  double target = -std::numeric_limits<double>::infinity();  ///< the search stops once a value is at or below the target
+  double target = -std::numeric_limits<double>::infinity();  ///< the search stops once the objective is at or below the target
   const std::atomic<bool>* stop = nullptr;  ///< set by another thread (Ctrl-C); ends the search with its result so far
   /// Called under a lock after every evaluation, in the order in which evaluations end. With jobs > 1 this order may vary
   /// between runs, and the calls may include evaluations that the result leaves out (beyond the target in the job-independent
@@ -98,8 +99,8 @@ enum class Termination {
 struct OptimizerResult {
   Termination termination = Termination::not_run;
   std::string message = {};  ///< reason why the search ended, with the message of the library when there is one
-  std::vector<double> x;     ///< the best point; empty if no point was feasible
-  double value = std::numeric_limits<double>::quiet_NaN();  ///< objective at x
+  std::vector<double> x;     ///< the best point found; empty if no point was feasible
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< objective at the best point
   long evaluations = 0;
   std::vector<Evaluation> improvements;  ///< each evaluation that was the best so far, in the job-independent order
   std::string first_exception;           ///< message of the first exception of the objective; empty without an exception
@@ -111,9 +112,9 @@ struct OptimizerResult {
 /// Returns a description of an optimizer for --help, one line. Throws InvalidInput for a name outside optimizer_names().
 [[nodiscard]] std::string_view optimizer_description(std::string_view name);
 
-/// Solves the problem. Throws InvalidInput for an unknown or refused optimizer, no variables or no objective, a bound that is
-/// not finite, lower > upper, a start of the wrong length or not finite, jobs < 1, a budget that is not positive, a target that
-/// is NaN. Otherwise it always returns.
+/// Minimises the objective of the problem. Throws InvalidInput for an unknown or refused optimizer, no variables or no
+/// objective, a bound that is not finite, lower > upper, a start of the wrong length or not finite, jobs < 1, a budget that is
+/// not positive, a target that is NaN. Otherwise it always returns.
 ///
 /// The result depends on problem, optimizer, max_evaluations, seed and target only: not on jobs, and on time only through
 /// max_seconds and stop. The time budget, the stop flag and the target are checked before every evaluation; a running

@@ -1,4 +1,4 @@
-// Points spread evenly over a box, each computed without the points before.
+// Points of a Sobol sequence, which spread evenly over a box. Each point is computed without the points before.
 #pragma once
 
 #include <cstddef>

@@ -19,11 +19,11 @@ double square_distance(const SpacePoint& a, const SpacePoint& b) {
   return dx * dx + dy * dy + dz * dz;
 }
 
-// Chooses start centres for Lloyd's iteration; fewer than `count` when there are fewer distinct points.
+// Chooses start centres of classes for Lloyd's iteration; fewer than `count` when there are fewer distinct points.
 std::vector<SpacePoint> start_centres(std::span<const SpacePoint> points, std::size_t count, std::uint64_t seed,
                                       std::size_t start) {
   std::vector<SpacePoint> centres;
-  std::vector<double> square(points.size(), 1.0);  // the first centre is chosen with equal probability of all points
+  std::vector<double> square(points.size(), 1.0);  // equal weights: the first centre is any point with equal probability
   while (centres.size() < count) {
     double sum = 0;
     for (const double one : square) sum += one;
@@ -45,7 +45,8 @@ std::vector<SpacePoint> start_centres(std::span<const SpacePoint> points, std::s
 
 struct Sorted {
   Classes classes;
-  double square = std::numeric_limits<double>::infinity();  // sum of the square distances of the points to their centres
+  // Sum of the square distances of the points to the centres of their classes.
+  double square = std::numeric_limits<double>::infinity();
 };
 
 // Assigns every point to its nearest centre and moves each centre to the mean of its points, until no point changes its class.
@@ -100,7 +101,8 @@ Classes classes_of(std::span<const SpacePoint> points, std::size_t count, std::u
     if (one.square < best.square) best = std::move(one);
   }
   std::sort(best.classes.centres.begin(), best.classes.centres.end());
-  return settle(points, std::move(best.classes.centres)).classes;  // sets the shares of the classes of the sorted centres
+  // Second pass: computes the shares of the classes of the sorted centres.
+  return settle(points, std::move(best.classes.centres)).classes;
 }
 
 }  // namespace softland

@@ -1,5 +1,5 @@
-// Points of space sorted into classes: every point belongs to the class of the nearest centre, and the centres are chosen so
-// that the mean square distance of the points to their centres is small.
+// Sorts points, given by coordinates, into classes: every point belongs to the class of the nearest centre, and the centres are
+// chosen so that the mean square distance of the points to their centres is small.
 //
 //   minimise  sum_i min_c |x_i - c|^2   over `count` centres c
 //
@@ -25,7 +25,7 @@ using SpacePoint = std::array<double, 3>;
 [[nodiscard]] bool is_finite(const SpacePoint& point);
 
 struct Classes {
-  std::vector<SpacePoint> centres;  ///< centres in ascending order
+  std::vector<SpacePoint> centres;  ///< centres of the classes in ascending order
   std::vector<double> shares;       ///< share of the points in each class
 
   /// Returns the number of the class of a point, that of the nearest centre; the lowest number of several equally near centres.

@@ -42,22 +42,23 @@ struct BootstrapOptions {
   std::uint64_t seed = 1;
 };
 
-/// Returns a bootstrap interval of any figure of a sample: quantiles of the figure over samples that are drawn from this sample
-/// with replacement. The error of its coverage falls as n^-1/2 for each side and as n^-1 for both together. With fewer than
-/// some ten values the interval covers the figure too seldom; for the extremes of a sample it is meaningless. The same seed
-/// gives the same interval, which is NaN when a repetition gives NaN. Throws InvalidInput for a sample without values and
-/// unless there are at least 2 repetitions. Source: B. Efron & R. J. Tibshirani, "An Introduction to the Bootstrap", 1993,
-/// section 13.3 (percentile interval).
+/// Returns a bootstrap confidence interval of any figure of a sample: quantiles of the figure over samples that are drawn from
+/// this sample with replacement. The error of its coverage falls as n^-1/2 for each side and as n^-1 for both together. With
+/// fewer than some ten values the interval covers the figure too seldom; for the extremes of a sample it is meaningless. The
+/// same seed gives the same interval. The interval is NaN when a repetition gives NaN. Throws InvalidInput for a sample without
+/// values and unless there are at least 2 repetitions. Source: B. Efron & R. J. Tibshirani, "An Introduction to the Bootstrap",
+/// 1993, section 13.3 (percentile interval).
 [[nodiscard]] Interval bootstrap_interval(std::span<const double> sample,
                                           const std::function<double(std::span<const double>)>& statistic,
                                           const BootstrapOptions& options = {});
 
 namespace internal {
 
-/// Throws what bootstrap_interval() throws for invalid options.
+/// Checks the number of repetitions and the confidence. Throws InvalidInput as bootstrap_interval() does.
 void check(const BootstrapOptions& options);
 
-/// Returns the index, below `count`, of the row that bootstrap repetition number `repetition` draws as its row number `place`.
+/// Returns the index of the data row, below `count`, that bootstrap repetition number `repetition` draws as its row number
+/// `place`.
 [[nodiscard]] std::size_t bootstrap_row(std::uint64_t seed, std::size_t repetition, std::size_t place, std::size_t count);
 
 /// Returns the interval with the middle share `confidence` of the values of a figure over bootstrap repetitions; NaN when a

@@ -20,18 +20,19 @@ namespace softland {
 
 class GaussianCopula {
  public:
-  /// The least eigenvalue that a correlation matrix may have.
+  /// The least eigenvalue that the correlation matrix may have.
   static constexpr double least_eigenvalue = 1e-10;
 
-  /// Messages call the variables by `names`, or "variable 1", ... without names. Throws InvalidParameter for `correlation`
-  /// unless the matrix is square and symmetric with a unit diagonal, all other elements are between -1 and 1, and all
-  /// eigenvalues are at least least_eigenvalue. The message names the variables whose correlations break the rule.
+  /// Takes the correlation matrix of the underlying normal variables. Messages call the variables by `names`, or "variable 1",
+  /// ... without names. Throws InvalidParameter for `correlation` unless the matrix is square and symmetric with a unit
+  /// diagonal, all other elements are between -1 and 1, and all eigenvalues are at least least_eigenvalue. The message names
+  /// the variables whose correlations break the rule.
   explicit GaussianCopula(const Eigen::MatrixXd& correlation, const std::vector<std::string>& names = {});
 
   [[nodiscard]] std::size_t dimensions() const { return static_cast<std::size_t>(factor_.rows()); }
 
-  /// Turns independent u into correlated numbers, in place, which are between 2^-53 and 1 - 2^-53. Throws InvalidInput unless u
-  /// has one number per dimension, each above 0 and below 1.
+  /// Turns independent numbers u into correlated numbers, in place; the results are between 2^-53 and 1 - 2^-53. Throws
+  /// InvalidInput unless u has one number per dimension, each above 0 and below 1.
   void correlate(std::span<double> u) const;
 
  private:

@@ -26,7 +26,8 @@ void require_positive(std::string_view parameter, double value) {
              std::string(parameter) + " = " + text(value) + " must be finite and above 0");
 }
 
-double standard_normal_density(double z) { return std::exp(-z * z / 2); }  // constant factor omitted
+// The density is without its constant factor 1 / sqrt(2 pi).
+double standard_normal_density(double z) { return std::exp(-z * z / 2); }
 
 // Returns the distribution of the logarithm of a lognormal variable.
 Normal logarithm_of(const Lognormal& d) {
@@ -34,8 +35,8 @@ Normal logarithm_of(const Lognormal& d) {
   return {.mean = std::log(d.mean) - variance / 2, .standard_deviation = std::sqrt(variance)};
 }
 
-// Each kind of distribution has a check, its support and quantile, and the probabilities of a value of at most x and of a value
-// below x.
+// The functions for each kind of distribution: a check of its parameters, its support and quantile, and the probabilities of a
+// value of at most x and of a value below x.
 
 void check(const Normal& d) {
   require_finite("mean", d.mean);
@@ -97,7 +98,7 @@ double quantile_of(const Empirical& d, double p) {
   const std::size_t i = std::min(static_cast<std::size_t>(place), d.values.size() - 2);
   return d.values[i] + (place - static_cast<double>(i)) * (d.values[i + 1] - d.values[i]);
 }
-// Returns cdf(x) for an x between the values i and i + 1, which differ.
+// Returns the distribution function at an x between the sorted sample values i and i + 1, which differ.
 double between(const Empirical& d, std::size_t i, double x) {
   const double fraction = (x - d.values[i]) / (d.values[i + 1] - d.values[i]);
   return (static_cast<double>(i) + fraction) / static_cast<double>(d.values.size() - 1);
@@ -123,8 +124,8 @@ struct Moments {
   double mean, standard_deviation;
 };
 
-// Returns the moments of value(t) where t has a density that is smooth between the breaks. Eight points are exact for
-// polynomials of degree 15.
+// Returns the moments of value(t) for a t whose density is smooth between the breaks. Gauss quadrature with eight points is
+// exact for polynomials of degree 15.
 template <class Value, class Density>
 Moments moments(const std::vector<double>& breaks, Value value, Density density) {
   static const GaussRule rule = gauss_rule(8);
@@ -145,7 +146,7 @@ Moments moments(const std::vector<double>& breaks, Value value, Density density)
   return {.mean = mean, .standard_deviation = std::sqrt(variance)};
 }
 
-// Returns breaks from low to high in steps of at most half a standard deviation.
+// Returns quadrature breaks from low to high in steps of at most half a standard deviation of a normal variable.
 std::vector<double> normal_breaks(double low, double high) {
   const int count = std::max(1, static_cast<int>(std::ceil((high - low) / 0.5)));
   std::vector<double> breaks;
@@ -153,7 +154,7 @@ std::vector<double> normal_breaks(double low, double high) {
   return breaks;
 }
 
-// A normal density beyond this number of standard deviations, 2e-37 of its largest value, adds nothing.
+// Number of standard deviations beyond which a normal density, 2e-37 of its largest value, adds nothing to a moment.
 constexpr double far_out = 13;
 
 Moments moments_within(const Normal& d, const Interval& x) {
@@ -169,7 +170,7 @@ Moments moments_within(const Lognormal& d, const Interval& x) {
   const Normal logarithm = logarithm_of(d);
   const double s = logarithm.standard_deviation;
   const double low = x.low > 0 ? std::max((std::log(x.low) - logarithm.mean) / s, -far_out) : -far_out;
-  // The density of the second moment is centred about 2 s.
+  // The density of the second moment of a lognormal variable is centred about 2 s above the mean of its logarithm.
   const double high = std::min((std::log(x.high) - logarithm.mean) / s, far_out + 2 * s);
   return moments(
       normal_breaks(low, high), [&](double z) { return std::exp(logarithm.mean + s * z); }, standard_normal_density);
@@ -205,7 +206,7 @@ Moments moments_within(const Empirical& d, const Interval& x) {
 Distribution::Distribution(Parameters parameters, const Truncation& truncation)
     : parameters_(std::move(parameters)), truncation_(truncation) {
   if (auto* const empirical = std::get_if<Empirical>(&parameters_)) {
-    check(*empirical);  // NaN would make the order of the sorted values undefined
+    check(*empirical);  // refuse NaN before the values are sorted
     std::sort(empirical->values.begin(), empirical->values.end());
   }
   std::visit([](const auto& d) { check(d); }, parameters_);
@@ -241,9 +242,10 @@ void Distribution::find_moments() {
 
 double Distribution::quantile(double p) const {
   if (!(p > 0 && p < 1)) require(false, "p = " + text(p) + " must be above 0 and below 1");
-  const double of_whole = std::min(below_ + p * kept_, 1 - 0x1p-53);  // rounding may give 1, where a quantile is infinite
+  // Rounding may give the probability 1, where a quantile is infinite.
+  const double of_whole = std::min(below_ + p * kept_, 1 - 0x1p-53);
   const double value = std::visit([&](const auto& d) { return quantile_of(d, of_whole); }, parameters_);
-  return std::clamp(value, support_.low, support_.high);  // by rounding the value may leave the support
+  return std::clamp(value, support_.low, support_.high);  // rounding may move the value beyond the support of the distribution
 }
 
 double Distribution::cdf(double x) const {

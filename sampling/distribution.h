@@ -61,7 +61,7 @@ struct Triangular {
   double high = 0;
 };
 struct Empirical {
-  std::vector<double> values = {};  ///< values, at least two, in any order
+  std::vector<double> values = {};  ///< values of the sample, at least two, in any order
 };
 struct Truncation {
   double low = -std::numeric_limits<double>::infinity();
@@ -70,14 +70,15 @@ struct Truncation {
 
 class Distribution {
  public:
-  /// The alternatives are in the order of DistributionKind.
+  /// Parameters of a distribution. The alternatives are in the order of DistributionKind.
   using Parameters = std::variant<Normal, Lognormal, Uniform, Triangular, Empirical>;
 
   /// The least probability that a truncation may leave. A smaller probability is a mistake of units, and its quantiles would
   /// show rounding errors.
   static constexpr double least_kept = 1e-6;
 
-  /// Throws InvalidParameter, whose parameter() is a key of distribution_kinds, truncate_low or truncate_high.
+  /// Throws InvalidParameter for invalid parameters; its parameter() is a key of distribution_kinds, truncate_low or
+  /// truncate_high.
   explicit Distribution(Parameters parameters, const Truncation& truncation = {});
 
   [[nodiscard]] DistributionKind kind() const { return static_cast<DistributionKind>(parameters_.index()); }
@@ -85,14 +86,13 @@ class Distribution {
   [[nodiscard]] const Parameters& parameters() const { return parameters_; }
   [[nodiscard]] const Truncation& truncation() const { return truncation_; }
 
-  /// Returns the least x with cdf(x) >= p. Throws InvalidInput unless 0 < p < 1.
+  /// Returns the least x with cdf(x) >= p, for a probability p. Throws InvalidInput unless 0 < p < 1.
   [[nodiscard]] double quantile(double p) const;
   /// Returns the probability of a value of at most x.
   [[nodiscard]] double cdf(double x) const;
   /// Return moments of the truncated distribution, to 1e-12 of the standard deviation or of the mean, whichever is larger.
   [[nodiscard]] double mean() const { return mean_; }
   [[nodiscard]] double standard_deviation() const { return standard_deviation_; }
-  /// Returns the interval in which the distribution has its values.
   [[nodiscard]] const Interval& support() const { return support_; }
 
  private:
@@ -101,8 +101,8 @@ class Distribution {
   Parameters parameters_;
   Truncation truncation_;
   Interval support_;
-  double below_ = 0;  // probability that the truncation cuts off below
-  double kept_ = 1;   // probability that the truncation leaves
+  double below_ = 0;  // probability that the truncation cuts off at the low end
+  double kept_ = 1;   // probability that remains within the truncation
   double mean_ = 0, standard_deviation_ = 0;
 };
 

@@ -47,17 +47,19 @@ static_assert(is_complete<point_sets>());
 class SamplePoints {
  public:
   static constexpr std::uint64_t largest_size = std::uint64_t{1} << 31;
-  static constexpr std::size_t most_dimensions = 3667;  ///< largest number for which Boost.Random has direction numbers
+  /// Largest number of dimensions for which Boost.Random has direction numbers.
+  static constexpr std::size_t most_dimensions = 3667;
 
-  /// Throws InvalidParameter for `dimensions` or `size` unless 1 <= dimensions <= most_dimensions and 1 <= size <=
-  /// largest_size.
+  /// Takes the kind of point set, dimensions, seed and size. Throws InvalidParameter for `dimensions` or `size` unless 1 <=
+  /// dimensions <= most_dimensions and 1 <= size <= largest_size.
   SamplePoints(PointSet kind, std::size_t dimensions, std::uint64_t seed, Stream stream, std::uint64_t size);
 
   [[nodiscard]] PointSet kind() const { return kind_; }
   [[nodiscard]] std::size_t dimensions() const { return keys_.size(); }
   [[nodiscard]] std::uint64_t size() const { return size_; }
 
-  /// Writes point k to `u`. Throws InvalidInput unless k < size() and `u` has as many elements as there are dimensions.
+  /// Writes the coordinates of point k to `u`. Throws InvalidInput unless k < size() and `u` has as many elements as there are
+  /// dimensions.
   void point(std::uint64_t k, std::span<double> u) const;
 
  private:
@@ -65,7 +67,7 @@ class SamplePoints {
   std::uint64_t size_;
   std::vector<std::uint64_t> keys_;  // seed of the random numbers of each dimension
   std::vector<std::uint32_t>
-      directions_;  // direction numbers for bit r of a point's number, for all dimensions, from r * dimensions() on
+      directions_;  // Sobol direction numbers for bit r of a point's number, for all dimensions, from r * dimensions() on
 };
 
 }  // namespace softland

@@ -16,14 +16,15 @@ namespace {
 using Exponents = std::vector<int>;
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-constexpr int highest_degree = 50;  // a higher power of a normal germ would exceed all other terms in any sample
+constexpr int highest_degree = 50;  // a higher power of a normal variable would exceed all other terms in any sample
 constexpr double candidates_per_figure = 10;
 
-// Returns the orthonormal polynomials of degree 0, ..., degree at u.
+// Returns the orthonormal polynomials of degree 0, ..., degree at u: of Legendre for a uniform, of Hermite for a normal
+// variable.
 std::vector<double> polynomials(Germ germ, int degree, double u) {
   std::vector<double> values(static_cast<std::size_t>(degree) + 1, 1);
   const double xi = germ == Germ::uniform ? 2 * u - 1 : standard_normal_quantile(u);
-  double before = 0, current = 1;  // the usual recurrences give P_k, and He_k / sqrt(k!)
+  double before = 0, current = 1;  // recurrences give Legendre P_k and Hermite He_k / sqrt(k!)
   for (int k = 1; k <= degree; ++k) {
     const double next = germ == Germ::uniform ? ((2 * k - 1) * xi * current - (k - 1) * before) / k
                                               : (xi * current - std::sqrt(k - 1.0) * before) / std::sqrt(static_cast<double>(k));
@@ -34,7 +35,7 @@ std::vector<double> polynomials(Germ germ, int degree, double u) {
   return values;
 }
 
-// Adds all exponents of this degree; `term` holds the exponents of the variables before `from`.
+// Adds the exponents of all polynomial terms of this degree; `term` holds the exponents of the variables before `from`.
 void add_terms(std::vector<Exponents>& terms, Exponents& term, std::size_t from, int degree) {
   if (from + 1 == term.size()) {
     term[from] = degree;
@@ -56,18 +57,19 @@ struct Value {
   std::vector<std::vector<double>> of_variable;
 };
 
-// The terms that a matching pursuit chooses, in the order of choice.
+// The polynomial terms that orthogonal matching pursuit chooses, in the order of choice.
 struct Pursuit {
   std::vector<Eigen::Index> columns;
-  std::vector<double> errors;    // squared prediction errors, summed over the held-back rows, with 1, 2, ... terms
-  Eigen::VectorXd coefficients;  // coefficients of all terms
+  std::vector<double> errors;    // sum of squared prediction errors of the held-back rows, with 1, 2, ... terms
+  Eigen::VectorXd coefficients;  // coefficients of all polynomial terms
 };
 
-// Chooses at most `most` of the columns, the constant column first. `held` are the held-back rows, `held_y` their figures.
+// Chooses at most `most` of the columns (polynomial terms) by matching pursuit, the constant column first. `held` are the rows
+// held back for validation, `held_y` their figures.
 Pursuit pursue(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y, Eigen::Index most, const Eigen::MatrixXd& held,
                const Eigen::VectorXd& held_y) {
   const Eigen::RowVectorXd sizes = columns.colwise().norm();
-  // The chosen columns are Psi = Q R. Here are Q, its continuation Psi_held R^-1 to the held-back rows, and R^-1.
+  // The chosen columns (terms) are Psi = Q R. Here are Q, its continuation Psi_held R^-1 to the held-back rows, and R^-1.
   Eigen::MatrixXd q(columns.rows(), most), q_held(held.rows(), most), inverse = Eigen::MatrixXd::Zero(most, most);
   Eigen::VectorXd residual = y, held_residual = held_y, projections(most);
   std::vector<bool> used(static_cast<std::size_t>(columns.cols()), false);
@@ -108,7 +110,7 @@ Pursuit pursue(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y, Eigen::
   return made;
 }
 
-// Returns the fold of each figure, drawn at random: neighbours in a set of points may depend on each other.
+// Returns the cross-validation fold of each figure, drawn at random: neighbours in a set of points may depend on each other.
 std::vector<std::size_t> folds_of(std::size_t figures) {
   constexpr std::size_t most_folds = 10;
   const SamplePoints order(PointSet::latin_hypercube, 1, 0, Stream::folds, figures);
@@ -122,7 +124,7 @@ std::vector<std::size_t> folds_of(std::size_t figures) {
   return fold;
 }
 
-// Returns, as element k, the squared error of predicting each fold from the other folds by k + 1 terms.
+// Returns, as element k, the squared error of predicting each cross-validation fold from the other folds by k + 1 terms.
 std::vector<double> prediction_errors(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y,
                                       const std::vector<std::size_t>& fold, Eigen::Index most) {
   std::vector<double> errors(static_cast<std::size_t>(most), 0);
@@ -131,7 +133,7 @@ std::vector<double> prediction_errors(const Eigen::MatrixXd& columns, const Eige
     std::vector<Eigen::Index> kept, held;
     for (std::size_t j = 0; j < fold.size(); ++j) (fold[j] == f ? held : kept).push_back(static_cast<Eigen::Index>(j));
     const Pursuit made = pursue(columns(kept, Eigen::all), y(kept), most, columns(held, Eigen::all), y(held));
-    // A pursuit that ended early keeps its last error.
+    // A matching pursuit that ended early keeps its last error for more terms.
     for (std::size_t k = 0; k < errors.size(); ++k) errors[k] += made.errors[std::min(k, made.errors.size() - 1)];
   }
   return errors;
@@ -159,10 +161,10 @@ PolynomialChaos::PolynomialChaos(const std::vector<Germ>& germs_of_variables, co
     : germs_(germs_of_variables) {
   check(germs_of_variables, points, figures, most_degree);
   const std::size_t n = figures.size(), d = dimensions();
-  // The terms are sorted by their degree: the first last[p] terms are those of degree at most p.
+  // The candidate terms are sorted by their degree: the first last[p] terms are those of degree at most p.
   std::vector<Exponents> candidates;
   std::vector<std::size_t> last;
-  double count = 1;  // number of terms of degree at most p: the binomial coefficient of d + p and p
+  double count = 1;  // number of polynomial terms of degree at most p in d variables: the binomial coefficient of d + p and p
   for (int p = 0; p <= most_degree; ++p) {
     if (p > 0) count *= static_cast<double>(d + static_cast<std::size_t>(p)) / p;
     if (p > 1 && count > candidates_per_figure * static_cast<double>(n)) break;
@@ -228,7 +230,7 @@ double PolynomialChaos::first_order(std::size_t i) const {
     const int whole = std::accumulate(terms_[k].begin(), terms_[k].end(), 0);
     if (terms_[k][i] == whole) sum += coefficients_[k] * coefficients_[k];
   }
-  return sum / variance();  // NaN if the variance is 0
+  return sum / variance();  // NaN if the variance of the figure is 0
 }
 
 double PolynomialChaos::total(std::size_t i) const {
@@ -237,7 +239,7 @@ double PolynomialChaos::total(std::size_t i) const {
   for (std::size_t k = 1; k < terms_.size(); ++k) {
     if (terms_[k][i] > 0) sum += coefficients_[k] * coefficients_[k];
   }
-  return sum / variance();  // NaN if the variance is 0
+  return sum / variance();  // NaN if the variance of the figure is 0
 }
 
 }  // namespace softland

@@ -43,18 +43,21 @@ static_assert(is_complete<germs>());
 
 class PolynomialChaos {
  public:
-  /// Row j of `points`, in the open unit cube, is the point of figure j; the germ of a variable is 2 u - 1, or Phi^-1(u).
-  /// Throws InvalidParameter: `points` unless the points are inside the cube, with a column for each germ; `figures` unless
-  /// they are finite, at least four, and as many as points; `most_degree` unless it is between 1 and 50.
+  /// Fits the sum to figures. Row j of `points`, in the open unit cube, is the point of figure j; the germ (standard variable)
+  /// of a coordinate u is 2 u - 1 if uniform, Phi^-1(u) if normal. Throws InvalidParameter: `points` unless the points are
+  /// inside the cube, with a column for each germ; `figures` unless they are finite, at least four, and as many as points;
+  /// `most_degree` unless it is between 1 and 50.
   PolynomialChaos(const std::vector<Germ>& germs_of_variables, const Eigen::MatrixXd& points, std::span<const double> figures,
                   int most_degree = 10);
 
   [[nodiscard]] std::size_t dimensions() const { return germs_.size(); }
-  [[nodiscard]] int degree() const { return degree_; }  ///< degree p; 0 when no polynomial predicts better than the mean
-  [[nodiscard]] std::size_t terms() const { return terms_.size(); }  ///< number of terms, with the constant
-  [[nodiscard]] double q2() const { return q2_; }  ///< q2 of the cross-validation; NaN when all figures are equal
+  /// Largest degree of the polynomials; 0 when none predicts better than the mean.
+  [[nodiscard]] int degree() const { return degree_; }
+  [[nodiscard]] std::size_t terms() const { return terms_.size(); }  ///< number of polynomial terms, with the constant
+  /// Predicted share of the variance in cross-validation; NaN when all figures are equal.
+  [[nodiscard]] double q2() const { return q2_; }
 
-  /// Returns the sum of the polynomials at a point of the open unit cube. Throws InvalidInput unless `u` has dimensions()
+  /// Returns the value of the polynomial sum at a point of the open unit cube. Throws InvalidInput unless `u` has dimensions()
   /// coordinates, all inside.
   [[nodiscard]] double operator()(std::span<const double> u) const;
 
@@ -69,8 +72,8 @@ class PolynomialChaos {
   std::vector<Germ> germs_;
   int degree_ = 0;
   double q2_ = 0;
-  std::vector<std::vector<int>> terms_;  // exponents of each term, the constant first
-  std::vector<double> coefficients_;     // coefficients of the terms
+  std::vector<std::vector<int>> terms_;  // exponents of each polynomial term, the constant first
+  std::vector<double> coefficients_;     // coefficients of the polynomial terms
 };
 
 }  // namespace softland

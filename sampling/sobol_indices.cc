@@ -9,11 +9,13 @@
 namespace softland {
 namespace {
 
-// The terms of the sums over the rows, one row after the other.
+// Terms of the sums that estimate Sobol' indices, one row of the design after the other.
 struct Rows {
   std::size_t dimensions, count;
-  std::vector<double> sums, squares;       // f(A) + f(B), f(A)^2 + f(B)^2
-  std::vector<double> first_order, total;  // terms of S_i and T_i, times the variance; row j and variable i at j d + i
+  std::vector<double> sums, squares;  // f(A) + f(B) and f(A)^2 + f(B)^2 of each row's points A and B
+  // Terms of the sums for the first-order and the total index, times the variance; row j and variable i at j d + i, of d
+  // variables.
+  std::vector<double> first_order, total;
 };
 
 Rows rows_of(std::size_t dimensions, const std::vector<double>& kept, double mean) {
@@ -37,7 +39,7 @@ struct Estimate {
   std::vector<double> first_order, total;
 };
 
-// Estimates from the rows row_at(0), ..., row_at(count - 1).
+// Estimates Sobol' indices from the rows row_at(0), ..., row_at(count - 1).
 template <class RowAt>
 Estimate estimate(const Rows& rows, RowAt row_at) {
   const std::size_t d = rows.dimensions;
@@ -53,7 +55,7 @@ Estimate estimate(const Rows& rows, RowAt row_at) {
     }
   }
   const double n = static_cast<double>(rows.count), mean = sum / (2 * n);
-  made.variance = squares / (2 * n) - mean * mean;  // the figures are centred, so that the difference loses hardly any digits
+  made.variance = squares / (2 * n) - mean * mean;  // the figures are centred, so the difference loses hardly any digits
   for (std::size_t i = 0; i < d; ++i) {
     made.first_order[i] /= n * made.variance;
     made.total[i] /= n * made.variance;

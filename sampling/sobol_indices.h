@@ -33,12 +33,12 @@
 
 namespace softland {
 
-/// The points at which the figure must be evaluated, each computed from its number. Evaluation m belongs to row m / (d + 2),
-/// and within this row to A (0), B (1) or A_B^i (2 + i). So the evaluations of a row are consecutive, and with Sobol' or Monte
-/// Carlo points a design of fewer rows is the beginning of a larger one.
+/// The points at which the figure must be evaluated to estimate Sobol' indices of d variables. Evaluation m belongs to row m /
+/// (d + 2), and within this row to A (0), B (1) or A_B^i (2 + i). So the evaluations of a row are consecutive, and with Sobol'
+/// or Monte Carlo points a design of fewer rows is the beginning of a larger one.
 class SobolDesign {
  public:
-  /// Takes points of 2 d dimensions from the random stream `indices`. Throws what SamplePoints throws.
+  /// Takes points of 2 d dimensions from the random stream `indices`. Throws InvalidParameter as SamplePoints does.
   SobolDesign(PointSet kind, std::size_t dimensions, std::uint64_t seed, std::uint64_t rows);
 
   [[nodiscard]] std::size_t dimensions() const { return points_.dimensions() / 2; }
@@ -55,10 +55,10 @@ class SobolDesign {
 struct SobolIndex {
   double value = std::numeric_limits<double>::quiet_NaN();
   Interval interval = {};
-  bool above_zero = false;  ///< true when the index is distinguishable from zero
+  bool above_zero = false;  ///< true when the confidence interval of the index is above zero
 };
 
-/// Indices from the rows that were used. The indices are NaN when all figures are equal, so that the variance is zero.
+/// Sobol' indices of all variables. They are NaN when all figures are equal, so that the variance is zero.
 struct SobolIndices {
   double mean = std::numeric_limits<double>::quiet_NaN();
   double variance = std::numeric_limits<double>::quiet_NaN();
@@ -67,7 +67,7 @@ struct SobolIndices {
 
 struct SobolEstimate {
   std::size_t rows = 0, failed_rows = 0;
-  std::optional<SobolIndices> indices = {};  ///< none when too many rows failed, or fewer than two are left
+  std::optional<SobolIndices> indices = {};  ///< Sobol' indices; none when too many rows failed, or fewer than two are left
 };
 
 struct SobolOptions {
@@ -77,8 +77,9 @@ struct SobolOptions {
   double most_failed = 0.01;
 };
 
-/// Estimates the indices from the figures of all evaluations of a design, in the order of the evaluations. Throws InvalidInput
-/// unless the number of figures is a positive multiple of d + 2, and what bootstrap_interval() throws for invalid options.
+/// Estimates the Sobol' indices from the figures of all evaluations of a design, in the order of the evaluations. Throws
+/// InvalidInput unless the number of figures is a positive multiple of d + 2, and for bootstrap options that
+/// bootstrap_interval() refuses.
 [[nodiscard]] SobolEstimate sobol_indices(std::size_t dimensions, std::span<const double> figures,
                                           const SobolOptions& options = {});
 

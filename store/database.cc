@@ -23,7 +23,7 @@ std::map<FileNumber, int>& open_files() {
   return files;
 }
 
-// Returns the name of the file as a URI; only a URI can mark the file as immutable.
+// Returns the path of the database file as a URI; only a URI can mark the file as immutable.
 std::string uri_of(const std::filesystem::path& file) {
   std::string uri = "file:";
   for (const char c : std::filesystem::absolute(file).string()) {
@@ -72,7 +72,7 @@ Database::Database(const std::filesystem::path& file, Access access, std::string
   if (access == Access::create) flags |= SQLITE_OPEN_CREATE;
   if (access == Access::immutable) flags |= SQLITE_OPEN_URI;
   sqlite3* handle = nullptr;
-  // The name is made absolute, because SQLite does not read "file:..." or ":memory:" as the name of a file.
+  // The path is made absolute, because SQLite does not read "file:..." or ":memory:" as the name of a file.
   const std::string name = access == Access::immutable ? uri_of(file) : std::filesystem::absolute(file).string();
   const int code = sqlite3_open_v2(name.c_str(), &handle, flags, nullptr);
   handle_.reset(handle);
@@ -80,7 +80,8 @@ Database::Database(const std::filesystem::path& file, Access access, std::string
   open_.emplace(file);
   sqlite3_extended_result_codes(handle, 1);
   sqlite3_busy_timeout(handle, patience);
-  // Text in double quotes must be a column, never a string. The schema of a damaged file must not run functions.
+  // SQLite options: text in double quotes must be a column, never a string, and the schema of a damaged file must not run
+  // functions.
   sqlite3_db_config(handle, SQLITE_DBCONFIG_DQS_DML, 0, nullptr);
   sqlite3_db_config(handle, SQLITE_DBCONFIG_DQS_DDL, 0, nullptr);
   sqlite3_db_config(handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
@@ -126,7 +127,7 @@ void Database::fail(int code) const {
 }
 
 bool Database::is_at(const std::filesystem::path& path) const {
-  // The file number is read after the file was opened; SQLite reports if the file was moved in between.
+  // The device and inode of the file are read after it was opened; SQLite reports if the file was moved in between.
   int moved = 0;
   const int code = sqlite3_file_control(handle_.get(), "main", SQLITE_FCNTL_HAS_MOVED, &moved);
   return open_->is(path) && (code != SQLITE_OK || moved == 0);
@@ -203,7 +204,7 @@ bool Statement::step() {
   const int code = sqlite3_step(handle_.get());
   if (code == SQLITE_ROW) return true;
   if (code != SQLITE_DONE) {
-    // After a reset of the statement, the message of the connection is no longer that of the failed step.
+    // Resets the statement at the end; after a reset, the message of the connection is no longer that of the failed step.
     struct Reset {
       Statement* statement;
       ~Reset() { statement->reset(); }
@@ -233,7 +234,7 @@ std::span<const unsigned char> Statement::blob(int column) const {
 
 InterruptibleQuery::InterruptibleQuery(const Database& database, const Progress& progress)
     : database_(database), progress_(progress) {
-  constexpr int operations = 10'000;  // operations of the virtual machine of SQLite between two checks, less than 1 ms
+  constexpr int operations = 10'000;  // SQLite instructions between two checks for an interruption, less than 1 ms
   const auto stopped = [](void* self) { return static_cast<const InterruptibleQuery*>(self)->progress_.stopped() ? 1 : 0; };
   sqlite3_progress_handler(database.handle(), operations, stopped, this);
 }

@@ -1,4 +1,4 @@
-// Wraps SQLite: connections, statements, transactions, and error codes as exceptions of this program.
+// Wraps SQLite: connections, statements, transactions, and SQLite's error codes as exceptions of softland.
 #pragma once
 
 #include <sqlite3.h>
@@ -24,11 +24,11 @@ class DamagedStore : public InvalidInput {
   using InvalidInput::InvalidInput;
 };
 
-/// Thrown if a statement that succeeds on any undamaged database fails, for the whole database or at one of its rows.
+/// Thrown when a statement fails that succeeds on any undamaged database.
 class StatementFailed : public DamagedStore {
  public:
   StatementFailed(const std::string& message, std::string reason) : DamagedStore(message), reason_(std::move(reason)) {}
-  /// Returns the reason in the words of SQLite.
+  /// Returns SQLite's message about the failure.
   [[nodiscard]] const std::string& reason() const { return reason_; }
 
  private:
@@ -44,21 +44,20 @@ enum class Access {
   immutable   ///< read a file that no process writes to, without a log and without locks
 };
 
-/// Device and inode, which identify a file under any name; none where the file does not exist.
+/// Device and inode number, which identify a file under any name; absent where the file does not exist.
 using FileNumber = std::pair<unsigned long long, unsigned long long>;
 [[nodiscard]] std::optional<FileNumber> number_of(const std::filesystem::path& file);
 
-/// Records that this process has a database file open. The locks of SQLite belong to the process and are lost when it closes
-/// any other descriptor of the file. An open file must therefore not be opened again to look at its content.
+/// Records that this process has a database file open. The locks of SQLite belong to the process and are lost when the process
+/// closes any other descriptor of the file. An open file must therefore not be opened again to look at its content.
 class OpenFile {
  public:
   explicit OpenFile(const std::filesystem::path& file);
   ~OpenFile();
   OpenFile(const OpenFile&) = delete;
   OpenFile& operator=(const OpenFile&) = delete;
-  /// Returns true if this process has the file open.
   [[nodiscard]] static bool is_open(const std::filesystem::path& file);
-  /// Returns true if the path leads to this file.
+  /// Returns true if the path leads to the recorded file.
   [[nodiscard]] bool is(const std::filesystem::path& file) const { return number_ && number_ == number_of(file); }
 
  private:
@@ -69,24 +68,24 @@ class Statement;
 
 class Database {
  public:
-  /// Opens the database; `shown` names the database in messages. All functions of the class throw OutputLost if data cannot be
+  /// Opens the database file; `shown` is its name in messages. All functions of the class throw OutputLost if data cannot be
   /// written to the disk, DamagedStore, Interrupted, or InvalidInput.
   Database(const std::filesystem::path& file, Access access, std::string shown);
 
   /// Runs SQL statements and ignores their results.
   void run(const std::string& sql) const;
   [[nodiscard]] Statement prepare(const std::string& sql) const;
-  /// Returns the first column of the first row of a query, as text.
+  /// Returns the first column of the first row of an SQL query, as text.
   [[nodiscard]] std::string text_of(const std::string& sql) const;
   [[nodiscard]] std::int64_t number_of(const std::string& sql) const;
-  /// Throws the exception for a result code of SQLite.
+  /// Throws the exception of softland for a result code of SQLite.
   [[noreturn]] void fail(int code) const;
 
-  /// Returns true if the file at this path is still the open file, not removed, moved or replaced.
+  /// Returns true if the path still leads to the open database file, which was not removed, moved or replaced.
   [[nodiscard]] bool is_at(const std::filesystem::path& path) const;
-  /// Makes SQLite keep the write-ahead log on closing: the path of the log belongs to another database by now.
+  /// Makes SQLite keep the write-ahead log on closing: a log of this name belongs to another database by now.
   void leave_log() const;
-  /// Writes the whole content into a new file, which must be empty or missing.
+  /// Writes the whole content of the database into a new file, which must be empty or missing.
   void copy_to(const std::filesystem::path& file) const;
 
   [[nodiscard]] sqlite3* handle() const { return handle_.get(); }
@@ -102,25 +101,25 @@ class Database {
   std::unique_ptr<sqlite3, Close> handle_;
 };
 
-/// A prepared statement of a database that must outlive the statement. SQLite numbers parameters from 1, columns from 0.
+/// A prepared SQL statement; the database must outlive it. SQLite numbers parameters from 1, columns from 0.
 class Statement {
  public:
   Statement(const Database& database, const std::string& sql);
 
   Statement& bind(int parameter, std::int64_t value);
-  Statement& bind(int parameter, double value);  ///< NaN becomes NULL
+  Statement& bind(int parameter, double value);  ///< binds a number to a parameter of the statement; NaN becomes NULL
   Statement& bind(int parameter, std::string_view value);
   Statement& bind(int parameter, std::span<const unsigned char> value);
-  /// Binds a text without a copy; the text must live until the statement has been run.
+  /// Binds a text to a parameter of the statement without a copy; the text must live until the statement has been run.
   Statement& lend(int parameter, std::string_view value);
   Statement& lend(int parameter, std::span<const unsigned char> value);
-  /// Goes to the next row; returns false after the last row. The statement can then be bound and run again.
+  /// Goes to the next row of the result; returns false after the last row. The statement can then be bound and run again.
   bool step();
   void reset();
 
   [[nodiscard]] std::int64_t integer(int column) const { return sqlite3_column_int64(handle_.get(), column); }
   [[nodiscard]] bool is_null(int column) const { return sqlite3_column_type(handle_.get(), column) == SQLITE_NULL; }
-  [[nodiscard]] double number(int column) const;  ///< NULL becomes NaN
+  [[nodiscard]] double number(int column) const;  ///< returns a number of the current row; NULL becomes NaN
   [[nodiscard]] std::string text(int column) const;
   [[nodiscard]] std::span<const unsigned char> blob(int column) const;
   [[nodiscard]] sqlite3_stmt* handle() const { return handle_.get(); }
@@ -149,7 +148,7 @@ class InterruptibleQuery {
   const Progress& progress_;
 };
 
-/// A transaction. Its destructor rolls back changes that were not committed.
+/// An SQL transaction. The destructor rolls back changes that were not committed.
 class Transaction {
  public:
   explicit Transaction(const Database& database) : database_(database) { database_.run("BEGIN IMMEDIATE"); }

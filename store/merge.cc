@@ -21,13 +21,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The rows of one part in the order of their points.
+// The rows of one partial database file of a study, in the order of their points.
 class StorePart {
  public:
   explicit StorePart(const fs::path& path) : database_(open_to_read(path)) {
     check_schema(*database_);
     current_ = current_plan(*database_);
-    database_->run("PRAGMA cache_size = -64");  // a small cache, because there may be a thousand parts
+    database_->run("PRAGMA cache_size = -64");  // a small cache, because a merge may read a thousand files
   }
   [[nodiscard]] const StoredPlan& plan() const { return current_.plan; }
   [[nodiscard]] const StoredRow& row() const { return rows_->row(); }
@@ -46,7 +46,8 @@ class StorePart {
 
 using Parts = std::vector<std::unique_ptr<StorePart>>;
 
-// Raises the limit of open files. Every part needs one file, or three if the process that wrote the part was killed.
+// Raises the limit of open files of the process for a merge of `parts` database files. Every file needs one descriptor, or
+// three if the process that wrote the file was killed.
 void allow_files(std::size_t parts) {
   rlimit limit{};
   const rlim_t needed = 4 * parts + 64;
@@ -69,7 +70,7 @@ Parts opened(const std::vector<fs::path>& paths) {
   return parts;
 }
 
-// Adds the names of the first few parts of the plan that are missing.
+// Adds the names of the first few missing database files to the notes; each holds one part of the study.
 void add_missing_parts(std::vector<std::string>& notes, const Parts& parts) {
   constexpr std::size_t most_names = 20;
   const int count = parts.front()->plan().shard.count;
@@ -87,7 +88,7 @@ void add_missing_parts(std::vector<std::string>& notes, const Parts& parts) {
   notes.push_back(fmt::format("no part was given for {}", fmt::join(names, ", ")));
 }
 
-// Returns notes on points that no part holds, listed by the parts of the plan that they belong to.
+// Returns notes on points of the study that no merged file holds, listed by the parts of the study to which they belong.
 std::vector<std::string> notes_on(const Parts& parts, const StoredPlan& plan, std::int64_t rows) {
   std::vector<std::string> notes;
   if (rows < plan.points) notes.push_back(fmt::format("{} of {} points are missing", plan.points - rows, plan.points));
@@ -106,10 +107,10 @@ std::vector<std::string> notes_on(const Parts& parts, const StoredPlan& plan, st
   return notes;
 }
 
-// Writes the rows of all parts in the order of their points.
+// Writes the rows of all merged files in the order of their points.
 std::int64_t write_rows(const Database& database, std::int64_t number, Parts& parts, const StoredPlan& plan, std::int64_t session,
                         const Progress& progress) {
-  // Rows of one point are read in the order in which the parts are given.
+  // Rows of equal points are read in the order in which the files to merge are given.
   const auto later = [&](std::size_t a, std::size_t b) {
     return std::pair(parts[a]->row().point, a) > std::pair(parts[b]->row().point, b);
   };
@@ -162,7 +163,7 @@ Merged merge_studies(const std::vector<fs::path>& paths, const fs::path& out, co
   const UnnamedStore made(out);
   {
     const Database database(made.path(), Access::create, out.string());
-    // The temporary file is removed after a failure, so that it needs no safe journal.
+    // The temporary database file is removed after a failure, so that it needs no crash-safe journal.
     database.run("PRAGMA journal_mode = MEMORY; PRAGMA synchronous = OFF");
     create_tables(database, merged.plan.columns);
     Transaction transaction(database);

@@ -28,7 +28,8 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view magic{"SQLite format 3\0", 16};
 using Header = std::array<unsigned char, 100>;
-constexpr std::size_t version_for_reading = 19, application_id = 68;  // positions in the header of an SQLite file
+// Offsets of fields in the header of an SQLite file [byte].
+constexpr std::size_t version_for_reading = 19, application_id = 68;
 constexpr int write_ahead = 2;
 
 fs::path beside(const fs::path& path, const char* ending) {
@@ -42,7 +43,7 @@ bool has_content(const fs::path& file) {
   return fs::file_size(file, error) > 0 && !error;
 }
 
-// Returns the first bytes of a file; none if the file is shorter or cannot be read.
+// Returns the header, the first bytes, of an SQLite file; none if the file is shorter or cannot be read.
 std::optional<Header> header_of(const fs::path& path) {
   Header header{};
   std::ifstream in(path, std::ios::binary);
@@ -97,7 +98,7 @@ bool same_bytes(const fs::path& a, const fs::path& b) {
   return one.eof() && other.eof();
 }
 
-// Writes the content of a file or folder to the disk; returns false if that fails.
+// Writes the content of a file or folder to the disk (fsync); returns false if that fails.
 bool synced(const fs::path& path, int flags) {
   const int descriptor = ::open(path.c_str(), flags | O_CLOEXEC);
   if (descriptor < 0) return false;
@@ -158,18 +159,18 @@ std::unique_ptr<const Database> open_to_read(const fs::path& path) {
 
 const char* journal_on(long type) {
   constexpr std::array<unsigned long, 12> of_networks{
-      0x6969,      // NFS
-      0x517B,      // SMB
-      0xFE534D42,  // SMB 2
-      0xFF534D42,  // CIFS
-      0x0BD00BD0,  // Lustre
-      0x47504653,  // GPFS
-      0x19830326,  // BeeGFS
-      0x00C36400,  // Ceph
-      0x013111A8,  // IBRIX
-      0x01021997,  // 9P
-      0x5346414F,  // AFS
-      0xAAD7AAEA,  // PanFS
+      0x6969,      // file system type of NFS
+      0x517B,      // file system type of SMB
+      0xFE534D42,  // file system type of SMB 2
+      0xFF534D42,  // file system type of CIFS
+      0x0BD00BD0,  // file system type of Lustre
+      0x47504653,  // file system type of GPFS
+      0x19830326,  // file system type of BeeGFS
+      0x00C36400,  // file system type of Ceph
+      0x013111A8,  // file system type of IBRIX
+      0x01021997,  // file system type of 9P
+      0x5346414F,  // file system type of AFS
+      0xAAD7AAEA,  // file system type of PanFS
   };
   for (const unsigned long network : of_networks) {
     if ((static_cast<unsigned long>(type) & 0xFFFFFFFF) == network) return "TRUNCATE";
@@ -237,15 +238,16 @@ void UnnamedStore::give_name() const {
   const auto taken = [&] { return InvalidInput(fmt::format("{}: exists already; it is not replaced", name_.string())); };
   if (!synced(path_, O_RDONLY)) throw failed("be written");
   int code = ::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, name_.c_str(), RENAME_NOREPLACE);
-  if (code != 0 && (errno == EINVAL ||
-                    errno == ENOSYS)) {  // not supported by this file system; the lock prevents other runs from using the name
+  // Rename with a check if the file system cannot refuse to replace a file; the lock file keeps other runs away from the name.
+  if (code != 0 && (errno == EINVAL || errno == ENOSYS)) {
     std::error_code ignored;
     if (fs::exists(fs::symlink_status(name_, ignored))) throw taken();
     code = ::rename(path_.c_str(), name_.c_str());
   }
   if (code != 0 && errno == EEXIST) throw taken();
   if (code != 0) throw failed("be renamed");
-  // A failure is ignored, because not every file system supports this, and the file has its name already.
+  // Write the folder entry to the disk. A failure is ignored: not every file system supports this, and the file already has its
+  // final name.
   static_cast<void>(synced(fs::absolute(name_).parent_path(), O_RDONLY | O_DIRECTORY));
 }
 

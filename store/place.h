@@ -1,4 +1,5 @@
-// The files of a store (a database of study results): checks what exists at its path, and opens, locks and copies it.
+// The files of a store (a database of study results): checks what exists at the path of a store, and opens, locks and copies
+// its files.
 #pragma once
 
 #include <filesystem>
@@ -14,18 +15,19 @@ namespace softland::internal {
 /// Application id "SoLa" in the header of every study database, which distinguishes it from other databases.
 inline constexpr std::int64_t store_application = 0x536F4C61;
 
-/// Throws InvalidInput with path and reason unless this is a regular file that begins as a study database does.
+/// Throws InvalidInput with path and reason unless the path is a regular file that begins as a study database does.
 void require_store(const std::filesystem::path& path);
 
-/// Throws InvalidInput if a new database file would replace an existing file, or a file with the name of its log or journal.
+/// Throws InvalidInput if a new database file at the path would replace an existing file, or if a file has the name of its log
+/// or journal.
 void require_room(const std::filesystem::path& path);
 
 /// Locks the database file against other writers, also under another name of the file. Throws InvalidInput with a description
-/// of the other writer.
+/// of the writer that holds the lock.
 [[nodiscard]] std::unique_ptr<const LockFile> lock_store(const std::filesystem::path& path, const std::string& command);
 [[nodiscard]] std::filesystem::path lock_of(const std::filesystem::path& path);
 
-/// Opens the database file for reading, by the access mode that its folder permits.
+/// Opens the database file for reading, by the access mode that the permissions of its folder allow.
 [[nodiscard]] std::unique_ptr<const Database> open_to_read(const std::filesystem::path& path);
 
 /// Returns the journal mode of SQLite for a file system. "WAL" lets other processes read during a write. Only "TRUNCATE" is
@@ -37,9 +39,9 @@ void require_room(const std::filesystem::path& path);
 /// Copies a damaged database file with its log to FILE.damaged, unless that copy exists. Returns a message about the copy.
 [[nodiscard]] std::string kept_copy(const std::filesystem::path& path);
 
-/// Copies a database file that no longer exists at `path` to another file. The file is FILE.rescued beside `path`; if the
-/// folder is gone too, in the current folder or that of temporary files. Returns the path of the copy. Throws OutputLost,
-/// beginning with `said`, if no folder accepts the copy.
+/// Copies a database file that no longer exists at `path`, but is still open, to another file: FILE.rescued beside `path`; if
+/// the folder is gone too, in the current folder or that of temporary files. Returns the path of the copy. Throws OutputLost,
+/// with a message that begins with `said`, if no folder accepts the copy.
 [[nodiscard]] std::filesystem::path copied_to_rescue(const Database& database, const std::filesystem::path& path,
                                                      const std::string& said);
 
@@ -52,8 +54,8 @@ class UnnamedStore {
   UnnamedStore& operator=(const UnnamedStore&) = delete;
   ~UnnamedStore();
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// Renames the file to the final path; no process may have it open. Throws InvalidInput if the path exists, and OutputLost if
-  /// the file cannot be renamed.
+  /// Renames the complete database file to its final path; no process may have the file open. Throws InvalidInput if the path
+  /// exists, and OutputLost if the file cannot be renamed.
   void give_name() const;
 
  private:

@@ -18,7 +18,7 @@ using namespace internal;
 
 namespace {
 
-// Functions that an expression may call; they have no side effects and are fast.
+// SQL functions that an expression of --where may call; they have no side effects and are fast.
 constexpr std::array<std::string_view, 26> harmless{
     "abs",   "acos", "asin", "atan",  "atan2", "ceil", "coalesce", "cos",    "exp", "floor", "glob", "ifnull", "iif",
     "instr", "like", "ln",   "log10", "lower", "max",  "min",      "nullif", "pow", "round", "sin",  "sqrt",   "upper"};
@@ -32,7 +32,7 @@ int authorize(void*, int action, const char* first, const char* second, const ch
   return SQLITE_DENY;
 }
 
-// Returns true when the parentheses of an expression are balanced, none closes an outer parenthesis, and the expression
+// Returns true when the parentheses of an SQL expression are balanced, none closes an outer parenthesis, and the expression
 // contains no comment and no second statement. Text in quotes is skipped.
 bool is_closed(std::string_view where) {
   int depth = 0;

@@ -57,8 +57,7 @@ Shard shard_from(std::string_view text) {
 namespace {
 
 constexpr std::size_t rows_that_wait = 16 * rows_per_commit;
-constexpr std::uintmax_t checked_size = std::uintmax_t{64}
-                                        << 20;  // [byte]; damage to a larger file shows when the damaged part is read
+constexpr std::uintmax_t checked_size = std::uintmax_t{64} << 20;  // size [byte] up to which a file is checked when opened
 
 void require_only_name(const fs::path& path) {
   struct stat found {};
@@ -116,7 +115,7 @@ class StudyStore::Implementation {
   std::vector<bool> done_;
 
   mutable std::mutex finding_;
-  std::unique_ptr<const Database> earlier_;  // separate connection, so that find() does not wait for the disk
+  std::unique_ptr<const Database> earlier_;  // separate connection, so that find() does not wait for a write to the disk
   mutable std::optional<Statement> find_;
 
  private:
@@ -136,18 +135,19 @@ class StudyStore::Implementation {
 
   std::optional<RowWriter> rows_;
   std::optional<SessionTally> tally_;
-  fs::path log_;  // path of the write-ahead log; empty without a log
+  fs::path log_;  // path of SQLite's write-ahead log; empty if there is no log
   std::optional<FileNumber> log_number_;
-  std::string rescued_;  // message with the file that has the rows of a removed database file; only the writing thread uses it
+  // Message that names the file with the rescued rows of a removed database file; only the writing thread uses it.
+  std::string rescued_;
 
   std::mutex mutex_;
   std::condition_variable for_writer_, for_callers_;
   std::vector<StoredRow> waiting_;
   std::chrono::steady_clock::time_point due_;
   bool committing_ = false, hurried_ = false, stopping_ = false;
-  std::exception_ptr failure_;        // failure to write rows; the waiting rows are written again later
+  std::exception_ptr failure_;        // failure to write rows to the database file; the waiting rows are written again later
   std::exception_ptr contradiction_;  // error about a row that contradicts the database file and was not written
-  std::string lost_;                  // copy of rescued_ for callers
+  std::string lost_;                  // copy, for calling threads, of the message about a removed database file
   std::thread writer_;
 };
 
@@ -212,7 +212,8 @@ void StudyStore::Implementation::start_session(const StoredOrigin& origin, bool 
   prepare_finding();
 }
 
-// Reads which points are done. It runs before anything is written, so that a damaged database file is not changed.
+// Reads which points of the study have rows already. It runs before anything is written, so that a damaged database file is not
+// changed.
 void StudyStore::Implementation::read_done() {
   done_.resize(static_cast<std::size_t>(plan_.points));
   if (number_ == 0) return;
@@ -239,7 +240,7 @@ void StudyStore::Implementation::prepare_finding() {
 StudyStore::Implementation::~Implementation() {
   try {
     close();
-  } catch (...) {  // errors are reported by close(), which the caller should call
+  } catch (...) {  // errors are ignored here, since close() reports errors, which the caller should call
   }
 }
 
@@ -251,8 +252,8 @@ void StudyStore::Implementation::let_go() {
   database_.reset();
 }
 
-// Saves the content of a removed database file, and later rows, to another file: a removed file remains writable until it is
-// closed, and is then lost.
+// Saves the content of a removed database file, and later rows, to another file: a removed file remains writable until the
+// process closes it, and is then lost.
 void StudyStore::Implementation::keep_in_place() {
   if (!rescued_.empty()) return;
   if (!database_->is_at(path_)) {
@@ -276,7 +277,8 @@ void StudyStore::Implementation::move_to_rescue(const std::string& what) {
   rescued_ = fmt::format("{}; all of its rows, and those computed since, are in the store {}", said, rescue.string());
 }
 
-// Throws errors that have occurred since the last call of this function; the writing thread then tries the waiting rows again.
+// Throws errors of the writing thread that have occurred since the last call of this function; the writing thread then writes
+// the waiting rows again.
 void StudyStore::Implementation::throw_told() {
   for (std::exception_ptr* told : {&failure_, &contradiction_}) {
     if (!*told) continue;
@@ -305,7 +307,7 @@ void StudyStore::Implementation::add(StoredRow row) {
 
 void StudyStore::Implementation::flush() {
   std::unique_lock lock(mutex_);
-  failure_ = nullptr;  // rows that could not be written are tried again now
+  failure_ = nullptr;  // rows that could not be written are written again now
   hurried_ = true;
   for_writer_.notify_one();
   for_callers_.wait(lock, [&] { return failure_ != nullptr || (waiting_.empty() && !committing_); });
@@ -345,7 +347,7 @@ void StudyStore::Implementation::end_log() {
   if (rows_) keep_in_place();
   find_.reset();
   earlier_.reset();
-  // If another process is reading, that process removes the log when it ends.
+  // Do not wait for locks: if another process is reading, that process removes the log when it ends.
   sqlite3_busy_timeout(database_->handle(), 0);
   sqlite3_exec(database_->handle(), "PRAGMA journal_mode = DELETE", nullptr, nullptr, nullptr);
   log_.clear();
@@ -353,7 +355,7 @@ void StudyStore::Implementation::end_log() {
   if (!was_told && !rescued_.empty()) throw OutputLost(rescued_);
 }
 
-// Runs the writing thread. After a failure the thread waits for the next call of the caller, which reports the failure.
+// Runs the writing thread. After a failure the thread waits until another thread calls the store, which reports the failure.
 void StudyStore::Implementation::work() {
   std::unique_lock lock(mutex_);
   for (;;) {
@@ -385,7 +387,7 @@ void StudyStore::Implementation::commit_batch(std::unique_lock<std::mutex>& lock
     if (!failure) keep_in_place();
   } catch (...) {
     failure = std::current_exception();
-    rows.clear();  // the database holds the rows now
+    rows.clear();  // the database file holds these rows now
   }
   lock.lock();
   committing_ = false;
@@ -396,7 +398,7 @@ void StudyStore::Implementation::commit_batch(std::unique_lock<std::mutex>& lock
   for_callers_.notify_all();
 }
 
-// Writes rows. A row that contradicts the database file is not written, and is reported.
+// Writes rows to the database file. A row that contradicts the file is not written, and is reported.
 void StudyStore::Implementation::commit(const std::vector<StoredRow>& rows) {
   std::optional<Contradiction> contradiction;
   std::map<std::string, std::int64_t> by_status;

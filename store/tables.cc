@@ -20,10 +20,10 @@
 namespace softland::internal {
 namespace {
 
-constexpr std::size_t most_columns = 1900;  // SQLite accepts 2000
-// SQLite has no date after the year 9999, but the clock of a machine may be later.
+constexpr std::size_t most_columns = 1900;  // SQLite accepts 2000 columns per table
+// SQL for the current time. SQLite has no date after the year 9999, but the clock of a machine may be later.
 constexpr const char* now = "ifnull(strftime('%Y-%m-%d %H:%M:%f', 'now'), 'after the year 9999')";
-constexpr int first_with_checksums = 2;  // first schema with checksums
+constexpr int first_with_checksums = 2;  // first version of the tables that has checksums
 
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
@@ -55,9 +55,9 @@ double kept(double value) { return value + 0.0; }
 
 bool has_checksums(const Database& database) { return database.number_of("PRAGMA user_version") >= first_with_checksums; }
 
-// A checksum of 32 bits of numbers and texts, equal on all machines. A change of one word always changes the sum before it is
-// cut to 32 bits, and the boundary between two texts counts. The checksum is faster than a hash of the text of a row: 300 000
-// rows are written per second.
+// A checksum, with 32 bits, of numbers and texts, equal on all machines. A change of one word always changes the sum before it
+// is cut to 32 bits, and the boundary between two texts counts. The checksum is faster than a hash of the text of a row: 300
+// 000 rows are written per second.
 class Checksum {
  public:
   void add(std::uint64_t word) { state_ = (std::rotl(state_, 27) ^ word) * 0x9E3779B97F4A7C15; }
@@ -189,7 +189,8 @@ std::vector<StoredColumn> columns_in(const Database& database) {
   return found;
 }
 
-// Checks the number of points and the part of the plan that a database file holds, before other numbers are computed from them.
+// Checks the number of points of the study and the part of the study that a database file holds, before other numbers are
+// computed from them.
 void require_sound(const Database& database, std::int64_t points, std::int64_t index, std::int64_t count) {
   constexpr std::int64_t most_points = std::int64_t{1} << 53;
   const auto damaged = [&](const std::string& what) {

@@ -9,9 +9,10 @@
 namespace softland::internal {
 namespace {
 
-/// A term of a piece whose polynomials are long enough for the first four derivatives.
+/// A term of a signal piece, prepared for up to four derivatives of its polynomials.
 struct Differentiated {
-  static constexpr std::size_t size = 8;  // a frequency sweep raises the degree by one for each derivative
+  // Number of coefficients of a polynomial; a frequency sweep raises the degree by one for each derivative.
+  static constexpr std::size_t size = 8;
   std::array<double, size> cosine = {}, sine = {};
   double decay = 0, angular_frequency = 0, sweep = 0;
 
@@ -35,13 +36,13 @@ struct Differentiated {
     cosine = c, sine = s;
   }
 
-  /// Returns true for a sine of constant amplitude, whose bound does not depend on time.
+  /// Returns true if the term is a sine of constant amplitude, whose bound does not depend on time.
   [[nodiscard]] bool is_steady() const {
     bool is_constant = decay == 0;
     for (std::size_t k = 1; k < size; ++k) is_constant = is_constant && cosine[k] == 0 && sine[k] == 0;
     return is_constant;
   }
-  /// Returns a bound for times from `first` to `last` after the piece began.
+  /// Returns a bound on the absolute value of the term for times from `first` to `last` after the piece began.
   [[nodiscard]] double bound(double first, double last) const {
     const double longest = std::max(std::abs(first), std::abs(last));
     double power = 1, sum = 0;
@@ -50,7 +51,7 @@ struct Differentiated {
   }
 };
 
-/// A bound on a derivative of a piece's voltage over any interval; the terms are differentiated only once.
+/// A bound on a derivative of the voltage of a signal piece, over any interval; the terms are differentiated only once.
 class DerivativeBound {
  public:
   DerivativeBound(const SignalPieceOf<double>& piece, int order) : piece_(piece), order_(order) {
@@ -84,7 +85,7 @@ class DerivativeBound {
   std::vector<Differentiated> others_;
 };
 
-/// Returns the sum of the largest absolute values of all parts of the voltage, or of dV/dt.
+/// Returns the sum of the largest absolute values of all parts of a signal piece's voltage, or of its dV/dt, on [from, to].
 double size_of(const SignalPieceOf<double>& piece, bool of_rate, double from, double to) {
   double sum = 0;
   for (const TermOf<double>& term : piece.terms) {
@@ -107,7 +108,8 @@ double time_of_maximum(Function function, const Curvature& curvature, double fro
   };
   std::vector<Interval> open{{from, to, function(from), function(to)}};
   double place = open[0].at_begin >= open[0].at_end ? from : to, best = std::max(open[0].at_begin, open[0].at_end);
-  constexpr long most_values = 10'000'000;  // with more values, the angles of the waveform have no significant digit left
+  // Limit of sampled values; with more, the angles of the waveform have no significant digit.
+  constexpr long most_values = 10'000'000;
   for (long values = 0; !open.empty() && values < most_values; ++values) {
     const Interval i = open.back();
     open.pop_back();
@@ -141,7 +143,8 @@ void append_extrema_of_terms(std::vector<double>& times, const SignalPieceOf<dou
 }
 
 double duration_of_terms(const SignalPieceOf<double>& piece) {
-  constexpr double time_constants = 50;  // exp(-50) is 2e-22; a cubic polynomial grows by 1e5 in this time
+  // Time constants after which a decaying term counts as 0: exp(-50) is 2e-22; a cubic polynomial grows by 1e5 meanwhile.
+  constexpr double time_constants = 50;
   double longest = 0;
   for (const TermOf<double>& term : piece.terms) longest = std::max(longest, time_constants / term.decay);
   return longest;

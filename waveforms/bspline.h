@@ -1,6 +1,6 @@
-// B-spline: a cubic spline with continuous curvature. Its control levels need not be reached; the voltage stays between the
-// smallest and the largest level. With n levels and knots at the n - 2 times that divide the duration evenly, fourfold at both
-// ends:
+// B-spline waveform: a cubic spline of the voltage with continuous curvature. Its control levels need not be reached; the
+// voltage stays between the smallest and the largest level. With n levels and knots at the n - 2 times that divide the duration
+// evenly, fourfold at both ends:
 //
 //   V(t) = sum over i of levels_i B_i(t) on [0, duration], B_i the cubic B-splines of these knots (de Boor, A Practical Guide to
 //   Splines, 1978, chapter IX)
@@ -20,8 +20,8 @@ namespace softland {
 
 template <class P>
 struct BSplineOf {
-  std::vector<P> levels = {};  ///< [V], n >= 4
-  P duration = 0;              ///< [s], > 0
+  std::vector<P> levels = {};  ///< control levels of the voltage [V]; at least 4
+  P duration = 0;              ///< time until the last voltage level is reached [s], > 0
 };
 using BSpline = BSplineOf<double>;
 
@@ -37,19 +37,19 @@ struct FamilyOf<BSpline> {
 
 namespace internal {
 
-/// Returns the four B-splines that are not 0 in span j of a spline of n levels: cubic polynomials over the share of the span
-/// that has passed, coefficients in rising order. The first B-spline belongs to level j.
+/// Returns the four B-splines that are not 0 in span j (between two knots) of a spline of n levels: cubic polynomials of the
+/// share of the span that has passed, coefficients in rising order. The first B-spline belongs to level j.
 [[nodiscard]] std::array<std::array<double, 4>, 4> bsplines_of_span(std::size_t j, std::size_t n);
 
-/// Returns true if the knots around span j are evenly spaced; the B-splines of all such spans are equal.
+/// Returns true if the spline knots around span j are evenly spaced; the B-splines of all such spans are equal.
 [[nodiscard]] constexpr bool has_even_knots(std::size_t j, std::size_t n) { return j >= 3 && j + 7 <= n; }
 
-/// Returns knot `i` of the n + 4 knots of a spline of n levels, in units of a span.
+/// Returns knot `i` of the n + 4 knots of a spline of n levels, in units of the distance between inner knots.
 [[nodiscard]] double bspline_knot(std::size_t i, std::size_t n);
 
 }  // namespace internal
 
-/// Returns the pieces of a valid B-spline waveform.
+/// Returns the voltage of a valid B-spline waveform as polynomial pieces.
 template <class P>
 [[nodiscard]] Pieces<P> pieces(const BSplineOf<P>& spline) {
   const std::size_t n = spline.levels.size(), spans = n - 3;
@@ -73,7 +73,7 @@ template <class P>
   all.push_back({.begin = spline.duration, .value = spline.levels.back()});
   return all;
 }
-/// Compiles the spline to a signal. Throws InvalidParameter for an invalid spline.
+/// Compiles the B-spline to a voltage signal. Throws InvalidParameter for an invalid B-spline.
 [[nodiscard]] Signal signal(const BSpline& spline, double before = 0);
 
 }  // namespace softland

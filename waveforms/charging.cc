@@ -21,9 +21,10 @@ double sign_change(const Function& function, double low, double high) {
   return 0.5 * (low + high);
 }
 
-// Returns times in [begin, end] between which V^2 of a piece is monotone: V^2 has an extremum where V or dV/dt changes sign.
+// Returns times in [begin, end] between which V^2 of a signal piece is monotone: V^2 has an extremum where V or dV/dt changes
+// sign.
 std::vector<double> turning_times(const SignalPiece& piece, double begin, double end, double resolving_step) {
-  constexpr double fewest = 64, most = 1e6;  // number of samples of a piece that is not straight
+  constexpr double fewest = 64, most = 1e6;  // number of samples of a signal piece that is not straight
   std::vector<double> times{begin, end};
   const auto voltage = [&](double t) { return piece.voltage(t); };
   const auto rate = [&](double t) { return piece.rate(t); };
@@ -48,7 +49,7 @@ double charging(const Signal& signal, double end) {
     sum += std::max(0.0, volts * volts - last * last) / 2;
     last = volts;
   };
-  // A jump that crosses 0 V discharges the capacitor before it charges.
+  // A voltage jump that crosses 0 V discharges the capacitor before it charges.
   const auto jump = [&](double volts) {
     if (last * volts < 0) reach(0);
     reach(volts);

@@ -1,4 +1,4 @@
-// Chirp: a sine on a step. Its frequency changes linearly in time, or its amplitude decays, or both.
+// Chirp: a drive voltage with a sine on a step. Its frequency changes linearly in time, or its amplitude decays, or both.
 //
 //   V(t) = b(t) + amplitude e(t) exp(-s / decay_time) sin(phase + angular_frequency s + sweep s^2 / 2),  s = t - start
 //
@@ -20,16 +20,17 @@ namespace softland {
 
 template <class P>
 struct ChirpOf {
-  P base = 0;                                              ///< voltage of the step [V]
-  P rise_time = 0;                                         ///< rise time of the base [s], >= 0
-  P amplitude = 0;                                         ///< amplitude at the start [V]
-  P angular_frequency = 0;                                 ///< angular frequency at the start [rad/s], > 0
-  P frequency_ratio = 1;                                   ///< frequency at the end over that at the start, > 0
-  P phase = 0;                                             ///< phase at the start [rad]
-  P start = 0;                                             ///< [s], >= 0
-  P end = std::numeric_limits<double>::infinity();         ///< [s], > start; a finite end needs end - start >= 2 fade
-  P fade = 0;                                              ///< rise time and fall time of the envelope [s], >= 0
-  P decay_time = std::numeric_limits<double>::infinity();  ///< time in which the amplitude falls by 1/e [s], > 0
+  P base = 0;               ///< voltage of the step under the sine [V]
+  P rise_time = 0;          ///< rise time of the step [s], >= 0
+  P amplitude = 0;          ///< amplitude of the sine at its start [V]
+  P angular_frequency = 0;  ///< angular frequency of the sine at its start [rad/s], > 0
+  P frequency_ratio = 1;    ///< frequency of the sine at its end over that at its start, > 0
+  P phase = 0;              ///< phase of the sine at its start [rad]
+  P start = 0;              ///< time at which the sine starts [s], >= 0
+  /// Time at which the sine ends [s], > start; a finite end needs end - start >= 2 fade.
+  P end = std::numeric_limits<double>::infinity();
+  P fade = 0;                                              ///< rise time and fall time of the sine's envelope [s], >= 0
+  P decay_time = std::numeric_limits<double>::infinity();  ///< time in which the amplitude falls by a factor e [s], > 0
 };
 using Chirp = ChirpOf<double>;
 
@@ -64,7 +65,7 @@ struct FamilyOf<Chirp> {
   }
 };
 
-/// Returns the pieces of a valid chirp, whose base rises from `before` [V].
+/// Returns the voltage of a valid chirp as pieces; its base rises from `before` [V].
 template <class P>
 [[nodiscard]] Pieces<P> pieces(const ChirpOf<P>& chirp, const P& before = P(0)) {
   using std::cos, std::exp, std::sin;
@@ -96,7 +97,7 @@ template <class P>
   }
   return all;
 }
-/// Compiles the chirp to a signal. Throws InvalidParameter for an invalid chirp.
+/// Compiles the chirp to a voltage signal. Throws InvalidParameter for an invalid chirp.
 [[nodiscard]] Signal signal(const Chirp& chirp, double before = 0);
 
 }  // namespace softland

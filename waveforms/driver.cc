@@ -22,7 +22,8 @@ using Complex = std::complex<double>;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// The function Re[polynomial(s) exp(exponent s)], with the time s counted from the beginning of the piece.
+/// A part Re[polynomial(s) exp(exponent s)] of a voltage signal, with the time s counted from the beginning of the signal
+/// piece.
 struct Exponential {
   std::array<Complex, 4> polynomial = {};
   Complex exponent = {};
@@ -36,7 +37,7 @@ Exponential exponential_of(const SignalTerm& term) {
   return e;
 }
 
-/// Returns all parts of a piece without a sweep.
+/// Returns all parts, line, sine and terms, of a signal piece without a frequency sweep.
 std::vector<Exponential> exponentials_of(const SignalPiece& piece) {
   std::vector<Exponential> all{{.polynomial = {piece.value, piece.slope}}};
   if (piece.oscillates()) {
@@ -48,9 +49,10 @@ std::vector<Exponential> exponentials_of(const SignalPiece& piece) {
   return all;
 }
 
-/// Returns the steady-state solution V of T dV/dt + V = input.
+/// Returns the steady-state solution V of the filter T dV/dt + V = input.
 Exponential answer(const Exponential& input, double time_constant) {
-  // If the input decays at the rate of the filter, the response has a factor proportional to time.
+  // Relative difference below which the decay rate of the input counts as that of the filter: the response then has a factor
+  // proportional to time.
   constexpr double same = 1e-6;
   const Complex factor = 1.0 + input.exponent * time_constant;
   Exponential out{.polynomial = {}, .exponent = input.exponent};
@@ -67,7 +69,7 @@ Exponential answer(const Exponential& input, double time_constant) {
   return out;
 }
 
-/// Returns the function of `e` with the time s counted from `by` [s] later.
+/// Returns the function of `e` with the time s counted from a zero that is `by` [s] later.
 Exponential later(const Exponential& e, double by) {
   Exponential moved{.polynomial = {}, .exponent = e.exponent};
   const auto& p = e.polynomial;
@@ -100,20 +102,20 @@ SignalPiece piece_of(double begin, const std::vector<Exponential>& parts) {
   return piece;
 }
 
-/// Returns true if the voltage of a piece is constant, as between two samples of a converter.
+/// Returns true if the voltage of a signal piece is constant, as between two samples of a converter.
 bool is_held_level(const SignalPiece& piece) { return piece.slope == 0 && !piece.oscillates() && piece.terms.empty(); }
 
-/// Returns the response of the filter to a constant level; `left` is the output less the level at the beginning of the level
-/// [V].
+/// Returns the response of the filter T dV/dt + V = input to a constant level; `left` is the output less the level at the
+/// beginning of the level [V].
 SignalPiece answer_to_level(const SignalPiece& level, double time_constant, double left) {
   SignalPiece piece{.begin = level.begin, .value = level.value};
   if (left != 0) piece.terms.push_back({.cosine = {left}, .decay = 1 / time_constant});
   return piece;
 }
 
-/// Replaces pieces with a frequency sweep by cubics that match the values and slopes at their ends.
+/// Replaces signal pieces with a frequency sweep by cubics that match the values and slopes at the pieces' ends.
 std::vector<SignalPiece> without_sweeps(const std::vector<SignalPiece>& pieces) {
-  constexpr double tolerance = 1e-6;  // error of the cubics, relative to the largest size of the terms
+  constexpr double tolerance = 1e-6;  // error of the cubics that replace a sweep, relative to the size of the terms
   std::vector<SignalPiece> all;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const SignalPiece& piece = pieces[i];
@@ -121,7 +123,8 @@ std::vector<SignalPiece> without_sweeps(const std::vector<SignalPiece>& pieces) 
       all.push_back(piece);
       continue;
     }
-    // The error of a cubic through values and rates is at most h^4 / 384 times the fourth derivative.
+    // The error of a cubic through values and slopes at both ends of an interval h is at most h^4 / 384 times the fourth
+    // derivative.
     const double end = pieces[i + 1].begin, size = internal::derivative_bound(piece, 0, piece.begin, end);
     const double fourth = internal::derivative_bound(piece, 4, piece.begin, end);
     const double count = std::max(1.0, std::ceil((end - piece.begin) * std::pow(fourth / (384 * tolerance * size), 0.25)));
@@ -146,7 +149,7 @@ std::vector<SignalPiece> without_sweeps(const std::vector<SignalPiece>& pieces) 
 namespace internal {
 namespace {
 
-/// Returns the step between two voltages of a converter with this number of bits [V].
+/// Returns the voltage step between two neighbouring codes of a converter with this number of bits [V].
 double step_of(const DriverLimits& limits, int bits) { return (limits.max_voltage - limits.min_voltage) / (std::exp2(bits) - 1); }
 
 }  // namespace
@@ -235,7 +238,7 @@ Signal filtered(const Signal& input, double time_constant) {
 }  // namespace internal
 
 DriverLimits limits_of_samples(DriverLimits limits, const DriverModel& model) {
-  constexpr double rounding = 1e-9;  // relative rounding in differences of late times
+  constexpr double rounding = 1e-9;  // relative rounding error in differences of late times
   if (model.sample_rate) limits.max_slew *= 1 + rounding;
   if (model.sample_rate && model.bits) limits.max_slew += internal::step_of(limits, *model.bits) * *model.sample_rate;
   return limits;

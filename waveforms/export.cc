@@ -14,7 +14,8 @@
 namespace softland {
 namespace {
 
-/// Largest deviation of the polyline from a sine, relative to the peak of the signal: less than a step of 12 bits.
+/// Largest distance between a sine and the straight lines that replace it, relative to the peak of the signal: less than a step
+/// of 12 bits.
 constexpr double sine_tolerance = 1e-4;
 
 void require_signals(const std::map<std::string, Signal>& signals) {
@@ -34,7 +35,7 @@ const std::string& column_name(const std::string& drive) {
   return drive;
 }
 
-/// Returns the number of the last sample, which is held without end.
+/// Returns the number of the signal's last sample, which is held without end.
 double last_sample(const Signal& held, double rate) { return std::round(held.pieces().back().begin * rate); }
 
 constexpr double most_chords = 1e7;
@@ -44,8 +45,8 @@ void require_few(double chords, double tolerance) {
                                              tolerance, chords, most_chords));
 }
 
-/// Appends the points of a piece with terms. Intervals are halved until straight lines are within the tolerance, because the
-/// curvature changes along the piece.
+/// Appends the points of a polyline along a signal piece with terms. Intervals are halved until straight lines are within the
+/// tolerance, because the curvature changes along the piece.
 void append_halved(std::vector<std::pair<double, double>>& points, const SignalPiece& piece, double begin, double end,
                    double tolerance) {
   std::vector<double> ends{end};
@@ -64,12 +65,12 @@ void append_halved(std::vector<std::pair<double, double>>& points, const SignalP
   }
 }
 
-/// Appends the points of a piece that is not straight strictly inside (begin, end): the error of a chord of length h is at most
-/// h^2 max|V''| / 8.
+/// Appends the points of a polyline, strictly inside (begin, end), along a signal piece that is not straight: the error of a
+/// chord of length h is at most h^2 max|V''| / 8.
 void append_inside(std::vector<std::pair<double, double>>& points, const SignalPiece& piece, double begin, double end,
                    double tolerance) {
   if (piece.is_straight() || !(end > begin)) return;
-  // A spline of equal levels deviates from a line by rounding only, so that its range cannot define a tolerance.
+  // A spline of equal levels deviates from a straight line by rounding only, so its range cannot define a tolerance.
   constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
   const double size = std::max(std::abs(piece.voltage(begin)), std::abs(piece.voltage(end))), length = end - begin;
   if (!piece.terms.empty() && length * length / 8 * internal::derivative_bound(piece, 2, begin, end) <= rounding * size) return;
@@ -92,7 +93,7 @@ void append_inside(std::vector<std::pair<double, double>>& points, const SignalP
 std::vector<std::pair<double, double>> polyline(const Signal& signal, double end, double tolerance, double jump_time) {
   require_end(end);
   require(jump_time >= 0 && std::isfinite(jump_time), fmt::format("jump_time is {} s; it must be finite and >= 0", jump_time));
-  // A jump must end well before the next breakpoint, which a long jump would hide.
+  // A voltage jump, written as a steep ramp, must end well before the next breakpoint, which a long ramp would hide.
   constexpr double share_of_interval = 1e-3;
   const std::vector<SignalPiece>& pieces = signal.pieces();
   std::vector<std::pair<double, double>> points;
@@ -135,7 +136,7 @@ std::string csv(const std::map<std::string, Signal>& signals, double end, const 
   }
   text += '\n';
   const auto append = [&](double time, auto voltage) {
-    // Write the shortest text that reads back to the same double.
+    // Write the shortest text of the time that reads back to the same double.
     fmt::format_to(std::back_inserter(text), "{}", time);
     for (const auto& [drive, signal] : signals) fmt::format_to(std::back_inserter(text), ",{}", voltage(signal));
     text += '\n';
@@ -183,7 +184,7 @@ std::string spice_name(const std::string& drive) {
 
 std::string spice_pwl(const std::map<std::string, Signal>& signals, double end, std::string_view about) {
   require_signals(signals);
-  // The jump time is far below any time constant of a switch, but still resolved by 17 digits at a time of 1 s.
+  // The duration of a jump is far below any time constant of a switch, but still resolved by 17 digits at a time of 1 s.
   const double jump_time = std::min(1e-12, 1e-7 * end);
   std::string text = fmt::format("* {}\n", about);
   std::set<std::string> names;
@@ -194,7 +195,7 @@ std::string spice_pwl(const std::map<std::string, Signal>& signals, double end, 
     fmt::format_to(std::back_inserter(text), ".subckt {} plus minus\nVdrive plus minus PWL(\n", name);
     double last = -1;
     for (const auto& [time, voltage] : polyline(signal, end, sine_tolerance * signal.peak(), jump_time)) {
-      // SPICE requires increasing times; only jumps within a rounding error coincide here.
+      // SPICE requires increasing times; only jumps within a rounding error of each other coincide here.
       if (!(time > last)) continue;
       fmt::format_to(std::back_inserter(text), "+ {} {}\n", time, voltage);
       last = time;

@@ -1,4 +1,4 @@
-// Writes waveforms to files of other programs.
+// Writes drive waveforms to files of other programs: CSV, converter codes, SPICE.
 #pragma once
 
 #include <map>
@@ -11,11 +11,11 @@
 
 namespace softland {
 
-/// Returns breakpoints [s, V] whose straight connections stay within `tolerance` [V] of the signal on [0, end]; pulses and
-/// steps come out exact. A jump at t becomes points at t and at t + jump_time [s], or a thousandth of the interval after t if
-/// that is shorter; with jump_time = 0 both points have the time t. If the voltage at t = 0 differs from that before t = 0, the
-/// points start with a jump. The last point is at `end`, or one jump_time later. Throws InvalidInput unless end and jump_time
-/// are finite and >= 0, the tolerance of a curve > 0, and the points of a piece at most 1e7.
+/// Returns breakpoints (time [s], voltage [V]) whose straight connections stay within `tolerance` [V] of the signal on [0,
+/// end]; pulses and steps are exact. A jump at t becomes points at t and at t + jump_time [s], or a thousandth of the interval
+/// after t if that is shorter; with jump_time = 0 both points have the time t. If the voltage at t = 0 differs from that before
+/// t = 0, the points start with a jump. The last point is at `end`, or one jump_time later. Throws InvalidInput unless end and
+/// jump_time are finite and >= 0, the tolerance of a curve > 0, and the points of a piece at most 1e7.
 [[nodiscard]] std::vector<std::pair<double, double>> polyline(const Signal& signal, double end, double tolerance,
                                                               double jump_time);
 
@@ -30,15 +30,15 @@ namespace softland {
 [[nodiscard]] std::string csv(const std::map<std::string, Signal>& signals, double end,
                               const std::map<std::string, double>& sample_rates = {});
 
-/// Samples of a drive that are written as integer codes of a converter.
+/// Samples of a drive waveform that are written as integer codes of a converter.
 struct Coded {
-  Signal held;                      ///< samples, each held until the next
-  double sample_rate = 0;           ///< [Hz]
-  int bits = 0;                     ///< number of bits; codes are 0 to 2^bits - 1
+  Signal held;                      ///< voltage samples of a drive, each held until the next sample
+  double sample_rate = 0;           ///< sample rate of the drive [Hz]
+  int bits = 0;                     ///< number of bits of the converter; codes are 0 to 2^bits - 1
   double minimum = 0, maximum = 0;  ///< voltages of the smallest and of the largest code [V]
 };
-/// Writes CSV with a header `index,<drive>,<drive>...` and a row for each sample at k / rate, up to the last change of any drive.
-/// Throws InvalidInput without drives, and when their rates differ.
+/// Writes CSV with converter codes of drive voltages: a header `index,<drive>,<drive>...` and a row for each sample at k /
+/// rate, up to the last change of any drive. Throws InvalidInput without drives, and when their sample rates differ.
 [[nodiscard]] std::string codes(const std::map<std::string, Coded>& drives);
 
 /// Returns the name of a drive in SPICE: letters become lower case, and other characters than letters and digits an underscore.

@@ -1,6 +1,7 @@
-// Harmonic dither on a step:  V(t) = b(t) + amplitude e(t) sin(angular_frequency t + phase)  for t in [start, end], b(t)
-// elsewhere (t >= 0). b rises linearly to base on [0, rise_time], from the voltage before t = 0. The envelope e rises linearly
-// from 0 to 1 on [start, start + fade] and falls from 1 to 0 on [end - fade, end]; fade = 0 is a hard switch.
+// Harmonic: a drive voltage with a sine on a step,  V(t) = b(t) + amplitude e(t) sin(angular_frequency t + phase)  for t in
+// [start, end], b(t) elsewhere (t >= 0). b rises linearly to base on [0, rise_time], from the voltage before t = 0. The
+// envelope e rises linearly from 0 to 1 on [start, start + fade] and falls from 1 to 0 on [end - fade, end]; fade = 0 is a hard
+// switch.
 #pragma once
 
 #include <algorithm>
@@ -16,14 +17,15 @@ namespace softland {
 
 template <class P>
 struct HarmonicOf {
-  P base = 0;                                       ///< voltage of the step [V]
-  P rise_time = 0;                                  ///< rise time of the base [s], >= 0
-  P amplitude = 0;                                  ///< [V]
-  P angular_frequency = 0;                          ///< [rad/s], > 0
-  P phase = 0;                                      ///< [rad]
-  P start = 0;                                      ///< start of the sine [s], >= 0
-  P end = std::numeric_limits<double>::infinity();  ///< [s], > start; a finite end needs end - start >= 2 fade
-  P fade = 0;                                       ///< rise time and fall time of the envelope [s], >= 0
+  P base = 0;               ///< voltage of the step under the sine [V]
+  P rise_time = 0;          ///< rise time of the step [s], >= 0
+  P amplitude = 0;          ///< amplitude of the sine [V]
+  P angular_frequency = 0;  ///< angular frequency of the sine [rad/s], > 0
+  P phase = 0;              ///< phase of the sine [rad]
+  P start = 0;              ///< start of the sine [s], >= 0
+  /// Time at which the sine ends [s], > start; a finite end needs end - start >= 2 fade.
+  P end = std::numeric_limits<double>::infinity();
+  P fade = 0;  ///< rise time and fall time of the sine's envelope [s], >= 0
 };
 using Harmonic = HarmonicOf<double>;
 
@@ -49,7 +51,7 @@ struct FamilyOf<Harmonic> {
 
 namespace internal {
 
-/// Returns the envelope, which rises from 0 to 1 and falls back.
+/// Returns the envelope of the sine, which rises from 0 to 1 and falls back to 0, as linear parts.
 template <class P>
 [[nodiscard]] std::vector<Stretch<P>> envelope(const HarmonicOf<P>& h) {
   const bool ends = decided(h.end < std::numeric_limits<double>::infinity());
@@ -69,14 +71,14 @@ template <class P>
 
 }  // namespace internal
 
-/// Returns the pieces of a valid harmonic, whose base rises from `before` [V].
+/// Returns the voltage of a valid harmonic waveform as pieces; its base rises from `before` [V].
 template <class P>
 [[nodiscard]] Pieces<P> pieces(const HarmonicOf<P>& h, const P& before = P(0)) {
   const std::vector<internal::Stretch<P>> envelope = internal::envelope(h);
   std::vector<P> begins;
   for (const internal::Stretch<P>& stretch : envelope) begins.push_back(stretch.begin);
-  // Compute the ramp in volts with one division: a ramp whose slope is rounded twice does not end on the base, which would
-  // count as a jump.
+  // Compute the ramp of the base in volts with one division: a ramp whose slope is rounded twice does not end on the base,
+  // which would count as a jump.
   std::vector<internal::Stretch<P>> straight_line{{.begin = P(0), .value = h.base}};
   if (!(internal::vanishes(h.base) && internal::vanishes(before)) && internal::decided(h.rise_time > 0)) {
     const auto same = std::find_if(begins.begin(), begins.end(), [&](const P& t) { return internal::coincide(t, h.rise_time); });
@@ -90,7 +92,7 @@ template <class P>
     const internal::Stretch<P>& straight = internal::stretch_at(straight_line, begin);
     const internal::Stretch<P>& swing = internal::stretch_at(envelope, begin);
     all.push_back({.begin = begin, .value = straight.at(begin), .slope = straight.slope});
-    // The signal has no sine in a stretch in which the envelope is 0.
+    // The signal has no sine in an interval in which the envelope is 0.
     if (!internal::decided(swing.value > 0) && !internal::decided(swing.slope > 0)) continue;
     all.back().amplitude = h.amplitude * swing.at(begin);
     all.back().amplitude_slope = h.amplitude * swing.slope;
@@ -99,12 +101,13 @@ template <class P>
   }
   return all;
 }
-/// Compiles the harmonic to a signal. Throws InvalidParameter for an invalid harmonic.
+/// Compiles the harmonic waveform to a voltage signal. Throws InvalidParameter for an invalid harmonic.
 [[nodiscard]] Signal signal(const Harmonic& harmonic, double before = 0);
 
 namespace internal {
 
-/// Checks the rules of a harmonic; `what` is its name in messages. Throws InvalidParameter.
+/// Checks the parameters of a harmonic waveform; `what` is its name in messages. Throws InvalidParameter for an invalid
+/// parameter.
 void require_dither(std::string_view what, const Harmonic& harmonic);
 
 }  // namespace internal

@@ -12,12 +12,13 @@ namespace softland {
 namespace {
 
 constexpr int most_halvings = 40;
-// Points of a piece as shares of its length. A cubic interpolates the waveform at `nodes`, the extreme points of the Chebyshev
-// polynomial of degree 3; its error is checked at `checks`.
+// Points of a signal piece as shares of its length. A cubic interpolates the user's waveform at `nodes`, the extreme points of
+// the Chebyshev polynomial of degree 3; its error is checked at `checks`.
 constexpr std::array nodes{0.0, 0.25, 0.75, 1.0};
 constexpr std::array checks{0.1, 0.5, 0.9};
 
-// Returns the coefficients of the cubic through the values at the nodes, in rising order of powers of the share of the piece.
+// Returns the coefficients of the cubic through four voltages at the nodes, in rising order of powers of the share of the
+// signal piece.
 std::array<double, 4> cubic_through(std::array<double, 4> values) {
   for (std::size_t order = 1; order < 4; ++order) {
     for (std::size_t k = 3; k >= order; --k) values[k] = (values[k] - values[k - 1]) / (nodes[k] - nodes[k - order]);
@@ -32,7 +33,7 @@ std::array<double, 4> cubic_through(std::array<double, 4> values) {
 
 double at(const std::array<double, 4>& c, double part) { return c[0] + part * (c[1] + part * (c[2] + part * c[3])); }
 
-// Approximates a waveform of a program by cubic pieces, in its own units of voltage and time.
+// Approximates a user's own waveform by cubic pieces.
 class Following {
  public:
   explicit Following(const Own& own) : own_(own) {}
@@ -43,7 +44,7 @@ class Following {
     const double held = voltage(times.back());
     largest_ = std::max(largest_, std::abs(held));
     for (std::size_t k = 0; k + 1 < times.size(); ++k) {
-      // If the waveform jumps at the end of a stretch, the stretch ends with the voltage before the jump.
+      // If the user's waveform jumps at a breakpoint, the interval before ends with the voltage before the jump.
       constexpr double rounding = 1e-12;
       const double end = times[k + 1], before = voltage(std::nextafter(end, times[k])), after = voltage(end);
       const double ends_on = std::abs(after - before) > rounding * largest_ ? before : after;
@@ -78,9 +79,9 @@ class Following {
     return times;
   }
 
-  // Checks a waveform without breakpoints, which always has its voltage at t = 0: that voltage must be constant and not 0 V.
+  // Checks a user's waveform without breakpoints: its voltage must be constant and not 0 V.
   void check_constant() const {
-    constexpr double first = 1e-12, last = 1e3;  // [s]
+    constexpr double first = 1e-12, last = 1e3;  // range of times at which the constancy of the voltage is checked [s]
     constexpr int looks = 300;
     const double begin = voltage(0);
     double when = 0;
@@ -96,7 +97,7 @@ class Following {
     });
   }
 
-  // Samples the waveform in an interval to find its largest absolute voltage, to which the accuracy is relative.
+  // Samples the user's waveform in an interval to find its largest absolute voltage, to which the accuracy is relative.
   void see(double begin, double end) {
     constexpr int instants = 64;
     for (int k = 0; k < instants; ++k)
@@ -135,7 +136,7 @@ class Following {
   }
 
   const Own& own_;
-  double largest_ = 0;  // [V]
+  double largest_ = 0;  // largest absolute voltage of the user's waveform [V]
   std::vector<SignalPiece> pieces_;
 };
 

@@ -1,23 +1,24 @@
-// Names of a waveform family and of its parameters: a scene reads, checks and writes a waveform by these tables.
+// Names of a waveform family, such as "pulse", and of its parameters: a scene reads, checks and writes a waveform by these
+// tables.
 #pragma once
 
 #include <string_view>
 #include <variant>
 #include <vector>
 
-#include "base/require.h"  // InvalidParameter
+#include "base/require.h"  // declares InvalidParameter
 
 namespace softland {
 
-/// The role of a parameter in the signal. The role decides the unit, and how a scene may give the parameter.
+/// The role of a waveform parameter in the signal. The role decides the unit, and how a scene may give the parameter.
 enum class ParameterKind {
-  level,              ///< [V]
-  swing,              ///< [V] about a level; a scene may give a percentage of that level
-  time,               ///< [s]
-  end_time,           ///< [s], after 0; without this key in a scene there is no end
-  angular_frequency,  ///< [rad/s]; a scene may give the frequency instead
-  angle,              ///< [rad]
-  ratio,              ///< ratio of two quantities of the signal, above 0; default 1
+  level,              ///< the parameter is a voltage level [V]
+  swing,              ///< a voltage difference from a level [V]; a scene may give a percentage of the level
+  time,               ///< the parameter is a time or duration [s]
+  end_time,           ///< end of a part of the waveform [s], > 0; a scene without this key has no end
+  angular_frequency,  ///< an angular frequency [rad/s]; a scene may give the frequency instead
+  angle,              ///< the parameter is a phase of a sine [rad]
+  ratio,              ///< ratio of two quantities of the waveform, above 0; default 1
 };
 
 /// One parameter of a waveform family: a number, or several levels, swings or times. A parameter that is not required has a

@@ -1,5 +1,5 @@
-// The smooth pieces that a signal is made of, templated over the scalar of its levels and times: a double, a dual number with
-// derivatives by the parameters of a waveform, or a vector lane with one number per device.
+// The smooth pieces that a voltage signal is made of, templated over the scalar of its levels and times: a double, a dual
+// number with derivatives by the parameters of a waveform, or a SIMD vector with one number per device.
 //
 //   V(t) = value + slope s + [amplitude + amplitude_slope s] sin(angular_frequency t + phase) + terms,  s = t - begin
 //
@@ -22,7 +22,7 @@ namespace softland {
 
 namespace internal {
 
-/// Returns true if a number is the constant 0. A dual number or a lane is not constant, even if its value is 0.
+/// Returns true if a number is the constant 0. A dual number or a SIMD vector is not constant, even if its value is 0.
 template <class P>
 [[nodiscard]] bool vanishes(const P& x) {
   if constexpr (std::is_same_v<P, double>) {
@@ -34,23 +34,23 @@ template <class P>
 
 }  // namespace internal
 
-/// One smooth part of a piece:
+/// One smooth part (term) of the voltage of a signal piece:
 ///
-///   exp(-decay s) [C(s) cos a + S(s) sin a],  a = angular_frequency s + sweep s^2 / 2,  s = t - begin of its piece
+///   exp(-decay s) [C(s) cos a + S(s) sin a],  a = angular_frequency s + sweep s^2 / 2,  s = t - begin of the piece
 ///
 /// with cubic polynomials C and S, their coefficients in rising order. Without decay and angle it is the polynomial C.
 template <class P>
 struct TermOf {
   using Cubic = std::array<P, 4>;
 
-  Cubic cosine = {};        ///< coefficients of C: [V], [V/s], [V/s^2], [V/s^3]
-  Cubic sine = {};          ///< coefficients of S: [V], [V/s], [V/s^2], [V/s^3]
-  P decay = 0;              ///< [1/s]
-  P angular_frequency = 0;  ///< angular frequency at the beginning of the piece [rad/s]
-  P sweep = 0;              ///< [rad/s^2]
+  Cubic cosine = {};        ///< coefficients of the cosine's polynomial C: [V], [V/s], [V/s^2], [V/s^3]
+  Cubic sine = {};          ///< coefficients of the sine's polynomial S: [V], [V/s], [V/s^2], [V/s^3]
+  P decay = 0;              ///< decay rate of the term [1/s]
+  P angular_frequency = 0;  ///< angular frequency of the term at the beginning of the signal piece [rad/s]
+  P sweep = 0;              ///< rate of change of the angular frequency [rad/s^2]
 
   [[nodiscard]] bool turns() const { return !internal::vanishes(angular_frequency) || !internal::vanishes(sweep); }
-  /// Returns the voltage [V] at time s after the begin of the piece.
+  /// Returns the voltage of the term [V] at time s after the beginning of the signal piece.
   [[nodiscard]] P voltage(const P& s) const {
     using std::cos, std::exp, std::sin;
     P sum = at(cosine, s);
@@ -60,7 +60,7 @@ struct TermOf {
     }
     return internal::vanishes(decay) ? sum : sum * exp(P(0) - decay * s);
   }
-  /// Returns dV/dt [V/s] at time s after the begin of the piece.
+  /// Returns dV/dt of the term [V/s] at time s after the beginning of the signal piece.
   [[nodiscard]] P rate(const P& s) const {
     using std::cos, std::exp, std::sin;
     const P c = at(cosine, s);
@@ -80,25 +80,25 @@ struct TermOf {
 
 template <class P>
 struct SignalPieceOf {
-  P begin = 0;                        ///< [s]
-  P value = 0;                        ///< voltage at begin [V]
-  P slope = 0;                        ///< [V/s]
-  P amplitude = 0;                    ///< amplitude at begin [V]
-  P amplitude_slope = 0;              ///< [V/s]
-  P angular_frequency = 0;            ///< [rad/s]
-  P phase = 0;                        ///< [rad]; the sine's argument is angular_frequency t + phase with t from 0, not from begin
-  std::vector<TermOf<P>> terms = {};  ///< terms, whose time s counts from begin
+  P begin = 0;                        ///< time at which the piece begins [s]
+  P value = 0;                        ///< voltage of the straight line at begin [V]
+  P slope = 0;                        ///< slope of the straight line's voltage [V/s]
+  P amplitude = 0;                    ///< amplitude of the sine at begin [V]
+  P amplitude_slope = 0;              ///< rate of change of the sine's amplitude [V/s]
+  P angular_frequency = 0;            ///< angular frequency of the sine [rad/s]
+  P phase = 0;                        ///< phase of sin(angular_frequency t + phase) [rad], with t from 0, not from begin
+  std::vector<TermOf<P>> terms = {};  ///< further parts of the voltage, whose time s counts from begin
   /// True if the terms are a Fourier series: sines and cosines of constant amplitude, with angular frequencies of 1, 2, 3 ...
   /// times that of the first term. They are then evaluated by rotation from a single sine and cosine.
   bool is_series = false;
 
   [[nodiscard]] bool oscillates() const { return !internal::vanishes(amplitude) || !internal::vanishes(amplitude_slope); }
-  /// Returns true if the piece is a straight line, without sine and terms.
+  /// Returns true if the signal piece is a straight line, without sine and terms.
   [[nodiscard]] bool is_straight() const { return !oscillates() && terms.empty(); }
-  /// Returns true if the voltage of the piece is constant.
+  /// Returns true if the voltage of the signal piece is constant.
   [[nodiscard]] bool is_level() const { return internal::vanishes(slope) && is_straight(); }
-  /// Returns the voltage [V]. The formula continues past both ends of the piece, so that an integrator may step a little beyond
-  /// a breakpoint.
+  /// Returns the voltage of the signal piece [V]. The formula continues past both ends of the piece, so that an integrator may
+  /// step a little beyond a breakpoint.
   [[nodiscard]] P voltage(P time) const {
     using std::sin;
     const P elapsed = time - begin;
@@ -116,7 +116,7 @@ struct SignalPieceOf {
     }
     return sum;
   }
-  /// Returns dV/dt [V/s].
+  /// Returns dV/dt of the signal piece [V/s].
   [[nodiscard]] P rate(P time) const {
     using std::cos, std::sin;
     const auto swinging = [&] {
@@ -137,7 +137,7 @@ struct SignalPieceOf {
   bool operator==(const SignalPieceOf&) const = default;
 
  private:
-  // Calls see(term, cosine, sine) for every term of a Fourier series, with cosine and sine of its angle.
+  // Calls see(term, cosine, sine) for every term of a Fourier series, with cosine and sine of the term's angle.
   template <class See>
   void turn_on(const P& elapsed, See&& see) const {
     using std::cos, std::sin;
@@ -156,8 +156,8 @@ using Pieces = std::vector<SignalPieceOf<P>>;
 
 namespace internal {
 
-/// Returns true if a condition on the times of a waveform holds. Throws InvalidInput if the condition holds for only some
-/// devices of a lane, because their signals then have different pieces.
+/// Returns true if a condition on the times of a waveform holds. Throws InvalidInput if the condition holds for only some of
+/// the devices in a SIMD vector, because their signals then have different pieces.
 template <class Condition>
 [[nodiscard]] bool decided(const Condition& condition) {
   if constexpr (std::is_same_v<Condition, bool>) {
@@ -169,7 +169,8 @@ template <class Condition>
 }
 
 /// Returns true for two times [s] that differ only by rounding, of a sum or of their decimal text. Such times are meant to be
-/// equal, as where one edge ends and the next begins. A piece between such times would be too short for any integrator.
+/// equal, as where one voltage ramp ends and the next begins. A signal piece between two such times would be too short for any
+/// integrator.
 template <class P>
 [[nodiscard]] bool coincide(const P& time, const P& other) {
   using std::abs;
@@ -177,7 +178,8 @@ template <class P>
   return !decided(abs(time - other) > roundings * epsilon * abs(other));
 }
 
-/// Returns the pieces of straight lines between points [s, V], in order of time; two points of the same time are a jump.
+/// Returns the signal pieces of straight lines between points (time [s], voltage [V]), in order of time; two points of equal
+/// time are a jump.
 template <class P>
 [[nodiscard]] Pieces<P> straight_pieces(const std::vector<std::pair<P, P>>& points) {
   Pieces<P> pieces;
@@ -191,17 +193,17 @@ template <class P>
   return pieces;
 }
 
-/// One stretch of a piecewise linear function; it ends where the next stretch begins.
+/// One straight part of a piecewise linear function of time; it ends where the next part begins.
 template <class P>
 struct Stretch {
-  P begin = 0;  ///< [s]
-  P value = 0;  ///< value at begin
-  P slope = 0;  ///< [1/s]
+  P begin = 0;  ///< time at which the straight part begins [s]
+  P value = 0;  ///< value of the piecewise linear function at begin
+  P slope = 0;  ///< slope of the function on this part [1/s]
 
   [[nodiscard]] P at(const P& time) const { return value + slope * (time - begin); }
 };
 
-/// Returns the stretch that contains `time`, at a boundary the later one; the first stretch begins at 0.
+/// Returns the straight part that contains `time`, at a boundary the later part; the first part begins at 0.
 template <class P>
 [[nodiscard]] const Stretch<P>& stretch_at(const std::vector<Stretch<P>>& line, const P& time) {
   std::size_t found = 0;

@@ -1,5 +1,5 @@
-// Pulse: n levels, n - 1 switching times, linear edges. The first edge runs on [0, edge] from the voltage before t = 0; the
-// edge from level k to level k + 1 runs on [t_k, t_k + edge]. The last level holds for ever.
+// Pulse waveform: n voltage levels, n - 1 switching times, linear edges. The first edge runs on [0, edge] from the voltage
+// before t = 0; the edge from level k to level k + 1 runs on [t_k, t_k + edge]. The last level holds for ever.
 #pragma once
 
 #include <array>
@@ -15,9 +15,10 @@ namespace softland {
 
 template <class P>
 struct PulseOf {
-  std::vector<P> levels = {};  ///< [V], n >= 1
-  std::vector<P> times = {};   ///< n - 1 switching times [s], increasing by at least edge; the first at least edge
-  P edge = 0;                  ///< duration of an edge [s], >= 0
+  std::vector<P> levels = {};  ///< voltage levels [V]; at least one
+  /// Switching times, one fewer than levels [s], increasing by at least edge; the first at least edge.
+  std::vector<P> times = {};
+  P edge = 0;  ///< duration of the edge between two levels [s], >= 0
 };
 using Pulse = PulseOf<double>;
 
@@ -32,7 +33,8 @@ struct FamilyOf<Pulse> {
   [[nodiscard]] static Pulse example() { return {.levels = {1, -2, 0.5}, .times = {1, 4}, .edge = 0.5}; }
 };
 
-/// Returns the points [s, V] that straight lines connect, for a valid pulse that begins at `before` [V].
+/// Returns the points (time [s], voltage [V]) that straight lines connect, for a valid pulse that begins at the voltage
+/// `before` [V].
 template <class P>
 [[nodiscard]] std::vector<std::pair<P, P>> points(const PulseOf<P>& pulse, const P& before = P(0)) {
   std::vector<std::pair<P, P>> all{{P(0), before}};
@@ -50,13 +52,13 @@ template <class P>
 [[nodiscard]] Pieces<P> pieces(const PulseOf<P>& pulse, const P& before = P(0)) {
   return internal::straight_pieces(points(pulse, before));
 }
-/// Compiles the pulse to a signal. Throws InvalidParameter for an invalid pulse.
+/// Compiles the pulse to a voltage signal. Throws InvalidParameter for an invalid pulse.
 [[nodiscard]] Signal signal(const Pulse& pulse, double before = 0);
 
 namespace internal {
 
-/// Checks the rules of a waveform of n levels, n - 1 times and one duration of all edges; `what` is the waveform's name in
-/// messages. Throws InvalidParameter.
+/// Checks the parameters of a waveform of n levels, n - 1 switching times and one duration of all edges; `what` is the
+/// waveform's name in messages. Throws InvalidParameter for an invalid parameter.
 void require_levels_and_edges(std::string_view what, const std::vector<double>& levels, const std::vector<double>& times,
                               double edge);
 

@@ -1,5 +1,6 @@
-// S-curve: a pulse whose edges are half cosines, which begin and end without a corner: n levels, n - 1 switching times. The first
-// edge runs on [0, edge] from the voltage before t = 0; the edge from level k to level k + 1 runs on [t_k, t_k + edge]:
+// S-curve waveform: a pulse whose edges are half cosines, which begin and end without a corner: n voltage levels, n - 1
+// switching times. The first edge runs on [0, edge] from the voltage before t = 0; the edge from level k to level k + 1 runs on
+// [t_k, t_k + edge]:
 //
 //   V(t) = (V_k + V_(k+1)) / 2 - (V_(k+1) - V_k) / 2 cos(pi (t - t_k) / edge)
 //
@@ -18,9 +19,10 @@ namespace softland {
 
 template <class P>
 struct SCurveOf {
-  std::vector<P> levels = {};  ///< [V], n >= 1
-  std::vector<P> times = {};   ///< n - 1 switching times [s], increasing by at least edge; the first at least edge
-  P edge = 0;                  ///< duration of an edge [s], >= 0
+  std::vector<P> levels = {};  ///< voltage levels [V]; at least one
+  /// Switching times, one fewer than levels [s], increasing by at least edge; the first at least edge.
+  std::vector<P> times = {};
+  P edge = 0;  ///< duration of the edge between two levels [s], >= 0
 };
 using SCurve = SCurveOf<double>;
 
@@ -35,7 +37,7 @@ struct FamilyOf<SCurve> {
   [[nodiscard]] static SCurve example() { return {.levels = {1, -2, 0.5}, .times = {1, 4}, .edge = 0.5}; }
 };
 
-/// Returns the pieces of a valid S-curve, which begins at `before` [V].
+/// Returns the signal pieces of a valid S-curve, which begins at the voltage `before` [V].
 template <class P>
 [[nodiscard]] Pieces<P> pieces(const SCurveOf<P>& curve, const P& before = P(0)) {
   const bool has_edges = internal::decided(curve.edge > P(0));
@@ -59,7 +61,7 @@ template <class P>
   all.push_back({.begin = edge_end, .value = level});
   return all;
 }
-/// Compiles the S-curve to a signal. Throws InvalidParameter for an invalid curve.
+/// Compiles the S-curve to a voltage signal. Throws InvalidParameter for an invalid curve.
 [[nodiscard]] Signal signal(const SCurve& curve, double before = 0);
 
 }  // namespace softland

@@ -21,31 +21,32 @@ class Signal {
  public:
   /// Creates a signal of 0 V at all times.
   Signal() : pieces_{SignalPiece{}} {}
-  /// Throws InvalidInput unless the pieces start at 0, begins strictly increase, every number is finite, the angular frequency
-  /// is positive where there is an amplitude, and no term grows. The last piece lasts for ever: it must have no slope, no
-  /// amplitude_slope, and only terms that decay without a sweep. `before` is the voltage before t = 0 [V].
+  /// Makes a signal of voltage pieces. Throws InvalidInput unless the pieces start at 0, begins strictly increase, every number
+  /// is finite, the angular frequency is positive where there is an amplitude, and no term grows. The last piece lasts for
+  /// ever: it must have no slope, no amplitude_slope, and only terms that decay without a sweep. `before` is the voltage before
+  /// t = 0 [V].
   explicit Signal(std::vector<SignalPiece> pieces, double before = 0);
-  /// Returns a constant voltage [V] from t = 0 on.
+  /// Returns a signal of constant voltage [V] from t = 0 on.
   static Signal constant(double voltage, double before = 0);
   /// Returns a signal of one voltage [V] at all times, before t = 0 too.
   static Signal standing(double voltage);
-  /// Returns the signal of straight lines between points [s, V]; the last value is held. Two points of the same time are a
-  /// jump. The breakpoints are the times of the points, less those at the end that only repeat the held value. Throws
-  /// InvalidInput unless there is a point, times start at 0 and do not decrease, and every number is finite.
+  /// Returns the signal of straight lines between points (time [s], voltage [V]); the last value is held. Two points of the
+  /// same time are a jump. The breakpoints are the times of the points, less those at the end that only repeat the held value.
+  /// Throws InvalidInput unless there is a point, times start at 0 and do not decrease, and every number is finite.
   static Signal piecewise_linear(const std::vector<std::pair<double, double>>& points, double before = 0);
 
-  /// Returns the voltage for time < 0 [V].
+  /// Returns the constant voltage of the signal before t = 0 [V].
   [[nodiscard]] double before() const { return before_; }
   [[nodiscard]] const std::vector<SignalPiece>& pieces() const { return pieces_; }
-  /// Returns the number of the piece that contains a time; at a breakpoint, that of the later piece.
+  /// Returns the number of the signal piece that contains a time; at a breakpoint, the number of the later piece.
   [[nodiscard]] std::size_t piece_at(double time) const;
-  /// Returns the voltage [V]; at a jump the voltage after the jump.
+  /// Returns the voltage of the signal at a time [V]; at a jump the voltage after the jump.
   [[nodiscard]] double voltage(double time) const;
-  /// Returns the limit of the voltage from the left [V]. It equals voltage(time), bit for bit, where the signal does not jump.
-  /// Rounding between the end of one piece and the beginning of the next, or between before() and a sine that starts there,
-  /// does not count as a jump.
+  /// Returns the limit of the signal's voltage from the left [V]. It equals voltage(time), bit for bit, where the signal does
+  /// not jump. Rounding between the end of one piece and the beginning of the next, or between before() and a sine that starts
+  /// there, does not count as a jump.
   [[nodiscard]] double voltage_before(double time) const;
-  /// Returns the beginnings of all pieces, 0 included [s].
+  /// Returns the beginnings of all signal pieces, 0 included [s].
   [[nodiscard]] std::vector<double> breakpoints() const;
   /// Returns the final value of the signal, or its limit [V]; for a sine without an end, its mean value.
   [[nodiscard]] double hold_level() const;
@@ -53,43 +54,44 @@ class Signal {
   [[nodiscard]] bool is_zero() const;
 
   struct Range {
-    double minimum = 0, maximum = 0;  ///< [V]
+    double minimum = 0, maximum = 0;  ///< smallest and largest voltage of a signal [V]
   };
-  /// Returns the smallest and largest voltage on [0, end] and before t = 0 [V], sines to 1e-9 of their amplitude and terms to
-  /// 1e-9 of their size. The functions with an argument `end` throw InvalidInput unless end >= 0.
+  /// Returns the smallest and largest voltage of the signal on [0, end] and before t = 0 [V], sines to 1e-9 of their amplitude
+  /// and terms to 1e-9 of their size. The functions with an argument `end` throw InvalidInput unless end >= 0.
   [[nodiscard]] Range range(double end = std::numeric_limits<double>::infinity()) const;
   [[nodiscard]] double maximum(double end = std::numeric_limits<double>::infinity()) const { return range(end).maximum; }
   [[nodiscard]] double minimum(double end = std::numeric_limits<double>::infinity()) const { return range(end).minimum; }
-  /// Returns the largest |V| on [0, end] [V].
+  /// Returns the largest |V| of the signal on [0, end] [V].
   [[nodiscard]] double peak(double end = std::numeric_limits<double>::infinity()) const;
-  /// Returns the largest |dV/dt| on [0, end] [V/s]; infinity if there is a jump (one at t = 0 counts).
+  /// Returns the largest |dV/dt| of the signal on [0, end] [V/s]; infinity if there is a jump, at t = 0 too.
   [[nodiscard]] double peak_slew(double end = std::numeric_limits<double>::infinity()) const;
-  /// Returns a step length that resolves the signal after `time` [s]: a fraction of the shortest period, at most the shortest
-  /// time constant of the piece; infinity where the piece has neither.
+  /// Returns an integrator step length that resolves the signal after `time` [s]: a fraction of the shortest period, at most
+  /// the shortest time constant of the piece; infinity where the piece has neither.
   [[nodiscard]] double resolving_step(double time) const;
 
  private:
-  /// Returns voltage_before() at the beginning of piece `next`.
+  /// Returns the limit of the voltage from the left at the beginning of signal piece `next` [V].
   [[nodiscard]] double left_limit(std::size_t next) const;
 
   std::vector<SignalPiece> pieces_;
   double before_ = 0;
 };
 
-/// Returns the final voltage of each signal [V].
+/// Returns the final (hold) voltage of each signal [V].
 [[nodiscard]] std::vector<double> hold_levels(std::span<const Signal> signals);
 /// Returns the voltage of each signal before t = 0 [V].
 [[nodiscard]] std::vector<double> values_before(std::span<const Signal> signals);
 /// Returns the time at which the last piece of any signal begins [s].
 [[nodiscard]] double last_breakpoint(std::span<const Signal> signals);
 
-/// Returns the signal until `time` [s]; after that, the voltage just before `time` is held (for 0 s, the voltage before t = 0).
+/// Returns the signal until `time` [s], followed by the constant voltage that the signal has just before `time` (for 0 s, the
+/// voltage before t = 0).
 [[nodiscard]] Signal held_from(const Signal& signal, double time);
 /// Returns the part of a signal after a breakpoint [s], before which the signal must be constant. Time counts from the
 /// breakpoint, and the voltage before the breakpoint is `before` [V].
 [[nodiscard]] Signal part_from(const Signal& signal, double time, double before = 0);
 
-/// Returns the signal times a factor, a finite number.
+/// Returns the signal with its voltage multiplied by a finite number.
 [[nodiscard]] Signal scaled(const Signal& signal, double factor);
 
 }  // namespace softland

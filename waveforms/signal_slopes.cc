@@ -41,7 +41,7 @@ bool is_polynomial(const SignalPiece& piece) {
                                             [](const SignalTerm& term) { return !term.turns() && term.decay == 0; });
 }
 
-// Returns the coefficients of a polynomial piece in powers of the time from `origin`.
+// Returns the coefficients of a polynomial signal piece in powers of the time from `origin`.
 std::array<double, 4> cubic_about(const SignalPiece& piece, double origin) {
   std::array<double, 4> c{piece.value, piece.slope};
   for (const SignalTerm& term : piece.terms) {
@@ -51,7 +51,8 @@ std::array<double, 4> cubic_about(const SignalPiece& piece, double origin) {
   return {c[0] + by * (c[1] + by * (c[2] + by * c[3])), c[1] + by * (2 * c[2] + by * 3 * c[3]), c[2] + 3 * by * c[3], c[3]};
 }
 
-// Returns the derivative of a piece as a piece if only its amplitudes change; none if its times or angles change as well.
+// Returns the derivative of a signal piece, by central difference, as a piece if only its amplitudes change; none if its times
+// or angles change as well.
 std::shared_ptr<const SignalPiece> derivative(const SignalPiece& above, const SignalPiece& below, double step) {
   const auto turns_alike = [](const SignalTerm& a, const SignalTerm& b) {
     return a.decay == b.decay && a.angular_frequency == b.angular_frequency && a.sweep == b.sweep;
@@ -80,7 +81,7 @@ std::shared_ptr<const SignalPiece> derivative(const SignalPiece& above, const Si
   return std::make_shared<const SignalPiece>(std::move(piece));
 }
 
-// Returns a time inside a piece; the last piece holds for ever after.
+// Returns a time inside a signal piece, for the last piece a time after its beginning.
 double inner_time(const std::vector<SignalPiece>& pieces, std::size_t k) {
   constexpr double share = 0.4;
   return k + 1 < pieces.size() ? std::lerp(pieces[k].begin, pieces[k + 1].begin, share) : pieces[k].begin * (1 + share);
@@ -88,12 +89,12 @@ double inner_time(const std::vector<SignalPiece>& pieces, std::size_t k) {
 
 }  // namespace
 
-// A point in the space of parameters, with the bounds of the parameters.
+// A point in the space of waveform parameters, with the bounds of the parameters.
 struct SignalSlopes::Neighbourhood {
   const SignalsOf& signals;
   std::span<const double> x, lower, upper;
 
-  // Returns the value of parameter k moved by `share` of the difference step.
+  // Returns the value of parameter k, moved by `share` of the step of the finite difference.
   [[nodiscard]] double beside(std::size_t k, double share) const {
     return std::clamp(x[k] + share * share_of_range * (upper[k] - lower[k]), lower[k], upper[k]);
   }
@@ -126,7 +127,8 @@ SignalSlopes::SignalSlopes(const SignalsOf& signals, std::span<const double> x, 
   find_one_by_one(near, here);
 }
 
-// Returns true if this number of groups needs fewer differences than the parameters do, including a difference for the check.
+// Returns true if this number of parameter groups needs fewer finite differences than single parameters do, including a
+// difference for the check.
 bool SignalSlopes::saves(std::size_t groups) const { return groups + 1 < parameters_; }
 
 void SignalSlopes::find_one_by_one(const Neighbourhood& near, const Signals& here) {
@@ -168,7 +170,7 @@ bool SignalSlopes::find_in_groups(const Neighbourhood& near, const Signals& here
 
 bool SignalSlopes::holds_along_all(const Neighbourhood& near, const Signals& here) const {
   constexpr double tolerance =
-      1e-5;  // relative to the largest change; the error of a parameter in a wrong group is its whole change
+      1e-5;  // tolerance of the check, relative to the largest change; a parameter in a wrong group errs by its whole change
   const auto share = [](std::size_t k) {
     const double golden = std::fmod(0.618033988749895 * static_cast<double>(k + 1), 1.0);
     return (k % 2 == 0 ? 1 : -1) * (0.5 + golden / 2);
@@ -232,7 +234,7 @@ bool SignalSlopes::add(Mover&& mover, Signals above, Signals below) {
 
 std::vector<ParameterGroup> SignalSlopes::groups() const {
   using Moved = std::vector<std::pair<std::size_t, std::size_t>>;
-  std::vector<Moved> moved(parameters_);  // index by drive and piece
+  std::vector<Moved> moved(parameters_);  // (drive, piece) of the signal pieces that each parameter changes
   ParameterGroup none;
   for (std::size_t drive = 0; drive < slopes_.size(); ++drive) {
     none.movers.emplace_back(slopes_[drive].size());

@@ -1,4 +1,4 @@
-// Sines: a band-limited signal on a step, the sum of sines that are all 0 at their common start and end.
+// Sines waveform: a band-limited voltage on a step, the sum of sines that are all 0 at their common start and end.
 //
 //   V(t) = b(t) + sum over k = 1 ... N of amplitudes_k sin(k pi (t - start) / duration)
 //
@@ -19,11 +19,11 @@ namespace softland {
 
 template <class P>
 struct SinesOf {
-  P base = 0;                      ///< voltage of the step [V]
-  P rise_time = 0;                 ///< rise time of the base [s], >= 0
-  std::vector<P> amplitudes = {};  ///< [V], at least one
-  P start = 0;                     ///< [s], >= 0
-  P duration = 0;                  ///< [s], > 0
+  P base = 0;                      ///< voltage of the step under the sines [V]
+  P rise_time = 0;                 ///< rise time of the step [s], >= 0
+  std::vector<P> amplitudes = {};  ///< amplitudes of the sines [V], at least one
+  P start = 0;                     ///< common start of the sines [s], >= 0
+  P duration = 0;                  ///< time from the common start to the common end of the sines [s], > 0
 };
 using Sines = SinesOf<double>;
 
@@ -44,11 +44,11 @@ struct FamilyOf<Sines> {
   }
 };
 
-/// Returns the pieces of valid sines, whose base rises from `before` [V].
+/// Returns the signal pieces of a valid Sines waveform, whose base rises from `before` [V].
 template <class P>
 [[nodiscard]] Pieces<P> pieces(const SinesOf<P>& sines, const P& before = P(0)) {
   const P end = sines.start + sines.duration;
-  // A harmonic without a sine gives the rising base.
+  // A harmonic waveform without a sine gives the rising base voltage.
   Pieces<P> all = pieces(HarmonicOf<P>{.base = sines.base,
                                        .rise_time = sines.rise_time,
                                        .amplitude = P(1),
@@ -71,7 +71,7 @@ template <class P>
   }
   return all;
 }
-/// Compiles the sines to a signal. Throws InvalidParameter for invalid sines.
+/// Compiles the Sines waveform to a voltage signal. Throws InvalidParameter for an invalid waveform.
 [[nodiscard]] Signal signal(const Sines& sines, double before = 0);
 
 }  // namespace softland

@@ -10,14 +10,15 @@ namespace softland {
 namespace {
 
 constexpr double no_bound = std::numeric_limits<double>::infinity();
-constexpr double most_of_gap = 0.49;  // largest move of an edge towards the adjacent edge, as a share of the time between both
+// Largest shift of a voltage edge towards the adjacent edge, as a share of the time between both.
+constexpr double most_of_gap = 0.49;
 
-/// An edge: breakpoints that a delay of the edge moves together.
+/// A voltage edge: signal breakpoints that a delay of the edge shifts together.
 struct Edge {
   std::size_t first, last;
 };
 
-/// Returns true if the piece is a constant level, with or without a sine of constant amplitude.
+/// Returns true if the signal piece is a constant level, with or without a sine of constant amplitude.
 bool is_level(const SignalPiece& piece) { return piece.slope == 0 && piece.amplitude_slope == 0 && piece.terms.empty(); }
 
 std::vector<Edge> edges_of(const Signal& signal) {
@@ -33,7 +34,7 @@ std::vector<Edge> edges_of(const Signal& signal) {
   return edges;
 }
 
-/// Returns the times at which the pieces begin [s]. The time of a first piece that is not an edge is not used.
+/// Returns the shifted times at which the signal pieces begin [s]. The time of a first piece that is not an edge is not used.
 std::vector<double> begins(const std::vector<SignalPiece>& pieces, const std::vector<Edge>& edges, const SourceErrors& errors) {
   std::vector<double> all;
   for (const SignalPiece& piece : pieces) all.push_back(piece.begin + errors.delay);
@@ -46,8 +47,8 @@ std::vector<double> begins(const std::vector<SignalPiece>& pieces, const std::ve
   return all;
 }
 
-/// Returns the piece between other times: the straight line and the envelope run from and to the same values, the sine is
-/// delayed by `late`, and the terms are stretched with the piece.
+/// Returns the signal piece between shifted times: the straight line and the envelope run from and to the same values, the sine
+/// is delayed by `late`, and the terms are stretched with the piece.
 SignalPiece moved(const Signal& signal, std::size_t i, double begin, double end, double offset, double late) {
   const SignalPiece& piece = signal.pieces()[i];
   SignalPiece own = piece;
@@ -95,7 +96,7 @@ Signal with_errors(const Signal& given, const SourceErrors& errors, double origi
   if (begin[0] > 0) all.push_back({.value = signal.before() + errors.offset});
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const double end = i + 1 < pieces.size() ? begin[i + 1] : no_bound;
-    // A piece whose delay is much larger than its duration may have no duration after rounding.
+    // A signal piece whose delay is much larger than its duration may have no duration after rounding.
     if (end > begin[i]) all.push_back(moved(signal, i, begin[i], end, errors.offset, errors.delay - origin));
   }
   return Signal(std::move(all), given.before());

@@ -1,4 +1,4 @@
-// Step: a linear rise to `level` on [0, rise_time], from the voltage before t = 0, then constant.
+// Step waveform: a linear rise of the voltage to `level` on [0, rise_time], from the voltage before t = 0, then constant.
 #pragma once
 
 #include <array>
@@ -10,8 +10,8 @@ namespace softland {
 
 template <class P>
 struct StepOf {
-  P level = 0;      ///< [V]
-  P rise_time = 0;  ///< [s], >= 0
+  P level = 0;      ///< voltage after the rise [V]
+  P rise_time = 0;  ///< duration of the rise [s], >= 0
 };
 using Step = StepOf<double>;
 
@@ -25,12 +25,12 @@ struct FamilyOf<Step> {
   [[nodiscard]] static Step example() { return {.level = 3, .rise_time = 1}; }
 };
 
-/// Returns the pieces of a valid step, which begins at `before` [V].
+/// Returns the signal pieces of a valid step, which begins at the voltage `before` [V].
 template <class P>
 [[nodiscard]] Pieces<P> pieces(const StepOf<P>& step, const P& before = P(0)) {
   return internal::straight_pieces<P>({{P(0), before}, {step.rise_time, step.level}});
 }
-/// Compiles the step to a signal. Throws InvalidParameter for an invalid step.
+/// Compiles the step to a voltage signal. Throws InvalidParameter for an invalid step.
 [[nodiscard]] Signal signal(const Step& step, double before = 0);
 
 }  // namespace softland

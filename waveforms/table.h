@@ -1,4 +1,5 @@
-// Table: measured or exported voltages, linear between rows; the last value is held. Two rows of the same time are a jump.
+// Table waveform: measured or exported voltages, linear between rows; the last value is held. Two rows of equal time are a
+// jump.
 #pragma once
 
 #include <array>
@@ -15,8 +16,8 @@ namespace softland {
 
 template <class P>
 struct TableOf {
-  std::vector<P> time = {};     ///< [s], from 0 on, not decreasing
-  std::vector<P> voltage = {};  ///< [V]
+  std::vector<P> time = {};     ///< time of each row of the table [s], from 0 on, not decreasing
+  std::vector<P> voltage = {};  ///< voltage of each row of the table [V]
 };
 using Table = TableOf<double>;
 
@@ -31,7 +32,7 @@ struct FamilyOf<Table> {
   [[nodiscard]] static Table example() { return {.time = {0, 1, 1, 2}, .voltage = {1, 2, 3, -1}}; }
 };
 
-/// Returns the points [s, V] that straight lines connect, for a valid table.
+/// Returns the points (time [s], voltage [V]) that straight lines connect, for a valid table.
 template <class P>
 [[nodiscard]] std::vector<std::pair<P, P>> points(const TableOf<P>& table) {
   std::vector<std::pair<P, P>> all;
@@ -43,14 +44,14 @@ template <class P>
 [[nodiscard]] Pieces<P> pieces(const TableOf<P>& table) {
   return internal::straight_pieces(points(table));
 }
-/// Compiles the table to a signal. Throws InvalidInput for an invalid table.
+/// Compiles the table to a voltage signal. Throws InvalidInput for an invalid table.
 [[nodiscard]] Signal signal(const Table& table, double before = 0);
 
-/// Reads column `drive` of a CSV file with a header line: `time_s` and one column per drive [V]. Throws InvalidInput with file,
-/// line and rule.
+/// Reads the voltage of the drive `drive` from a CSV file with a header line: `time_s` and one column per drive [V]. Throws
+/// InvalidInput with file, line and rule.
 [[nodiscard]] Table read_table(const std::string& file, const std::string& drive);
 
-/// Reads the content of a CSV file as read_table() does; `file` names it in messages.
+/// Reads the voltage of a drive from the content of a CSV file as read_table() does; `file` is its name in messages.
 [[nodiscard]] Table parse_table(std::string_view content, const std::string& file, const std::string& drive);
 
 }  // namespace softland

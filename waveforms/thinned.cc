@@ -9,7 +9,7 @@
 namespace softland {
 namespace {
 
-/// Finds the last row to which a straight line may be drawn from a given row.
+/// Finds, from a given row of a voltage table, the last row to which a straight line may replace the rows between.
 class Thinning {
  public:
   Thinning(const Table& table, double limit) : time_(table.time), voltage_(table.voltage), limit_(limit) {
@@ -18,7 +18,8 @@ class Thinning {
       area_[i] = area_[i - 1] + (voltage_[i - 1] + voltage_[i]) / 2 * (time_[i] - time_[i - 1]);
   }
 
-  /// Returns the next row to keep after `from`, and updates the integral of the difference.
+  /// Returns the next row of the voltage table to keep after `from`, and updates the integral of the difference between thinned
+  /// and original voltage.
   std::size_t next(std::size_t from) {
     constexpr std::size_t growth = 4, least_window = 8;
     const std::size_t farthest = std::min(from + growth * last_length_ + least_window, jump_after(from));
@@ -37,7 +38,7 @@ class Thinning {
   [[nodiscard]] double largest_excess() const { return largest_; }
 
  private:
-  /// Returns the first row after `from` at which the table jumps (the next row has the same time), or the last row.
+  /// Returns the first row after `from` at which the voltage jumps (the next row has the same time), or the last row.
   std::size_t jump_after(std::size_t from) {
     if (jump_ <= from) {
       jump_ = from + 1;
@@ -46,17 +47,17 @@ class Thinning {
     }
     return jump_;
   }
-  /// Returns the integral of the line from row i to row j, less that of the table [V s].
+  /// Returns the integral of the straight line from row i to row j, less the integral of the voltage table [V s].
   [[nodiscard]] double excess_to(std::size_t i, std::size_t j) const {
     return (voltage_[i] + voltage_[j]) / 2 * (time_[j] - time_[i]) - (area_[j] - area_[i]);
   }
   bool stays_within(std::size_t i, std::size_t j) {
     const double slope = (voltage_[j] - voltage_[i]) / (time_[j] - time_[i]);
-    double before = 0, largest = 0;  // difference at the previous row; largest integral so far
+    double before = 0, largest = 0;  // voltage difference at the previous row [V]; largest integral so far [V s]
     for (std::size_t k = i + 1; k <= j; ++k) {
       const double line = voltage_[i] + slope * (time_[k] - time_[i]), difference = line - voltage_[k];
       double excess = excess_ + (voltage_[i] + line) / 2 * (time_[k] - time_[i]) - (area_[k] - area_[i]);
-      // Between two rows the integral is largest where the difference is zero.
+      // Between two rows the integral of the voltage difference is largest where the difference is zero.
       double most = std::abs(excess);
       if (before * difference < 0) {
         const double share = difference / (difference - before);

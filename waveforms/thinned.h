@@ -1,9 +1,9 @@
-// Removes rows of a table such that a source of a given bandwidth applies nearly the same voltage.
+// Removes rows of a voltage table such that a source of a given bandwidth applies nearly the same voltage.
 //
-// Straight lines connect the rows that are not removed: the voltage stays between its extremes, and no slope increases.
-// Take two inputs of T dV/dt + V = input whose difference has the integral E(t) from 0 on: the outputs differ by at most
-// 2 max|E| / T (integration by parts of the response). Rows are therefore removed as long as |E| permits. Noise that the source
-// averages disappears, and edges keep their times.
+// Straight lines connect the rows that are not removed: the voltage stays between its extremes, and no slope increases. Take
+// two inputs of the source's filter T dV/dt + V = input whose difference has the integral E(t) from 0 on: the outputs differ by
+// at most 2 max|E| / T (integration by parts of the response). Rows are therefore removed as long as |E| permits. Noise that
+// the source averages disappears, and edges keep their times.
 #pragma once
 
 #include "waveforms/table.h"
@@ -12,11 +12,12 @@ namespace softland {
 
 struct Thinned {
   Table table;
-  double error = 0;  ///< largest change of the applied voltage [V]
+  double error = 0;  ///< bound of the change of the applied voltage [V]
 };
 
-/// Returns the thinned table. `time_constant` T > 0 is that of the source [s]; `largest_error` >= 0 is the largest permitted
-/// change of the applied voltage [V]. The first and the last row are kept, and both rows of a jump. `table` must be valid.
+/// Returns the thinned voltage table. `time_constant` T > 0 is that of the source [s]; `largest_error` >= 0 is the largest
+/// permitted change of the applied voltage [V]. The first and the last row are kept, and both rows of a jump. `table` must be
+/// valid.
 [[nodiscard]] Thinned thinned(const Table& table, double time_constant, double largest_error);
 
 }  // namespace softland

@@ -1,4 +1,4 @@
-// The waveform families. Each family is a small aggregate in its own file that compiles to a Signal.
+// The waveform families, such as pulse and chirp. Each family is a small aggregate in its own file that compiles to a Signal.
 #pragma once
 
 #include <cstddef>
@@ -26,20 +26,22 @@ namespace softland {
 using Waveform = std::variant<Step, Harmonic, Pulse, Table, SCurve, Chirp, BSpline, Sines, Own>;
 /// Waveforms by the name of the drive, for some or all drives of a scene.
 using DriveWaveforms = std::map<std::string, Waveform>;
-/// Number of waveform families that a scene can hold: all but the own waveform, which is the last alternative of Waveform.
+/// Number of waveform families that a scene file can hold: all but the user's own waveform, which is the last alternative of
+/// Waveform.
 inline constexpr std::size_t families_of_scenes = std::variant_size_v<Waveform> - 1;
 
-/// Returns the signal of a waveform from t = 0 on; `before` is the voltage before t = 0 [V], from which a first edge rises.
-/// Throws InvalidInput with the parameter, its value and the rule.
+/// Returns the voltage signal of a waveform from t = 0 on; `before` is the voltage before t = 0 [V], from which a first edge
+/// rises. Throws InvalidInput with the parameter, its value and the rule.
 [[nodiscard]] Signal signal(const Waveform& waveform, double before = 0);
 [[nodiscard]] std::vector<Signal> signals_of(const std::vector<Waveform>& waveforms);
-/// Returns the limits of a driver for the signal of a waveform. For an own waveform, which is approximated, the voltage limits
-/// are wider by own_waveform_accuracy, and the slew limit by 1e-3.
+/// Returns the limits of a voltage source for the signal of a waveform. For a user's own waveform, which is approximated, the
+/// voltage limits are wider by own_waveform_accuracy, and the slew limit by 1e-3.
 [[nodiscard]] DriverLimits limits_for(const Waveform& waveform, DriverLimits limits);
 /// Returns the waveform with its voltages multiplied by `volts`, its times multiplied by `time`, and its frequencies divided by
 /// `time`; both factors are positive.
 [[nodiscard]] Waveform scaled(Waveform waveform, double volts, double time);
-/// Returns step | harmonic | pulse | table | s-curve | chirp | bspline | sines; for an own waveform its name.
+/// Returns the name of the waveform's family: step | harmonic | pulse | table | s-curve | chirp | bspline | sines; for a user's
+/// own waveform its name.
 [[nodiscard]] std::string_view family(const Waveform& waveform);
 
 /// Calls f with a default waveform of every family that a scene can hold, in the order of the alternatives of Waveform.

@@ -35,7 +35,7 @@ Landing& landing(Scene& scene, std::size_t k) {
 }
 using OfLanding = Of<landing>;
 
-// Keys are set in the order of their names, so that any of them may be the first.
+// The keys of asperities are set in the order of their names, so any of them may be the first.
 UniformAsperities& asperities(Scene& scene, std::size_t k) {
   std::optional<UniformAsperities>& one = landing(scene, k).asperities;
   if (!one) one.emplace();
@@ -151,7 +151,7 @@ void check_fringing(const Structure& s, const Electrode& e, const SectionReader&
   }
 }
 
-/// Checks the face of a dielectric on which a beam closes: this face becomes a contact of the scene.
+/// Checks the face of a dielectric on which a beam closes: the face becomes a contact of the scene.
 void check_landing(Device& d, const Electrode& e, const SectionReader& in) {
   if (!e.dielectric || !e.dielectric->landing) return;
   const SectionReader gap(in.file(), "gap");
@@ -173,7 +173,7 @@ void check_landing(Device& d, const Electrode& e, const SectionReader& in) {
     gap.require(std::abs(d.gap.contact - plane) <= 1e-9 * d.gap.electrode, "contact",
                 "must be omitted or " + engineering(plane, "m") + ", where the landing begins");
   }
-  if (!has_contacts) d.gap.contact = plane;  // the contact is added by check_metrics()
+  if (!has_contacts) d.gap.contact = plane;  // if the scene has other contacts, check_metrics() adds this one
 }
 
 void check_electrode(Scene& scene, const SectionReader& in, std::size_t k) {

@@ -21,7 +21,7 @@ bool may_land(const Structure& structure, const SceneFile::Impl& file) {
          });
 }
 
-/// Returns true if the beam closes on the face of a dielectric.
+/// Returns true if the beam of the scene closes on the face of a dielectric.
 bool has_landing(const SceneFile::Impl& file) {
   return std::ranges::any_of(file.names_in("electrode"), [&](const std::string& name) {
     return file.find({"electrode", name, "dielectric", "landing"}) != nullptr;
@@ -31,7 +31,7 @@ bool has_landing(const SceneFile::Impl& file) {
 void check_gap(Scene& scene, const SectionReader& in, std::size_t) {
   const Gap& gap = scene.device.gap;
   if (in.file().is_named(*find_section("contact"))) {
-    static_cast<void>(in.file().names_in("contact"));  // throws for [contact] together with [contact.NAME]
+    static_cast<void>(in.file().names_in("contact"));  // throws InvalidInput for [contact] together with [contact.NAME]
     in.require(!in.is_given("contact"), "contact", "belongs to a single [contact]: every [contact.NAME] has its own gap");
     return;
   }
@@ -43,7 +43,8 @@ void check_gap(Scene& scene, const SectionReader& in, std::size_t) {
     return;
   }
   in.require(gap.contact < gap.electrode, "contact", "must be less than " + in.written("electrode"));
-  // A simulation fails if the gap falls below 1/100 of the electrode gap: see Switch::gap_floor().
+  // Largest contact gap as a share of the electrode gap. A simulation fails if the gap falls below 1/100 of the electrode gap:
+  // see Switch::gap_floor().
   constexpr double most = 0.99;
   in.require(gap.contact < most * gap.electrode, "contact",
              fmt::format("must be less than {:g} times {}: force laws do not hold below 1/100 of that gap", most,

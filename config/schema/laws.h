@@ -1,4 +1,4 @@
-// The keys of a section whose law is a variant of parameter structs (base/field.h).
+// The keys of a section whose law (of contact, force or gas) is a variant of parameter structs (base/field.h).
 #pragma once
 
 #include <algorithm>
@@ -34,7 +34,7 @@ void bound_word(Scene& scene, std::size_t entry, std::string_view word) {
       part(scene, entry));
 }
 
-/// Returns the key that a field describes, without the member that it sets.
+/// Returns the scene key that a field describes, without the member that the key sets.
 template <class Owner>
 [[nodiscard]] Key described(const Field<Owner>& field) {
   Key key{.name = field.key,

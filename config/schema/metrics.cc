@@ -27,7 +27,7 @@ Key connection_key() {
   return key;
 }
 
-// Sets the contacts that make the connection, and whether the connection needs all of them.
+// Sets the contacts that make the electrical connection, and whether the connection needs all of them.
 void set_connection(Device& d, const SectionReader& in) {
   if (!in.is_given("closed")) return;
   const bool is_list = in.is_list("closed");
@@ -50,7 +50,7 @@ void set_connection(Device& d, const SectionReader& in) {
 }
 
 // Sorts the contacts independently of their order in the file; the static figures are those of the first contact. Contacts that
-// make the connection come first, back stops last; equal ones are sorted from the tip, then by their gap.
+// make the connection come first, back stops last; within these groups, contacts are sorted from the tip, then by their gap.
 void order_contacts(Device& d) {
   if (d.contacts.size() < 2) return;
   d.contacts.front().gap = d.gap.contact;
@@ -65,7 +65,8 @@ void order_contacts(Device& d) {
   d.gap.contact = d.contacts.front().gap;
 }
 
-// Electrical figures need a contact; a resistance needs the resistivity of every contact that makes the connection.
+// Checks the request for electrical figures, which need a contact; a resistance needs the resistivity of every contact that
+// makes the connection.
 void check_electrical(const Device& d, const SectionReader& in) {
   for (const std::string_view key : {"closed_force", "closed_resistance", "closed_after"}) {
     in.require(!in.is_given(key) || d.has_contact(), key, "needs a [contact]");

@@ -13,12 +13,12 @@
 namespace softland::internal {
 namespace {
 
-/// Range of the sizes of a quantity in a scene [SI unit]. The range exceeds that of any switch, and products of a few values in
-/// the range stay within double precision.
+/// Range of the sizes of a quantity in a scene [SI unit]. It exceeds that of any switch, and products of a few values in the
+/// range stay within double precision.
 struct Extent {
   Dimension dimension;
-  double smallest;  ///< smallest value of a positive quantity
-  double largest;   ///< largest absolute value
+  double smallest;  ///< smallest permitted value of a positive quantity
+  double largest;   ///< largest permitted absolute value of a quantity
 };
 constexpr std::array extents{
     Extent{dimension::none, 1e-12, 1e12},
@@ -86,7 +86,7 @@ Range Key::range_of(const Dimension& dimension) const {
 std::string Key::example_of(const Dimension& dimension) const {
   if (dimension == dimensions.front()) {
     if (!like.empty()) return std::string(like);
-    // The default serves as an example if it is a quantity other than 0.
+    // The default of a key serves as its example if the default is a quantity other than 0.
     if (type == KeyType::quantity && fallback.starts_with('\'') && !fallback.starts_with("'0 "))
       return std::string(fallback.substr(1, fallback.size() - 2));
   }
@@ -144,12 +144,12 @@ const Key* find_key(const std::vector<std::string>& path) {
 std::string hint(std::string_view word, const std::vector<std::string_view>& known) {
   if (known.empty()) return {};
   constexpr std::size_t longest_word =
-      64;  // a longer word is not a typing error, and the distance takes a time proportional to the product of the lengths
+      64;  // length above which a word is not a typing error; the distance takes time proportional to both lengths
   if (word.size() <= longest_word) {
     const auto distance = [&](std::string_view name) { return edit_distance(word, name); };
     const auto nearest = *std::min_element(known.begin(), known.end(), [&](auto a, auto b) { return distance(a) < distance(b); });
     if (distance(nearest) <= std::max<std::size_t>(2, nearest.size() / 3)) return fmt::format(" (did you mean '{}'?)", nearest);
-    // Suggest a name if the word begins exactly one name: "poisson" begins poissons_ratio.
+    // Least length of a word that is taken as the beginning of a name: "poisson" begins poissons_ratio.
     constexpr std::size_t shortest_beginning = 4;
     const auto is_begun = [&](std::string_view name) { return word.size() >= shortest_beginning && name.starts_with(word); };
     if (std::ranges::count_if(known, is_begun) == 1)

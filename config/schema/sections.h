@@ -1,4 +1,4 @@
-// Functions that make sections and keys. Every section of a scene has a file in this folder.
+// Functions that make the descriptions of sections and keys of a scene. Every section of a scene has a file in this folder.
 #pragma once
 
 #include <algorithm>
@@ -13,12 +13,12 @@
 
 namespace softland::internal {
 
-// If one of these ranges leaves an end open, the dimension of the key determines that end.
+// Ranges of a key's values. If a range leaves an end open, the dimension of the key determines that end.
 inline constexpr Range any{};
 inline constexpr Range not_negative{.least = 0};
 inline constexpr Range small_error{.least = 0, .most = 0.1, .least_open = true};
 
-/// An electrode's voltages may be multiples of its pull-in voltages.
+/// Permitted dimensions of an electrode's voltages, which may be multiples of its pull-in voltages.
 inline const std::vector<Dimension> drive_voltage{dimension::voltage, dimension::static_pull_in, dimension::dynamic_pull_in};
 
 /// Returns a key for a number, without the member of a scene that the key sets.
@@ -37,7 +37,7 @@ inline const std::vector<Dimension> drive_voltage{dimension::voltage, dimension:
   return {.name = name, .type = KeyType::choice, .choices = std::move(choices), .about = about};
 }
 
-/// Makes keys that set members of one part of a scene. `part` returns that part, for example a Structure& for a Scene& and the
+/// Makes keys that set members of one part of a scene. `part` returns this part, for example a Structure& for a Scene& and the
 /// number of an electrode.
 template <auto part>
 struct Of {

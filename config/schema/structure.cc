@@ -20,7 +20,7 @@
 namespace softland::internal {
 namespace {
 
-/// Returns the scene key for field i of a kind of structure.
+/// Returns the scene key for field i of a kind of structure, such as beam or plate.
 template <class Kind, std::size_t i>
 Key key_of_structure() {
   constexpr const Field<Structure>& field = structure_fields<Kind>[i];
@@ -97,7 +97,8 @@ void check(Beam& beam, Structure& s, Scene& scene, const SectionReader& in) {
     if (!in.has_value(key)) continue;
     in.require(!in.flag(key) || in.is_given("poissons_ratio"), key, "needs structure.poissons_ratio");
   }
-  if (!in.has_value("residual_stress") || in.file().find({"surface"})) return;  // [surface] gives the load instead
+  // With [surface], the check of the surface skins includes buckling by the residual stress.
+  if (!in.has_value("residual_stress") || in.file().find({"surface"})) return;
   const std::string buckled = why_buckled(s);
   in.require(buckled.empty(), "residual_stress", buckled);
 }

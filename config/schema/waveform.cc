@@ -6,7 +6,7 @@
 namespace softland::internal {
 namespace {
 
-/// Returns the keys of one parameter of a waveform family: two keys if a scene may give the parameter in two forms.
+/// Returns the scene keys of one parameter of a waveform family: two keys if a scene may give the parameter in two forms.
 template <class Family>
 std::vector<Key> keys_of(const Parameter<Family>& parameter, const std::vector<Dimension>& level, bool factor) {
   Key key = std::holds_alternative<double Family::*>(parameter.member) ? number(parameter.name, level, any, parameter.about)
@@ -24,7 +24,7 @@ std::vector<Key> keys_of(const Parameter<Family>& parameter, const std::vector<D
       if (!key.required) key.fallback = factor ? "1.0" : "'0 V'";
       break;
     case ParameterKind::swing:
-      if (!factor) key.dimensions.push_back(dimension::none);  // permits a percentage
+      if (!factor) key.dimensions.push_back(dimension::none);  // a plain number permits a percentage
       break;
     case ParameterKind::time:
       take(dimension::time, not_negative, "'0 s'");
@@ -49,7 +49,7 @@ std::vector<Key> keys_of(const Parameter<Family>& parameter, const std::vector<D
   return {std::move(key)};
 }
 
-/// Returns the keys beside `file`, for facts that the file of an instrument does not contain.
+/// Returns the keys used together with `file`, for facts that the file of an instrument lacks.
 std::vector<Key> keys_beside_file() {
   Key column{.name = file_keys::column,
              .type = KeyType::integer,

@@ -27,7 +27,8 @@ void ConnectionCourse::Followed::touch(const Touch& touch) {
   if (connects_) connection_.touches_.take(touch);
 }
 
-// The position between two knots is that of the quintic through both knots; the force is linear in time.
+// The position of a contact between two knots (points of the simulated motion) is that of the quintic through both knots; the
+// force is linear in time.
 TrajectoryPoint ConnectionCourse::Followed::at(double time) const {
   const TrajectoryPoint* from = &*last;
   for (const TrajectoryPoint& to : fresh) {
@@ -60,7 +61,7 @@ std::size_t ConnectionCourse::decides(double time, std::size_t present) const {
 void ConnectionCourse::hand_over() {
   const Followed& any = followed_[deciding_];
   if (any.fresh.empty()) return;
-  // Handle a jump that all contacts have at this time, or the start of the run.
+  // Handle a jump of the motion that all contacts have at this time, or the start of the run.
   while (!any.fresh.empty() && (!any.last || any.fresh.front().time == any.last->time)) {
     for (Followed& c : followed_) {
       if (!c.connects()) continue;
@@ -99,7 +100,7 @@ void ConnectionCourse::follow_to(double time) {
 }
 
 void ConnectionCourse::tell(double time) {
-  constexpr double on_the_plane = 1e-12;  // height that counts as on the plane, relative to the contact gap
+  constexpr double on_the_plane = 1e-12;  // distance from the contact plane that counts as contact, relative to the contact gap
   const Followed& decisive = followed_[deciding_];
   TrajectoryPoint point = decisive.at(time);
   const double separation = decisive.gap() - point.position;
@@ -153,7 +154,7 @@ std::optional<Touch> ConnectionTouches::finish() {
 
 ForceOutcome force_of_connection(const Device& device, std::span<const ForceOutcome> contacts) {
   if (contacts.size() == 1) return contacts.front();
-  // Return the later, or the smaller, of two numbers; NaN when one of them is NaN.
+  // `later` and `less` return the later, or the smaller, of two numbers; NaN when one of them is NaN.
   const auto later = [](double a, double b) { return std::isnan(a) || a > b ? a : b; };
   const auto less = [](double a, double b) { return std::isnan(a) || a < b ? a : b; };
   std::optional<ForceOutcome> all;

@@ -28,8 +28,9 @@ void ContactPhase::turn(double deepest) {
 }
 
 void ContactPhase::begin_closed(double interference) {
-  // Load the law a little deeper than the contact rests, so that rounding errors at rest do not load the law further.
-  constexpr double rounding = 1e-9;  // relative
+  // Load the contact law a little deeper (relative) than the contact rests, so that rounding errors at rest do not load the law
+  // further.
+  constexpr double rounding = 1e-9;
   if (model_.rigid_contact() != nullptr) return enter(Phase::rest);
   if (!(interference > 0)) return enter(interference > -reach_ ? above() : Phase::flight);
   if (remembers_) return turn(interference * (1 + rounding));

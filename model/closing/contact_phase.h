@@ -1,4 +1,4 @@
-// Phase of a closing's contact point in the contact law, and the end of that phase.
+// Phase of a contact: the branch of the contact law that acts on the contact point during a closing, and the end of this phase.
 //
 //   flight     above the plane of first touch, and above the reach of a law that acts beyond it
 //   near       above the plane, within the reach of the law                    (adhesive_repulsive.h)
@@ -7,9 +7,9 @@
 //   dent       below the plane, in the dent that a law with memory has left, where there is no contact force
 //   rest       a plate at rest on a rigid contact                              (rigid.h)
 //
-// A phase is entered at an edge of another phase or, from loading to unloading, at the deepest point. A law that is not smooth
-// at some interferences has an edge there from loading to loading. The integrator is restarted at every edge, so that it only
-// ever integrates smooth right-hand sides.
+// An edge is the position at which a phase ends. A phase is entered at an edge of another phase or, from loading to unloading,
+// at the deepest point. A law that is not smooth at some interferences has an edge there from loading to loading. The
+// integrator is restarted at every edge, so that it only ever integrates smooth right-hand sides.
 #pragma once
 
 #include <algorithm>
@@ -24,30 +24,32 @@ namespace softland {
 
 enum class Phase { flight, near, loading, unloading, dent, rest };
 
-/// The position at which a phase ends: side * (position - level) is positive inside the phase.
+/// The position of the contact point at which a phase (branch of the contact law) ends: side * (position - level) is positive
+/// inside the phase.
 struct Edge {
-  double level = 0;  ///< [m]
-  double side = 0;   ///< 1: the phase lies beyond the level, towards the contact; -1: before the level
+  double level = 0;  ///< position of the contact point at which this branch of the contact law ends [m]
+  double side = 0;   ///< 1: this branch of the contact law acts beyond the level, towards the contact; -1: before the level
   Phase next = Phase::flight;
-  std::size_t zone = 0;  ///< zone of the next phase: the number of the law's kinks at smaller interferences
+  std::size_t zone = 0;  ///< zone of the next phase: the number of the contact law's kinks at smaller interferences
 };
 
 class ContactPhase {
  public:
-  /// Starts in flight. The contact has never touched.
+  /// Begins in the phase `flight` (no contact force): the contact has never touched.
   explicit ContactPhase(const Switch& model, std::size_t contact = 0);
 
   [[nodiscard]] Phase phase() const { return phase_; }
   /// Returns true when the contact point is at or below the plane of first touch.
   [[nodiscard]] bool in_contact() const { return phase_ != Phase::flight && phase_ != Phase::near; }
-  /// Returns the state of the contact law that belongs to the phase.
+  /// Returns the state of the contact law in the current phase (branch of the law).
   [[nodiscard]] const ContactState& law() const { return law_; }
   [[nodiscard]] std::span<const Edge> edges() const { return {edges_.data(), edge_count_}; }
-  /// Returns the phase just above the plane of first touch.
+  /// Returns the phase (branch of the contact law) just above the plane of first touch.
   [[nodiscard]] Phase above() const { return reach_ > 0 ? Phase::near : Phase::flight; }
-  /// Returns true when the phase ends where the contact point turns back: loading of a law with memory.
+  /// Returns true when the current phase (branch of the contact law) ends where the contact point turns back: loading of a law
+  /// with memory.
   [[nodiscard]] bool ends_at_turn() const { return remembers_ && phase_ == Phase::loading; }
-  /// Returns the state that a law without memory has at this position of the contact point [m].
+  /// Returns the state of a contact law without memory at this position of the contact point [m].
   [[nodiscard]] ContactState law_at(double position) const {
     return acts_along_pad_ || (has_contact_ && position > plane_ - reach_);
   }
@@ -55,29 +57,30 @@ class ContactPhase {
   [[nodiscard]] double lost(double position) const;
 
   void enter(Phase phase, std::size_t zone = 0);
-  /// Begins at rest on the contact, with the contact point at this interference [m]. A law with memory has been loaded up to
-  /// this interference.
+  /// Begins with the switch at rest on the contact, at this interference of the contact point [m]. A contact law with memory
+  /// has been loaded up to this interference.
   void begin_closed(double interference);
-  /// Changes from loading to unloading at this interference [m].
+  /// Changes the contact law from loading to unloading at this interference [m].
   void turn(double deepest);
 
  private:
   const Switch& model_;
   std::size_t contact_;
-  double plane_;  // plane of first touch [m]
-  double reach_;  // distance above the plane at which the law begins to act [m]
+  double plane_;  // position of the contact plane (plane of first touch) [m]
+  double reach_;  // distance above the contact plane at which the contact law begins to act [m]
   bool has_contact_, acts_along_pad_, remembers_;
-  std::vector<double> kinks_;  // interferences at which the law is not smooth [m]
+  std::vector<double> kinks_;  // interferences at which the contact law is not smooth [m]
   Phase phase_ = Phase::flight;
   ContactState law_;
   std::array<Edge, 2> edges_;
   std::size_t edge_count_ = 0;
-  double deepest_ = 0;  // deepest interference, which a law with memory remembers [m]
-  Dent dent_;           // dent that the law has left
-  double healed_ = 0;   // energy lost to dents that have vanished since [J]
+  double deepest_ = 0;  // deepest interference, which a contact law with memory remembers [m]
+  Dent dent_;           // dent that a contact law with memory has left
+  double healed_ = 0;   // energy lost to dents that have since vanished [J]
 };
 
-/// The phases of all contacts of a switch; for a switch without contact, the phase of its contact point.
+/// The phases (branches of the contact law that act) of all contacts of a switch; for a switch without contact, the phase of
+/// its contact point.
 class ContactPhases {
  public:
   explicit ContactPhases(const Switch& model) {
@@ -91,14 +94,14 @@ class ContactPhases {
   [[nodiscard]] ContactPhase& operator[](std::size_t c) { return phases_[c]; }
   [[nodiscard]] const ContactPhase& operator[](std::size_t c) const { return phases_[c]; }
   [[nodiscard]] const ContactPhase& first() const { return phases_.front(); }
-  /// Returns the states of the contacts in their phases; valid until the next call.
+  /// Returns the states of all contact laws in their current phases (branches); valid until the next call.
   [[nodiscard]] ContactStates states() {
     for (std::size_t c = 1; c < size(); ++c) further_[c - 1] = phases_[c].law();
     return {phases_.front().law(), further_};
   }
-  /// Returns states in which no contact acts.
+  /// Returns states of the contact laws in which no contact acts.
   [[nodiscard]] ContactStates apart() const { return {false, apart_}; }
-  /// Returns true when any contact is at or below its plane.
+  /// Returns true when the contact point of any contact is at or below its plane of first touch.
   [[nodiscard]] bool in_contact() const { return std::ranges::any_of(phases_, &ContactPhase::in_contact); }
 
  private:

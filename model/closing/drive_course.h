@@ -1,4 +1,5 @@
-// The drives of a closing, one stretch after the other. Within a stretch every drive is on one smooth piece of its signal.
+// The drive voltages of a closing between signal breakpoints. In such an interval (stretch) every drive is on one smooth piece
+// of its signal.
 #pragma once
 
 #include <algorithm>
@@ -16,10 +17,10 @@ class DriveCourse {
       : signals_(signals), pieces_(signals.size(), 0), values_(signals.size(), 0.0) {}
 
   [[nodiscard]] std::size_t size() const { return signals_.size(); }
-  /// Returns the values of all drives before t = 0.
+  /// Returns the voltages of all drives before t = 0.
   [[nodiscard]] std::vector<double> before() const { return values_before(signals_); }
-  /// Returns begin and end of every stretch between breakpoints within [0, duration], in order. A stretch also begins at the
-  /// time `also` [s] if this time lies within the interval.
+  /// Returns begin and end of every interval between breakpoints of the drives within [0, duration], in order. An interval also
+  /// begins at the time `also` [s] if this time is within [0, duration].
   [[nodiscard]] std::vector<double> stretches(double duration, double also = std::numeric_limits<double>::infinity()) const {
     std::vector<double> stops{0, duration};
     if (also > 0 && also < duration) stops.push_back(also);
@@ -33,24 +34,26 @@ class DriveCourse {
     return stops;
   }
 
-  /// Selects the piece of drive k that is valid just after time t.
+  /// Selects the signal piece of drive k that is valid just after time t.
   void enter(std::size_t k, double t) { pieces_[k] = signals_[k].piece_at(t); }
   [[nodiscard]] const SignalPiece& piece(std::size_t k) const { return signals_[k].pieces()[pieces_[k]]; }
-  /// Returns the value of drive k by the formula of its present piece, which is extrapolated before and after the piece.
+  /// Returns the voltage of drive k by the formula of its current signal piece, which is extrapolated before and after the
+  /// piece.
   [[nodiscard]] double value(std::size_t k, double t) const { return piece(k).voltage(t); }
-  /// Returns the values of all drives; valid until the next call.
+  /// Returns the voltages of all drives; valid until the next call.
   std::span<const double> values(double t) {
     for (std::size_t k = 0; k < size(); ++k) values_[k] = value(k, t);
     return values_;
   }
-  /// Returns true when every drive is on its last piece, that of its hold level.
+  /// Returns true when every drive is on the last piece of its signal, that of the hold level.
   [[nodiscard]] bool at_hold() const {
     for (std::size_t k = 0; k < size(); ++k) {
       if (pieces_[k] + 1 < signals_[k].pieces().size()) return false;
     }
     return true;
   }
-  /// Returns a step length that resolves the oscillation of every drive after t [s]; infinity when no drive oscillates.
+  /// Returns a step length that resolves the oscillation of every drive voltage after t [s]; infinity when no voltage
+  /// oscillates.
   [[nodiscard]] double resolving_step(double t) const {
     double step = std::numeric_limits<double>::infinity();
     for (const Signal& signal : signals_) step = std::min(step, signal.resolving_step(t));

@@ -25,7 +25,8 @@ ElectricalRecord::Instant ElectricalRecord::instant(std::size_t c, const Contact
     const double length = contact.to.time - contact.from.time, share = length > 0 ? (time - contact.from.time) / length : 1;
     now.force = std::lerp(contact.from.contact_force, contact.to.contact_force, share);
   } else {
-    // A step may contain make and break of a law without memory, whose state depends on the position alone.
+    // Within a step a contact law without memory may begin and end to act; the state of such a law depends on the position
+    // alone.
     const ContactState state = has_memory(law) ? contact.law : ContactState(now.interference > -model_.contact_reach(c));
     if (state.active) now.force = contact_force(law, now.interference, state, tip.velocity(time));
   }
@@ -49,7 +50,7 @@ ElectricalRecord::Instant ElectricalRecord::connected(std::span<const Instant> c
   return all;
 }
 
-// Returns a number that is positive while the connection is electrically closed; only its sign matters.
+// Returns the margin, a number that is positive while the connection is electrically closed; only the sign matters.
 double ElectricalRecord::margin(const Instant& now) const {
   double least = std::numeric_limits<double>::infinity();
   if (closing_.force >= 0) least = now.force - closing_.force;
@@ -100,18 +101,21 @@ void ElectricalRecord::take_rest(double begin, double end, const std::function<d
   follow(followed_.front(), at, begin, end);
 }
 
-// The margin has an extremum within the step when its magnitude falls from both ends inwards.
+// The margin, positive while electrically closed, has an extremum within the step when its magnitude falls from both ends
+// inwards.
 template <class Margin>
 void ElectricalRecord::follow(Followed& followed, const Margin& at, double begin, double end) const {
-  // Closer to the ends rounding would hide the change of a force that grows with a high power of the distance.
-  constexpr double beside = 1e-3;  // share of the time of the step
+  // Share of the step's time at which the slope at an end is measured. Closer to the end, rounding would hide the change of a
+  // force that grows with a high power of the distance.
+  constexpr double beside = 1e-3;
   constexpr int bits = 30;
   const double from = at(begin), to = at(end);
   if ((from > 0) == (to > 0)) {
     const double towards = from > 0 ? 1 : -1;
     const double after = at(begin + beside * (end - begin)) - from, before = at(end - beside * (end - begin)) - to;
     if (towards * after < 0 && towards * before < 0) {
-      const auto time = [&](double share) { return std::lerp(begin, end, share); };  // the search expects arguments of order one
+      // Shares instead of times, since the search expects arguments of order one.
+      const auto time = [&](double share) { return std::lerp(begin, end, share); };
       const double turn = time(
           boost::math::tools::brent_find_minima([&](double share) { return towards * at(time(share)); }, 0.0, 1.0, bits).first);
       const double there = at(turn);
@@ -122,7 +126,7 @@ void ElectricalRecord::follow(Followed& followed, const Margin& at, double begin
   follow_path(followed, at, begin, from, end, to);
 }
 
-// Records an interval in which the margin, positive while closed, changes sign at most once.
+// Records an interval in which the margin of electrical contact, positive while closed, changes sign at most once.
 template <class Margin>
 void ElectricalRecord::follow_path(Followed& followed, const Margin& at, double begin, double from, double end, double to) const {
   set(followed, from > 0, begin);
@@ -153,7 +157,7 @@ void ElectricalRecord::tell(const Followed& followed, double time) const {
 }
 
 bool ElectricalRecord::counts(const Followed& followed, double until) const {
-  constexpr double rounding = 1e-12;  // relative error of the time at which two steps meet
+  constexpr double rounding = 1e-12;  // relative error of the time at which two steps join
   return until - followed.opened_at > std::max(closing_.shortest_opening(), rounding * until);
 }
 

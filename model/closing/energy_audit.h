@@ -1,15 +1,15 @@
 // The energy balance of a closing: work of the sources, stored energy and dissipation. An integrator that loses the contact
-// between two steps, or a tolerance too loose for a stiff contact, shows as a residual.
+// between two steps, or a tolerance too loose for a stiff contact, shows as a residual of the balance.
 //
 //   work of the sources = integral of V dQ = [V Q] - integral of Q dV     dissipated = integral of the power taken out
 //
 // Q = C (V - V0) is the charge of an electrode, V0 the voltage of a charge on its dielectric; its field stores C (V - V0)^2/2 +
 // V0 Q.
 //
-// [V Q] is taken over each stretch between breakpoints, the integral of Q dV by Simpson's rule where a voltage changes. A
-// change of a force factor moves no charge: its work is the integral alone. Dissipation is integrated by Simpson's rule over
-// each step. Once the residual exceeds 1e-4 of the bending energy, Lobatto's rule with four points integrates it over a motion
-// that is exact for the modes.
+// [V Q] is taken over each interval between breakpoints of the drives, the integral of Q dV by Simpson's rule where a voltage
+// changes. A change of a force factor moves no charge: its work is the integral alone. Dissipation is integrated by Simpson's
+// rule over each step. Once the residual exceeds 1e-4 of the bending energy, Lobatto's rule with four points integrates it over
+// a motion that is exact for the modes.
 #pragma once
 
 #include "model/closing/contact_phase.h"
@@ -22,27 +22,28 @@ namespace softland {
 
 class EnergyAudit {
  public:
-  /// Keeps references to its arguments. At `start` the switch is at rest, open under its drives' values before t = 0 or closed
-  /// on its contact, and the electrodes carry the charge of this state.
+  /// Keeps references to its arguments. At the state `start` the switch is at rest, open under its drives' voltages before t =
+  /// 0 or closed on its contact, and the electrodes carry the charge of this state.
   EnergyAudit(const Switch& model, DriveCourse& drives, ContactPhases& phases, ClosingEquations& equations, const Knot& start);
 
-  /// Moves all drives to the pieces that are valid after `here`. A jump of the voltage charges the electrode at fixed
-  /// deflection, as an infinitely steep ramp does.
+  /// Changes all drives to the signal pieces that are valid after the state `here`. A jump of the voltage charges the electrode
+  /// at fixed deflection, as an infinitely steep ramp does.
   void enter_stretch(const Knot& here, bool first);
-  /// Adds a step between two knots.
+  /// Adds an integration step between two states to the energy balance.
   void step(const Knot& here, const Knot& next, double dissipation_at_end, StepMotion& motion, bool implicit);
-  /// Adds an interval in which the plate rests on its contact while the drives change.
+  /// Adds an interval in which the rigid plate rests on its contact while the drives change.
   void rest(const Knot& here, double until);
   /// Adds an impact on a rigid contact: `lost` is the energy lost [J], `dissipation` the dissipated power just after the impact
   /// [W].
   void impact(double lost, double dissipation);
 
-  /// Computes the residual of the energy balance at a knot.
+  /// Computes the residual of the energy balance at a state of the switch.
   void settle(const Knot& here);
   [[nodiscard]] const EnergyBalance& balance() const { return balance_; }
   /// Returns the largest residual that settle() has found [J]; NaN if any residual was NaN.
   [[nodiscard]] double error() const { return error_; }
-  /// Returns kinetic plus potential energy of the switch, plus the energy that impacts on a rigid contact have dissipated [J].
+  /// Returns kinetic plus potential energy of the switch at a state, plus the energy that impacts on a rigid contact have
+  /// dissipated [J].
   [[nodiscard]] double above_rest(const Knot& here);
 
  private:
@@ -63,11 +64,11 @@ class EnergyAudit {
   ContactPhases& phases_;
   ClosingEquations& equations_;
   std::size_t modes_;
-  double rest_energy_;      // energy stored at the start [J]
-  double source_work_ = 0;  // work of the sources, without V Q of the present charges on the electrodes [J]
-  double dissipated_ = 0;   // energy dissipated by gas, film, modal damping and contacts [J]
-  double dissipation_ = 0;  // dissipation at the last knot [W]
-  double impacts_ = 0;      // energy lost in impacts [J]
+  double rest_energy_;      // energy of the switch at the start of the run [J]
+  double source_work_ = 0;  // work of the sources, without V Q of the charges now on the electrodes [J]
+  double dissipated_ = 0;   // energy that gas, film, modal damping and contacts have dissipated [J]
+  double dissipation_ = 0;  // dissipated power at the last state [W]
+  double impacts_ = 0;      // energy lost in impacts on a rigid contact [J]
   bool careful_ = false;    // true when dissipated_ is integrated with more points
   double error_ = 0;
   EnergyBalance balance_;

@@ -1,4 +1,5 @@
-// The equations of motion of the switch under its drives and in its contact phase, for an integrator.
+// The equations of motion of the switch under its drives, with each contact law in its current phase (branch), for an
+// integrator.
 #pragma once
 
 #include "integrators/stepper.h"
@@ -11,23 +12,25 @@ namespace softland {
 
 class ClosingEquations {
  public:
-  /// Keeps references to its arguments. If `phase_decides`, the state of a contact law follows from the contact phase, else
-  /// from the position of the contact point alone.
+  /// Keeps references to its arguments. If `phase_decides`, the state of a contact law follows from the phase (branch) of the
+  /// contact, otherwise from the position of the contact point alone.
   ClosingEquations(const Switch& model, DriveCourse& drives, ContactPhases& phases, bool phase_decides);
   ClosingEquations(const ClosingEquations&) = delete;
   ClosingEquations& operator=(const ClosingEquations&) = delete;
 
   [[nodiscard]] const OdeSystem& system() const { return system_; }
-  /// Computes the time derivatives of a state without q' at time t, with every contact law in the state of its contact phase.
+  /// Computes the time derivatives of a state, except q', at time t, with every contact law in the branch of its current phase.
   void rates(double t, const double* state, double* result) { rates(t, state, phases_.states(), result); }
   void rates(Knot& knot) { rates(knot.time, knot.state.data(), knot.rates.data()); }
-  /// Returns figures of the gap field of the last evaluation of rates(), whose state must equal `state` up to rounding.
+  /// Returns figures of the gap between beam and electrode (gap field) from the last evaluation of rates(), whose state must
+  /// equal `state` up to rounding.
   [[nodiscard]] FieldFigures field(const double* state);
-  /// Returns the dissipation by gas, film and modal damping in any state [W]; overwrites the gap field.
+  /// Returns the power that gas, film and modal damping dissipate in any state [W]; overwrites the gap field.
   [[nodiscard]] double dissipation(const double* state) {
     return model_.dissipated_power(state, state + modes_, work_, film_of(state));
   }
-  /// Returns the workspace in which electrical and elastic energies of a state are computed, which overwrites its gap field.
+  /// Returns the workspace in which electrical and elastic energies of a state are computed; their computation overwrites its
+  /// gap field.
   [[nodiscard]] Switch::Workspace& workspace() { return work_; }
   [[nodiscard]] long evaluations() const { return evaluations_; }
 

@@ -1,4 +1,4 @@
-// Events of the contact point within a step: times at which the equations of motion change.
+// Events of the contact point within a step: times at which the contact law, and so the equations of motion, change.
 #pragma once
 
 #include <optional>
@@ -8,15 +8,15 @@
 
 namespace softland {
 
-/// The contact point crosses the edge of its contact phase, or, without an edge, turns back while loading a contact with
-/// memory.
+/// A change of a contact law's branch (phase): the contact point crosses the edge of the phase, or, without an edge, turns back
+/// while loading a contact with memory.
 struct Event {
-  double time = 0;  ///< [s]
+  double time = 0;  ///< time of the change of the contact law [s]
   std::optional<Edge> edge;
-  std::size_t contact = 0;  ///< number of the contact
+  std::size_t contact = 0;  ///< number of the contact whose law changes
 };
 
-/// Returns the first event in (from, to] of a piece of a step.
+/// Returns the first change of a contact law's branch in (from, to], a piece of an integration step.
 [[nodiscard]] std::optional<Event> first_event(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to,
                                                const ContactPhase& phase);
 

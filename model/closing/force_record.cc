@@ -26,16 +26,17 @@ bool rises_with_depth(const Switch& model, std::size_t contact) {
 ForceRecord::ForceRecord(const Switch& model, double threshold, std::size_t contact)
     : model_(model), contact_(contact), threshold_(threshold), rises_with_depth_(rises_with_depth(model, contact)) {}
 
-// The force has an extremum within the interval when it rises from both ends inwards, or falls from both ends.
+// The contact force has an extremum within the interval when it rises from both ends inwards, or falls from both ends.
 template <class Force>
 void ForceRecord::follow_path(const Force& force, double begin, double from, double end, double to) {
-  constexpr double beside = 1e-6;  // share of the time of the interval
+  constexpr double beside = 1e-6;  // share of the interval's time at which the slope at an end is measured
   constexpr int bits = 30;
   if (rises_with_depth_) return follow(force, begin, from, end, to);
   const double after = force(begin + beside * (end - begin)) - from, before = force(end - beside * (end - begin)) - to;
   if (!(after * before > 0)) return follow(force, begin, from, end, to);
   const double sign = after < 0 ? 1 : -1;
-  const auto at = [&](double share) { return std::lerp(begin, end, share); };  // time of order one, as the search expects
+  // Shares instead of times, since the search expects arguments of order one.
+  const auto at = [&](double share) { return std::lerp(begin, end, share); };
   const double turn =
       at(boost::math::tools::brent_find_minima([&](double share) { return sign * force(at(share)); }, 0.0, 1.0, bits).first);
   const double there = force(turn);
@@ -43,7 +44,7 @@ void ForceRecord::follow_path(const Force& force, double begin, double from, dou
   follow(force, turn, there, end, to);
 }
 
-// Adds an interval in which the force only rises or only falls.
+// Adds an interval in which the contact force only rises or only falls.
 template <class Force>
 void ForceRecord::follow(const Force& force, double begin, double from, double end, double to) {
   has_fallen_ = has_fallen_ || (has_risen_ && to < from);
@@ -59,7 +60,7 @@ void ForceRecord::follow(const Force& force, double begin, double from, double e
   }
 }
 
-// Returns the least force, which is 0 up to the rounding error of the position at which a contact opens.
+// Returns the least contact force, which is 0 up to the rounding error of the position at which a contact opens.
 double ForceRecord::least() const {
   constexpr double rounding = 1e-12;
   const double least = has_fallen_ ? least_ : last_;

@@ -1,10 +1,11 @@
 // The contact force of a closing after the first touch: the time from which it stays above a threshold, and its least value
 // afterwards.
 //
-// Between knots the force is that of the contact law along the motion of the contact point. Along a pad, and for a plate at
-// rest on a rigid contact, the force is taken as linear in time. Out of contact the force is 0, except for a law that acts
-// beyond the plane. Extremes are located at knots and where the contact point turns back, which suffices for laws whose force
-// grows with depth. For laws that pull or are damped, extremes are located between these times too.
+// Between knots (points of the simulated motion) the force is that of the contact law along the motion of the contact point.
+// Along a pad, and for a plate at rest on a rigid contact, the force is taken as linear in time. Out of contact the force is 0,
+// except for a law that acts beyond the plane. Extremes are located at knots and where the contact point turns back, which
+// suffices for laws whose force grows with depth. For laws that pull or are damped, extremes are located between these times
+// too.
 #pragma once
 
 #include <limits>
@@ -17,20 +18,21 @@ namespace softland {
 
 class ForceRecord {
  public:
-  /// Records the force of one contact. Keeps a reference to `model`. `threshold` is that of a steady force [N], or NaN.
+  /// Records the force of one contact. Keeps a reference to `model`. `threshold` is the force that counts as steady [N], or
+  /// NaN.
   ForceRecord(const Switch& model, double threshold, std::size_t contact = 0);
 
-  /// Adds a piece of a step after the first touch, under a contact law in this state.
+  /// Adds a piece of an integration step after the first touch, in which the contact law stays in this state.
   void take(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to, const ContactState& law);
   /// Adds an interval after the first touch over which the contact force changes linearly.
   void take_line(const TrajectoryPoint& from, const TrajectoryPoint& to);
 
-  /// Records that a maximum of the force has passed: the contact has opened, or an impact on a rigid contact is over.
+  /// Records that a maximum of the contact force has passed: the contact has opened, or an impact on a rigid contact is over.
   void pass_maximum() { has_fallen_ = true; }
 
-  /// Returns Trajectory::steady_force_time [s].
+  /// Returns the time from which the contact force is steady, Trajectory::steady_force_time [s].
   [[nodiscard]] double steady_from() const { return steady_from_; }
-  /// Returns Trajectory::least_force_after_touch [N].
+  /// Returns the least contact force after the first touch, Trajectory::least_force_after_touch [N].
   [[nodiscard]] double least() const;
 
  private:
@@ -44,11 +46,11 @@ class ForceRecord {
 
   const Switch& model_;
   std::size_t contact_;
-  double threshold_;  // [N]
+  double threshold_;  // contact force that counts as steady [N]
   bool rises_with_depth_;
   bool has_risen_ = false, has_fallen_ = false;
   double steady_from_ = none, least_ = std::numeric_limits<double>::infinity(), last_ = 0;
-  double largest_ = 0;  // [N]
+  double largest_ = 0;  // largest contact force so far [N]
 };
 
 }  // namespace softland

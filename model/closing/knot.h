@@ -1,4 +1,5 @@
-// A state of the switch during a closing, with the results of the right-hand side there.
+// A knot is a point of the simulated motion: a state of the switch during a closing, with the rates of the equations of motion
+// there.
 #pragma once
 
 #include <cstddef>
@@ -7,17 +8,17 @@
 namespace softland {
 
 struct Knot {
-  double time = 0;            ///< [s]
-  std::vector<double> state;  ///< q, v, then the film if it is compressible
-  std::vector<double> rates;  ///< rates of all states but q: accelerations, then the rates of the film
+  double time = 0;            ///< time of this point of the motion [s]
+  std::vector<double> state;  ///< coordinates and velocities of the modes, then pressures of a compressible gas film
+  std::vector<double> rates;  ///< rates of all states but the coordinates: accelerations of the modes, then rates of the film
 };
 
-/// The figures of the gap field at a knot that the closing needs. The figures are read from the workspace as soon as the knot
-/// is computed, since the next use of the workspace overwrites the field.
+/// Figures of the gap field (gap between beam and electrode along the beam) at one point of the motion. They are read from the
+/// workspace as soon as the point is computed, since the next use of the workspace overwrites the field.
 struct FieldFigures {
-  double smallest_gap = 0;   ///< [m]
-  bool at_far_side = false;  ///< see Switch::at_far_side()
-  double dissipation = 0;    ///< dissipation by gas, film and modal damping [W]; 0 without damping
+  double smallest_gap = 0;   ///< smallest gap between beam and electrode [m]
+  bool at_far_side = false;  ///< true when the beam has reached an electrode or wall on the far side
+  double dissipation = 0;    ///< power that gas, film and modal damping dissipate [W]; 0 without damping
 };
 
 }  // namespace softland

@@ -1,4 +1,5 @@
-// The motion of one contact point during a run: knots of the present step are held back while an event can still change them.
+// The motion of one contact point during a run: points (knots) of the current integration step, held back while an event can
+// still change them.
 #pragma once
 
 #include <algorithm>
@@ -19,11 +20,11 @@ class PendingKnots {
         observer_(observer) {}
 
   void push(const TrajectoryPoint& point) { waiting_.push_back(point); }
-  /// Returns the last knot, whether or not the observer has received it.
+  /// Returns the last point of the contact point's motion, whether or not the observer has received it.
   [[nodiscard]] const TrajectoryPoint& last() const { return waiting_.empty() ? handed_over_ : waiting_.back(); }
-  /// Returns the last knot that the observer has not received, for the caller to correct.
+  /// Returns the last point of the motion that the observer has not received, for the caller to correct.
   [[nodiscard]] TrajectoryPoint& last_waiting() { return waiting_.back(); }
-  /// Removes the knots from the time `from` [s] on, which the observer has not received.
+  /// Removes the points of the motion from the time `from` [s] on, which the observer has not received.
   void take_back(double from, double step_begin) {
     while (!waiting_.empty() && waiting_.back().time >= from && waiting_.back().time > step_begin) waiting_.pop_back();
   }
@@ -40,7 +41,7 @@ class PendingKnots {
 
  private:
   const Device& device_;
-  double rest_gap_;  // rest gap to the electrode, at the contact point [m]
+  double rest_gap_;  // gap to the electrode at the contact point at rest [m]
   ClosingObserver& observer_;
   std::vector<TrajectoryPoint> waiting_;
   TrajectoryPoint handed_over_;

@@ -18,14 +18,14 @@ double RestingPlate::load(const Knot& here, double t) {
   return rates_[0] / model_.basis().contact_shape()[0];
 }
 
-// A plate has one mode only, so one coordinate and one velocity.
+// A rigid plate has one mode only, so one coordinate and one velocity.
 RestingPlate::Impact RestingPlate::strike(Knot& here) {
   const RigidContact& contact = *model_.rigid_contact();
   const double shape = model_.basis().contact_shape()[0], plane = model_.contact_gap();
   double &q = here.state[0], &v = here.state[1];
   Impact impact{.energy = model_.basis().kinetic_energy(&v)};
   const double speed = contact.restitution * std::max(0.0, v * shape);
-  q = plane / shape;  // otherwise position errors would add up over many impacts
+  q = plane / shape;  // reset the position, since position errors would add up over many impacts
   v = 0;
   impact.rests = RigidContact::rests(speed, load(here, here.time) * shape * shape, plane);
   if (!impact.rests) v = -speed / shape;
@@ -34,7 +34,7 @@ RestingPlate::Impact RestingPlate::strike(Knot& here) {
 }
 
 void RestingPlate::begin(Knot& here, double stretch_end) {
-  constexpr double looks = 32;  // number of evaluations of the drives in a stretch without oscillations
+  constexpr double looks = 32;  // number of evaluations of the drives between two breakpoints, unless a drive oscillates
   force_ = here.rates[0] / model_.basis().contact_shape()[0];
   here.rates[0] = 0;
   look_ = std::min((stretch_end - here.time) / looks, drives_.resolving_step(here.time));
@@ -46,7 +46,7 @@ RestingPlate::Stay RestingPlate::stay(const Knot& here, double stretch_end) {
   if (pressed && next < 0) {
     const double last = t;
     t = bracketed_zero([&](double at) { return load(here, at); }, here.time, last);
-    // End the rest where the force already pulls: at the zero of the force the plate would begin to rest again.
+    // End the rest of the plate where the force already pulls: at the zero of the force the plate would begin to rest again.
     for (double more = 1e-15 * last; (next = load(here, t)) >= 0; more *= 2) t = std::min(last, t + more);
   }
   force_ = next;

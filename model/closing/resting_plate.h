@@ -1,4 +1,4 @@
-// A rigid plate on a rigid contact: impacts, and rest until the drives pull it off.
+// A rigid plate on a rigid contact: impacts, and rest until the drives pull the plate off.
 #pragma once
 
 #include <vector>
@@ -11,27 +11,29 @@ namespace softland {
 
 class RestingPlate {
  public:
-  /// Keeps references to its arguments. Without a rigid contact only force() may be called.
+  /// Keeps references to its arguments. Without a rigid contact, force() is the only function that may be called.
   RestingPlate(const Switch& model, DriveCourse& drives, ClosingEquations& equations);
 
   struct Impact {
-    double energy = 0;  ///< kinetic energy before the impact [J]
-    double lost = 0;    ///< energy lost in the impact [J]
+    double energy = 0;  ///< kinetic energy of the plate before the impact [J]
+    double lost = 0;    ///< energy of the plate lost in the impact [J]
     bool rests = false;
   };
   /// Computes the impact of a plate that reaches the plane of first touch. Afterwards the plate is on the plane with its
   /// rebound velocity, or at rest when the rebound would be lower than RigidContact::rest_height.
   Impact strike(Knot& here);
 
-  /// Begins a rest of the plate at this knot, whose rates have been computed. The rest ends at `stretch_end` at the latest.
+  /// Begins a rest of the plate in this state, whose accelerations have been computed. The rest ends at `stretch_end`, the next
+  /// breakpoint of the drives, at the latest.
   void begin(Knot& here, double stretch_end);
   struct Stay {
-    double until = 0;     ///< end of this interval of the rest [s]
+    double until = 0;     ///< end of this interval in which the plate rests [s]
     bool leaves = false;  ///< true when the drives pull the plate off at `until`
   };
-  /// Continues the rest of the plate by one interval, which ends early when no force presses the plate on the contact any more.
+  /// Continues the rest of the plate on its contact by one interval, which ends early when no force presses the plate on the
+  /// contact any more.
   Stay stay(const Knot& here, double stretch_end);
-  /// Returns the force on the contact while the plate rests [N].
+  /// Returns the force of the plate on the contact while the plate rests [N].
   [[nodiscard]] double force() const { return force_ > 0 ? force_ : 0; }
   /// Returns the force with which the plate at rest at `here` presses on the contact under the drives of time t [N]; negative
   /// when the drives pull the plate off.
@@ -41,7 +43,7 @@ class RestingPlate {
   const Switch& model_;
   DriveCourse& drives_;
   ClosingEquations& equations_;
-  double force_ = 0;  // pressing force at the last knot [N]
+  double force_ = 0;  // force that presses the plate on the contact at the end of the last interval [N]
   double look_ = 0;   // longest time between two evaluations of the drives while the plate rests [s]
   std::vector<double> rates_;
 };

@@ -3,7 +3,7 @@
 //
 // Explicit methods take steps of up to two radians of the fastest mode: within a step the modes move freely and a quintic adds
 // the effect of the change of the force (integrators/modal_motion.h). Longer steps come from an implicit method: one Hermite
-// polynomial covers each of them.
+// polynomial covers each such step.
 #pragma once
 
 #include <vector>
@@ -18,13 +18,13 @@ namespace softland {
 
 class StepMotion {
  public:
-  /// `tolerance` is that of the integrator. The quintic of a piece has an error of `tolerance`, at most 1e-5, relative to the
-  /// fastest mode's amplitude. The place of `contact` is the contact point.
+  /// `tolerance` is that of the integrator. The quintic of a piece of the step has an error of `tolerance`, at most 1e-5,
+  /// relative to the fastest mode's amplitude. The place of the contact number `contact` is the contact point.
   StepMotion(const Switch& model, double tolerance, std::size_t contact = 0);
 
-  /// Sets the step between two knots; `end` is the contact point at its end. Keeps references to the knots. `accurate_rates` is
-  /// true when accelerations at the knots may be used: an implicit method may leave errors in them that the stiffness
-  /// magnifies.
+  /// Sets the step between two points of the motion (knots); `end` is the contact point at the end of the step. Keeps
+  /// references to the knots. `accurate_rates` is true when accelerations at the knots may be used: an implicit method may
+  /// leave errors in the accelerations that the stiffness magnifies.
   void set(const Knot& begin, const Knot& end_knot, const TrajectoryPoint& end, bool accurate_rates);
 
   [[nodiscard]] bool moves_by_modes() const { return moves_by_modes_; }
@@ -33,23 +33,23 @@ class StepMotion {
   [[nodiscard]] double length() const { return end_->time - begin_->time; }
   /// Returns the motion of the contact point at the end of piece k of the step, 1 <= k < pieces().
   [[nodiscard]] const ModalMotion::Sample& knot(int k) { return motion().knot(k); }
-  /// Returns the motion of the contact point at a time in the step [s]. Call this only if moves_by_modes().
+  /// Returns the motion of the contact point at a time in the step [s]. Call the function only if moves_by_modes().
   [[nodiscard]] ModalMotion::Sample at(double time) { return motion().at(time - begin_->time); }
 
-  /// Returns q, v and film halfway through the step by Hermite interpolation; valid until the next call of halfway() or
-  /// state_at().
+  /// Returns modal coordinates, velocities and film pressures halfway through the step by Hermite interpolation; valid until
+  /// the next call of halfway() or state_at().
   const std::vector<double>& halfway();
-  /// Returns q and v after a share of the step, from the free motion of the modes and a quintic. Call this only if
-  /// moves_by_modes(), and without a compressible film.
+  /// Returns modal coordinates and velocities after a share of the step, from the free motion of the modes and a quintic. Call
+  /// the function only if moves_by_modes(), and without a compressible film.
   const std::vector<double>& state_at(double share);
 
  private:
   const ModalMotion& motion();
 
   std::size_t modes_, film_;
-  double fastest_;             // angular frequency of the last mode [rad/s]
-  double knot_phase_;          // largest phase of the fastest mode in a piece
-  std::vector<double> omega_;  // angular frequencies, padded to whole vector lanes [rad/s]
+  double fastest_;             // angular frequency of the fastest mode [rad/s]
+  double knot_phase_;          // largest phase of the fastest mode in a piece of the step [rad]
+  std::vector<double> omega_;  // angular frequencies of the modes, padded to a multiple of the SIMD lanes [rad/s]
   ModalMotion motion_;
   bool motion_known_ = false;
   const Knot* begin_ = nullptr;
@@ -60,7 +60,7 @@ class StepMotion {
   std::vector<double> between_;
 };
 
-/// The contact point in a piece of a step: its motion is a quintic in time.
+/// Motion of the contact point in a piece of an integration step, a quintic in time.
 class TipMotion : public Quintic {
  public:
   TipMotion(StepMotion& step, const TrajectoryPoint& from, const TrajectoryPoint& to)
@@ -71,7 +71,7 @@ class TipMotion : public Quintic {
   [[nodiscard]] double acceleration(double t) const {
     return step_.moves_by_modes() ? step_.at(t).acceleration : Quintic::acceleration(t);
   }
-  /// Returns the time at which the velocity changes sign in the piece [s].
+  /// Returns the time in the piece of the step at which the velocity of the contact point changes sign [s].
   [[nodiscard]] double turn() const {
     return bracketed_zero([&](double t) { return velocity(t); }, begin(), end());
   }

@@ -1,4 +1,4 @@
-// Steps of the integrator through a closing; each ends at the next event of a contact at the latest.
+// Steps of the integrator through a closing; each step ends at the next change of a contact law at the latest.
 #pragma once
 
 #include <cmath>
@@ -26,8 +26,8 @@ namespace softland {
 [[nodiscard]] inline bool begins_closed(const ClosingOptions& options) {
   return !options.begins_closed.empty() || options.start == StartState::closed;
 }
-/// Returns the equilibrium in which a run starts, under the drives' values before t = 0: an open one unless the options request
-/// a closed one. Returns none when this equilibrium does not exist.
+/// Returns the equilibrium in which a run starts, under the drives' voltages before t = 0: an open equilibrium unless the
+/// options request a closed one. Returns none when this equilibrium does not exist.
 [[nodiscard]] std::optional<Eigen::VectorXd> start_of(const Switch& model, std::span<const Signal> signals,
                                                       const ClosingOptions& options);
 
@@ -44,16 +44,16 @@ struct FollowedContact {
         motion(model, options.tolerance, contact) {}
 
   std::size_t number;
-  double plane;  ///< plane of first touch [m]
+  double plane;  ///< position of the contact plane (plane of first touch) [m]
   ContactPhase& phase;
   TouchRecord touches;
   ForceRecord force;
   PendingKnots pending_knots;
-  StepMotion motion;    ///< motion in the present step
-  TrajectoryPoint end;  ///< contact point at the end of the present step
+  StepMotion motion;    ///< motion of the contact point in the current step
+  TrajectoryPoint end;  ///< contact point at the end of the current step
 };
 
-/// The parts of a closing, which keep references to each other.
+/// The parts of a simulated closing, which keep references to each other.
 struct ClosingParts {
   const Switch& model;
   const ClosingOptions& options;
@@ -62,11 +62,12 @@ struct ClosingParts {
   ContactPhases phases;
   ClosingEquations equations;
   RestingPlate plate;
-  std::optional<ConnectionCourse> connection;  ///< connection of several contacts
-  std::vector<FollowedContact> contacts;       ///< one per contact; without contacts, one for the contact point
-  std::optional<ElectricalRecord> electrical;  ///< electrical record, if the device or the observer requires this record
+  std::optional<ConnectionCourse> connection;  ///< electrical connection that several contacts make
+  std::vector<FollowedContact> contacts;       ///< records of the contacts; without contacts, one record of the contact point
+  /// Record of electrical closing, if the device or the observer requires this record.
+  std::optional<ElectricalRecord> electrical;
   ClosingObserver& observer;
-  bool closing_is_over = false;  ///< true after ClosingOptions::opens_at
+  bool closing_is_over = false;  ///< true after the command to open, ClosingOptions::opens_at
 
   ClosingParts(const Switch& switch_model, std::span<const Signal> signals, const ClosingOptions& closing_options,
                ClosingObserver& closing_observer)
@@ -96,44 +97,45 @@ struct ClosingParts {
   ClosingParts& operator=(const ClosingParts&) = delete;
 
   [[nodiscard]] FollowedContact& first() { return contacts.front(); }
-  /// Returns true when the electrical state is computed: after ClosingOptions::opens_at only for an observer that needs it.
+  /// Returns true when it is computed whether the switch is electrically closed: after the command to open
+  /// (ClosingOptions::opens_at) only for an observer that needs this state.
   [[nodiscard]] bool follows_state() const { return electrical && (!closing_is_over || observer.follows_state()); }
-  /// Ends the closing at this time [s]: the rest of the run is an opening.
+  /// Ends the closing at this time [s]: the remaining part of the run is an opening.
   void end_closing(double time) {
     if (electrical && !closing_is_over) electrical->finish(time);
     closing_is_over = true;
   }
-  /// Records the contact force and the peaks of a touch in a piece of a step.
+  /// Records the contact force and the peaks of a touch in a piece of an integration step.
   void record(FollowedContact& contact, const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to);
-  /// Returns position, velocity, acceleration and force of a contact at a knot.
+  /// Returns position, velocity, acceleration and force of a contact in a state of the switch.
   [[nodiscard]] TrajectoryPoint point(const FollowedContact& contact, const Knot& knot) const;
-  /// Continues the motion of every contact up to a knot.
+  /// Continues the motion of every contact up to a state of the switch.
   void push(const Knot& knot) {
     for (FollowedContact& c : contacts) c.pending_knots.push(point(c, knot));
   }
-  /// Passes the knots that no event can change any more to the observers.
+  /// Passes the points of the motion that no event can change any more to the observers.
   void hand_over() {
     for (FollowedContact& c : contacts) c.pending_knots.hand_over();
     if (connection) connection->hand_over();
   }
-  /// Returns the time of the first touch of any contact on the near side [s]; NaN before this touch.
+  /// Returns the time of the first touch of any contact on the near side [s]; NaN before a touch.
   [[nodiscard]] double first_touch() const;
   [[nodiscard]] bool has_touched() const { return !std::isnan(first_touch()); }
 };
 
 class Stepping {
  public:
-  /// Starts at rest, open or on the contact. Keeps a reference to `parts`.
+  /// Starts with the switch at rest, open or on the contact. Keeps a reference to `parts`.
   explicit Stepping(ClosingParts& parts);
 
   [[nodiscard]] Knot& here() { return here_; }
   [[nodiscard]] const Work& work() const { return work_; }
-  /// Counts an evaluation of the drives while a plate rests on its contact: this evaluation is a step.
+  /// Counts an evaluation of the drives while a plate rests on its contact as an integration step.
   void count_step() { ++work_.steps; }
-  /// Returns the reason why the last call failed.
+  /// Returns the reason why the last call of an integration function failed.
   [[nodiscard]] const std::string& message() const { return message_; }
 
-  /// Restarts the integrator from here(), in the present contact phase. Returns false when this failed.
+  /// Restarts the integrator from here(), with each contact law in its current branch. Returns false when this failed.
   bool restart();
   /// Checks that the number of steps is within its limit. From time to time the function also checks whether the integration
   /// method suits the equations, and changes to the other method if not. Returns false when the number of steps exceeds its
@@ -141,11 +143,12 @@ class Stepping {
   bool check_work();
 
   struct Step {
-    FieldFigures field;  ///< figures at the end of the step
+    FieldFigures field;  ///< figures of the gap field at the end of the step
     std::optional<Event> event;
   };
-  /// Integrates from here() to the end of a step: to `stop` or the next event that needs a restart, at the latest. Peaks and
-  /// energies of the step are recorded; its knots stay in PendingKnots. Returns none when the step failed.
+  /// Integrates from here() to the end of a step: to `stop` or the next change of a contact law that needs a restart, at the
+  /// latest. Peaks and energies of the step are recorded; the points of its motion remain in PendingKnots. Returns none when
+  /// the step failed.
   std::optional<Step> advance(double stop, EnergyAudit& audit);
 
  private:
@@ -166,13 +169,13 @@ class Stepping {
 
   ClosingParts& parts_;
   std::size_t n_;   // number of modes
-  double fastest_;  // angular frequency of the last mode [rad/s]
+  double fastest_;  // angular frequency of the fastest mode [rad/s]
   Tolerances tolerances_;
-  Knot here_, next_;  // knots of the present step
+  Knot here_, next_;  // states at the start and the end of the current step
   Work work_;
   std::unique_ptr<Stepper> stepper_;
-  double last_step_ = 0;  // length of the last step that did not end early at a stop [s]
-  long next_look_ = 0;    // number of the step at which check_work() next checks the method
+  double last_step_ = 0;  // length of the last step that did not end early at a breakpoint [s]
+  long next_look_ = 0;    // number of the step at which check_work() next checks the integration method
   int stiff_looks_ = 0;
   std::string message_;
 };

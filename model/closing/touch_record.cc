@@ -12,7 +12,7 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-// Returns the peak of the parabola through three equidistant values.
+// Returns the peak of the parabola through three equidistant values of a contact force.
 double peak(double begin, double middle, double end) {
   const double bend = 2 * middle - begin - end;
   const bool inside = std::abs(end - begin) < 2 * bend;

@@ -21,11 +21,11 @@
 
 namespace softland {
 
-/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
+/// The contact law. `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
 template <class P>
 struct AdhesiveAsperityContactOf {
   UniformAsperityContactOf<P> repulsion = {};
-  P attraction = 0;  ///< adhesion over interference, 2 pi R W eta An / Hm [N/m]
+  P attraction = 0;  ///< adhesion force per interference while the number of touching summits grows [N/m]
 
   template <class S>
   S force(S d) const {

@@ -15,8 +15,8 @@ struct AdhesiveAsperities {
   static constexpr std::string_view name = "adhesive";
   static constexpr bool per_area = true, sticks = true;
   Summits summits = {};
-  double height = 0;           ///< greatest height Hm of the summits [m]
-  double adhesion_energy = 0;  ///< work of adhesion W [J/m^2]
+  double height = 0;           ///< greatest height of the asperity summits [m]
+  double adhesion_energy = 0;  ///< work of adhesion of the surfaces [J/m^2]
 
   static consteval auto fields() {
     using Law = AdhesiveAsperities;
@@ -37,7 +37,7 @@ struct AdhesiveAsperities {
     return std::cbrt(summits.radius * adhesion_energy * adhesion_energy / (modulus * modulus * z0 * z0 * z0));
   }
   static constexpr double largest_tabor_number = 1;
-  /// Returns the interference at which all summits touch [m].
+  /// Returns the interference at which all asperity summits touch [m].
   [[nodiscard]] double largest_interference() const { return height; }
   [[nodiscard]] AdhesiveAsperityContactOf<double> law(const ContactPad& pad) const;
 };

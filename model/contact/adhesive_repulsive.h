@@ -35,8 +35,8 @@ template <class P>
 class AdhesiveRepulsiveContactOf {
  public:
   AdhesiveRepulsiveContactOf() = default;
-  /// `area` is that of the pad [m^2], `touch` the distance x0 of first touch [m]. A step of Newton's method improves x0 for
-  /// scalars other than double, so that x0 has their derivatives.
+  /// `area` is that of the pad [m^2], `touch` the distance x0 of the surfaces at first touch [m]. A step of Newton's method
+  /// improves x0 for scalars other than double, so that x0 has their derivatives.
   AdhesiveRepulsiveContactOf(const SurfacePressureOf<P>& law, const P& area, const P& touch)
       : law_(law), area_(area), end_(far(DualOf<P>(law.reach, 1))), touch_(touch) {
     if constexpr (!std::same_as<P, double>) {
@@ -47,7 +47,7 @@ class AdhesiveRepulsiveContactOf {
   AdhesiveRepulsiveContactOf(const SurfacePressureOf<P>& law, const P& area) requires std::same_as<P, double>
       : AdhesiveRepulsiveContactOf(law, area, find_touch(law)) {}
 
-  /// Returns the pressure at distance x within reach [Pa].
+  /// Returns the pressure between the surfaces at distance x within reach of the law [Pa].
   template <class S>
   S pressure(S x) const {
     using std::sqrt;
@@ -63,22 +63,22 @@ class AdhesiveRepulsiveContactOf {
     return select(
         x < onset, [&]() -> S { return p - S(law_.adhesion_pressure / unit) * (S(onset) - x); }, [&] { return p; });
   }
-  /// Returns the force on the beam [N]; the surfaces must be within reach.
+  /// Returns the force of the contact on the beam at interference d [N]; the surfaces must be within reach of the law.
   template <class S>
   S force(S d) const {
     return S(area_) * pressure(S(touch_) - d);
   }
   [[nodiscard]] double energy(double d) const;
 
-  /// Returns x0, the outermost distance at which the pressure vanishes [m].
+  /// Returns the outermost distance of the surfaces at which the pressure vanishes [m].
   [[nodiscard]] const P& touch_distance() const { return touch_; }
-  /// Returns how far above the plane of first touch the law acts [m].
+  /// Returns the height above the plane of first touch at which the contact law begins to act [m].
   [[nodiscard]] double reach() const { return law_.reach - touch_; }
   /// Returns the interferences beyond touch at which adhesion begins and asperities meet [m]: the integrator restarts there.
   [[nodiscard]] std::vector<double> kinks() const;
 
  private:
-  static constexpr double unit = 1e-9;  // length to which the pressures refer [m]
+  static constexpr double unit = 1e-9;  // length that divides distances in the formulas of the pressures [m]
 
   template <class S>
   S far(S x) const {
@@ -92,8 +92,8 @@ class AdhesiveRepulsiveContactOf {
 
   SurfacePressureOf<P> law_ = {};
   P area_ = 0;
-  DualOf<P> end_ = P(0);  // published pressure l at the reach xr, with its slope [Pa], [Pa/m]
-  P touch_ = 0;           // distance x0 of first touch [m]
+  DualOf<P> end_ = P(0);  // published pressure at the reach [Pa], with its slope [Pa/m]
+  P touch_ = 0;           // distance of the surfaces at first touch [m]
 };
 using AdhesiveRepulsiveContact = AdhesiveRepulsiveContactOf<double>;
 

@@ -11,18 +11,19 @@ namespace softland {
 template <class P>
 class AdhesiveRepulsiveContactOf;
 
-/// Pressure between the surfaces. Pressures of asperities and adhesion are those at a nanometre of approach.
+/// Pressure between two surfaces by their distance. The pressures of asperities and adhesion are those at a nanometre of
+/// approach.
 template <class P>
 struct SurfacePressureOf {
-  P asperity_pressure = 1.2e3;     ///< c1 [Pa]
-  P asperity_distance = 110e-9;    ///< dc [m]
-  P wall_pressure = 0.5e9;         ///< c2 [Pa]
-  P wall_range = 8.5e-9;           ///< tR [m]
-  P adhesion_pressure = 1e3;       ///< c3 [Pa]
-  P adhesion_range = 2e-9;         ///< ta [m]
-  P hamaker_constant = 0.215e-18;  ///< A [J]
-  P smoothing_distance = 30e-9;    ///< ds [m]
-  P reach = 1e-6;                  ///< xr [m]
+  P asperity_pressure = 1.2e3;     ///< pressure c1 of the asperities at a nanometre of approach [Pa]
+  P asperity_distance = 110e-9;    ///< distance dc at which asperities meet [m]
+  P wall_pressure = 0.5e9;         ///< pressure c2 of the soft wall [Pa]
+  P wall_range = 8.5e-9;           ///< decay length tR of the soft wall's pressure [m]
+  P adhesion_pressure = 1e3;       ///< pressure c3 of the adhesion at a nanometre of approach [Pa]
+  P adhesion_range = 2e-9;         ///< distance ta beyond dc at which adhesion begins [m]
+  P hamaker_constant = 0.215e-18;  ///< Hamaker constant A of the attraction [J]
+  P smoothing_distance = 30e-9;    ///< distance ds that keeps the attraction finite [m]
+  P reach = 1e-6;                  ///< distance xr beyond which the surfaces exert no pressure [m]
 };
 using SurfacePressure = SurfacePressureOf<double>;
 
@@ -49,9 +50,9 @@ struct AdhesiveRepulsiveSurfaces {
     // clang-format on
   }
   [[nodiscard]] static constexpr AdhesiveRepulsiveSurfaces example() { return {}; }
-  /// Returns the interference at which the mean planes meet [m].
+  /// Returns the interference at which the mean planes of the surfaces meet [m].
   [[nodiscard]] double largest_interference() const;
-  /// Returns the rule that the parameters break at this contact gap [m]; empty when they break none.
+  /// Returns the rule that the parameters of the pressure break at this contact gap [m]; empty when they break none.
   [[nodiscard]] std::string why_invalid(double contact_gap) const;
   [[nodiscard]] AdhesiveRepulsiveContactOf<double> law(const ContactPad& pad) const;
 };

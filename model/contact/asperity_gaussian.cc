@@ -21,7 +21,7 @@ GaussianTail::GaussianTail() {
     }
   };
   c[0] = 1;
-  c[1] = -(start + (order + 1) / start);  // asymptotic slope for large h; its error decays downwards
+  c[1] = -(start + (order + 1) / start);  // asymptotic slope of the integral for large h; its error decays downwards
   constexpr auto above = static_cast<std::size_t>((start - last) / spacing);
   for (std::size_t i = nodes + above; i-- > 0;) {
     expand(first + spacing * static_cast<double>(i));

@@ -45,7 +45,7 @@ class GaussianTail {
     using std::sqrt;
     if (h > last) return S(0);
     if (h < first) {
-      // The series in 1/h^2 of the mean of (s + |h|)^1.5 over the Gaussian density.
+      // F_1.5 of a very negative h, the mean of (s + |h|)^1.5 over the Gaussian density, as a series in 1/h^2.
       const S m = -h, x = S(1) / (m * m);
       S sum(0);
       for (std::size_t k = moments.size(); k-- > 0;) sum = sum * x + S(moments[k]);
@@ -63,7 +63,7 @@ class GaussianTail {
   static constexpr std::size_t degree = 11;
   static constexpr std::size_t nodes = static_cast<std::size_t>((last - first) / spacing) + 1;
   using Series = std::array<double, degree + 1>;
-  // Element k is binom(1.5, 2k) (2k - 1)!!.
+  // Coefficients of the series: element k is binom(1.5, 2k) (2k - 1)!!.
   static constexpr std::array<double, 10> moments = [] {
     std::array<double, 10> m{1};
     for (std::size_t k = 1; k < m.size(); ++k) {
@@ -88,13 +88,15 @@ class GaussianTail {
 
 }  // namespace internal
 
-/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
+/// The contact law of Gaussian asperities. `P` is the scalar type of the parameters; the scalar type of the state must be
+/// constructible from P.
 template <class P>
 struct GaussianAsperityContactOf {
-  P strength = 0;   ///< factor C of the force [N]
-  P deviation = 0;  ///< standard deviation sigma of the summit heights [m]
+  P strength = 0;   ///< factor of the contact force [N]
+  P deviation = 0;  ///< standard deviation of the asperity heights [m]
 
-  static constexpr double first_touch = 4;  ///< h0: distance from the mean of the summits to the plane of first touch, in sigma
+  /// Distance from the mean of the summits to the plane of first touch, in standard deviations.
+  static constexpr double first_touch = 4;
 
   /// Returns F_1.5(h), the integral of (s - h)^1.5 times the Gaussian density over s > h.
   template <class S>
@@ -104,7 +106,7 @@ struct GaussianAsperityContactOf {
   /// Returns F_2.5(h) = 1.5 F_0.5(h) - h F_1.5(h), with F_1.5' = -1.5 F_0.5.
   static double next_tail(double h);
 
-  static constexpr bool grows_with_depth = true;  ///< the force is largest where the contact is deepest
+  static constexpr bool grows_with_depth = true;  ///< the contact force is largest where the contact is deepest
 
   template <class S>
   S force(S d) const {

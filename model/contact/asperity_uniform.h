@@ -17,13 +17,14 @@
 
 namespace softland {
 
-/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
+/// The contact law of asperities of uniform heights. `P` is the scalar type of the parameters; the scalar type of the state
+/// must be constructible from P.
 template <class P>
 struct UniformAsperityContactOf {
-  P strength = 0;  ///< factor of the force, eta An E* sqrt(R) / Hm [N / m^2.5]
-  P height = 0;    ///< greatest height Hm of the summits [m]
+  P strength = 0;  ///< factor of the contact force [N / m^2.5]
+  P height = 0;    ///< greatest height of the asperities [m]
 
-  static constexpr bool grows_with_depth = true;  ///< the force is largest where the contact is deepest
+  static constexpr bool grows_with_depth = true;  ///< the contact force is largest where the contact is deepest
 
   template <class S>
   S force(S d) const {
@@ -45,11 +46,11 @@ struct UniformAsperityContactOf {
     const auto power = [](double x) { return x > 0 ? x * x * x * std::sqrt(x) : 0; };
     return strength * 16 / 105 * (power(m) - power(m - height));
   }
-  /// Returns the interference that carries a force >= 0 [m].
+  /// Returns the interference at which the asperities carry a force >= 0 [m].
   [[nodiscard]] double interference(double load) const {
     double d = std::pow(load / (strength * 8 / 15), 0.4);
     if (d <= height) return d;
-    // Newton's method for a convex function, from the left: the first step overshoots, and later steps descend to the zero.
+    // Newton's method for a convex force, from the left: the first step overshoots, and later steps descend to the zero.
     for (int i = 0; i < 50; ++i) {
       const Dual at = force(Dual(d, 1));
       const double step = (at.value - load) / at.slope;
@@ -60,7 +61,7 @@ struct UniformAsperityContactOf {
   }
 };
 
-/// Returns the contact law of these summits, with heights up to `height` [m].
+/// Returns the contact law of the asperities `summits` with heights up to `height` [m].
 [[nodiscard]] inline UniformAsperityContact uniform_contact(const Summits& summits, double height, const ContactPad& pad) {
   return {.strength = summits.hertz(pad) / height, .height = height};
 }

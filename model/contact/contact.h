@@ -33,7 +33,8 @@ inline constexpr auto contact_distributions =
     std::to_array<Named<ContactDistribution>>({{ContactDistribution::centre, "centre"}, {ContactDistribution::pad, "pad"}});
 static_assert(is_complete<contact_distributions>());
 
-/// Rule for the connection of several contacts: closed while all of its contacts are closed, or while any is.
+/// Rule for the electrical connection of several contacts: closed while all of its contacts are closed, or while any of them
+/// is.
 enum class Connection { all, any };
 inline constexpr auto connections = std::to_array<Named<Connection>>({{Connection::all, "all"}, {Connection::any, "any"}});
 static_assert(is_complete<connections>());
@@ -41,11 +42,11 @@ static_assert(is_complete<connections>());
 /// The electrical properties of a closed contact: see model/contact/resistance.h. The resistance of a contact without a given
 /// resistivity is unknown.
 struct Conduction {
-  double resistivity = std::numeric_limits<double>::quiet_NaN();  ///< resistivity rho of the metals [Ohm m]
+  double resistivity = std::numeric_limits<double>::quiet_NaN();  ///< resistivity of the contact metals [Ohm m]
   /// Hardness H of the softer metal; by default the hardness of the contact law, if the law has one [Pa].
   double hardness = std::numeric_limits<double>::quiet_NaN();
-  double film_resistance = 0;  ///< resistance Rf of a film in series with each contact [Ohm]
-  double mean_free_path = 0;   ///< mean free path l of the electrons [m]
+  double film_resistance = 0;  ///< resistance of a film in series with each contact [Ohm]
+  double mean_free_path = 0;   ///< mean free path of the electrons [m]
 
   [[nodiscard]] bool is_given() const { return resistivity > 0; }
 };
@@ -53,16 +54,17 @@ struct Conduction {
 struct Contact {
   ContactModel model = UniformAsperities{};
   ContactDistribution distribution = ContactDistribution::centre;
-  double pad_length = 0;                                        ///< lt [m]: see Device::contact_position()
-  double pad_width = std::numeric_limits<double>::quiet_NaN();  ///< [m]; NaN: the width of the moving part
-  std::string name = {};                                        ///< name; empty for the only contact
-  std::optional<Place> at = {};                                 ///< centre of the pad; none: see Device::contact_position()
-  /// Rest distance of the contact to its plane [m]; Device::gap has this distance of the first contact.
+  double pad_length = 0;  ///< length of the contact pad along the beam [m]: see Device::contact_position()
+  /// Width of the contact pad [m]; NaN: the width of the moving part.
+  double pad_width = std::numeric_limits<double>::quiet_NaN();
+  std::string name = {};         ///< name of the contact; empty for the only contact
+  std::optional<Place> at = {};  ///< centre of the contact pad along the beam; none: see Device::contact_position()
+  /// Distance of the contact from its plane at rest [m]; for the first contact the value of Device::gap is used.
   double gap = std::numeric_limits<double>::quiet_NaN();
-  Side side = Side::near;   ///< `far` for a back stop
+  Side side = Side::near;   ///< side of the beam; `far` for a back stop
   bool along_face = false;  ///< true for a contact at all points of a dielectric's face, whose law is per area
-  double count = 1;         ///< number of equal contacts side by side across the beam
-  bool connects = true;     ///< true when the contact is part of the connection
+  double count = 1;         ///< number of equal contacts beside each other across the beam
+  bool connects = true;     ///< true when the contact is part of the electrical connection
   Conduction conduction = {};
 };
 
@@ -74,7 +76,7 @@ struct Contact {
       },
       model);
 }
-/// Returns true when the contact may stay closed without any voltage.
+/// Returns true when the contact may remain closed without any voltage, by adhesion.
 [[nodiscard]] inline bool may_stick(const ContactModel& model) {
   return std::visit(
       [](const auto& law) {
@@ -92,7 +94,7 @@ struct Contact {
       },
       model);
 }
-/// Returns the interference up to which the contact law is physical [m]: all asperities touch, or for Gaussian heights the
+/// Returns the largest interference at which the contact law is physical [m]: all asperities touch, or for Gaussian heights the
 /// plane has come down by four standard deviations. For a spring the result is infinite.
 [[nodiscard]] inline double largest_interference(const ContactModel& model) {
   return std::visit(

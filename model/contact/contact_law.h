@@ -1,5 +1,6 @@
-// The contact laws of a switch: the force that pushes the contact point away, as a function of the interference d = y(x_c) - dt
-// [m] and, for some laws, of its rate or its past. Each law is a value type with its own file.
+// The contact laws of a switch: the force that pushes the contact point away, as a function of the interference (position of
+// the contact point less the contact gap) and, for some laws, of its rate or its past. Each law is a value type with its own
+// file.
 #pragma once
 
 #include <cstddef>
@@ -69,7 +70,8 @@ struct ContactLaw : internal::KernelsOf<ContactModel>::Type {
   return std::visit([&](const auto& model) { return as_law(model.law(pad)); }, contact.model);
 }
 
-/// std::visit for the hot path: with more than eleven laws std::visit calls through a table, which the compiler cannot inline.
+/// Calls f with the contact law, as std::visit does, on the hot path: with more than eleven laws std::visit calls through a
+/// table, which the compiler cannot inline.
 template <std::size_t I = 0, class F>
 decltype(auto) visit_inline(F&& f, const ContactLaw& law) {
   if constexpr (I + 1 < std::variant_size_v<ContactLaw::variant>) {
@@ -83,8 +85,8 @@ concept HasMemory = requires(const Law& law) {
   law.shift(0.0);
 };
 
-/// Returns the force [N] of a contact law at interference d, in a state in which the law acts. `rate()` returns d' [m/s] and is
-/// called only if the law depends on the rate.
+/// Returns the force [N] of a contact law at interference d, in a state in which the law acts. `rate()` returns the rate of d
+/// [m/s] and is called only if the law depends on the rate.
 template <class Law, class S, class Rate>
 S force_of(const Law& law, S d, const ContactState& state, Rate&& rate) {
   if constexpr (HasMemory<Law>) {
@@ -96,7 +98,7 @@ S force_of(const Law& law, S d, const ContactState& state, Rate&& rate) {
   }
 }
 
-/// Returns the contact force at rest, on first loading [N].
+/// Returns the contact force at an interference at rest, on first loading [N].
 [[nodiscard]] inline double contact_force(const ContactLaw& law, double interference) {
   return std::visit([&](const auto& l) { return l.force(interference); }, law);
 }
@@ -120,11 +122,11 @@ S force_of(const Law& law, S d, const ContactState& state, Rate&& rate) {
       },
       law);
 }
-/// The residual deformation (dent) after unloading from the deepest interference; zero for laws without memory.
+/// The residual deformation (dent) of a contact after unloading from the deepest interference; zero for laws without memory.
 struct Dent {
-  double shift = 0;    ///< residual interference [m]
-  double lost = 0;     ///< energy lost in making the dent [J]
-  bool heals = false;  ///< true when the dent vanishes at the end of the touch
+  double shift = 0;    ///< residual interference, at which the contact force vanishes [m]
+  double lost = 0;     ///< energy that is lost when the dent is made [J]
+  bool heals = false;  ///< true when the dent of the contact vanishes at the end of the touch
 };
 [[nodiscard]] inline Dent dent(const ContactLaw& law, double deepest) {
   return std::visit(
@@ -140,7 +142,7 @@ struct Dent {
 [[nodiscard]] inline bool has_memory(const ContactLaw& law) {
   return std::visit([](const auto& l) { return HasMemory<std::decay_t<decltype(l)>>; }, law);
 }
-/// Returns the power that a law with damping dissipates [W]; 0 for other laws.
+/// Returns the power that a contact law with damping dissipates [W]; 0 for other laws.
 [[nodiscard]] inline double contact_dissipation(const ContactLaw& law, double interference, double rate) {
   return std::visit(
       [&](const auto& l) {
@@ -152,7 +154,7 @@ struct Dent {
       },
       law);
 }
-/// Returns how far above the plane of first touch a contact law acts [m]; 0 for most laws.
+/// Returns the height above the plane of first touch at which a contact law begins to act [m]; 0 for most laws.
 [[nodiscard]] inline double contact_reach(const ContactLaw& law) {
   return std::visit(
       [](const auto& l) {
@@ -161,7 +163,8 @@ struct Dent {
       },
       law);
 }
-/// Returns the interferences beyond touch at which the force is continuous, but not smooth, in order [m]; none for most laws.
+/// Returns the interferences at which the force of a contact law is continuous, but not smooth, in order [m]; none for most
+/// laws.
 [[nodiscard]] inline std::vector<double> contact_kinks(const ContactLaw& law) {
   return std::visit(
       [](const auto& l) {

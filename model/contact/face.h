@@ -1,4 +1,4 @@
-// Landing of a beam along the face of the dielectric on its electrodes.
+// Contact of a beam along the face of the dielectric on its electrodes.
 //
 //   wall, linear       p = k max(0, d)        U = a k d^2 / 2        d = b - h
 //   asperity-uniform   p and U of model/contact/asperity_uniform.h with An = 1 m^2, and with An / m = a; b = Hm
@@ -33,25 +33,27 @@
 
 namespace softland {
 
-/// Returns the stiffness per area of a wall's face [Pa/m] from K [N/m], g [m], A [m^2] and H [m].
+/// Returns the stiffness per area of a wall's face [Pa/m] from the stiffness of the beam [N/m], the rest gap [m] and area [m^2]
+/// of the field, and the smallest gap `depth` of the field [m].
 [[nodiscard]] constexpr double wall_stiffness(double stiffness, double gap, double area, double depth) {
   constexpr double voltages = 2, sinks = 1.0 / 50;
-  const double eps0_square = 8.0 / 27 * stiffness * gap * gap * gap / area * voltages * voltages;  // eps0 V^2
+  // Vacuum permittivity times the square of the voltage [N].
+  const double eps0_square = 8.0 / 27 * stiffness * gap * gap * gap / area * voltages * voltages;
   return eps0_square / (2 * sinks * depth * depth * depth);
 }
 
-/// Returns the least stiffness per area at which a linear bed keeps a beam off the electrode [Pa/m]; `depth` [m] is the height
-/// b at which the bed begins plus the least gap H of the field.
+/// Returns the least stiffness per area at which a linear bed on the dielectric keeps a beam off the electrode [Pa/m]; `depth`
+/// [m] is the height at which the bed begins plus the least gap of the field.
 [[nodiscard]] constexpr double least_face_stiffness(double voltage, double depth) {
   return 27.0 / 8 * vacuum_permittivity * voltage * voltage / (depth * depth * depth);
 }
 
-/// Returns the voltage up to which the face keeps parallel plates apart, if the springs of the plates are relaxed where the
-/// pressure begins [V]. `pressure` is a law of elastic contact per area, `depth` [m] is the height b at which the pressure
-/// begins plus the least gap H of the field.
+/// Returns the voltage up to which the dielectric's face keeps parallel plates apart, if the springs of the plates are relaxed
+/// where the pressure begins [V]. `pressure` is a law of elastic contact per area, `depth` [m] is the height at which the
+/// pressure begins plus the least gap of the field.
 template <class Law>
 [[nodiscard]] double most_face_voltage(const Law& pressure, double depth) {
-  double low = 0, high = depth;  // bounds of the depth at which p (H + b - d)^2 is largest
+  double low = 0, high = depth;  // bounds of the depth at which pressure times squared gap is largest [m]
   for (int i = 0; i < 60; ++i) {
     const double middle = (low + high) / 2;
     const Dual at = pressure.force(Dual(middle, 1));
@@ -60,12 +62,12 @@ template <class Law>
   return (depth - low) * std::sqrt(2 * pressure.force(low) / vacuum_permittivity);
 }
 
-/// The pressure of a face with asperities on a beam of constant width.
+/// The pressure of a dielectric's face with asperities on a beam of constant width.
 struct RoughFacePressure {
-  UniformAsperityContact asperities;  ///< law of the asperities, per length of the beam
+  UniformAsperityContact asperities;  ///< law of the face's asperities, per length of the beam
   static constexpr bool drive_depends = false;
 
-  /// Returns the load [N/m], away from the electrode.
+  /// Returns the load of the face on the beam [N/m], away from the electrode.
   template <class S>
   [[gnu::always_inline]] S load(S gap, S /*velocity*/) const {
     const S depth = S(asperities.height) - gap;
@@ -75,13 +77,13 @@ struct RoughFacePressure {
   [[nodiscard]] double potential(double gap) const { return asperities.energy(std::max(0.0, asperities.height - gap)); }
 };
 
-/// The pressure of a wall or a linear bed on a beam of constant width.
+/// The pressure of a dielectric's face, a wall or a linear bed, on a beam of constant width.
 struct FacePressure {
-  double stiffness = 0;  ///< stiffness per length, a k [N/m^2]
-  double from = 0;       ///< height b above the face at which the pressure begins [m]
+  double stiffness = 0;  ///< stiffness of the face per length of the beam [N/m^2]
+  double from = 0;       ///< height above the dielectric's face at which the pressure begins [m]
   static constexpr bool drive_depends = false;
 
-  /// Returns the load [N/m], away from the electrode.
+  /// Returns the load of the face on the beam [N/m], away from the electrode.
   template <class S>
   [[gnu::always_inline]] S load(S gap, S /*velocity*/) const {
     const S depth = S(from) - gap;
@@ -94,7 +96,7 @@ struct FacePressure {
   }
 };
 
-/// A force law of an electrode whose field stays constant below the face, where a wall carries the beam.
+/// A force law of an electrode whose field stays constant below the dielectric's face, where a wall carries the beam.
 template <class Law>
 struct StopsAtFace {
   Law law;

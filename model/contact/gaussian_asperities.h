@@ -17,8 +17,8 @@ struct GaussianAsperities {
   static constexpr std::string_view name = "asperity-gaussian";
   static constexpr bool per_area = true;
   Summits summits = {};
-  double deviation = 0;  ///< standard deviation of the heights [m]
-  double damping = 0;    ///< damping of Hunt and Crossley [s/m]
+  double deviation = 0;  ///< standard deviation of the asperities' heights [m]
+  double damping = 0;    ///< damping constant of the contact (Hunt and Crossley) [s/m]
 
   static consteval auto fields() {
     using Law = GaussianAsperities;
@@ -29,7 +29,7 @@ struct GaussianAsperities {
     // clang-format on
   }
   [[nodiscard]] static constexpr GaussianAsperities example() { return {.summits = Summits::example(), .deviation = 30e-9}; }
-  /// Returns the interference at which the plane reaches the mean of the summits [m].
+  /// Returns the interference at which the contact plane reaches the mean of the asperities' summits [m].
   [[nodiscard]] double largest_interference() const;
   [[nodiscard]] std::variant<GaussianAsperityContact, HuntCrossley<GaussianAsperityContact>> law(const ContactPad& pad) const;
 };

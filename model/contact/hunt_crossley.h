@@ -21,7 +21,7 @@ namespace softland {
 template <class Elastic, class P = double>
 struct HuntCrossley {
   Elastic elastic = {};
-  P damping = 0;  ///< c [s/m]
+  P damping = 0;  ///< damping constant of the contact (Hunt and Crossley) [s/m]
 
   template <class S>
   S force(S d, S rate) const {
@@ -29,9 +29,9 @@ struct HuntCrossley {
     return select(
         factor > 0, [&]() -> S { return elastic.force(d) * factor; }, [] { return S(0); });
   }
-  /// Returns the dissipated power [W].
+  /// Returns the power that the damping dissipates [W].
   [[nodiscard]] double dissipation(double d, double rate) const { return (force(d, rate) - elastic.force(d)) * rate; }
-  /// Returns the force of the law without damping.
+  /// Returns the force of the contact law without damping.
   template <class S>
   S force(S d) const {
     return elastic.force(d);

@@ -11,8 +11,8 @@ namespace softland {
 
 struct HystereticSpring {
   static constexpr std::string_view name = "hysteretic", not_along_pad = many_dents;
-  double stiffness = 0;            ///< stiffness of loading [N/m]
-  double unloading_stiffness = 0;  ///< stiffness of unloading [N/m]
+  double stiffness = 0;            ///< stiffness of the contact while loading [N/m]
+  double unloading_stiffness = 0;  ///< stiffness of the contact while unloading [N/m]
 
   static consteval auto fields() {
     using Law = HystereticSpring;

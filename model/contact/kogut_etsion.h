@@ -26,9 +26,9 @@ namespace softland {
 
 class KogutEtsionAsperity {
  public:
-  static constexpr double pressure_factor = 0.577;  ///< K: largest pressure at first yield over hardness
+  static constexpr double pressure_factor = 0.577;  ///< largest pressure of an asperity at first yield over hardness
 
-  /// Returns the integral of the load from 0.
+  /// Returns the integral of the load of an asperity from 0 to u; all in units of first yield.
   template <class S>
   static S first_integral(S u) {
     using std::sqrt;
@@ -41,7 +41,7 @@ class KogutEtsionAsperity {
     return select(
         u > 1, [&] { return select(u > fits[2].begin, by(2), yielding); }, elastic);
   }
-  /// Returns the integral of first_integral().
+  /// Returns the integral of first_integral() from 0 to u, for the load of an asperity.
   static double second_integral(double u) {
     if (!(u > 1)) return u * u * u * std::sqrt(u) / 8.75;
     const Fit& fit = at(u);
@@ -49,7 +49,8 @@ class KogutEtsionAsperity {
   }
 
  private:
-  // A fit, from `begin` on: the load is factor u^exponent; `first` and `second` are the constants of its antiderivatives.
+  // A fit of the load of an asperity, from u = `begin` on: the load is factor u^exponent; `first` and `second` are the
+  // constants of its antiderivatives.
   struct Fit {
     double begin, exponent, factor, first, second;
   };
@@ -63,7 +64,7 @@ class KogutEtsionAsperity {
       const double u = fit.begin;
       const auto load = [u](const Fit& f) { return f.factor * std::pow(u, f.exponent); };
       fit.factor = load(below) / std::pow(u, fit.exponent);
-      // The constants make the integrals of this fit and the fit below equal at u, where both loads are equal.
+      // The constants make the integrals of this fit and of the fit for smaller u equal at u, where both loads are equal.
       fit.first = below.first + u * load(fit) * (1 / (below.exponent + 1) - 1 / (fit.exponent + 1));
       const auto second = [&](const Fit& f) { return f.first * u + u * u * load(f) / ((f.exponent + 1) * (f.exponent + 2)); };
       fit.second = below.second + second(below) - second(fit);

@@ -1,4 +1,4 @@
-// A spring under the contact point.
+// Contact law of a spring under the contact point.
 //
 //   P = k d        U = k d^2 / 2
 //
@@ -17,12 +17,13 @@
 
 namespace softland {
 
-/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
+/// The contact law of a spring. `P` is the scalar type of the parameters; the scalar type of the state must be constructible
+/// from P.
 template <class P>
 struct LinearContactOf {
-  P stiffness = 0;  ///< [N/m]
+  P stiffness = 0;  ///< stiffness of the contact spring [N/m]
 
-  static constexpr bool grows_with_depth = true;  ///< the force is largest where the contact is deepest
+  static constexpr bool grows_with_depth = true;  ///< the contact force is largest where the contact is deepest
 
   template <class S>
   S force(S d) const {
@@ -34,11 +35,11 @@ struct LinearContactOf {
 };
 using LinearContact = LinearContactOf<double>;
 
-/// The parameters of the law in a scene.
+/// The parameters of a contact spring in a scene.
 struct LinearSpring {
   static constexpr std::string_view name = "linear";
-  double stiffness = 0;  ///< [N/m]
-  double damping = 0;    ///< damping of Hunt and Crossley [s/m]
+  double stiffness = 0;  ///< stiffness of the contact spring [N/m]
+  double damping = 0;    ///< damping constant of the contact (Hunt and Crossley) [s/m]
 
   static consteval auto fields() {
     using Law = LinearSpring;

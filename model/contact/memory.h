@@ -7,9 +7,9 @@
 //
 // P is the force on the beam, away from the contact [N]; d interference [m]; L and Pe loading and elastic law, L <= Pe; s
 // residual interference [m]. Stored energy is Ue(d_e) while loading, Ue(d - s) after; the energy lost is the work of loading
-// less Ue(d_e), at d_m. P and both energies are continuous. Reloading follows the unloading curve up to d_m. Each piece is
-// continued smoothly past its end; the integrator restarts there. Statics (pull-in, release, closed equilibrium) are those of
-// first loading.
+// less Ue(d_e), at d_m. P and both energies are continuous. Reloading follows the unloading curve up to d_m. Each curve is
+// continued smoothly past its end; the integrator restarts at that end. Statics (pull-in, release, closed equilibrium) are
+// those of first loading.
 //
 //   hysteretic        L = k_l d, Pe = k_u d: a mass rebounds with e^2 = k_l / k_u. The dent heals when contact ends: every touch
 //                     loses the same share. Source: Tung et al. 2014 (loading and unloading stiffness).
@@ -37,10 +37,10 @@ struct ContactWithMemory {
   Loading loading = {};
   Elastic elastic = {};
 
-  static constexpr bool heals = Heals;              ///< true when the dent vanishes at the end of the touch
-  static constexpr bool grows_with_depth = !Heals;  ///< the force is largest at the deepest interference of all touches
+  static constexpr bool heals = Heals;              ///< true when the dent of the contact vanishes at the end of the touch
+  static constexpr bool grows_with_depth = !Heals;  ///< the contact force is largest at the deepest interference of all touches
 
-  /// Returns the force of first loading; energy() returns its work.
+  /// Returns the contact force of first loading; energy() returns the work of loading.
   template <class S>
   S force(S d) const {
     return loading.force(d);
@@ -55,9 +55,9 @@ struct ContactWithMemory {
   [[nodiscard]] double stored(double d, const ContactState& state) const {
     return elastic.energy(state.unloading ? d - state.shift : elastic.interference(loading.force(d)));
   }
-  /// Returns the residual interference after unloading from the deepest interference [m].
+  /// Returns the residual interference of the contact after unloading from the deepest interference [m].
   [[nodiscard]] double shift(double deepest) const { return deepest - elastic.interference(loading.force(deepest)); }
-  /// Returns the energy lost in loading to the deepest interference [J].
+  /// Returns the energy that loading to the deepest interference dissipates [J].
   [[nodiscard]] double lost(double deepest) const {
     return loading.energy(deepest) - elastic.energy(elastic.interference(loading.force(deepest)));
   }

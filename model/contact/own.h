@@ -20,7 +20,7 @@
 // The functions must not throw an exception.
 //
 // Such a switch is simulated, searched and evaluated under process variation (prepare(), optimize(), robustness()) like any
-// other, one closing at a time instead of several in lanes of vector instructions. Tangents for implicit steps and for statics
+// other, one closing at a time instead of several at once with SIMD instructions. Tangents for implicit steps and for statics
 // are differences of the force. Exact derivatives of a closing are refused (LinearizedClosing::refusal), and so is writing such
 // a switch into a scene file (SceneFile::text), which cannot express the law.
 #pragma once
@@ -41,30 +41,31 @@ namespace softland {
 class OwnContactLaw {
  public:
   virtual ~OwnContactLaw() = default;
-  /// Returns the name of the law in messages.
+  /// Returns the name of the contact law in messages.
   [[nodiscard]] virtual std::string_view name() const = 0;
-  /// Returns the force P [N] at an interference [m] and its rate [m/s].
+  /// Returns the contact force on the moving part [N] at an interference [m] and its rate [m/s].
   [[nodiscard]] virtual double force(double interference, double rate) const = 0;
-  /// Returns true when the force depends on the rate. Only such a law is evaluated at rates other than 0, and the energy audit
-  /// counts its dissipation.
+  /// Returns true when the contact force depends on the rate. Only such a law is evaluated at rates other than 0, and the
+  /// energy audit counts its dissipation.
   [[nodiscard]] virtual bool depends_on_rate() const { return false; }
-  /// Returns true when the force is negative somewhere, so that the contact may stay closed without any voltage.
+  /// Returns true when the contact force is negative (adhesive) somewhere, so that the contact may remain closed without any
+  /// voltage.
   [[nodiscard]] virtual bool pulls() const { return false; }
-  /// Returns the stored energy U [J] at an interference [m]. The default integrates the force by Gauss points in the root of
-  /// the interference, exact to rounding for sums of half-integer powers of the interference.
+  /// Returns the energy stored in the contact [J] at an interference [m]. The default integrates the force by Gauss points in
+  /// the root of the interference, exact to rounding for sums of half-integer powers of the interference.
   [[nodiscard]] virtual double energy(double interference) const;
 };
 
 namespace internal {
 
-/// Returns the derivative of a force by one of its arguments, a finite difference over a millionth of this argument.
+/// Returns the derivative of a contact force by one of its arguments, a finite difference over a millionth of this argument.
 template <class F>
 [[nodiscard]] double slope_by_differences(F&& force, double at, double least_step) {
   const double step = 1e-6 * std::abs(at) + least_step;
   return (force(at + step) - force(at - step)) / (2 * step);
 }
 
-/// The law as a switch calls it; `S` is double, or a dual number, whose slope is then a finite difference.
+/// A user's own contact law as a switch calls it; `S` is double, or a dual number, whose slope is then a finite difference.
 template <bool by_rate>
 struct OwnContactForce {
   std::shared_ptr<const OwnContactLaw> own;
@@ -94,12 +95,13 @@ struct OwnContactForce {
   [[nodiscard]] double energy(double d) const { return own->energy(d); }
 
  private:
-  static constexpr double least_depth = 1e-15, least_speed = 1e-5;  // step at the argument 0: [m], [m/s]
+  // Step of a finite difference at interference 0 [m], at rate 0 [m/s].
+  static constexpr double least_depth = 1e-15, least_speed = 1e-5;
 };
 
 }  // namespace internal
 
-/// A user's own law as the law of a device's contact.
+/// A user's own contact law as the law of a device's contact.
 struct OwnContact {
   static constexpr std::string_view name = "own", not_along_pad = "which acts at the centre of the pad";
   static constexpr bool is_of_scenes = false;
@@ -107,7 +109,7 @@ struct OwnContact {
 
   static consteval auto fields() { return std::array<Field<OwnContact>, 0>{}; }
   [[nodiscard]] bool sticks() const { return own->pulls(); }
-  /// Returns the rule that the contact violates; empty when it violates none.
+  /// Returns the rule that the contact's parameters violate; empty when they violate none.
   [[nodiscard]] std::string why_invalid(double) const { return own ? std::string() : "contact: the own law must not be null"; }
   [[nodiscard]] std::variant<internal::OwnContactForce<false>, internal::OwnContactForce<true>> law(const ContactPad&) const {
     if (own->depends_on_rate()) return internal::OwnContactForce<true>{own};

@@ -1,4 +1,5 @@
-// Contact along the pad of a cantilever: the law's force, spread evenly over the pad, acts wherever the pad is beyond the plane.
+// Contact along the pad of a cantilever: the force of a contact law, spread evenly over the pad, acts wherever the pad is
+// beyond the contact plane.
 //
 //   d(xi) = d - theta xi,  0 <= xi <= lt        f_i = -(1 / lt) integral of P(d(xi)) [phi_i - xi phi_i'] dxi over d(xi) > 0
 //   U = (1 / lt) integral of U(d(xi)) dxi,      dissipated power likewise
@@ -35,8 +36,8 @@ class PadQuadrature {
     }
   }
 
-  /// Calls f(xi, share, interference) for points in the part of the pad that is beyond the contact plane; the shares add up to
-  /// the length of this part over the pad's length.
+  /// Calls f(xi, share, interference) for points in the part of the pad that is beyond the contact plane; xi is the distance
+  /// from the free end [m]. The shares add up to the length of this part over the pad's length.
   template <class F>
   void over_contact(double end, double slope, F&& f) const {
     const double inner = end - slope * length_, deep = std::max(end, inner);
@@ -52,9 +53,10 @@ class PadQuadrature {
 
  private:
   static constexpr std::size_t count = 12;
-  double length_;                       // [m]
-  std::array<double, count> places_{};  // in (0, 1), from the shallow end of the part in contact to the deep end
-  std::array<double, count> shares_{};  // weights with sum 1
+  double length_;  // length of the contact pad [m]
+  // Gauss points in (0, 1), from the shallow end of the touching part of the pad to its deep end.
+  std::array<double, count> places_{};
+  std::array<double, count> shares_{};  // weights of the pad's Gauss points, with sum 1
 };
 
 }  // namespace softland

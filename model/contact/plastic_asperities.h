@@ -13,7 +13,7 @@ namespace softland {
 class ZmcAsperity;
 class KogutEtsionAsperity;
 
-/// Law of one asperity.
+/// Law by which one asperity yields.
 enum class Plasticity { zmc, kogut_etsion };
 inline constexpr auto plasticities =
     std::to_array<Named<Plasticity>>({{Plasticity::zmc, "zmc"}, {Plasticity::kogut_etsion, "ke"}});
@@ -23,7 +23,7 @@ struct PlasticAsperities {
   static constexpr std::string_view name = "elastic-plastic", not_along_pad = many_dents;
   static constexpr bool per_area = true;
   Summits summits = {};
-  double height = 0;    ///< greatest height Hm of the summits [m]
+  double height = 0;    ///< greatest height of the asperity summits [m]
   double hardness = 0;  ///< hardness of the softer surface [Pa]
   Plasticity plasticity = Plasticity::zmc;
 
@@ -43,7 +43,7 @@ struct PlasticAsperities {
   [[nodiscard]] static constexpr PlasticAsperities example() {
     return {.summits = Summits::example(), .height = 100e-9, .hardness = 1e9};
   }
-  /// Returns the interference at which all summits touch [m].
+  /// Returns the interference at which all asperity summits touch [m].
   [[nodiscard]] double largest_interference() const { return height; }
   [[nodiscard]] std::variant<PlasticAsperityContact<ZmcAsperity>, PlasticAsperityContact<KogutEtsionAsperity>> law(
       const ContactPad& pad) const;

@@ -6,10 +6,10 @@
 //
 // R is the resistance of the contact, without that of the leads [Ohm]; rho resistivity of both metals, the mean of two [Ohm m];
 // l mean free path of their electrons [m]; a radius of a spot [m]; F load on all spots [N], n of which share it evenly and
-// conduct side by side; H hardness of the softer metal [Pa]; Rf resistance of a film in series with each of the m contacts that
-// stand side by side (Contact::count) [Ohm]; R (in a) radius of the summits [m] and E* effective modulus [Pa] of a law that has
-// summits. Such a spot is elastic while its mean pressure is below the hardness; the larger radius decides this. Without
-// hardness a spot is elastic at any load. A law without summits has one plastic spot for each contact.
+// conduct in parallel; H hardness of the softer metal [Pa]; Rf resistance of a film in series with each of the m contacts in
+// parallel (Contact::count) [Ohm]; R (in a) radius of the summits [m] and E* effective modulus [Pa] of a law that has summits.
+// Such a spot is elastic while its mean pressure is below the hardness; the larger radius decides this. Without hardness a spot
+// is elastic at any load. A law without summits has one plastic spot for each contact.
 //
 // Summits in touch at the interference d, of N in all: N min(d, Hm) / Hm for uniform heights, N Q(4 - d / sigma) for Gaussian
 // ones, at least one for each contact. A dented summit stays in touch until its force vanishes. The load is the contact force;
@@ -42,29 +42,30 @@ class ContactResistance {
   /// Returns the resistance of the contact [Ohm] at an interference [m] under a contact force [N]; NaN when open.
   [[nodiscard]] double resistance(double interference, double force) const;
 
-  /// Returns the resistance of a circular spot of radius a [m], R1 [Ohm]; infinite for a = 0.
+  /// Returns the resistance [Ohm] of a circular contact spot of radius `radius` [m]; infinite for radius 0.
   [[nodiscard]] static double of_spot(double radius, double resistivity, double mean_free_path);
 
  private:
   bool is_known_;
   Conduction metal_;
-  double contacts_;     // number m of contacts side by side
-  double summits_ = 0;  // number N of summits; 0 for a law without summits
-  double height_ = 0;   // greatest height Hm of summits, or the standard deviation of Gaussian heights [m]
+  double contacts_;     // number of equal contacts in parallel
+  double summits_ = 0;  // number of asperity summits; 0 for a law without summits
+  double height_ = 0;   // greatest height of uniform summits, or standard deviation of Gaussian heights [m]
   bool is_gaussian_ = false;
-  double radius_ = 0;    // R [m]
-  double modulus_ = 0;   // E* [Pa]
-  double adhesion_ = 0;  // load that adhesion adds to a summit in touch [N]
+  double radius_ = 0;    // radius of the asperity summits [m]
+  double modulus_ = 0;   // effective modulus of the surfaces [Pa]
+  double adhesion_ = 0;  // load that adhesion adds to a summit in contact [N]
 };
 
 /// Returns the resistance of one contact of a device, for the width of the moving part at the contact.
 [[nodiscard]] ContactResistance contact_resistance(const Device& device, std::size_t contact);
 
-/// Returns the conductance of a connection [S] from the conductances of its contacts, in the order of the device. The contacts
-/// are in series when all of them are needed, else side by side. Returns NaN when a conductance is NaN, which means unknown.
+/// Returns the conductance of an electrical connection [S] from the conductances of its contacts, in the order of the device.
+/// The contacts are in series when all of them are needed, otherwise in parallel. Returns NaN when a conductance is NaN, which
+/// means unknown.
 [[nodiscard]] double connection_conductance(const Device& device, std::span<const double> conductances);
 
-/// Returns 1 / conductance; NaN for 0: an open contact has no resistance [Ohm].
+/// Returns the resistance [Ohm] of a conductance [S]; NaN for 0, since an open contact has no resistance.
 [[nodiscard]] double resistance_of(double conductance);
 
 }  // namespace softland

@@ -22,21 +22,22 @@
 
 namespace softland {
 
-/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
+/// The law of a rigid stop. `P` is the scalar type of the parameters; the scalar type of the state must be constructible from
+/// P.
 template <class P>
 struct RigidContactOf {
-  P restitution = 0;  ///< coefficient of restitution e
+  P restitution = 0;  ///< coefficient of restitution of an impact
 
-  static constexpr double rest_height = 1e-6;  ///< height h_r over the contact gap: lower rebounds are not simulated
+  static constexpr double rest_height = 1e-6;  ///< height of a rebound, over the contact gap, below which it is not simulated
 
-  /// Returns true when a plate that leaves the stop at `speed` [m/s] against `acceleration` [m/s^2] would rise less than
-  /// rest_height.
+  /// Returns true when the rebound of a plate that leaves the stop at `speed` [m/s] against `acceleration` [m/s^2] would rise
+  /// less than rest_height.
   [[nodiscard]] static bool rests(double speed, double acceleration, double contact_gap) {
     return acceleration > 0 && speed * speed < 2 * acceleration * rest_height * contact_gap;
   }
 
-  /// Returns 0: a rigid stop does not yield, so it has no force as a function of the interference and stores no energy.
-  /// closing.cc and pull_in.cc keep the plate at the stop.
+  /// Returns 0: a rigid stop does not yield, so the contact has no force as a function of the interference and stores no
+  /// energy. closing.cc and pull_in.cc keep the plate at the stop.
   template <class S>
   S force(S) const {
     return S(0);
@@ -45,10 +46,10 @@ struct RigidContactOf {
 };
 using RigidContact = RigidContactOf<double>;
 
-/// The parameters of the law in a scene.
+/// The parameters of a rigid stop in a scene.
 struct RigidStop {
   static constexpr std::string_view name = "rigid", not_along_pad = "whose impacts have no force";
-  double restitution = 0;  ///< coefficient of restitution e
+  double restitution = 0;  ///< coefficient of restitution of an impact
 
   static consteval auto fields() {
     using Law = RigidStop;

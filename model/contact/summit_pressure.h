@@ -18,8 +18,8 @@
 
 namespace softland {
 
-/// Returns p / H over the square root of the interference [1/m^0.5]; NaN for a law without summits, or without a
-/// given hardness.
+/// Returns the pressure of the highest summit over the hardness, divided by the square root of the interference [1/m^0.5]; NaN
+/// for a law without summits, or without a given hardness.
 [[nodiscard]] inline double summit_pressure_scale(const Contact& contact) {
   return std::visit(
       [&]<class Law>(const Law& law) {

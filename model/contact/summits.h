@@ -1,4 +1,4 @@
-// The summits of a rough surface: parameters that several contact laws share.
+// The summits (asperities) of a rough surface: parameters that several contact laws share.
 #pragma once
 
 #include <cmath>
@@ -7,26 +7,26 @@
 
 namespace softland {
 
-/// The size of a contact pad, from which a law computes its number of summits.
+/// The size of a contact pad, from which a contact law computes the number of asperity summits.
 struct ContactPad {
-  double width = 0;   ///< width [m]; times the number of pads side by side
-  double length = 0;  ///< length lt [m]
-  double count = 1;   ///< number of pads side by side
+  double width = 0;   ///< width of the contact pad times the number of equal pads [m]
+  double length = 0;  ///< length of the contact pad [m]
+  double count = 1;   ///< number of equal contact pads across the beam
 };
 
 struct Summits {
-  double radius = 0;             ///< R [m]
-  double density = 0;            ///< eta [1/m^2]
-  double effective_modulus = 0;  ///< E* [Pa]
+  double radius = 0;             ///< radius of the asperity summits [m]
+  double density = 0;            ///< asperity summits per area [1/m^2]
+  double effective_modulus = 0;  ///< effective modulus of the contacting surfaces [Pa]
 
   [[nodiscard]] bool operator==(const Summits&) const = default;
 
-  /// Returns the number of summits under the pad.
+  /// Returns the number of asperity summits under the pad.
   [[nodiscard]] double count(const ContactPad& pad) const { return density * pad.width * pad.length; }
-  /// Returns the factor n E* sqrt(R) of Hertz force over d^1.5, for the n summits under the pad [N/m^1.5].
+  /// Returns the factor of Hertz's force over interference^1.5, for all summits under the pad [N/m^1.5].
   [[nodiscard]] double hertz(const ContactPad& pad) const { return count(pad) * effective_modulus * std::sqrt(radius); }
 
-  /// Returns the summits of gold on gold, for tests.
+  /// Returns the asperity summits of gold on gold, for tests.
   [[nodiscard]] static constexpr Summits example() { return {.radius = 100e-9, .density = 1e11, .effective_modulus = 48e9}; }
 };
 
@@ -46,7 +46,7 @@ template <class Law>
       {.key = "effective_modulus", .unit = "Pa", .about = "E* of the pair of surfaces", .in = reach<Law, &Law::summits, &Summits::effective_modulus>, .required = true, .such_as = "48 GPa"},
   });
 }
-/// Returns the scene-file key of the greatest height of summits, with heights uniform on [0, Hm].
+/// Returns the scene-file key of the greatest height of asperity summits, whose heights are uniform from 0 on.
 template <class Law>
 [[nodiscard]] consteval auto height_fields() {
   return std::to_array<Field<Law>>({

@@ -17,8 +17,8 @@ struct UniformAsperities {
   static constexpr std::string_view name = "asperity-uniform";
   static constexpr bool per_area = true;
   Summits summits = {};
-  double height = 0;   ///< greatest height Hm of the summits [m]
-  double damping = 0;  ///< damping of Hunt and Crossley [s/m]
+  double height = 0;   ///< greatest height of the asperity summits [m]
+  double damping = 0;  ///< damping constant of the contact (Hunt and Crossley) [s/m]
 
   [[nodiscard]] bool operator==(const UniformAsperities&) const = default;
 
@@ -27,7 +27,7 @@ struct UniformAsperities {
     return joined(summit_fields<Law>(), height_fields<Law>(), modulus_fields<Law>(), damping_fields<Law>());
   }
   [[nodiscard]] static constexpr UniformAsperities example() { return {.summits = Summits::example(), .height = 100e-9}; }
-  /// Returns the interference at which all summits touch [m].
+  /// Returns the interference at which all asperity summits touch [m].
   [[nodiscard]] double largest_interference() const { return height; }
   [[nodiscard]] std::variant<UniformAsperityContact, HuntCrossley<UniformAsperityContact>> law(const ContactPad& pad) const;
 };

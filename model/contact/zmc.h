@@ -21,9 +21,9 @@ namespace softland {
 
 class ZmcAsperity {
  public:
-  static constexpr double pressure_factor = 0.6;  ///< K: largest pressure at first yield over hardness
+  static constexpr double pressure_factor = 0.6;  ///< largest pressure of an asperity at first yield over hardness
 
-  /// Returns the integral of the load from 0.
+  /// Returns the integral of the load of an asperity from 0 to u; all in units of first yield.
   template <class S>
   static S first_integral(S u) {
     using std::sqrt;
@@ -33,7 +33,7 @@ class ZmcAsperity {
     return select(
         u > 1, [&] { return select(u > ratio, plastic, yielding); }, elastic);
   }
-  /// Returns the integral of first_integral().
+  /// Returns the integral of first_integral() from 0 to u, for the load of an asperity.
   static double second_integral(double u) {
     if (!(u > 1)) return u * u * u * std::sqrt(u) / 8.75;
     if (!(u > ratio)) return 1 / 8.75 + (u - 1) * (0.4 - middle<1>(1.0)) + middle<2>(u) - middle<2>(1.0);
@@ -42,11 +42,11 @@ class ZmcAsperity {
   }
 
  private:
-  static constexpr double k = 0.4;     // mean pressure at first yield over hardness
-  static constexpr double ratio = 54;  // w2 / w1: interference at full plasticity over that at first yield
+  static constexpr double k = 0.4;     // mean pressure of an asperity at first yield over hardness
+  static constexpr double ratio = 54;  // interference of an asperity at full plasticity over that at first yield
 
-  // The load of the middle part is the sum of a_j u^j (1 + beta ln u), j = 1 ... 4. Return its antiderivatives, first and
-  // second.
+  // The load of the middle part (1 < u < 54) is the sum of a_j u^j (1 + beta ln u), j = 1 ... 4. Return its first or second
+  // antiderivative.
   template <int Times, class S>
   static S middle(S u) {
     using std::log;

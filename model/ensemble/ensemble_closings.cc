@@ -67,12 +67,13 @@ std::optional<simd::LaneDispersion> lane_dispersion(const std::optional<Dispersi
   return force->model == DispersionModel::casimir ? simd::LaneDispersion::casimir : simd::LaneDispersion::smaller;
 }
 
-/// A contact law for lanes: its elastic law, damping [s/m] and unloading stiffness.
+/// A contact law for SIMD lanes (one lane per switch): its elastic law, damping [s/m] and unloading stiffness.
 struct ElasticContact {
   simd::LaneContact law = simd::LaneContact::linear;
-  double strength = 0, height = 0;  // the strength of law `linear` is its stiffness [N/m]
+  // strength: factor of the contact force, for law `linear` the stiffness [N/m]; height of the asperities [m].
+  double strength = 0, height = 0;
   double damping = 0;
-  double unloading = 0;  // unloading stiffness of a contact with a memory [N/m]; 0 without memory
+  double unloading = 0;  // unloading stiffness of a contact with memory [N/m]; 0 without memory
 };
 std::optional<ElasticContact> lane_contact(const ContactLaw& law) {
   using Lane = simd::LaneContact;
@@ -89,14 +90,14 @@ std::optional<ElasticContact> lane_contact(const ContactLaw& law) {
   return std::nullopt;
 }
 
-/// Returns true when the switch has contacts and lanes support the laws of all of them.
+/// Returns true when the switch has contacts and SIMD lanes support the laws of all of them.
 bool knows_contacts(const Switch& model) {
   for (std::size_t c = 0; c < model.contacts(); ++c)
     if (model.has_spread_contact(c) || !lane_contact(model.contact(c))) return false;
   return model.has_contact();
 }
 
-/// Returns true when the laws of the switch are those of simd::UsualLaws.
+/// Returns true when the laws of the switch are those of simd::UsualLaws, the fast common set of force laws.
 bool is_usual(const Switch& model) {
   const Device& device = model.device();
   const std::vector<Electrode>& all = device.electrodes;
@@ -106,7 +107,7 @@ bool is_usual(const Switch& model) {
   const bool usual_field = model.modes() <= simd::usual_modes && !device.dispersion && !model.stretching() && film &&
                            std::ranges::all_of(all, alike) && !(is_plate && all.size() > 1) &&
                            !electrode_conflict(device.structure, all);
-  // UsualLaws have several contacts only in one combination of field and film.
+  // simd::UsualLaws have several contacts only in one combination of electric field and gas film.
   if (model.contacts() > 1) return usual_field && device.gas && !all.empty() && all.front().fringing == Fringing::meijs_fokkema;
   return usual_field && !device.structure.is_built() && std::holds_alternative<UniformAsperityContact>(model.contact());
 }
@@ -120,7 +121,7 @@ std::vector<std::pair<Stretch, int>> pads_of(const Device& device) {
   return pads;
 }
 
-/// Returns segments of quadrature points, each within one stretch and over one electrode, or over none.
+/// Returns segments of quadrature points, each within one width and thickness and over one electrode, or over none.
 std::vector<Segment> segments_between(const Switch& model, const LaneLayout& layout) {
   const std::vector<std::pair<Stretch, int>> pads = pads_of(model.device());
   const auto over = [&](double x) {
@@ -139,7 +140,8 @@ std::vector<Segment> segments_between(const Switch& model, const LaneLayout& lay
   return segments;
 }
 
-/// Returns the segments of every pad with quadrature points: one for each side of the moving part that the electrode faces.
+/// Returns the segments of quadrature points under every electrode pad: one for each side of the moving part that the electrode
+/// faces.
 std::vector<Segment> faces_of(const Switch& model) {
   const Eigen::ArrayXd& x = model.quadrature().positions();
   const auto first_at = [&](double place) { return to_int(std::lower_bound(x.begin(), x.end(), place) - x.begin()); };
@@ -158,7 +160,7 @@ std::vector<Segment> faces_of(const Switch& model) {
   return faces;
 }
 
-/// Quadrature points under one width and thickness, with the width that holes leave.
+/// Range of quadrature points with equal width and thickness of the beam; the width is that beside the holes.
 struct LaneStretch {
   simd::PointStretch points;
   double width, thickness;
@@ -215,14 +217,15 @@ LaneLayout layout_of(const Switch& model, bool measures_work) {
   return layout;
 }
 
-// Returns the interference at which the contact stores this energy, which is small against that of all asperities in touch [m].
+// Returns the interference at which the contact stores this energy [m]; the energy is small against that with all asperities in
+// contact.
 double depth_of_energy(const ElasticContact& contact, double energy) {
   if (contact.law == simd::LaneContact::linear) return std::sqrt(2 * energy / contact.strength);
   const UniformAsperityContact law{.strength = contact.strength, .height = contact.height};
   return law.height * std::pow(energy / law.energy(law.height), 2.0 / 7);
 }
 
-/// Sets the gaps and gap floors of electrodes and film on the far side.
+/// Sets the gaps, and the smallest valid gaps, of electrodes and film on the far side of the moving part.
 void set_far_side(LaneSwitch& s, const Device& device) {
   s.most_gap = std::numeric_limits<double>::infinity();
   const auto set = [&](double gap, double& both, double& floor) {
@@ -276,7 +279,7 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
   const std::vector<LaneStretch> stretches = stretches_of(model);
   for (std::size_t k = 0; k < stretches.size(); ++k) {
     s.width[k] = stretches[k].width, s.thickness[k] = stretches[k].thickness;
-    // More gas leaves a film through its open ends where the film is wide.
+    // The viscosity differs along a film with open ends: more gas leaves through the ends where the film is wide.
     if (!device.structure.is_built() || !device.gas) continue;
     std::visit(
         [&](const auto& film) {
@@ -304,7 +307,7 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
   return s;
 }
 
-/// Returns the depth at which a contact carries the steady force, without its damping force [m].
+/// Returns the depth at which a contact carries the force that counts as steady, without damping [m].
 double steady_depth(const EnsembleClosing& closing, std::size_t c) {
   if (!(closing.steady_force > 0)) return std::numeric_limits<double>::infinity();
   const ElasticContact contact = *lane_contact(closing.model->contact(c));
@@ -312,8 +315,8 @@ double steady_depth(const EnsembleClosing& closing, std::size_t c) {
   return UniformAsperityContact{.strength = contact.strength, .height = contact.height}.interference(closing.steady_force);
 }
 
-/// Passes the touches in a lane on to an observer, with force and energy of the contact law; for several contacts these are the
-/// touches of their connection.
+/// Passes the touches of a closing in a SIMD lane to an observer, with force and energy of the contact law; for several
+/// contacts these are the touches of their connection.
 class ContactAdapter final : public simd::LaneObserver {
  public:
   explicit ContactAdapter(const EnsembleClosing& closing) : model_(closing.model), observer_(closing.observer) {}
@@ -336,7 +339,7 @@ class ContactAdapter final : public simd::LaneObserver {
   void opens(double time) override { touches_.open(time); }
   void rebound(double begin, double end, double height) override { observer_->rebound(begin, end, height); }
 
-  /// Returns the result of a closing whose lane has ended.
+  /// Returns the result of a closing whose simulation in a SIMD lane has ended.
   [[nodiscard]] EnsembleEnd end(const LaneClosing& lane) {
     tell(touches_.finish());
     std::array<ForceOutcome, simd::most_contacts> forces;
@@ -362,14 +365,14 @@ class ContactAdapter final : public simd::LaneObserver {
   ConnectionTouches touches_;
 };
 
-/// Returns true when a switch of several contacts rests on any contact after the first at the start of a run.
+/// Returns true when a switch of several contacts touches any contact after the first at rest, at the start of a run.
 bool rests_on_contact(const Switch& model, const Eigen::VectorXd& rest) {
   for (std::size_t c = 1; c < model.contacts(); ++c)
     if (model.contact_deflection(rest.data(), c) > model.contact_gap(c)) return true;
   return false;
 }
 
-/// Returns true when the factor of the dispersion force changes in the run, whose work is not that of a charge.
+/// Returns true when the factor of the dispersion force changes in the run; the work of this drive is not that of a charge.
 bool drives_dispersion(const EnsembleClosing& c) {
   for (std::size_t k = 0; k < c.drives.size(); ++k) {
     if (c.model->drive_kind(k) == DriveKind::dispersion && !c.drives[k].is_zero()) return true;
@@ -429,8 +432,8 @@ std::vector<EnsembleEnd> close_in_lanes(std::span<const EnsembleClosing> closing
 
   simd::LaneDrives drives;
   std::optional<LaneLayout> layout;
-  std::vector<std::size_t> places;     // indices of the closings that run in lanes
-  std::vector<Eigen::VectorXd> rests;  // equilibria from which these closings start
+  std::vector<std::size_t> places;     // indices of the closings that are simulated in SIMD lanes
+  std::vector<Eigen::VectorXd> rests;  // equilibria from which the closings in SIMD lanes start
   for (std::size_t i = 0; i < closings.size(); ++i) {
     if (!why_not_in_lanes(*closings[i].model).empty() || !drives.go_in_lanes(closings[i].drives)) continue;
     const std::optional<Eigen::VectorXd> rest = closings[i].model->open_equilibrium(values_before(closings[i].drives));

@@ -1,12 +1,12 @@
-// Closings of many switches at once, one in each lane of the processor's vector registers: the devices of an ensemble have
-// different parameters and almost the same operations. Every lane has its own parameters, drives, time step and events, and
-// receives the next switch when its closing has ended. The method is that of one closing (integrators/lawson.h,
+// Closings of many switches at once, one in each lane of the processor's vector (SIMD) registers: the devices of an ensemble
+// have different parameters and almost the same operations. Every lane has its own parameters, drives, time step and events,
+// and receives the next switch when its closing has ended. The method is that of one closing (integrators/lawson.h,
 // model/closing.h), so the figures agree within the tolerance.
 //
 // All lanes attempt one step in every round: six right-hand sides for as many switches as there are lanes. A lane whose step
-// crosses the contact plane repeats it up to the crossing in the next round. A lane whose drives enter new pieces spends a
-// round on a step of no length, which computes its new accelerations. So no lane waits for another, and no lane depends on the
-// others: results have the same bits whatever the order and the number of lanes.
+// crosses the contact plane repeats this step up to the crossing in the next round. A lane whose drives enter new pieces spends
+// a round on a step of no length, which computes its new accelerations. So no lane waits for another, and no lane depends on
+// the others: results have the same bits whatever the order and the number of lanes.
 //
 // Limits: some laws are not written for lanes (why_not_in_lanes()), energies are not audited, and a closing with a numerical
 // problem ends early. simulate_closing() handles all of these closings, one at a time.
@@ -26,32 +26,33 @@
 
 namespace softland {
 
-/// The vector instructions that closings use; `none`: one closing at a time.
+/// The vector (SIMD) instructions with which several closings are simulated at once; `none`: one closing at a time.
 enum class Vectors { none, avx2, avx512 };
 struct VectorsRow {
   Vectors value;
   std::string_view name;
-  int lanes;  ///< number of closings that run at once
+  int lanes;  ///< number of closings that the instructions simulate at once
 };
 inline constexpr auto vector_instructions =
     std::to_array<VectorsRow>({{Vectors::none, "none", 1}, {Vectors::avx2, "avx2", 4}, {Vectors::avx512, "avx512", 8}});
 static_assert(is_complete<vector_instructions>());
 
-/// Returns true when this processor and this build of the program have these vector instructions.
+/// Returns true when this processor and this build of softland have these vector instructions.
 [[nodiscard]] bool has(Vectors vectors);
-/// Returns the widest vectors that this processor has, or the narrower ones that the environment variable SOFTLAND_VECTORS
-/// requests. Throws InvalidInput when the value is not a name of Vectors, or this processor lacks the instructions.
+/// Returns the widest vector instructions that this processor has, or the narrower ones that the environment variable
+/// SOFTLAND_VECTORS requests. Throws InvalidInput when the value is not a name of Vectors, or this processor lacks the
+/// instructions.
 [[nodiscard]] Vectors vectors_in_use();
 
-/// Receives touches and rebounds of the closing in one lane.
+/// Receives touches and rebounds of a closing that is simulated in one SIMD lane.
 class LandingObserver {
  public:
   /// Receives a touch that is over, or, at the end of the run, a touch that has not ended, whose end is NaN. For several
   /// contacts the touch is one of their connection (model/closing/connection.h), and arrives when the next touch begins, or at
   /// the end.
   virtual void touch(const Touch& touch) = 0;
-  /// Receives a separation after the first touch: begin [s], end [s] and height [m]. The end is NaN for a separation that has
-  /// not ended at the end of the run.
+  /// Receives a separation of the contact after the first touch: begin [s], end [s] and height [m]. The end is NaN for a
+  /// separation that has not ended at the end of the run.
   virtual void rebound(double begin, double end, double height) = 0;
 
  protected:
@@ -61,37 +62,37 @@ class LandingObserver {
   LandingObserver& operator=(const LandingObserver&) = default;
 };
 
-/// A closing to be simulated in a lane; the limits have the meaning of those in ClosingOptions.
+/// A closing to be simulated in a SIMD lane; the limits have the meaning of those in ClosingOptions.
 struct EnsembleClosing {
   const Switch* model = nullptr;
   std::span<const Signal> drives;
-  std::span<const double> gains = {};  ///< gains of the drives; 1 if empty
-  double duration = 0;                 ///< [s]
+  std::span<const double> gains = {};  ///< factors on the voltages of the drives; 1 if empty
+  double duration = 0;                 ///< length of the simulated time window [s]
   double after_contact = std::numeric_limits<double>::infinity(), no_end_before = 0;
   double no_contact_before = std::numeric_limits<double>::infinity();
-  double steady_force = std::numeric_limits<double>::quiet_NaN();  ///< [N]
+  double steady_force = std::numeric_limits<double>::quiet_NaN();  ///< contact force that counts as steady [N]
   bool measures_drive_energy = false;
   LandingObserver* observer = nullptr;
 };
 
-/// The result of a closing in a lane. A closing that was not simulated to its end has to be run by simulate_closing(), although
-/// its observer has received the events up to the failure.
+/// The result of a closing in a SIMD lane. A closing that was not simulated to its end has to be run by simulate_closing(),
+/// although its observer has received the events up to the failure.
 struct EnsembleEnd {
   bool followed = false;
-  double time = 0;  ///< [s]
-  /// Figures of the contact force [s], [N], as the members of Trajectory with the same names.
+  double time = 0;  ///< time at which the simulation ended [s]
+  /// Time from which the contact force is steady [s] and least force after the first touch [N], as the members of Trajectory.
   double steady_force_time = std::numeric_limits<double>::quiet_NaN(),
          least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
-  double drive_energy = std::numeric_limits<double>::quiet_NaN();  ///< EnergyBalance::source_work + Trajectory::layer_energy;
-                                                                   ///< NaN if not measured [J]
-  FirstTouch first_touch = {};                                     ///< as in Trajectory, for a switch with several contacts
+  double drive_energy = std::numeric_limits<double>::quiet_NaN();  ///< energy that the drives give; NaN if not computed [J]
+  FirstTouch first_touch = {};  ///< first touch of any contact, for a switch with several contacts
 };
 
-/// Returns the reason why closings of this switch cannot be simulated in lanes; empty when they can.
+/// Returns the reason why closings of this switch cannot be simulated several at once in SIMD lanes; empty when they can.
 [[nodiscard]] std::string why_not_in_lanes(const Switch& model);
 
-/// Simulates all closings and returns their results in order; `tolerance` as in ClosingOptions. With Vectors::none no closing
-/// is simulated. A closing is also left out when its switch differs from the first switch in quadrature points or drives.
+/// Simulates all closings in SIMD lanes and returns their results in order; `tolerance` as in ClosingOptions. With
+/// Vectors::none no closing is simulated. A closing is also left out when its switch differs from the first switch in
+/// quadrature points or drives.
 [[nodiscard]] std::vector<EnsembleEnd> close_in_lanes(std::span<const EnsembleClosing> closings, double tolerance,
                                                       Vectors vectors);
 

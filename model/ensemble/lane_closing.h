@@ -1,11 +1,12 @@
-// The data that ensemble_closings.cc passes to the code compiled for each set of vector instructions: numbers only. This code
-// must leave no function behind that the linker could use for the rest of the program, since not every processor can run it.
+// The data for closings in SIMD lanes that ensemble_closings.cc passes to the code compiled for each set of vector
+// instructions: numbers only. This code must leave no function behind that the linker could use for the rest of the program,
+// since not every processor can run it.
 #pragma once
 
 #include <cstddef>
 
 namespace softland {
-enum class Vectors;  // model/ensemble/ensemble_closings.h
+enum class Vectors;  // defined in model/ensemble/ensemble_closings.h
 }
 
 namespace softland::simd {
@@ -19,35 +20,36 @@ enum class LaneFilm { none, strip, strip_slit, veijola, gallis_torczynski, near_
 enum class LaneDispersion { none, van_der_waals, casimir, smaller };
 enum class LaneContact { asperity_uniform, linear };
 
-/// Quadrature points from `begin` up to `end` over the same electrode.
+/// Quadrature points from `begin` up to `end` under the same electrode, or under none.
 struct Segment {
   int begin = 0, end = 0;
   int electrode = -1;  ///< number of the electrode; -1 without an electrode
   LaneFringing fringing = LaneFringing::none;
   bool far = false;  ///< true for an electrode on the far side
-  int stretch = 0;   ///< index of the PointStretch that contains these points; only for UsualLaws
+  int stretch = 0;   ///< index of the PointStretch (range of equal beam size) that contains these points; only for UsualLaws
   [[nodiscard]] bool operator==(const Segment&) const = default;
 };
 
-/// Quadrature points from `begin` up to `end`, where the beam has one width and thickness.
+/// Range of quadrature points, from `begin` up to `end`, in which the beam has one width and thickness.
 struct PointStretch {
   int begin = 0, end = 0;
   [[nodiscard]] bool operator==(const PointStretch&) const = default;
 };
 
-/// The numbers of a contact that all lanes of a run share.
+/// The properties of a contact that all SIMD lanes of a run share.
 struct LaneContactKind {
   LaneContact law = LaneContact::asperity_uniform;
   bool damped = false;
-  bool remembers = false;  ///< true when loading and unloading have different stiffness
-  bool near = true;        ///< true on the side of the electrode; false for a back stop
-  bool connects = true;    ///< true when the contact is part of the connection of several contacts
+  bool remembers = false;  ///< true when loading and unloading of the contact have different stiffness
+  bool near = true;        ///< true for a contact on the side of the electrode; false for a back stop
+  bool connects = true;    ///< true when the contact is part of the electrical connection of several contacts
   [[nodiscard]] bool operator==(const LaneContactKind&) const = default;
 };
 
-/// The properties that all lanes of a run share.
+/// The properties of the switches that all SIMD lanes of a run share.
 struct LaneLayout {
-  bool usual = true;  ///< true for UsualLaws, with segments in sequence; else segments are pads, which may share points
+  /// True for UsualLaws, with segments in sequence; otherwise segments are electrode pads, which may share points.
+  bool usual = true;
   int modes = 0, points = 0, segments = 0, electrodes = 0, drives = 0;
   bool piezo = false, stretching = false;
   LaneFringing fringing = LaneFringing::none;  ///< fringing law of all electrodes; only for UsualLaws
@@ -56,57 +58,64 @@ struct LaneLayout {
   LaneDispersion dispersion = LaneDispersion::none;
   int contacts = 1;
   LaneContactKind contact[most_contacts];
-  bool needs_all = true;       ///< true when the connection needs all of its contacts; false when any of them closes it
-  bool measures_work = false;  ///< true when the work of the drives is computed; UsualLaws do not compute this work
+  bool needs_all = true;  ///< true when the electrical connection needs all of its contacts; false when any of them closes it
+  bool measures_work = false;  ///< true when the work of the drives is computed, which UsualLaws cannot
   Segment segment[most_segments];
-  int stretches = 1;  ///< number of stretches: one unless the size changes along the structure; one per point for a width that
-                      ///< changes all along
+  int stretches = 1;  ///< number of point ranges of equal beam size; one per point for a width that changes everywhere
   PointStretch stretch[most_points];
   [[nodiscard]] bool operator==(const LaneLayout&) const = default;
 };
 
-/// One contact of a switch as plain numbers.
+/// One contact of one switch in a SIMD lane, as plain numbers.
 struct LaneContactNumbers {
-  double plane = 0;                 // rest distance of the contact to its plane [m]
-  double shape[most_modes] = {};    // modes at the contact, positive towards its plane [kg^(-1/2)]
-  double strength = 0, height = 0;  // parameters of the law; strength of a linear law is its stiffness [N/m]
-  double damping = 0;               // [s/m]
-  double unloading_stiffness = 0;   // unloading stiffness of a law with a memory; `strength` is that of loading [N/m]
-  double negligible_depth = 0;      // distance to the plane at which a step counts as ending on the plane [m]
+  double plane = 0;                 // distance of the contact from its plane at rest [m]
+  double shape[most_modes] = {};    // mode shapes at the contact, positive towards its plane [kg^(-1/2)]
+  double strength = 0, height = 0;  // parameters of the contact law; strength of a linear law is its stiffness [N/m]
+  double damping = 0;               // damping constant of the contact [s/m]
+  double unloading_stiffness = 0;   // unloading stiffness of a contact law with memory; `strength` is that of loading [N/m]
+  double negligible_depth = 0;      // distance from the contact plane at which a step counts as ending on the plane [m]
 };
 
-/// One switch as plain numbers. Entries of modes that the switch does not have are 0.
+/// One switch in a SIMD lane, as plain numbers. Entries of modes that the switch does not have are 0.
 struct LaneSwitch {
   int modes = 0;
-  double open = 0, floor = 0;                                            // largest rest gap; least gap, at which a run ends [m]
-  double omega[most_modes] = {};                                         // [rad/s]
-  double piezo[most_modes] = {}, friction[most_modes] = {};              // [N kg^(-1/2) / V], [1/s]
-  double shape[most_points][most_modes] = {}, weight[most_points] = {};  // [kg^(-1/2)], [m]
-  double rest_gap[most_points] = {};                                     // [m]
-  double flying[most_modes] = {}, touching[most_modes] = {};             // absolute tolerances of coordinates
-  double speed[most_modes] = {};                                         // absolute tolerances of velocities
-  double width[most_points] = {}, thickness[most_points] = {};           // sizes of each stretch [m]
-  double viscosity[most_points] = {};                                    // viscosity over each stretch [Pa s]
-  double mean_free_path = 0, slit_height = 0, slit_length = 0;           // [m]
-  double damping = 0;                                                    // damping of the gas law `linear` [N s/m^2]
-  double electrode_gaps[most_drives] = {}, film_gaps = 0;                // sum of the gaps on both sides [m]
-  double electrode_floor[most_drives] = {}, film_floor = 0;              // gap floor on the far side [m]
-  double most_gap = 0;                                                   // largest gap on the near side [m]
-  double hamaker_constant = 0, equilibrium_distance = 0, crossover = 0;  // [J], [m], [m]
-  double tension = 0;                                                    // tension of mid-plane stretching [N/m]
-  double slopes[most_modes][most_modes] = {};                            // matrix of mid-plane stretching [1/(kg m)]
+  double open = 0, floor = 0;     // largest gap at rest; least gap, at which a run ends [m]
+  double omega[most_modes] = {};  // angular frequencies of the modes [rad/s]
+  // Piezo force per volt [N kg^(-1/2) / V] and damping [1/s] of each mode.
+  double piezo[most_modes] = {}, friction[most_modes] = {};
+  double shape[most_points][most_modes] = {}, weight[most_points] = {};  // mode shapes [kg^(-1/2)] and quadrature weights [m]
+  double rest_gap[most_points] = {};                                     // gap to the electrode at rest [m]
+  // Absolute tolerances of modal coordinates in flight and in contact.
+  double flying[most_modes] = {}, touching[most_modes] = {};
+  double speed[most_modes] = {};                                // absolute tolerances of the modes' velocities
+  double width[most_points] = {}, thickness[most_points] = {};  // width and thickness of the beam by range of points [m]
+  double viscosity[most_points] = {};                           // gas viscosity by range of points [Pa s]
+  // Mean free path of the gas, height and length of the slit under the film [m].
+  double mean_free_path = 0, slit_height = 0, slit_length = 0;
+  double damping = 0;  // damping per length of the gas law `linear` [N s/m^2]
+  // Sum of the gaps on both sides, of each electrode and of the gas film [m].
+  double electrode_gaps[most_drives] = {}, film_gaps = 0;
+  // Least valid gap on the far side, of each electrode and of the gas film [m].
+  double electrode_floor[most_drives] = {}, film_floor = 0;
+  double most_gap = 0;  // largest valid gap on the near side [m]
+  // Hamaker constant [J], distance without force [m], crossover to the Casimir law [m].
+  double hamaker_constant = 0, equilibrium_distance = 0, crossover = 0;
+  double tension = 0;  // tension of mid-plane stretching [N/m]
+  // Matrix of mid-plane stretching, integrals of products of mode slopes [1/(kg m)].
+  double slopes[most_modes][most_modes] = {};
   LaneContactNumbers contact[most_contacts];
 };
 
-/// Receives the touches and rebounds of the closing in a lane.
+/// Receives the touches and rebounds of a closing in a SIMD lane.
 class LaneObserver {
  public:
   /// Receives a touch of a contact: begin and end [s], impact velocity [m/s], depth [m]; of a damped contact also the largest
   /// force [N].
   virtual void touch(int contact, double begin, double end, double speed, double depth, double force) = 0;
-  /// Receives the closing of the connection of several contacts: time [s], speed of the contact that causes the closing [m/s].
+  /// Receives an electrical closing of the connection of several contacts: time [s], speed of the contact that causes the
+  /// closing [m/s].
   virtual void closes(double time, double speed) = 0;
-  /// Receives the opening of the connection of several contacts [s].
+  /// Receives an electrical opening of the connection of several contacts: time [s].
   virtual void opens(double time) = 0;
   /// Receives a rebound of the contact, or of the connection of several contacts: begin [s], end [s], height [m].
   virtual void rebound(double begin, double end, double height) = 0;
@@ -118,41 +127,45 @@ class LaneObserver {
   LaneObserver& operator=(const LaneObserver&) = default;
 };
 
-/// A piece of a drive's signal (waveforms/pieces.h); its terms are a cubic polynomial and exponentials:
+/// A piece of a drive's voltage signal (waveforms/pieces.h); its terms are a cubic polynomial and exponentials:
 ///   value + slope s + square s^2 + cube s^3 + sum over tails of tail exp(-decay s)
 ///     + [amplitude + amplitude_slope s] sin(angular_frequency t + phase),  s = t - begin
 struct LanePiece {
   static constexpr int most_tails = 2;
-  double begin = 0;                                                             // [s]
-  double value = 0, slope = 0, square = 0, cube = 0;                            // [V], [V/s], [V/s^2], [V/s^3]
-  double tail[most_tails] = {}, decay[most_tails] = {};                         // [V], [1/s]
-  double amplitude = 0, amplitude_slope = 0, angular_frequency = 0, phase = 0;  // [V], [V/s], [rad/s], [rad]
-  double longest_step = 0;                                                      // longest step that resolves the piece [s]
-  bool joins = false;  // true when the piece continues the previous piece smoothly: steps may pass its begin
+  double begin = 0;  // time at which the piece begins [s]
+  // Coefficients of the voltage's cubic polynomial [V], [V/s], [V/s^2], [V/s^3].
+  double value = 0, slope = 0, square = 0, cube = 0;
+  double tail[most_tails] = {}, decay[most_tails] = {};  // exponentials: initial value [V] and decay rate [1/s]
+  // sine: amplitude [V], its rate [V/s], frequency [rad/s], phase [rad].
+  double amplitude = 0, amplitude_slope = 0, angular_frequency = 0, phase = 0;
+  double longest_step = 0;  // longest integration step that resolves the piece [s]
+  // True when the piece continues the one before smoothly, so that an integration step may cross its beginning.
+  bool joins = false;
 };
 
 struct LaneClosing {
   const LaneSwitch* numbers = nullptr;
   double start[most_modes] = {};              // modal coordinates at t = 0
   double final[most_modes] = {};              // modal coordinates at the end of the run
-  double work = 0;                            // work of the drives on the modes, if measures_work [J]
-  const LanePiece* pieces[most_drives] = {};  // pieces by drive
+  double work = 0;                            // work of the drives on the modes, if LaneLayout::measures_work [J]
+  const LanePiece* pieces[most_drives] = {};  // voltage pieces of each drive
   int piece_count[most_drives] = {};
   double gain[most_drives] = {};  // factor on the voltages of each drive
   double duration = 0, after_contact = 0, no_end_before = 0, no_contact_before = 0;
-  double steady_depth[most_contacts] = {};  // depth at which a contact carries the steady force [m]; infinite if none is given
+  // Depth at which each contact carries the steady force [m]; infinite if no such force is given.
+  double steady_depth[most_contacts] = {};
   LaneObserver* observer = nullptr;
   bool followed = false;
   double end = 0;
-  /// Time of steady force [s] and least depth [m] of each contact; NaN when the contact has not touched, or its force is not
-  /// steady at the end.
+  /// Time from which the contact force is steady [s] and least depth [m] of each contact; NaN when the contact has not touched,
+  /// or its force is not steady at the end.
   double steady_from[most_contacts] = {}, least_depth[most_contacts] = {};
 };
 
 using LaneRunner = void (*)(const LaneLayout& layout, LaneClosing* closings, std::size_t count);
 void run_avx2(const LaneLayout& layout, LaneClosing* closings, std::size_t count);
 void run_avx512(const LaneLayout& layout, LaneClosing* closings, std::size_t count);
-/// Returns the function that runs closings with these vector instructions; null when this build does not have them.
+/// Returns the function that simulates closings with these vector instructions; null when this build does not have them.
 [[nodiscard]] LaneRunner lane_runner(Vectors vectors);
 
 }  // namespace softland::simd

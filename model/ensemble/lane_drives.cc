@@ -15,7 +15,7 @@ bool is_tail(const SignalTerm& term) {
          std::all_of(term.cosine.begin() + 1, term.cosine.end(), [](double c) { return c == 0; });
 }
 
-/// A run of short pieces of a drive, with the integral of the drive up to each piece.
+/// A sequence (run) of short pieces of a drive signal, with the integral of the voltage up to each piece.
 class PieceRun {
  public:
   PieceRun(std::span<const LanePiece> pieces, double end) : pieces_(pieces), end_(end) {
@@ -23,7 +23,7 @@ class PieceRun {
   }
   [[nodiscard]] double begin() const { return pieces_.front().begin; }
   [[nodiscard]] double end() const { return end_; }
-  /// Returns the voltage of the drive [V].
+  /// Returns the voltage of the drive at a time in the sequence [V].
   [[nodiscard]] double voltage(double time) const {
     const LanePiece& p = pieces_[piece_at(time)];
     const double s = time - p.begin;
@@ -32,7 +32,7 @@ class PieceRun {
       if (p.tail[i] != 0) sum += p.tail[i] * std::exp(-p.decay[i] * s);
     return sum;
   }
-  /// Returns the rate of change of the voltage [V/s].
+  /// Returns the rate of change of the drive's voltage at a time in the sequence [V/s].
   [[nodiscard]] double rate(double time) const {
     const LanePiece& p = pieces_[piece_at(time)];
     const double s = time - p.begin;
@@ -40,10 +40,10 @@ class PieceRun {
     for (int i = 0; i < LanePiece::most_tails; ++i) sum -= p.decay[i] * p.tail[i] * std::exp(-p.decay[i] * s);
     return sum;
   }
-  /// Returns the integral of the voltage from the beginning of the run [V s].
+  /// Returns the integral of the voltage from the beginning of the sequence to `time` [V s].
   [[nodiscard]] double integral(double time) const { return integral_to(time, piece_at(time)); }
 
-  /// Returns the median duration of two consecutive pieces of the run [s]: one sample of the signal, or two.
+  /// Returns the median duration of two consecutive pieces of the sequence [s]: one sample of the signal, or two.
   [[nodiscard]] double window() const {
     std::vector<double> lengths;
     for (std::size_t i = 0; i + 2 < pieces_.size(); ++i) lengths.push_back(pieces_[i + 2].begin - pieces_[i].begin);
@@ -70,15 +70,16 @@ class PieceRun {
   std::span<const LanePiece> pieces_;
   double end_;
   std::vector<double> integrals_;
-  mutable std::size_t near_ = 0;  // number of the piece used last: calls come with increasing times
+  // Index of the piece used last; the search begins there, since times increase from call to call.
+  mutable std::size_t near_ = 0;
 };
 
 struct Knot {
-  double time = 0, value = 0, rate = 0;  // [s], [V], [V/s]
+  double time = 0, value = 0, rate = 0;  // time [s], voltage [V] and its rate [V/s] at an end of a smooth piece
 };
 
-/// Returns the mean voltage over a window about a time, and the rate of change of this mean. Near an end of the run the window
-/// shrinks on both sides.
+/// Returns the mean voltage over a window about a time, and the rate of change of this mean. Near an end of the sequence of
+/// pieces the window shrinks on both sides.
 Knot mean_about(double time, const PieceRun& run, double window) {
   const double before = time - run.begin(), after = run.end() - time;
   if (before <= 0) return {time, run.voltage(time), run.rate(time)};
@@ -90,7 +91,7 @@ Knot mean_about(double time, const PieceRun& run, double window) {
   return {time, mean, (run.voltage(time + half) - run.voltage(time - half)) / (2 * half)};
 }
 
-/// Returns the cubic polynomial through values and rates of two knots.
+/// Returns the cubic polynomial through voltages and rates at two times.
 LanePiece between(const Knot& a, const Knot& b) {
   const double h = b.time - a.time, rise = (b.value - a.value) / h;
   return {.begin = a.time,
@@ -101,18 +102,19 @@ LanePiece between(const Knot& a, const Knot& b) {
           .longest_step = infinite};
 }
 
-/// Returns the integral of the run between two knots, `integral`, less that of the cubic polynomial between the knots [V s].
+/// Returns the integral of the original voltage between two times, `integral`, less that of the cubic polynomial between them
+/// [V s].
 double missing(const Knot& a, const Knot& b, double integral) {
   const double h = b.time - a.time;
   return integral - h * ((a.value + b.value) / 2 + h * (a.rate - b.rate) / 12);
 }
 
-/// Restores the integral of the voltage, which a moving average changes at corners: each knot between the ends is corrected by
-/// the integral that the cubics on both sides of the knot lack.
+/// Restores the integral of the voltage, which a moving average changes at corners: the voltage at each time between the ends
+/// is corrected by the integral that the cubics on both sides lack.
 void restore_integral(std::vector<Knot>& knots, const PieceRun& run) {
   const std::size_t last = knots.size() - 1;
-  double until = run.integral(knots.front().time);  // integral up to the knot [V s]
-  std::vector<double> more(knots.size(), 0);        // correction of each knot [V]
+  double until = run.integral(knots.front().time);  // integral of the original voltage up to the knot (end of a cubic) [V s]
+  std::vector<double> more(knots.size(), 0);        // correction of the voltage at each knot (end of a cubic) [V]
   const double step = (run.end() - run.begin()) / static_cast<double>(last);
   for (std::size_t k = 0; k < last; ++k) {
     const double next = run.integral(knots[k + 1].time), lost = missing(knots[k], knots[k + 1], next - until) / step;
@@ -150,7 +152,8 @@ bool goes_in_lanes(const Signal& drive) {
 
 namespace {
 
-/// Returns Signal::resolving_step() of a piece; without oscillations this is the shortest time constant.
+/// Returns the longest step that resolves a signal piece, Signal::resolving_step(); without oscillations this is the shortest
+/// time constant.
 double longest_step(const Signal& drive, const SignalPiece& piece) {
   if (piece.oscillates()) return drive.resolving_step(piece.begin);
   double step = infinite;
@@ -188,7 +191,7 @@ std::vector<LanePiece> pieces_of(const Signal& drive) {
 }
 
 SmoothedDrive smoothed(std::vector<LanePiece> exact) {
-  constexpr std::size_t fewest = 8;  // least number of short pieces that form a run
+  constexpr std::size_t fewest = 8;  // least number of short pieces in succession that a moving average replaces
   const auto is_short = [&](std::size_t i) {
     const LanePiece& p = exact[i];
     const double fastest = std::max(p.decay[0], p.decay[1]);

@@ -1,14 +1,14 @@
-// The force laws of closings in vector lanes, in two variants that compute forces from coordinates and velocities.
+// The force laws of closings in SIMD lanes, in two variants that compute forces from coordinates and velocities.
 //
 // UsualLaws: up to four modes, electrodes on the near side that do not overlap, a strip film or none, an undamped contact of
-// asperities. The laws are chosen at compile time, and each point is visited once, in registers. UsualLaws with a
-// capacity for several stretches cover a beam of sections with several contacts of any law.
+// asperities. The laws are chosen at compile time, and each point is visited once, in registers. UsualLaws with a capacity for
+// several widths and thicknesses cover a beam of sections with several contacts of any law.
 //
 // AnyLaws: more modes, other laws and several contacts, chosen by the layout. The points are visited law by law.
 //
 // Each of the two variants has its own class for the law of a contact.
 //
-// All code here depends on the type of the lanes: see simd_closings.h.
+// All code here depends on the type of the SIMD vectors: see simd_closings.h.
 #pragma once
 
 #include <cstddef>
@@ -37,13 +37,13 @@ class UsualContact {
  public:
   static constexpr bool has_damping = false, has_memory = false;
 
-  /// Sets the numbers of this contact for the switch in lane `l`.
+  /// Sets the numbers of this contact for the switch in SIMD lane `l`.
   void take(const LaneContactKind&, const LaneContactNumbers& numbers, std::size_t l) {
     strength_[l] = numbers.strength, height_[l] = numbers.height;
     law_ = {.strength = strength_, .height = height_};
   }
 
-  /// Returns the contact force [N]; `rate()` gives the speed into the contact [m/s].
+  /// Returns the contact force at a depth beyond the contact plane [N]; `rate()` gives the speed into the contact [m/s].
   template <class Rate>
   [[gnu::always_inline]] V push(V depth, Rate&&) const {
     return law_.force(depth);
@@ -57,7 +57,8 @@ class UsualContact {
 template <class V>
 class AnyContact {
  public:
-  static constexpr bool has_damping = true, has_memory = true;  // used only for a kind of contact that has them
+  // Damping and memory are used only for a kind of contact that has them.
+  static constexpr bool has_damping = true, has_memory = true;
 
   void take(const LaneContactKind& kind, const LaneContactNumbers& numbers, std::size_t l) {
     kind_ = kind;
@@ -70,8 +71,7 @@ class AnyContact {
     if (kind_.law == LaneContact::linear) return push_of(LinearContactOf<V>{.stiffness = strength_}, depth, rate);
     return push_of(UniformAsperityContactOf<V>{.strength = strength_, .height = height_}, depth, rate);
   }
-  /// Returns the force of a contact with a memory while unloading [N]; `depth` counts from the position at which the force is
-  /// 0.
+  /// Returns the force of a contact with memory while unloading [N]; `depth` counts from the position at which the force is 0.
   V pull_back(V depth) const { return LinearContactOf<V>{.stiffness = unloading_}.force(depth); }
 
  private:
@@ -89,7 +89,7 @@ template <class V, template <class> class FringingOf, bool has_film, int most_st
 class UsualLaws {
   using Force = ElectrostaticForce<FringingOf<V>>;
   using Film = StripSqueezeFilmOf<V>;
-  /// True when the fringing law is written in powers of h^(-1/4), which the law of a gas film can reuse.
+  /// True when the fringing law is written in powers of h^(-1/4) of the gap h, which the law of a gas film can reuse.
   static constexpr bool has_root = requires(const FringingOf<V>& law, V h) { law.factor_over_square(h); };
 
  public:
@@ -100,7 +100,7 @@ class UsualLaws {
 
   explicit UsualLaws(const LaneLayout& layout) : layout_(layout) {}
 
-  /// Sets the numbers of this switch for lane `l`.
+  /// Sets the numbers of this switch for SIMD lane `l`.
   void take(const LaneSwitch& s, std::size_t l) {
     for (int p = 0; p < layout_.points; ++p) {
       weight_[p][l] = s.weight[p], rest_gap_[p][l] = s.rest_gap[p];
@@ -120,7 +120,7 @@ class UsualLaws {
 
   [[nodiscard]] const V& floor() const { return floor_; }
 
-  /// Adds the modal forces of electric fields and gas film; sets `least` to the smallest gap.
+  /// Adds the modal forces of electric fields and gas film; sets `least` to the smallest gap along the beam.
   [[gnu::always_inline]] void add(const V* __restrict q, const V* __restrict v, const V* volts, V* sum, V& least) {
     V smallest = open_;
     const auto field = [&](int p, V& gap, V& velocity) __attribute__((always_inline)) {
@@ -238,7 +238,8 @@ class AnyLaws {
   [[nodiscard]] const V& power() const { return power_; }
 
  private:
-  // Calls f.operator()<n>() with the number of modes, so that their data stays in registers.
+  // Calls f.operator()<n>() with the number of modes as a compile-time constant, so that the data of the modes stays in
+  // registers.
   template <int n = 1, class F>
   [[gnu::always_inline]] void with_modes(F&& f) const {
     if constexpr (n < capacity) {
@@ -263,7 +264,8 @@ class AnyLaws {
       smallest = min(smallest, gap), largest = max(largest, gap);
       gap_[p] = max(gap, floor), velocity_[p] = velocity, load_[p] = 0;
     }
-    least = min(smallest, floor + (most_gap_ - largest));  // the second number is below the floor near the far side
+    // The second argument is below the least valid gap when the beam is near the far side.
+    least = min(smallest, floor + (most_gap_ - largest));
   }
 
   void check_far_gap(int begin, int end, const V& both, const V& floor) {
@@ -284,7 +286,7 @@ class AnyLaws {
     }
   }
 
-  // Calls f(first, last, k) for every stretch k of constant size with the range of its points in [begin, end).
+  // Calls f(first, last, k) for every range k of points with equal beam size, with the part of the range in [begin, end).
   template <class F>
   [[gnu::always_inline]] void on_stretches(int begin, int end, F&& f) const {
     for (int k = 0; k < layout_.stretches; ++k) {
@@ -384,7 +386,7 @@ class AnyLaws {
     for (int i = 0; i < n; ++i) sum[i] += part[i];
   }
 
-  // Adds the force of mid-plane stretching as model/stretching.h defines this force.
+  // Adds the modal forces of mid-plane stretching as model/stretching.h defines this force.
   void stretch(const V* q, V* sum) const {
     V pull[capacity], strain = 0;
     for (int i = 0; i < modes_; ++i) {

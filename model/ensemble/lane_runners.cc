@@ -1,4 +1,4 @@
-// The choice of vector instructions in this build; in a file of its own, so that another choice recompiles only this file.
+// The choice of vector (SIMD) instructions in this build, in a separate file, so that another choice recompiles only this file.
 #include <fmt/format.h>
 
 #include <cstdlib>

@@ -1,4 +1,5 @@
-// The closings of ensemble_closings.h for lanes of a given width: included once for every set of vector instructions.
+// The simulation of several closings at once (ensemble_closings.h), one per lane of SIMD vectors of a given width: this header
+// is included once for every set of vector instructions.
 //
 // The lanes are std::experimental::simd, and the laws of a closing are those of a single closing, over lanes of parameters. All
 // code here depends on the type of the lanes or belongs to a class that does, so that each set of vector instructions has its
@@ -24,13 +25,15 @@
 
 namespace softland::simd {
 
-/// Runs closings of switches with up to `room` contacts. At room = 1 the code for several contacts is left out at compile time.
+/// Simulates closings of switches with up to `room` contacts in SIMD lanes. At room = 1 the code for several contacts is left
+/// out at compile time.
 template <class V, class Laws, int room = 1>
 class SimdClosings {
   using M = typename V::mask_type;
   static constexpr std::size_t width = V::size();
   static constexpr int capacity = Laws::capacity;
-  // Number of pieces of a step of two radians of the fastest mode: as StepMotion at tolerances from 1e-5 on.
+  // Number of pieces in which the contact point's motion is followed over a step of two radians of the fastest mode, as in
+  // StepMotion at tolerances from 1e-5 on.
   static constexpr int pieces = 3;
   static constexpr double most_rounds = 100'000;
   static constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -53,10 +56,10 @@ class SimdClosings {
   }
 
  private:
-  // The number of a contact; a compile-time constant when a switch has only one contact.
+  // Type of a contact's number; a compile-time constant when a switch has only one contact.
   using Number = std::conditional_t<has_several, int, std::integral_constant<int, 0>>;
 
-  // Calls f(c) for every contact.
+  // Calls f(c) for the number of every contact.
   template <class F>
   [[gnu::always_inline]] void for_contacts(F&& f) const {
     if constexpr (has_several) {
@@ -66,46 +69,45 @@ class SimdClosings {
     }
   }
 
-  // The state of one contact of the switch in a lane.
+  // The state of one contact of the switch in a SIMD lane.
   struct Followed {
     bool touched = false, touching = false;
     double begin = 0, left = 0, speed = 0;  // begin and end of the touch [s], impact velocity [m/s]
-    double extreme = 0;                     // deepest or highest position since the last event [m]
-    double hardest = 0;                     // largest force of a damped contact since the last event [N]
-    // Phase of a contact with a memory: see model/closing/contact_phase.h.
+    double extreme = 0;                     // deepest or highest position since the contact law last changed [m]
+    double hardest = 0;                     // largest force of a damped contact since its law last changed [N]
+    // Phase (branch of the contact law that acts) of a contact with memory: see model/closing/contact_phase.h.
     bool unloading = false, in_dent = false;
-    bool to_turn = false;                   // true while the lane's step should end at the deepest point
-    double level = 0;                       // position of another event at which the lane's step should end [m]
-    double low = 0, high = 0, deepest = 0;  // edges of the phase, and the deepest position of this touch [m]
-    double steady = nothing;                // time since which the contact has carried the steady force [s]
-    double least = infinite;                // least depth after the first maximum [m]
+    bool to_turn = false;  // true while the lane's step should end at the deepest point of the contact
+    double level = 0;      // other position at which the contact law changes and the lane's step should end [m]
+    // Positions between which the branch of the contact law acts; deepest position of the touch [m].
+    double low = 0, high = 0, deepest = 0;
+    double steady = nothing;  // time since which the contact has carried the force that counts as steady [s]
+    double least = infinite;  // least depth after the first maximum of the contact force [m]
   };
-  // The state of the connection that several contacts make.
+  // The state of the electrical connection that several contacts make.
   struct Connected {
     int touching = 0;  // number of closed contacts of the connection
     bool closed = false, was_closed = false;
-    double left = 0, highest = 0;  // start [s] and largest separation [m] of the present opening
+    double left = 0, highest = 0;  // start [s] and largest separation [m] of the connection's current opening
   };
 
-  // The state of the closing in a lane.
+  // The state of the closing in one SIMD lane.
   struct Lane {
-    LaneClosing* closing = nullptr;  // null while idle
+    LaneClosing* closing = nullptr;  // closing that the lane simulates; null while idle
     const LanePiece* drive[most_drives] = {};
-    int count[most_drives] = {};    // number of pieces of each drive
-    int piece[most_drives] = {};    // index of the present piece
-    bool runs[most_drives] = {};    // true over pieces that join, which steps may cross
-    bool curves[most_drives] = {};  // true for terms beyond a cubic polynomial, and for pieces that join
-    int corrections = 0;            // number of corrections of a step that should end at an event
-    double stop = 0;                // next breakpoint, or the end of the window [s]
-    double longest = 0;             // longest step that resolves the drives [s]
-    double gain[most_drives] = {};  // factors of the drives
+    int count[most_drives] = {};    // number of signal pieces of each drive
+    int piece[most_drives] = {};    // index of the current signal piece of each drive
+    bool runs[most_drives] = {};    // true over signal pieces that join, so that steps may cross their ends
+    bool curves[most_drives] = {};  // true for parts of the voltage beyond a cubic polynomial, and for pieces that join
+    int corrections = 0;            // number of corrections of a step that should end at a change of the contact law
+    double stop = 0;                // next breakpoint of the drives, or the end of the simulated window [s]
+    double longest = 0;             // longest step that resolves the drive voltages [s]
+    double gain[most_drives] = {};  // factors on the voltages of the drives
     bool landed = false;            // true after the first touch of a contact on the near side
-    int at = 0;                     // contact whose event ends the lane's step
+    int at = 0;                     // number of the contact at whose change of law the lane's step ends
     Followed contact[room];
     Connected connected;
   };
-
-  // --- the equations ---
 
   void set_drives(V time) {
     for (int k = 0; k < layout_.drives; ++k) {
@@ -134,7 +136,7 @@ class SimdClosings {
     }
   }
 
-  // Finds the piece of drive k at time t, near the previous piece.
+  // Finds the signal piece of drive k at time t, near the previous piece.
   static void find_piece(Lane& lane, int k, double t) {
     const LanePiece* const all = lane.drive[k];
     int& at = lane.piece[k];
@@ -146,7 +148,7 @@ class SimdClosings {
     if (piece.tail[1] != 0) sum += piece.tail[1] * std::exp(-piece.decay[1] * elapsed);
     return sum;
   }
-  // Returns the value of drive k at a time within pieces that join smoothly, whose ends a step may cross.
+  // Returns the voltage of drive k at a time within pieces that join smoothly, whose ends a step may cross.
   [[nodiscard]] double running(int k, std::size_t l, double t) {
     find_piece(lane_[l], k, t);
     const LanePiece& piece = lane_[l].drive[k][lane_[l].piece[k]];
@@ -161,7 +163,7 @@ class SimdClosings {
     return power * volts_[layout_.drives - 1];
   }
 
-  // Computes modal accelerations; sets `least` to the smallest gap.
+  // Computes modal accelerations; sets `least` to the smallest gap along the beam.
   [[gnu::always_inline]] void rates(const V* __restrict q, const V* __restrict v, V* __restrict a, V& least) {
     V sum[capacity];
     for (int i = 0; i < modes; ++i) sum[i] = -(square_[i] * q[i]) - friction_[i] * v[i];
@@ -189,7 +191,7 @@ class SimdClosings {
     for (int i = 0; i < modes; ++i) a[i] = sum[i];
   }
 
-  // Returns the force of a contact with a memory [N]; `loading` is the force on the loading curve at this depth.
+  // Returns the force of a contact with memory [N]; `loading` is the force on the loading curve at this depth.
   [[nodiscard]] V remembered(Number c, V loading, V depth) const {
     where(unloading_[c], loading) = contact_[c].pull_back(depth - shift_[c]);
     where(in_dent_[c], loading) = V(0);
@@ -199,8 +201,6 @@ class SimdClosings {
     if constexpr (Contact::has_memory) return layout_.contact[c].remembers;
     return false;
   }
-
-  // --- a step ---
 
   struct Turn {
     V cosine, sine, slack;
@@ -252,7 +252,7 @@ class SimdClosings {
     }
   }
 
-  // Attempts one step in every lane.
+  // Attempts one integration step in every SIMD lane.
   void round() {
     const V wanted = min(h_, max_step_);
     const V h = min(wanted, limit_);
@@ -296,10 +296,8 @@ class SimdClosings {
     settle(h, end, error);
   }
 
-  // --- a contact point within a step ---
-
-  // Finds knots of a contact point between the ends of the step, as integrators/modal_motion.h does. Marks lanes whose contact
-  // point may cross the plane, or turns.
+  // Finds points of a contact point's motion between the ends of the step, as integrators/modal_motion.h does. Marks SIMD lanes
+  // whose contact point may cross the contact plane, or turns.
   [[gnu::always_inline]] void follow(Number at, V h) {
     constexpr double share = 1.0 / pieces;
     V* const knot_p = knot_p_[at];
@@ -348,8 +346,8 @@ class SimdClosings {
   struct Reach {
     V least, most;
   };
-  // Returns bounds of the contact point's position in a piece, from the control points of its quintic in Bernstein form; `g` is
-  // the duration of the piece.
+  // Returns bounds of the contact point's position in a piece of the step, from the control points of its quintic in Bernstein
+  // form; `g` is the duration of the piece.
   [[nodiscard]] [[gnu::always_inline]] Reach reach(Number c, int k, V g) const {
     const V b0 = knot_p_[c][k], b5 = knot_p_[c][k + 1], s0 = g * knot_s_[c][k], s1 = g * knot_s_[c][k + 1];
     const V c0 = g * g * knot_c_[c][k], c1 = g * g * knot_c_[c][k + 1];
@@ -357,7 +355,8 @@ class SimdClosings {
     return {.least = min(min(min(b0, b1), min(b2, b3)), min(b4, b5)), .most = max(max(max(b0, b1), max(b2, b3)), max(b4, b5))};
   }
 
-  // Returns the lanes whose contact point may leave the phase of a contact with a memory; loading ends where the point turns.
+  // Returns the SIMD lanes in which a contact with memory may change the branch of its law; loading ends where the contact
+  // point turns.
   [[nodiscard]] M leaves_phase(Number c, V h) const {
     constexpr double share = 1.0 / pieces;
     const V g = h * share;
@@ -369,14 +368,14 @@ class SimdClosings {
     return suspect;
   }
 
-  // The quintic of one contact in one piece of one lane's step, as a function of the share of the piece.
+  // The quintic motion of one contact in one piece of one SIMD lane's step, as a function of the share of the piece.
   struct QuinticPath {
     double c[6];
     [[nodiscard]] double position(double s) const { return c[0] + s * (c[1] + s * (c[2] + s * (c[3] + s * (c[4] + s * c[5])))); }
     [[nodiscard]] double speed(double s) const { return c[1] + s * (2 * c[2] + s * (3 * c[3] + s * (4 * c[4] + s * 5 * c[5]))); }
     [[nodiscard]] double bend(double s) const { return 2 * c[2] + s * (6 * c[3] + s * (12 * c[4] + s * 20 * c[5])); }
 
-    // Finds a zero by Newton's method kept inside the bracket.
+    // Finds a zero of f by Newton's method kept inside the interval [low, high].
     template <class F, class D>
     [[gnu::always_inline]] static double zero(F f, D slope, double low, double high) {
       const bool rising = f(high) > 0;
@@ -412,25 +411,26 @@ class SimdClosings {
              6 * d - 3 * (v0 + v1) - 0.5 * (a0 - a1)}};
   }
 
-  // Returns the share of the step at which a lane's contact point leaves its side of the plane; above 1 when the point stays.
+  // Returns the share of the step at which a SIMD lane's contact point crosses the contact plane; above 1 when the point does
+  // not.
   [[nodiscard]] double crossing(Number c, std::size_t l, double length) const {
     return crossing(c, l, length, lane_[l].contact[c].touching ? 1 : -1, plane_[c][l]);
   }
-  // Returns the share of the step at which a lane's contact point leaves the inside of a level, side * (position - level) > 0;
-  // above 1 when the point stays inside.
+  // Returns the share of the step at which a SIMD lane's contact point leaves the region side * (position - level) > 0; above 1
+  // when the point stays inside.
   [[nodiscard]] double crossing(Number c, std::size_t l, double length, double side, double level) const {
     bool inside = side * (position_[c][l] - level) > 0;
     for (int k = 0; k < pieces; ++k) {
       const double p1 = knot_p_[c][k + 1][l], v0 = knot_s_[c][k][l], v1 = knot_s_[c][k + 1][l];
       const bool ends_inside = side * (p1 - level) >= 0;
-      if (side * v0 < 0 && side * v1 > 0 && inside) {  // the motion leaves the inside and returns
+      if (side * v0 < 0 && side * v1 > 0 && inside) {  // the motion leaves the region and returns
         const QuinticPath path = quintic_path(c, k, l, length);
         const double turn = path.turn();
         if (side * (path.position(turn) - level) < 0) return (k + path.meets(level, 0, turn)) / pieces;
       } else if (!ends_inside) {
         const QuinticPath path = quintic_path(c, k, l, length);
         if (inside) return (k + path.meets(level, 0, 1)) / pieces;
-        if (side * v0 > 0 && side * v1 < 0) {  // the motion begins on the plane, enters the inside and returns
+        if (side * v0 > 0 && side * v1 < 0) {  // the motion begins on its boundary, enters the region and returns
           const double turn = path.turn();
           if (side * (path.position(turn) - level) > 0) return (k + path.meets(level, turn, 1)) / pieces;
         }
@@ -441,8 +441,8 @@ class SimdClosings {
     return 2;
   }
 
-  // Returns the share of the step at which a lane leaves its phase of a contact with a memory, and sets Followed::level; above
-  // 1 when the contact stays in the phase.
+  // Returns the share of the step at which a contact with memory changes the branch of its law in a SIMD lane, and sets
+  // Followed::level; above 1 when the branch does not change.
   [[nodiscard]] double phase_end(Number c, std::size_t l, double length) {
     Followed& one = lane_[l].contact[c];
     const double by_low = one.low > -infinite ? crossing(c, l, length, 1, one.low) : 2;
@@ -453,7 +453,7 @@ class SimdClosings {
     const double edge = by_low < by_high ? by_low : by_high;
     return edge < by_turn ? edge : by_turn;
   }
-  // Returns the share of the step at which a lane's contact point turns back; above 1 when it does not turn.
+  // Returns the share of the step at which a SIMD lane's contact point turns back; above 1 when it does not turn.
   [[nodiscard]] double turning(Number c, std::size_t l, double length) const {
     for (int k = 0; k < pieces; ++k) {
       if (!(knot_s_[c][k + 1][l] < 0)) continue;
@@ -462,7 +462,7 @@ class SimdClosings {
     return 2;
   }
 
-  // Updates the deepest, or highest, position of a lane's contact point in the step.
+  // Updates the deepest, or highest, position of a SIMD lane's contact point in the step.
   [[gnu::noinline]] void update_plastic_depth(Number c, std::size_t l, double length) {
     Lane& lane = lane_[l];
     Followed& one = lane.contact[c];
@@ -485,7 +485,7 @@ class SimdClosings {
     }
   }
 
-  // Returns the depth on the loading curve at which the force equals the contact's present force at `depth`.
+  // Returns the depth on the loading curve at which the force equals the contact's current force at `depth`.
   [[nodiscard]] double depth_of_force([[maybe_unused]] Number c, [[maybe_unused]] std::size_t l, double depth) const {
     if constexpr (Contact::has_memory) {
       const Followed& one = lane_[l].contact[c];
@@ -499,7 +499,7 @@ class SimdClosings {
     return depth;
   }
 
-  // Finds the last time in the present step at which a contact reaches the depth of the steady force.
+  // Finds the last time in the current step at which a contact reaches the depth of the steady contact force.
   [[gnu::noinline]] void rise(Number c, std::size_t l, double length) {
     const double level = steady_[c][l];
     const auto reach = [&](int k, double share) {
@@ -518,13 +518,11 @@ class SimdClosings {
     }
   }
 
-  // --- the connection of several contacts: see model/closing/connection.h ---
-
   static void rise_to(Lane& lane, double separation) {
     if (separation > lane.connected.highest) lane.connected.highest = separation;
   }
 
-  // Updates the largest separation of an open connection that any contact closes, over the step. The separation of the
+  // Updates the largest separation, over the step, of an open connection that any contact closes. The separation of the
   // connection is that of the contact nearest to its plane.
   void climb(std::size_t l, double length) {
     Lane& lane = lane_[l];
@@ -538,7 +536,7 @@ class SimdClosings {
         QuinticPath ahead = path;
         for (int i = 0; i < 6; ++i) ahead.c[i] -= other.c[i];
         at = ahead.meets(plane_[first][l] - plane_[last][l], 0, 1);
-        if (other.speed(at) < 0) {  // this contact still rises when it becomes the nearest
+        if (other.speed(at) < 0) {  // the nearest contact still moves away from its plane when it becomes the nearest
           rise_to(lane, plane_[last][l] - other.position(other.turn_between(at, 1)));
           continue;
         }
@@ -548,7 +546,8 @@ class SimdClosings {
     }
   }
 
-  // Returns which of the contacts that make the connection has the smallest separation at a knot.
+  // Returns which of the contacts that make the electrical connection has the smallest separation at the end of piece k of the
+  // step.
   [[nodiscard]] int nearest_contact(int k, std::size_t l) const {
     int best = -1;
     double least = infinite;
@@ -559,7 +558,7 @@ class SimdClosings {
     return best;
   }
 
-  // Updates the connection when a contact of the connection begins or ends a touch.
+  // Updates the electrical connection when one of its contacts begins or ends a touch.
   void connect(std::size_t l, bool touches, double speed) {
     Lane& lane = lane_[l];
     Connected& all = lane.connected;
@@ -579,7 +578,7 @@ class SimdClosings {
     apart_[l] = !closed && !layout_.needs_all;
   }
 
-  // Reports the rebound that has not ended at the end of a run.
+  // Reports the rebound of the connection that has not ended at the end of a run.
   void finish_connection(std::size_t l) {
     Lane& lane = lane_[l];
     if (!lane.connected.was_closed || lane.connected.closed) return;
@@ -591,8 +590,6 @@ class SimdClosings {
     rise_to(lane, now);
     tell_rebound(lane, lane.connected.left, nothing, lane.connected.highest);
   }
-
-  // --- after a step: its error, the next step length, and events ---
 
   // Computes binary logarithms and powers to the digits that a step size needs. The loops have no branches, so that the
   // compiler uses vector instructions.
@@ -623,7 +620,7 @@ class SimdClosings {
   [[gnu::always_inline]] void settle(V h, V end, V error) {
     control(error);
     rounds_ += V(1);
-    // Most lanes accept their step and continue; the other lanes are treated one by one.
+    // Most SIMD lanes accept their step and continue; the other lanes are treated one by one.
     const M plain = error <= V(1) && !special_ && !suspect_ && h < limit_ && end < until_ && smallest_ >= laws_.floor() &&
                     rounds_ < V(most_rounds);
     M rises[room];
@@ -682,8 +679,8 @@ class SimdClosings {
     where(taken, powers_[0]) = powers_[6];
   }
 
-  // Finds the largest force of a damped contact in the step: at the top of the parabola through both ends and the middle, as
-  // model/closing/touch_record.h does.
+  // Finds the largest force of a damped contact in the step: at the top of the parabola through the forces at both ends and the
+  // middle, as model/closing/touch_record.h does.
   void update_largest_force(Number at, const M& taken, V h) {
     static_assert(pieces % 2 == 1);
     constexpr int half = pieces / 2;
@@ -704,7 +701,7 @@ class SimdClosings {
         lane_[l].contact[at].hardest = most_push[l];
   }
 
-  // Returns true when a lane accepts its step; otherwise sets the length of its next attempt.
+  // Returns true when a SIMD lane accepts its step; otherwise sets the length of the lane's next attempt.
   bool consider(std::size_t l, double h, double error) {
     Lane& lane = lane_[l];
     if (lane.closing == nullptr) return false;
@@ -738,7 +735,8 @@ class SimdClosings {
     return true;
   }
 
-  // Returns the share of the step at the first event, and sets the contact of this event; above 1 without an event.
+  // Returns the share of the step at the first change of a contact law, and sets the number of this contact; above 1 without a
+  // change.
   [[nodiscard]] double event(std::size_t l, double length) {
     if constexpr (!has_several) return event(Number(), l, length);
     double first = infinite;
@@ -753,12 +751,12 @@ class SimdClosings {
     }
     return crossing(c, l, length);
   }
-  // Returns the contact at whose event a lane's step should end.
+  // Returns the number of the contact at whose change of law a SIMD lane's step should end.
   [[nodiscard]] Number event_contact([[maybe_unused]] std::size_t l) const {
     if constexpr (has_several) return lane_[l].at;
     return Number();
   }
-  // Returns the position of the event at which a lane's step should end [m].
+  // Returns the position of the contact point at which its law changes and a SIMD lane's step should end [m].
   [[nodiscard]] double event_level(std::size_t l) const {
     const Number c = event_contact(l);
     return remembers(c) ? lane_[l].contact[c].level : plane_[c][l];
@@ -768,8 +766,8 @@ class SimdClosings {
     return remembers(c) && lane_[l].contact[c].to_turn;
   }
 
-  // Returns true when a step that should end at an event does so. Moves the end of the step onto the event's level when the end
-  // is near, and corrects the target of the step otherwise.
+  // Returns true when a step that should end at a change of the contact law does so. Moves the end of the step onto the
+  // position of the change when the end is near, and corrects the target of the step otherwise.
   [[gnu::always_inline]] bool arrives(std::size_t l, double h) {
     constexpr double short_of_a_radian = 1e-3;
     constexpr int most_corrections = 8;
@@ -785,7 +783,7 @@ class SimdClosings {
         const double v = trial_v_[i][l], a = trial_a_[i][l];
         trial_q_[i][l] = trial_q_[i][l] + later * (v + later / 2 * a);
         trial_v_[i][l] = v + later * a;
-        trial_a_[i][l] = a - later * square_[i][l] * v;  // forces other than the stiffness hardly change within `later`
+        trial_a_[i][l] = a - later * square_[i][l] * v;  // forces other than the modes' stiffness hardly change within `later`
       }
       moved_[l] = later;
       if constexpr (has_several) move_others(at, l);
@@ -804,7 +802,7 @@ class SimdClosings {
     return false;
   }
 
-  // Moves the other contacts of a lane to the corrected end of its step.
+  // Moves the other contacts of a SIMD lane to the corrected end of its step.
   void move_others(int at, std::size_t l) {
     for (int c = 0; c < layout_.contacts; ++c) {
       if (c == at) continue;
@@ -817,7 +815,8 @@ class SimdClosings {
     }
   }
 
-  // Handles a step that ends at a breakpoint or event, ends the closing, or leaves the range of the force laws.
+  // Handles a SIMD lane's step that ends at a breakpoint or at a change of a contact law, ends the closing, or leaves the range
+  // of the force laws.
   void go_on(std::size_t l, double h) {
     Lane& lane = lane_[l];
     if (smallest_[l] < laws_.floor()[l]) {
@@ -844,7 +843,7 @@ class SimdClosings {
     }
   }
 
-  // Handles an event, at which a phase of a touch begins or ends, or a contact point crosses its plane.
+  // Handles a change of a contact law's branch, or a contact point that crosses the contact plane, in SIMD lane `l`.
   void on_event(std::size_t l) {
     const Number at = event_contact(l);
     on_event(at, l);
@@ -863,7 +862,8 @@ class SimdClosings {
       if (remembers(c)) enter_phase(c, l, false, false);
     }
   }
-  // Returns true when contact c, whose events were not searched in the step, has left its phase at the end of the step.
+  // Returns true when contact c, whose changes of law were not searched in the step, is outside its branch of the law at the
+  // end of the step.
   bool is_beyond(int c, std::size_t l) {
     Followed& one = lane_[l].contact[c];
     const double low = remembers(c) ? one.low : one.touching ? plane_[c][l] : -infinite;
@@ -876,13 +876,14 @@ class SimdClosings {
     return true;
   }
 
-  // Handles an event between two phases of a touch; returns false for an event at the plane.
+  // Handles a change between two branches of a contact law within a touch; returns false at the contact plane, where a touch
+  // begins or ends.
   bool pass_within_touch(Number c, std::size_t l) {
     Followed& one = lane_[l].contact[c];
     if (!one.touching) return false;
     if (one.to_turn) {
       const double speed = speed_[c][l], acceleration = acceleration_[c][l];
-      // Minus the distance to the deepest point, from the velocity and the deceleration.
+      // Minus the distance over which the contact point decelerates to its deepest point.
       const double left = acceleration < 0 ? speed * speed / (2 * acceleration) : 0;
       const LaneContactNumbers& numbers = lane_[l].closing->numbers->contact[c];
       const double depth = position_[c][l] - plane_[c][l] - left;
@@ -903,7 +904,8 @@ class SimdClosings {
     return true;
   }
 
-  // Sets the edges of a contact's phase, and the depth at which the contact carries the steady force in this phase.
+  // Sets the positions between which a branch of the contact law acts, and the depth at which the contact carries the steady
+  // force on this branch.
   void enter_phase(Number c, std::size_t l, bool unloading, bool in_dent) {
     Followed& one = lane_[l].contact[c];
     const LaneContactNumbers& numbers = lane_[l].closing->numbers->contact[c];
@@ -922,7 +924,7 @@ class SimdClosings {
     steady_[c][l] = unloading || in_dent ? shifted + depth * (numbers.strength / numbers.unloading_stiffness) : plane + depth;
   }
 
-  // Handles a contact point that crosses its plane.
+  // Handles a contact point that crosses its contact plane.
   void pass_plane(Number c, std::size_t l) {
     Lane& lane = lane_[l];
     Followed& one = lane.contact[c];
@@ -967,7 +969,8 @@ class SimdClosings {
   }
 
   static void tell_rebound(const Lane& lane, double begin, double end, double height) {
-    constexpr double on_the_plane = 1e-12;  // share of the contact gap, as in ReboundFinder
+    // Distance that counts as on the contact plane, a share of the contact gap, as in ReboundFinder.
+    constexpr double on_the_plane = 1e-12;
     if (height > on_the_plane * lane.closing->numbers->contact[0].plane) lane.closing->observer->rebound(begin, end, height);
   }
 
@@ -985,7 +988,7 @@ class SimdClosings {
     limit_[l] = target - t_[l];
   }
 
-  // Moves the drives to the pieces that are valid from the present time on.
+  // Moves the drives to the signal pieces that are valid from the current time on.
   void enter_stretch(std::size_t l) {
     Lane& lane = lane_[l];
     const double t = t_[l];
@@ -1057,7 +1060,7 @@ class SimdClosings {
     return false;
   }
 
-  // Gives a lane the next closing to simulate.
+  // Gives a SIMD lane the next closing to simulate.
   void fill(std::size_t l) {
     Lane& lane = lane_[l];
     const bool idle = next_ == count_;
@@ -1093,10 +1096,10 @@ class SimdClosings {
     for_contacts([&](Number c) { take(s.contact[c], c, l); });
     apart_[l] = false;
     enter_stretch(l);
-    if (idle) lane.closing = nullptr;  // an idle lane remains in special_
+    if (idle) lane.closing = nullptr;  // the bit of an idle lane in special_ remains set
   }
 
-  // Sets the numbers of a contact of the lane's new switch, before its first touch.
+  // Sets the numbers of a contact of the SIMD lane's new switch, before its first touch.
   void take(const LaneContactNumbers& numbers, Number c, std::size_t l) {
     contact_[c].take(layout_.contact[c], numbers, l);
     plane_[c][l] = numbers.plane;
@@ -1116,23 +1119,24 @@ class SimdClosings {
   [[gnu::always_inline]] static double clamped(double x, double low, double high) { return x < low ? low : x > high ? high : x; }
 
   const LaneLayout layout_;
-  [[no_unique_address]] const typename Laws::Modes modes;  // a constant if the laws fix the number of modes
+  [[no_unique_address]] const typename Laws::Modes modes;  // number of modes; a constant if the force laws fix it
   Laws laws_;
   Contact contact_[room];
-  int connecting_ = 0;  // number of contacts that make the connection
+  int connecting_ = 0;  // number of contacts that make the electrical connection
   LaneClosing* closings_;
   std::size_t count_, next_ = 0;
   int busy_ = 0;
   Lane lane_[width];
 
-  // Parameters of the switches in the lanes.
+  // Parameters of the switches in the SIMD lanes: angular frequencies of the modes, their inverses and squares, piezo forces,
+  // damping.
   V omega_[capacity], inverse_[capacity], square_[capacity], piezo_[capacity], friction_[capacity];
   V q_weight_[capacity], v_weight_[capacity], per_unknown_, fastest_, most_turn_;
   V at_contact_[room][capacity], plane_[room], steady_[room];
-  // Values and derivatives of the drives in the lanes.
+  // Begin, value and slope of the drives' signal pieces in the SIMD lanes, and the voltages.
   V begin_[most_drives], value_[most_drives], slope_[most_drives], volts_[most_drives];
-  V bend_[most_drives], twist_[most_drives];  // coefficients of s^2 and s^3
-  bool curves_[most_drives] = {};             // true once a drive in any lane has more than straight lines
+  V bend_[most_drives], twist_[most_drives];  // coefficients of s^2 and s^3 in a drive's signal piece
+  bool curves_[most_drives] = {};             // true once the drive has more than straight lines in any SIMD lane
   // Modal coordinates, velocities and accelerations at the start and the end of a step.
   V q_[capacity], v_[capacity], a_[capacity], trial_q_[capacity], trial_v_[capacity], trial_a_[capacity];
   V slope_q_[7][capacity], slope_v_[7][capacity];
@@ -1140,18 +1144,20 @@ class SimdClosings {
   V position_[room], speed_[room], acceleration_[room];
   V knot_p_[room][pieces + 1], knot_s_[room][pieces + 1], knot_c_[room][pieces + 1];
   M touching_[room]{}, touched_[room]{}, turns_[room]{}, suspect_{false};
-  M apart_{false};     // lanes whose connection, which any contact closes, is open
-  M starting_{false};  // lanes that spend a round on computing their accelerations
-  M to_event_{false};  // lanes whose step should end at an event
-  M special_{false};   // lanes that are starting, step to an event, or are idle
-  // The phases of a contact with a memory.
+  M apart_{false};     // SIMD lanes whose connection, which any contact closes, is open
+  M starting_{false};  // SIMD lanes that spend a round on computing their accelerations
+  M to_event_{false};  // SIMD lanes whose step should end at a change of a contact law
+  M special_{false};   // SIMD lanes that compute accelerations, step to a change of a contact law, or are idle
+  // SIMD lanes in which a contact with memory is loading, is unloading, or is in the dent that it has left.
   M loading_[room]{}, unloading_[room]{}, in_dent_[room]{};
-  V low_[room], high_[room], shift_[room];  // edges of the phase, and the depth of the dent [m]
-  V until_;                                 // a lane's closing ends with the first step beyond this time [s]
-  V last_step_;                             // length of the last step that did not end early at a stop [s]
+  // Positions between which the branch of a contact law acts, and depth of the dent [m].
+  V low_[room], high_[room], shift_[room];
+  V until_;      // time after which a lane's closing ends with the next step [s]
+  V last_step_;  // length of the last step that did not end early at a breakpoint [s]
   V growth_, most_growth_, rounds_;
   V power_, powers_[7], work_{0};  // power of the drives on the modes [W], at the stages of a step [W], and work until now [J]
-  float log_error_[width] = {}, last_error_[width] = {};  // binary logarithms of the error of a step
+  // Error estimate of the current and of the last step, as binary logarithms.
+  float log_error_[width] = {}, last_error_[width] = {};
   double moved_[width] = {};
 };
 

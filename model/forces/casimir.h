@@ -7,14 +7,14 @@
 // gold_casimir.h for gold. Each cross-section counts as if the beam were straight and flat, at zero temperature (thermal
 // corrections stay below a percent for gaps below 200 nm). Ideal conductors are a limit for gaps well above the plasma
 // wavelength (137 nm for gold): at 20 nm they overestimate the force between gold seven times. Singular at h = 0: the switch
-// ends a run before any gap gets there. Source: H. B. G. Casimir 1948, Proc. K. Ned. Akad. Wet. 51, 793.
+// ends a run before any gap vanishes. Source: H. B. G. Casimir 1948, Proc. K. Ned. Akad. Wet. 51, 793.
 #pragma once
 
 #include "model/constants.h"
 
 namespace softland {
 
-/// pi^2 hbar c / 240 [N m^2]
+/// Factor of the Casimir pressure between ideal conductors, pi^2 hbar c / 240 [N m^2].
 inline constexpr double casimir_strength = pi * pi * reduced_planck_constant * speed_of_light / 240;
 
 struct IdealCasimir {

@@ -27,7 +27,8 @@ template <class Casimir, class P = double>
 struct SmallerOfBoth {
   Casimir casimir;
   VanDerWaalsOf<P> van_der_waals;
-  P crossover = find_crossover();  ///< crossover gap [m]; 0 without a crossover
+  /// Gap at which the force changes from the van der Waals to the Casimir law [m]; 0 if it does not.
+  P crossover = find_crossover();
   double energy_step = find_energy_step();
 
   template <class S>
@@ -48,7 +49,8 @@ struct SmallerOfBoth {
     }
     return 0;
   }
-  // The crossover needs no derivatives: the force is continuous at the crossover, whose shift changes no force.
+  // The crossover between the laws needs no derivatives: the force is continuous there, and a shift of the crossover changes no
+  // force.
   [[nodiscard]] P find_crossover() const {
     if constexpr (requires { van_der_waals.hamaker_constant.value; }) {
       return P(crossover_of(van_der_waals.hamaker_constant.value));
@@ -74,15 +76,15 @@ struct SmallerOfBoth {
 template <class Pressure, class P = double>
 struct DispersionForce {
   Pressure law;
-  P width = 0;  ///< a [m]
+  P width = 0;  ///< width of the beam [m]
   static constexpr bool drive_depends = true;
 
-  /// Returns the load [N/m] at force factor 1.
+  /// Returns the dispersion load on the beam [N/m] at force factor 1.
   template <class S>
   S load(S gap, S /*velocity*/) const {
     return S(width) * law.pressure(gap);
   }
-  /// Returns the potential [J/m] at force factor 1.
+  /// Returns the potential of the dispersion force [J/m] at force factor 1.
   [[nodiscard]] double potential(double gap) const { return width * law.energy(gap); }
 };
 

@@ -10,9 +10,9 @@
 //   bao-2001        1 + (h / (pi a)) [ln(pi a / h) + ln(1 + 2 b/h + 2 sqrt(b/h + b^2/h^2))]
 //                   (Bao 2001 in Bognash 2019, eqs. 2.2-2.3: a capacitance correction used as a force factor; kept because the
 //                   thesis uses it, 2 to 11 % too much force). c is then the integral of the force, not Bao's capacitance.
-// Singular at h = 0: the switch ends a run before any gap gets there. For linear and bao-2001 the constant in c is a convention;
-// it shifts a charge, never a force.
-// To add a law, write a struct and add an alternative of FringingLaw, an enumerator and a row of fringing_laws.
+// Singular at h = 0: the switch ends a run before any gap vanishes. For linear and bao-2001 the constant in c is a convention;
+// it shifts a charge, never a force. To add a law, write a struct and add an alternative of FringingLaw, an enumerator and a
+// row of fringing_laws.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ namespace softland {
 
 template <class P>
 struct NoFringingOf {
-  P width = 0;  ///< [m]
+  P width = 0;  ///< width of the beam [m]
 
   template <class S>
   S factor(S) const {
@@ -45,7 +45,7 @@ using NoFringing = NoFringingOf<double>;
 
 template <class P>
 struct LinearFringingOf {
-  P width = 0;  ///< [m]
+  P width = 0;  ///< width of the beam [m]
 
   template <class S>
   S factor(S h) const {
@@ -61,8 +61,8 @@ using LinearFringing = LinearFringingOf<double>;
 
 template <class P>
 struct MeijsFokkemaFringingOf {
-  P width = 0;      ///< [m]
-  P thickness = 0;  ///< [m]
+  P width = 0;      ///< width of the beam [m]
+  P thickness = 0;  ///< thickness of the beam [m]
   P side = P(0.265) / (root(width) * root(root(width)));
   P face = P(0.53) * root(thickness) / width;
 
@@ -70,7 +70,7 @@ struct MeijsFokkemaFringingOf {
   S factor(S h) const {
     return h * h * factor_over_square(h);
   }
-  /// Returns phi / h^2, in powers of w = h^(-1/4).
+  /// Returns fringing factor / h^2 of the gap h, in powers of w = h^(-1/4) [1/m^2].
   template <class S>
   [[nodiscard, gnu::always_inline]] S factor_over_square(S h) const {
     const S w = inverse_fourth_root(h), w2 = w * w, w4 = w2 * w2;
@@ -92,8 +92,8 @@ using MeijsFokkemaFringing = MeijsFokkemaFringingOf<double>;
 
 template <class P>
 struct Bao2001FringingOf {
-  P width = 0;      ///< [m]
-  P thickness = 0;  ///< [m]
+  P width = 0;      ///< width of the beam [m]
+  P thickness = 0;  ///< thickness of the beam [m]
 
   template <class S>
   S factor(S h) const {
@@ -103,11 +103,11 @@ struct Bao2001FringingOf {
     return S(1) + h / S(pi * width) * (log(S(pi * width) / h) + log(S(1) + S(2) * b + S(2) * sqrt(b + b * b)));
   }
   [[nodiscard]] double capacitance_over_eps0(double h) const {
-    // Integrate (1 + B(s)) / s^2 times the width, from h to the gap where the logarithms vanish. With 1 + 2 x + 2 sqrt(x + x^2)
-    // = exp(2 asinh sqrt x) the second logarithm leaves the integral of u coth u.
+    // Integrate (1 + B(s)) / s^2 times the width, B the fringing correction, from h to the gap where the logarithms vanish.
+    // With 1 + 2 x + 2 sqrt(x + x^2) = exp(2 asinh sqrt x) the second logarithm leaves the integral of u coth u.
     const double u = std::asinh(std::sqrt(thickness / h)), l = std::log(pi * width / h);
     static const GaussRule rule = gauss_rule(30);
-    double integral = 0;  // integral of u coth u, from 0
+    double integral = 0;  // integral of u coth u from 0 to u
     for (std::size_t k = 0; k < rule.points.size(); ++k) {
       const double s = u / 2 * (1 + rule.points[k]);
       integral += u / 2 * rule.weights[k] * (s > 1e-8 ? s / std::tanh(s) : 1);
@@ -127,7 +127,7 @@ struct FringingRow {
   std::string_view name;
   bool needs_width = true;
   bool needs_thickness = false;
-  FringingLaw (*make)(double width, double thickness);  ///< takes the size of the moving part [m]
+  FringingLaw (*make)(double width, double thickness);  ///< makes the law for the size of the moving part [m]
 };
 
 inline constexpr auto fringing_laws = std::to_array<FringingRow>({

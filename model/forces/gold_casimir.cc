@@ -8,11 +8,12 @@ namespace softland {
 namespace {
 
 struct Tabulated {
-  double gap;  // [nm]
+  double gap;  // gap between the gold plates [nm]
   double eta;
 };
 
-// The reduction factor eta, the integral in gold_casimir.h, by Gauss-Legendre quadrature; correct to all digits given.
+// Table of the reduction factor eta by the gap: the integral in gold_casimir.h by Gauss-Legendre quadrature, correct to all
+// digits given.
 constexpr std::array<Tabulated, GoldFactor::knots> lifshitz{
     {{1, 0.00860746},     {1.259, 0.01082279}, {1.585, 0.01359945}, {1.995, 0.01707059}, {2.512, 0.02141064}, {3.162, 0.02680351},
      {3.981, 0.03349097}, {5.012, 0.04173243}, {6.31, 0.05182469},  {7.943, 0.06408202}, {10, 0.07886161},    {12.59, 0.09651393},
@@ -22,10 +23,11 @@ constexpr std::array<Tabulated, GoldFactor::knots> lifshitz{
      {1000, 0.87772074},  {1259, 0.89793589},  {1585, 0.91471774},  {1995, 0.92857685},  {2512, 0.94001828},  {3162, 0.94942426},
      {3981, 0.95717680},  {5012, 0.96357000},  {6310, 0.96885756},  {7943, 0.97324488},  {10000, 0.97690674}}};
 
-// h eta'(h) at the ends of the table, by central differences of the integral for eta.
+// Slopes h eta'(h) of the reduction factor at the ends of the table, by central differences of the integral for eta.
 constexpr double first_rise = 0.00856791, last_rise = 0.01452834;
 
-/// Returns the antiderivative of casimir_strength eta / h^4 on a piece [J/m^2], up to a constant.
+/// Returns the antiderivative of the Casimir pressure, casimir_strength eta / h^4, on a piece of the table [J/m^2], up to a
+/// constant.
 double antiderivative(const GoldFactor::Piece& piece, double h) {
   const auto& [begin, e, energy] = piece;
   const double x = h / begin;
@@ -42,7 +44,8 @@ const GoldFactor& GoldFactor::table() {
 
 GoldFactor::GoldFactor() {
   constexpr Eigen::Index n = knots;
-  // Solve for slopes at the knots [1/nm] that make the second derivative of eta continuous; the slopes at the ends are given.
+  // Solve for slopes of eta at the knots (gaps of the table) [1/nm] that make the second derivative of eta continuous; the
+  // slopes at the ends are given.
   Eigen::MatrixXd equations = Eigen::MatrixXd::Zero(n, n);
   Eigen::VectorXd right(n);
   equations(0, 0) = equations(n - 1, n - 1) = 1;

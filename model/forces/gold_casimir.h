@@ -5,9 +5,9 @@
 //   eps(i xi) = 1 + w_p^2 / (xi (xi + gamma)),  hbar w_p = 9 eV,  hbar gamma = 35 meV
 //
 // The formula is for zero temperature, without interband terms (they raise the force by some ten per cent below 50 nm). eta is
-// stored as a table from 1 nm to 10 um. A cubic spline in h between its knots, clamped to the integral's own slopes at the
-// ends, makes force and stiffness smooth; it is within 2e-5 of the integral. Outside the table eta continues with the same
-// value and slope (1 - eta within 1 % at 20 um):
+// stored as a table from 1 nm to 10 um. A cubic spline in h between the gaps of the table, clamped to the slopes of the
+// integral at the ends, makes force and stiffness smooth; it is within 2e-5 of the integral. Outside the table eta continues
+// with the same value and slope (1 - eta within 1 % at 20 um):
 //
 //   h < h_1: eta = n_0 x + n_1 x^2, x = h / h_1      p ~ h^-3, the van der Waals limit
 //   h > h_n: eta = 1 - f_0 x^(-1/2) - f_1 / x, x = h / h_n      the skin depth of a metal with losses grows like h^(1/2)
@@ -25,20 +25,23 @@
 
 namespace softland {
 
-/// The reduction factor eta as cubics between knots, with the energy at every knot.
+/// The reduction factor eta of the Casimir force between gold plates, as cubics between the gaps of a table, with the energy at
+/// every gap of the table.
 class GoldFactor {
  public:
   static constexpr std::size_t knots = 41;
   struct Piece {
-    double begin = 0;                   ///< lower knot [m]
-    std::array<double, 4> powers = {};  ///< eta = sum of powers[n] (h / begin)^n
-    double energy = 0;                  ///< energy at begin [J/m^2]
+    double begin = 0;  ///< gap between the plates at which the piece of the table begins [m]
+    /// Coefficients of the reduction factor eta = sum of powers[n] (h / begin)^n, h the gap.
+    std::array<double, 4> powers = {};
+    double energy = 0;  ///< Casimir energy per area at the gap begin [J/m^2]
   };
 
-  /// Returns the table of eta, computed at first use.
+  /// Returns the table of the reduction factor eta, computed at first use.
   [[nodiscard]] static const GoldFactor& table();
 
-  /// Returns the piece of the table for a gap: the last piece that begins at or below the gap; the first piece below the table.
+  /// Returns the piece of the table for a gap h: the last piece that begins at or below h; the first piece for an h below the
+  /// table.
   template <class S>
   [[nodiscard]] const Piece& piece(const S& h) const {
     std::size_t low = 0, high = pieces_.size();
@@ -51,11 +54,11 @@ class GoldFactor {
   [[nodiscard]] double first() const { return pieces_.front().begin; }
   [[nodiscard]] double last() const { return pieces_.back().begin; }
 
-  std::array<double, 2> near = {}, far = {};  ///< coefficients n and f of eta outside the table
+  std::array<double, 2> near = {}, far = {};  ///< coefficients of the reduction factor below and above the table
 
  private:
   GoldFactor();
-  std::array<Piece, knots> pieces_;  // the last piece begins at the last knot and has no cubic
+  std::array<Piece, knots> pieces_;  // pieces between the gaps of the table; the last begins at the end and has no cubic
 };
 
 struct GoldCasimir {

@@ -4,23 +4,22 @@
 //   p(h) = A / (6 pi h^3) [1 - (h0/h)^6]             [Pa], positive towards the electrode
 //   u(h) = -A / (12 pi h^2) [1 - (h0/h)^6 / 4]       [J/m^2], p = u'(h)
 //
-// h is the local gap [m], A the Hamaker constant [J], h0 the equilibrium distance [m]: p = 0 there, strongest pull at 3^(1/6)
+// h is the local gap [m], A the Hamaker constant [J], h0 the equilibrium distance [m]: p = 0 at h0, strongest pull at 3^(1/6)
 // h0, adhesion energy 3/4 A / (12 pi h0^2). h0 = 0 means no repulsion. Valid while the gap is well below the wavelengths that
 // carry the force (tens of nanometres; retardation begins at a few), and for flat surfaces; the thickness of beam and electrode
-// counts as infinite. Singular at h = 0: the switch ends a run before any gap gets there. Sources: H. C. Hamaker 1937, Physica
-// 4, 1058; the 12-6 potential summed over half spaces: J. N. Israelachvili 2011, Intermolecular and Surface Forces, ch. 11 and
-// 13.
+// counts as infinite. Singular at h = 0: the switch ends a run before any gap vanishes. Sources: H. C. Hamaker 1937, Physica 4,
+// 1058; the 12-6 potential summed over half spaces: J. N. Israelachvili 2011, Intermolecular and Surface Forces, ch. 11 and 13.
 #pragma once
 
 #include "model/constants.h"
 
 namespace softland {
 
-/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
+/// The van der Waals law. `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
 template <class P>
 struct VanDerWaalsOf {
-  P hamaker_constant = 0;      ///< A [J]
-  P equilibrium_distance = 0;  ///< h0 [m]
+  P hamaker_constant = 0;      ///< Hamaker constant [J]
+  P equilibrium_distance = 0;  ///< gap at which attraction and repulsion balance [m]; 0: no repulsion
 
   template <class S>
   S pressure(S h) const {

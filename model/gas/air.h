@@ -19,18 +19,18 @@
 
 namespace softland {
 
-inline constexpr double gas_constant_of_air = 287;  ///< R_g [J/(kg K)]
+inline constexpr double gas_constant_of_air = 287;  ///< specific gas constant of air [J/(kg K)]
 
 [[nodiscard]] inline double air_viscosity(double temperature) {
   constexpr double beta = 1.458e-6, sutherland = 110.4;
   return beta * temperature * std::sqrt(temperature) / (temperature + sutherland);
 }
 
-/// Returns the viscosity mu [Pa s]: the given value, or that of air.
+/// Returns the viscosity of the gas [Pa s]: the given value, or that of air.
 [[nodiscard]] inline double viscosity(const FilmState& gas) {
   return std::isnan(gas.viscosity) ? air_viscosity(gas.temperature) : gas.viscosity;
 }
-/// Returns the mean free path lambda [m]: the given value, or that from viscosity, pressure and temperature.
+/// Returns the mean free path of the gas [m]: the given value, or that from viscosity, pressure and temperature.
 [[nodiscard]] inline double mean_free_path(const FilmState& gas) {
   if (!std::isnan(gas.mean_free_path)) return gas.mean_free_path;
   return viscosity(gas) / gas.pressure * std::sqrt(pi * gas_constant_of_air * gas.temperature / 2);

@@ -1,4 +1,4 @@
-// The common part of the laws of a gas film: state of the gas, input of a law, its limits, and their fields in a scene.
+// The common part of the laws of a gas film: state of the gas, input of a law, limits of a law, and keys of a scene for them.
 #pragma once
 
 #include <array>
@@ -9,31 +9,32 @@
 
 namespace softland {
 
-/// The state of the gas; see model/gas/air.h for the defaults of numbers that are not given.
+/// The state of the gas around the beam; see model/gas/air.h for the defaults of numbers that are not given.
 struct FilmState {
-  double viscosity = not_given;       ///< mu [Pa s]
-  double pressure = 101325;           ///< p, ambient [Pa]
-  double temperature = 300;           ///< T [K]
-  double mean_free_path = not_given;  ///< lambda [m]
+  double viscosity = not_given;       ///< viscosity of the gas [Pa s]; not given: that of air
+  double pressure = 101325;           ///< ambient pressure [Pa]
+  double temperature = 300;           ///< temperature of the gas [K]
+  double mean_free_path = not_given;  ///< mean free path of the gas [m]
 };
 
 /// The numbers from which a gas law is made.
 struct Film {
-  double width, thickness;  ///< size of the moving part [m]
+  double width, thickness;  ///< width and thickness of the moving part [m]
   double viscosity;         ///< viscosity of the gas, reduced by the flow through the open ends of a film [Pa s]
-  double mean_free_path;    ///< [m]
-  double unit_quality;      ///< damping per length that gives the first mode a quality factor of one [N s/m^2]
+  double mean_free_path;    ///< mean free path of the gas [m]
+  double unit_quality;      ///< damping per length at which the first mode has a quality factor of one [N s/m^2]
 };
 
-/// Largest squeeze number at which a strip film counts as incompressible; its cut-off is at pi^2.
+/// Largest squeeze number at which the gas film under a strip counts as incompressible; the film's cut-off is at pi^2.
 inline constexpr double incompressible = 10;
 
 /// The range in which a gas law is valid.
 struct FilmLimits {
   double least_knudsen = 0;
   double most_knudsen = std::numeric_limits<double>::infinity();
-  double most_squeeze = std::numeric_limits<double>::infinity();  ///< largest squeeze number 12 mu a^2 omega / (p h^2)
-  bool needs_thickness = false;                                   ///< true when the law needs the thickness of the moving part
+  /// Largest squeeze number 12 mu a^2 omega / (p h^2) of the film.
+  double most_squeeze = std::numeric_limits<double>::infinity();
+  bool needs_thickness = false;  ///< true when the law needs the thickness of the moving part
 };
 
 // clang-format off
@@ -47,12 +48,12 @@ template <class Law>
       {.key = "mean_free_path", .unit = "m", .about = "absent: from viscosity, pressure and temperature", .in = reach<Law, &Law::film, &FilmState::mean_free_path>, .range = {.least = 0, .most = 1e9, .least_open = true}, .such_as = "65 nm"},
   });
 }
-/// Returns the scene-file key of the length of a single film with open ends.
+/// Returns the scene-file key of the length of a single gas film with open ends.
 template <class Law>
 [[nodiscard]] consteval auto end_fields() {
   return std::to_array<Field<Law>>({{.key = "film_length", .unit = "m", .about = "of one film whose ends are open; absent: much longer than wide", .in = reach<Law, &Law::film_length>, .such_as = "100 um"}});
 }
-/// Returns the scene-file key of the rest thickness of a second film, on the far side.
+/// Returns the scene-file key of the thickness at rest of a second gas film, on the far side.
 template <class Law>
 [[nodiscard]] consteval auto far_fields() {
   return std::to_array<Field<Law>>({{.key = "far_gap", .unit = "m", .about = "rest thickness of a second film on the far side; absent: none", .in = reach<Law, &Law::far_gap>}});

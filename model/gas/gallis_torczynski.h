@@ -3,26 +3,27 @@
 //   f = -mu (a / h)^3 [1 + 6 Z (h/a) + 12 E (h/a)^2] / (1 + 6 X Kn) v,   Kn = lambda / h    [N/m], positive towards the electrode
 //   X = (1 + 8.834 Kn) / (1 + 5.118 Kn),  Z = (0.634 + 1.572 Kn) / (1 + 0.537 Kn),  E = (0.445 + 11.20 Kn) / (1 + 5.510 Kn)
 //
-// mu is the viscosity [Pa s], a the width [m], h the local gap [m], lambda the mean free path [m], v the velocity towards the
-// electrode [m/s]. X describes slip at the walls, Z and E pressure and flow at the edges, fitted to direct simulation Monte
-// Carlo with full accommodation. Incompressible: valid for squeeze numbers 12 mu a^2 omega / (p h^2) below about 10. The limit
-// Kn -> 0 and h/a -> 0 is the strip film. Singular at h = 0. Source: Gallis & Torczynski, J. Microelectromech. Syst. 13 (2004)
-// 653, eqs. 16-18.
+// f is the force per length, mu the viscosity [Pa s], a the width [m], h the local gap [m], lambda the mean free path [m], v
+// the velocity towards the electrode [m/s]. X describes slip at the walls, Z and E pressure and flow at the edges, fitted to
+// direct simulation Monte Carlo with full accommodation. Incompressible: valid for squeeze numbers 12 mu a^2 omega / (p h^2)
+// below about 10. The limit Kn -> 0 and h/a -> 0 is the strip film. Singular at h = 0. Source: Gallis & Torczynski, J.
+// Microelectromech. Syst. 13 (2004) 653, eqs. 16-18.
 #pragma once
 
 #include "model/gas/film.h"
 
 namespace softland {
 
-/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
+/// The law of the gas film. `P` is the scalar type of the parameters; the scalar type of the state must be constructible from
+/// P.
 template <class P>
 struct GallisTorczynskiFilmOf {
-  P viscosity = 0;       ///< [Pa s]
-  P mean_free_path = 0;  ///< [m]
-  P width = 0;           ///< [m]
+  P viscosity = 0;       ///< viscosity of the gas [Pa s]
+  P mean_free_path = 0;  ///< mean free path of the gas [m]
+  P width = 0;           ///< width of the beam [m]
   static constexpr bool drive_depends = false;
 
-  /// Returns the load [N/m].
+  /// Returns the load of the gas film on the beam [N/m].
   template <class S>
   S load(S gap, S velocity) const {
     const S kn = S(mean_free_path) / gap, x = gap / S(width);
@@ -34,7 +35,7 @@ struct GallisTorczynskiFilmOf {
 };
 using GallisTorczynskiFilm = GallisTorczynskiFilmOf<double>;
 
-/// The parameters of the law in a scene.
+/// The parameters of the gas law of Gallis and Torczynski in a scene.
 struct GallisTorczynskiGas {
   static constexpr std::string_view name = "gallis-torczynski";
   static constexpr FilmLimits limits{.most_squeeze = incompressible};

@@ -26,7 +26,7 @@ using Gas = std::variant<StripGas, StripSlitGas, VeijolaGas, GallisTorczynskiGas
       },
       gas);
 }
-/// Returns the rest thickness of a second gas film, on the far side [m]; NaN without a second film.
+/// Returns the thickness at rest of a second gas film, on the far side [m]; NaN without a second film.
 [[nodiscard]] inline double far_gap(const Gas& gas) {
   return std::visit(
       [](const auto& law) {

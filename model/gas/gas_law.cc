@@ -36,7 +36,8 @@ double squeeze_number(const FilmState& gas, double width, double gap, double rat
 
 namespace {
 
-// Returns the gap at which a film's law is evaluated: on the face of a dielectric at least a hundredth of the rest gap.
+// Returns the gap at which a film's law is evaluated: for a beam on the face of a dielectric at least a hundredth of the gap at
+// rest.
 double gap_of_film(const Device& device, double gap) {
   return device.lands_on_dielectric() ? std::max(gap, device.gap.electrode / 100) : gap;
 }

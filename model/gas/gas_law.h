@@ -1,4 +1,4 @@
-// The gas laws as one type, and the limits of each law.
+// The gas laws as one type, and the range in which each law is valid.
 #pragma once
 
 #include <cmath>
@@ -26,8 +26,8 @@ struct GasLaw : internal::LawsOf<Gas>::Type {
   using variant::variant;
 };
 
-/// Returns the damping of a rectangular film over that of a strip of the same length with closed ends; `ratio` is width over
-/// length.
+/// Returns the damping of a rectangular gas film over that of a strip of the same length with closed ends; `ratio` is width
+/// over length.
 ///   1 - (192 / pi^5) ratio sum over odd n of tanh(n pi / (2 ratio)) / n^5
 /// The share is 1 - 0.63 ratio for long films, 0.4217 for a square film. It follows from Poisson's equation of the
 /// incompressible film on a rectangle (Griffin, Richardson & Yamanami, J. Basic Eng. 88 (1966) 451; the series is that of
@@ -39,16 +39,17 @@ struct GasLaw : internal::LawsOf<Gas>::Type {
 [[nodiscard]] GasLaw gas_law(const Gas& gas, const Structure& structure, double unit_quality);
 [[nodiscard]] GasLaw gas_law(const Gas& gas, double width, double thickness, double unit_quality);
 
-/// Returns the damping per length c at this gap [N s/m^2]; the force per length is -c v.
+/// Returns the damping per length of a gas law at this gap [N s/m^2]; the force per length is minus damping times velocity.
 [[nodiscard]] inline double damping_per_length(const GasLaw& law, double gap) {
   return std::visit([&](const auto& l) { return -l.load(gap, 1.0); }, law);
 }
 
-/// Returns the squeeze number 12 mu a^2 rate / (p h^2) for the relative rate [1/s] at which the gap h [m] changes.
+/// Returns the squeeze number 12 mu a^2 rate / (p h^2) of a gas film for the relative rate [1/s] at which the gap h [m]
+/// changes.
 [[nodiscard]] double squeeze_number(const FilmState& gas, double width, double gap, double rate);
 
-/// Returns the squeeze number at the contact point, with the relative rate |v| / h of the gap; 0 when the device's gas law has
-/// no limit for squeeze numbers.
+/// Returns the squeeze number of the gas film at the contact point, with the relative rate |v| / h of the gap; 0 when the
+/// device's gas law has no limit for squeeze numbers.
 [[nodiscard]] double squeeze_number(const Device& device, double rest_gap, const TrajectoryPoint& point);
 
 /// Returns one line per limit of the gas law that a closing exceeded, with law, limit and value. The range of Knudsen numbers

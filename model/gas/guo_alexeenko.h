@@ -3,11 +3,11 @@
 //   f = -A b (a/h)^c / (1 + B (a/h)^d (lambda/a)^e) v                                     [N/m], positive towards the electrode
 //   A = 10.39 kg/(m^2 s),  B = 1.374,  c = 3.100,  d = 1.825,  e = 0.966
 //
-// a is the width [m], b the beam thickness [m], h the local gap [m], lambda the mean free path [m], v the velocity towards the
-// electrode [m/s]. It is a fit to one type of device (nickel beams about 4 um thick and 120 um wide, gaps of micrometres, air):
-// the viscosity does not enter and the thickness does. Compared with Gallis & Torczynski the force is about twice as strong at
-// 3.5 um and a tenth as strong at 0.1 um. Singular at h = 0. Source: Guo & Alexeenko, J. Micromech. Microeng. 19 (2009) 045026,
-// as coded in Purdue PUQ 2.2.
+// f is the force per length, a the width [m], b the beam thickness [m], h the local gap [m], lambda the mean free path [m], v
+// the velocity towards the electrode [m/s]. It is a fit to one type of device (nickel beams about 4 um thick and 120 um wide,
+// gaps of micrometres, air): the viscosity does not enter and the thickness does. Compared with Gallis & Torczynski the force
+// is about twice as strong at 3.5 um and a tenth as strong at 0.1 um. Singular at h = 0. Source: Guo & Alexeenko, J. Micromech.
+// Microeng. 19 (2009) 045026, as coded in Purdue PUQ 2.2.
 #pragma once
 
 #include <cmath>
@@ -18,17 +18,19 @@
 
 namespace softland {
 
-/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
+/// The law of the gas film. `P` is the scalar type of the parameters; the scalar type of the state must be constructible from
+/// P.
 template <class P>
 struct GuoAlexeenkoFilmOf {
-  P mean_free_path = 0;                                              ///< [m]
-  P width = 0;                                                       ///< [m]
-  P thickness = 0;                                                   ///< [m]
-  P strength = 10.39 * thickness;                                    // A b [N s/m^2]
-  P rarefaction = P(1.374) * raised(mean_free_path / width, 0.966);  // B (lambda/a)^e
+  P mean_free_path = 0;            ///< mean free path of the gas [m]
+  P width = 0;                     ///< width of the beam [m]
+  P thickness = 0;                 ///< thickness of the beam [m]
+  P strength = 10.39 * thickness;  // factor of the damping, which depends on the thickness alone [N s/m^2]
+  // Factor of the rarefaction term, without its dependence on the gap.
+  P rarefaction = P(1.374) * raised(mean_free_path / width, 0.966);
   static constexpr bool drive_depends = false;
 
-  /// Returns the load [N/m].
+  /// Returns the load of the gas film on the beam [N/m].
   template <class S>
   S load(S gap, S velocity) const {
     const S ratio = S(width) / gap;
@@ -36,7 +38,7 @@ struct GuoAlexeenkoFilmOf {
   }
 
  private:
-  /// Calls the library's pow for doubles, so that their results stay the same to the last bit.
+  /// Calls the standard library's pow for doubles, so that their results stay the same to the last bit.
   static P raised(const P& x, double exponent) {
     if constexpr (std::same_as<P, double>) {
       return std::pow(x, exponent);
@@ -47,7 +49,7 @@ struct GuoAlexeenkoFilmOf {
 };
 using GuoAlexeenkoFilm = GuoAlexeenkoFilmOf<double>;
 
-/// The parameters of the law in a scene.
+/// The parameters of the gas law of Guo and Alexeenko in a scene.
 struct GuoAlexeenkoGas {
   static constexpr std::string_view name = "guo-alexeenko";
   static constexpr FilmLimits limits{.needs_thickness = true};

@@ -1,4 +1,4 @@
-// Damping that does not depend on the gap, as in a lumped model or from a measured quality factor.
+// Damping of the beam that does not depend on the gap, as in a lumped model or from a measured quality factor.
 //
 //   f = -c v                                                                              [N/m], positive towards the electrode
 //   c = omega_1 / (Q integral of phi_1^2 dx)                                              where a quality factor is given
@@ -14,13 +14,13 @@
 
 namespace softland {
 
-/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
+/// The damping law. `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
 template <class P>
 struct LinearDamperOf {
-  P damping = 0;  ///< c [N s/m^2]
+  P damping = 0;  ///< damping per length of the beam [N s/m^2]
   static constexpr bool drive_depends = false;
 
-  /// Returns the load [N/m].
+  /// Returns the damping load on the beam [N/m].
   template <class S>
   S load(S /*gap*/, S velocity) const {
     return S(-damping) * velocity;
@@ -28,7 +28,7 @@ struct LinearDamperOf {
 };
 using LinearDamper = LinearDamperOf<double>;
 
-/// The parameters of the law in a scene: either the damping or the quality factor.
+/// The parameters of the gap-independent damping in a scene: either the damping or the quality factor.
 struct LinearGas {
   static constexpr std::string_view name = "linear";
   double damping = not_given, quality_factor = not_given;

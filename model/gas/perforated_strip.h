@@ -24,10 +24,10 @@
 namespace softland {
 
 struct PerforatedStripFilm {
-  double viscosity = 0;  ///< [Pa s]
-  double width = 0;      ///< width with the holes [m]
-  double through = 0;    ///< flow resistance R of the holes [Pa s/m]
-  double around = 0;     ///< h^3 times the flow resistance R of the film around a hole [Pa s m^2]
+  double viscosity = 0;  ///< viscosity of the gas [Pa s]
+  double width = 0;      ///< width of the strip with its holes [m]
+  double through = 0;    ///< flow resistance of the holes: mean pressure over velocity [Pa s/m]
+  double around = 0;     ///< flow resistance of the film around a hole, times the cube of the gap [Pa s m^2]
   static constexpr bool drive_depends = false;
 
   PerforatedStripFilm(double mu, double a, double thickness, const Holes& holes) : viscosity(mu), width(a) {
@@ -36,14 +36,14 @@ struct PerforatedStripFilm {
     around = 12 * mu * cell * cell * (-std::log(b) / 2 - 3.0 / 8 + b * b / 2 - std::pow(b, 4) / 8);
   }
 
-  /// Returns the load [N/m].
+  /// Returns the load of the gas film on the strip [N/m].
   template <class S>
   S load(S gap, S velocity) const {
     using std::exp;
     using std::sqrt;
     const S cube = gap * gap * gap, resistance = S(through) + S(around) / cube;
     const S x = S(width / 2) / sqrt(cube * resistance / S(12 * viscosity));
-    constexpr double wide = 25;  // exp(-2 x) is below the rounding of load and slopes for larger x
+    constexpr double wide = 25;  // larger x count as infinite: exp(-2 x) is below the rounding of load and slopes
     const S decayed = select(
         x < wide, [&] { return S(exp(S(-2) * x)); }, [] { return S(0); });
     return -resistance * S(width) * (S(1) - (S(1) - decayed) / ((S(1) + decayed) * x)) * velocity;

@@ -8,7 +8,7 @@
 namespace softland {
 namespace {
 
-constexpr int degree = 2 * internal::StripNodes::count;  // degree of the polynomials across the whole width
+constexpr int degree = 2 * internal::StripNodes::count;  // degree of the pressure polynomials across the whole width
 
 double legendre(double x) {
   double before = 1, last = x;
@@ -20,8 +20,8 @@ double legendre(double x) {
   return last;
 }
 
-// Returns the Gauss-Lobatto points on [-1, 1] in rising order: both ends, and the zeros of P'_degree, which are the eigenvalues
-// of a Jacobi matrix.
+// Returns the Gauss-Lobatto points on [-1, 1] in rising order: both ends, and the zeros of the derivative of the Legendre
+// polynomial, which are the eigenvalues of a Jacobi matrix.
 Eigen::VectorXd lobatto_points() {
   constexpr int inner = degree - 1;
   Eigen::VectorXd off(inner - 1);
@@ -31,7 +31,7 @@ Eigen::VectorXd lobatto_points() {
   return points;
 }
 
-// Returns the free energy per volume, over pa, of an isothermal gas at the pressure pa (1 + p).
+// Returns the free energy per volume, over the ambient pressure pa, of an isothermal gas at the pressure pa (1 + p).
 double free_energy(double p) { return (1 + p) * std::log1p(p) - p; }
 
 }  // namespace
@@ -50,7 +50,7 @@ StripNodes strip_nodes() {
     for (int j = 0; j <= degree; ++j) {
       if (i != j) slope(i, j) = at[i] / (at[j] * (x[i] - x[j]));
     }
-    slope(i, i) = -slope.row(i).sum();  // a constant has no slope
+    slope(i, i) = -slope.row(i).sum();  // the slope of a constant is 0
   }
   constexpr int count = StripNodes::count;
   Eigen::MatrixXd unfold = Eigen::MatrixXd::Zero(degree + 1, count);

@@ -32,23 +32,27 @@ namespace softland {
 
 namespace internal {
 
-/// Points across a strip, from the middle to the last one inside the edge; each also represents its mirror image.
+/// Points across a strip at which the pressure is a state, from the middle to the last point inside the edge; each also
+/// represents its mirror image.
 struct StripNodes {
   static constexpr int count = 4;
-  Eigen::Matrix<double, count, 1> weights;       ///< weights over both halves, in units of a/2
-  Eigen::Matrix<double, count, count> exchange;  ///< flow into every node per P + P^2/2 of each node, for unit diffusion
+  /// Quadrature weights of the points over both halves of the strip, in units of half the width.
+  Eigen::Matrix<double, count, 1> weights;
+  /// Flow into every point per P + P^2/2 of each point, P relative pressure, for unit diffusion.
+  Eigen::Matrix<double, count, count> exchange;
 };
 [[nodiscard]] StripNodes strip_nodes();
 
 }  // namespace internal
 
-/// The film of one station, over the scalar P of its parameters; the scalar S of gap, velocity and pressures can be made of P.
+/// The gas film at one station (point along the beam), over the scalar P of its parameters; the scalar S of gap, velocity and
+/// pressures must be constructible from P.
 template <class P>
 class ReynoldsStationOf {
  public:
   static constexpr int nodes = internal::StripNodes::count;
 
-  /// Takes ambient pressure [Pa], viscosity [Pa s], mean free path [m], width [m].
+  /// Takes ambient pressure [Pa], viscosity [Pa s], mean free path [m], width of the beam [m].
   ReynoldsStationOf(P pressure, P viscosity, P mean_free_path, P width)
       : nodes_(internal::strip_nodes()),
         ambient_(pressure),
@@ -58,19 +62,20 @@ class ReynoldsStationOf {
     for (int i = 0; i < nodes; ++i) load_by_film_[static_cast<std::size_t>(i)] = -ambient_ * half_width_ * P(nodes_.weights[i]);
   }
 
-  /// Adds the load f of the film: load += f [N/m].
+  /// Adds the load of the gas film on the beam to `load` [N/m].
   template <class S>
   void add_load(const S* film, S& load) const {
     for (std::size_t i = 0; i < nodes; ++i) load = load + S(load_by_film_[i]) * film[i];
   }
-  /// Computes the rates dP/dt of the film's relative pressures P [1/s].
+  /// Computes the rates of the film's relative pressures (pressure / ambient - 1) [1/s].
   template <class S>
   void rates(const S& gap, const S& velocity, const S* film, S* result) const {
     const S squeezing = velocity / gap, mixing = diffusion(gap);
     flow(film, result);
     for (int i = 0; i < nodes; ++i) result[i] = (S(1) + film[i]) * squeezing + mixing * result[i];
   }
-  /// Computes the flow into every node for a unit diffusion coefficient: the matrix `exchange` times (P + P^2/2).
+  /// Computes the flow into every point across the width for a unit diffusion coefficient: the matrix `exchange` times (P +
+  /// P^2/2), P relative pressure.
   template <class S>
   void flow(const S* film, S* result) const {
     std::array<S, nodes> half_squares;
@@ -83,7 +88,8 @@ class ReynoldsStationOf {
       result[i] = sum;
     }
   }
-  /// Returns the diffusion rate of the pressure across the half width, pa (h^2 + 6 lambda h)/(12 mu (a/2)^2) [1/s].
+  /// Returns the diffusion rate of the pressure across half the width a: pa (h^2 + 6 lambda h)/(12 mu (a/2)^2), with ambient
+  /// pressure pa, gap h, mean free path lambda, viscosity mu [1/s].
   template <class S>
   [[nodiscard]] S diffusion(const S& gap) const {
     return S(diffusion_) * gap * (gap + S(slip_));
@@ -91,9 +97,9 @@ class ReynoldsStationOf {
 
   [[nodiscard]] const P& ambient() const { return ambient_; }
   [[nodiscard]] const P& half_width() const { return half_width_; }
-  /// Returns the weights of the nodes, over both halves, in units of a/2.
+  /// Returns the quadrature weights of the points across the width, over both halves, in units of half the width.
   [[nodiscard]] const Eigen::Matrix<double, nodes, 1>& weights() const { return nodes_.weights; }
-  /// Returns the derivatives of the load f by the relative pressures P at the nodes [N/m].
+  /// Returns the derivatives of the film's load on the beam by the relative pressures at the points across the width [N/m].
   [[nodiscard]] const std::array<P, nodes>& load_by_film() const { return load_by_film_; }
 
  private:
@@ -105,33 +111,35 @@ class ReynoldsStationOf {
 class ReynoldsFilm {
  public:
   using Station = ReynoldsStationOf<double>;
-  static constexpr int nodes = Station::nodes;  ///< number of pressures per station
+  static constexpr int nodes = Station::nodes;  ///< number of pressures across the width at each station along the beam
 
-  /// `stations` is the number of points of the beam, in order; gaps below `floor` [m] count as `floor`.
+  /// `stations` is the number of points along the beam at which the film is computed, in order; gaps below `floor` [m] count as
+  /// `floor`.
   ReynoldsFilm(const FilmState& gas, double width, Eigen::Index stations, double floor);
 
-  /// Returns the number of pressure states: P at the nodes of the first station, of the second, ...
+  /// Returns the number of pressure states: relative pressures at the points across the width of the first station, of the
+  /// second, ...
   [[nodiscard]] std::size_t states() const { return static_cast<std::size_t>(stations_) * nodes; }
-  /// Adds the load of the film at the stations: load += f [N/m].
+  /// Adds the load of the gas film on the beam at every station to `load` [N/m].
   void add_load(const double* film, double* load) const;
-  /// Computes the rates dP/dt of all relative pressures P [1/s].
+  /// Computes the rates of the relative pressures (pressure / ambient - 1) at all stations [1/s].
   void rates(const GapField& field, const double* film, double* result) const;
-  /// The derivatives of the rates dP/dt of one station by gap [1/(m s)], by velocity [1/m] and by its P [1/s], a row for each
-  /// rate.
+  /// The derivatives of the pressure rates of one station by gap [1/(m s)], by velocity [1/m] and by its relative pressures
+  /// [1/s], a row for each rate.
   struct Derivatives {
     Eigen::Matrix<double, nodes, 1> by_gap, by_velocity;
     Eigen::Matrix<double, nodes, nodes> by_film;
   };
   [[nodiscard]] Derivatives derivatives(double gap, double velocity, const double* film) const;
-  /// Returns the derivatives of the load f by the relative pressures P [N/m], the same at every station.
+  /// Returns the derivatives of the film's load on the beam by the relative pressures [N/m], equal at every station.
   [[nodiscard]] Eigen::Matrix<double, nodes, 1> load_by_film() const {
     return Eigen::Map<const Eigen::Matrix<double, nodes, 1>>(station_.load_by_film().data());
   }
-  /// Returns the integral of the free energy U over stations with these weights [J].
+  /// Returns the integral of the gas's free energy over stations along the beam with these weights [J].
   [[nodiscard]] double energy(const GapField& field, const Eigen::ArrayXd& weights, const double* film) const;
-  /// Returns the integral of the dissipation D over stations with these weights [W].
+  /// Returns the integral of the power that the film dissipates over stations along the beam with these weights [W].
   [[nodiscard]] double dissipated_power(const GapField& field, const Eigen::ArrayXd& weights, const double* film) const;
-  /// Returns the ambient pressure [Pa].
+  /// Returns the ambient pressure of the gas [Pa].
   [[nodiscard]] double ambient() const { return station_.ambient(); }
 
  private:

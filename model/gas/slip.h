@@ -12,15 +12,16 @@
 
 namespace softland {
 
-/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
+/// The law of the gas film with slip. `P` is the scalar type of the parameters; the scalar type of the state must be
+/// constructible from P.
 template <class P>
 struct SlipFilmOf {
-  P viscosity = 0;       ///< [Pa s]
-  P mean_free_path = 0;  ///< [m]
-  P width = 0;           ///< [m]
+  P viscosity = 0;       ///< viscosity of the gas [Pa s]
+  P mean_free_path = 0;  ///< mean free path of the gas [m]
+  P width = 0;           ///< width of the beam [m]
   static constexpr bool drive_depends = false;
 
-  /// Returns the load [N/m].
+  /// Returns the load of the gas film on the beam [N/m].
   template <class S>
   S load(S gap, S velocity) const {
     return S(-viscosity * width * width * width) * velocity / (gap * gap * (gap + S(6 * mean_free_path)));
@@ -28,7 +29,8 @@ struct SlipFilmOf {
 };
 using SlipFilm = SlipFilmOf<double>;
 
-/// The parameters of the compressible film in a scene. The slip film of this file is its limit: see reynolds_film.h.
+/// The parameters of the compressible gas film in a scene. The slip film of this file is its limit for slow motion: see
+/// reynolds_film.h.
 struct ReynoldsGas {
   static constexpr std::string_view name = "reynolds";
   static constexpr FilmLimits limits{.most_knudsen = 0.1, .most_squeeze = 1000};

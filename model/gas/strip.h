@@ -4,7 +4,7 @@
 //
 // mu is the viscosity [Pa s], a the width [m], h the local gap [m], v the velocity towards the electrode [m/s]: the film always
 // opposes the motion. Valid for squeeze numbers 12 mu a^2 omega / (p h^2) below about 10, gaps well above the mean free path
-// (65 nm in air), strips much longer than wide. Singular at h = 0: the switch ends a run before any gap gets there. Source:
+// (65 nm in air), strips much longer than wide. Singular at h = 0: the switch ends a run before any gap vanishes. Source:
 // Bognash 2019, eq. 2.8; textbook limit of the Reynolds equation.
 #pragma once
 
@@ -12,20 +12,21 @@
 
 namespace softland {
 
-/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
+/// The law of the gas film. `P` is the scalar type of the parameters; the scalar type of the state must be constructible from
+/// P.
 template <class P>
 struct StripSqueezeFilmOf {
-  P viscosity = 0;  ///< [Pa s]
-  P width = 0;      ///< [m]
+  P viscosity = 0;  ///< viscosity of the gas [Pa s]
+  P width = 0;      ///< width of the beam [m]
   P mu_a3 = viscosity * width * width * width;
   static constexpr bool drive_depends = false;
 
-  /// Returns the load [N/m].
+  /// Returns the load of the gas film on the beam [N/m].
   template <class S>
   S load(S gap, S velocity) const {
     return S(-mu_a3) * velocity / (gap * gap * gap);
   }
-  /// Returns the load [N/m] from `root` = h^(-1/4) [m^(-1/4)].
+  /// Returns the load of the gas film [N/m] from `root` = h^(-1/4) of the gap h [m^(-1/4)].
   template <class S>
   [[gnu::always_inline]] S load_by_root(S root, S velocity) const {
     const S square = root * root, inverse = square * square;
@@ -34,7 +35,7 @@ struct StripSqueezeFilmOf {
 };
 using StripSqueezeFilm = StripSqueezeFilmOf<double>;
 
-/// The parameters of the law in a scene.
+/// The parameters of the strip film in a scene.
 struct StripGas {
   static constexpr std::string_view name = "strip";
   static constexpr FilmLimits limits{.most_knudsen = 0.1, .most_squeeze = incompressible};

@@ -1,4 +1,4 @@
-// Squeezed gas film between two walls that stand on a substrate: one long edge is open; at the other the gas can only leave
+// Squeezed gas film between two vertical walls on a substrate: one long edge is open; at the other the gas can only leave
 // through a slit under the moving wall. The fingers of gap-closing actuators etched from the device layer of a
 // silicon-on-insulator wafer move in this way.
 //
@@ -17,18 +17,20 @@
 
 namespace softland {
 
-/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
+/// The law of the gas film. `P` is the scalar type of the parameters; the scalar type of the state must be constructible from
+/// P.
 template <class P>
 struct StripOverSlitOf {
-  P viscosity = 0;    ///< [Pa s]
-  P width = 0;        ///< [m]
-  P slit_height = 0;  ///< [m]
-  P slit_length = 0;  ///< [m]
+  P viscosity = 0;    ///< viscosity of the gas [Pa s]
+  P width = 0;        ///< width of the film, the height of the wall [m]
+  P slit_height = 0;  ///< height of the slit under the wall [m]
+  P slit_length = 0;  ///< length of the slit, up to ambient pressure [m]
   P mu_a3 = viscosity * width * width * width;
-  P passing = width * slit_height * slit_height * slit_height / slit_length;  ///< r h^3 [m^3]
+  /// Flow through the slit over flow through the film, times the cube of the gap [m^3].
+  P passing = width * slit_height * slit_height * slit_height / slit_length;
   static constexpr bool drive_depends = false;
 
-  /// Returns the load [N/m].
+  /// Returns the load of the gas film on the wall [N/m].
   template <class S>
   S load(S gap, S velocity) const {
     const S cube = gap * gap * gap;
@@ -37,7 +39,7 @@ struct StripOverSlitOf {
 };
 using StripOverSlit = StripOverSlitOf<double>;
 
-/// The parameters of the law in a scene.
+/// The parameters of the film over a slit in a scene.
 struct StripSlitGas {
   static constexpr std::string_view name = "strip-slit";
   static constexpr FilmLimits limits{.most_knudsen = 0.1, .most_squeeze = incompressible};

@@ -14,16 +14,17 @@
 
 namespace softland {
 
-/// `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
+/// The law of the gas film. `P` is the scalar type of the parameters; the scalar type of the state must be constructible from
+/// P.
 template <class P>
 struct VeijolaFilmOf {
-  P viscosity = 0;       ///< [Pa s]
-  P mean_free_path = 0;  ///< [m]
-  P width = 0;           ///< [m]
+  P viscosity = 0;       ///< viscosity of the gas [Pa s]
+  P mean_free_path = 0;  ///< mean free path of the gas [m]
+  P width = 0;           ///< width of the beam [m]
   P mu_a3 = viscosity * width * width * width;
   static constexpr bool drive_depends = false;
 
-  /// Returns the load [N/m].
+  /// Returns the load of the gas film on the beam [N/m].
   template <class S>
   S load(S gap, S velocity) const {
     return S(-mu_a3) * velocity / (gap * gap * gap * (S(1) + S(9.638) * power(S(mean_free_path) / gap, 1.159)));
@@ -31,7 +32,7 @@ struct VeijolaFilmOf {
 };
 using VeijolaFilm = VeijolaFilmOf<double>;
 
-/// The parameters of the law in a scene.
+/// The parameters of the gas law of Veijola in a scene.
 struct VeijolaGas {
   static constexpr std::string_view name = "veijola";
   static constexpr FilmLimits limits{.most_knudsen = 880, .most_squeeze = incompressible};

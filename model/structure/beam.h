@@ -14,16 +14,16 @@
 
 namespace softland {
 
-/// The numbers of beams of both kinds, besides length, width and thickness.
+/// The numbers of a cantilever or a beam between two clamps, besides length, width and thickness.
 struct Beam {
-  double youngs_modulus = 0;  ///< E [Pa], used as given without plate_strain
-  double density = 0;         ///< rho [kg/m^3]
-  bool plate_strain = false;  ///< true to use E / (1 - nu^2)
+  double youngs_modulus = 0;  ///< Young's modulus E [Pa], used as given without plate_strain
+  double density = 0;         ///< density of the beam [kg/m^3]
+  bool plate_strain = false;  ///< true to bend with E / (1 - nu^2), nu Poisson's ratio
   double poissons_ratio = not_given;
-  std::vector<SectionPart> sections = {};  ///< sections from x = 0 on; empty for a uniform beam
+  std::vector<SectionPart> sections = {};  ///< sections of the beam from x = 0 on; empty for a uniform beam
   std::vector<LayerPart> layers = {};      ///< layers on the faces of the beam
-  std::optional<Anchor> anchor = {};       ///< anchor at x = 0; a rigid clamp when absent
-  std::optional<Anchor> far_anchor = {};   ///< anchor at the far end; a free end or a clamp, by kind, when absent
+  std::optional<Anchor> anchor = {};       ///< anchor of the beam at x = 0; a rigid clamp when absent
+  std::optional<Anchor> far_anchor = {};   ///< anchor of the beam at its far end; when absent a free end or a clamp, by kind
   std::optional<RestShape> rest_shape = {};
 
   /// Returns true when the beam has sections or layers.
@@ -72,8 +72,8 @@ struct Beam {
 struct Cantilever : Beam {
   static constexpr std::string_view name = "cantilever";
 
-  double stress_gradient = 0;  ///< gradient of the stress over the thickness: positive curls the free end away from the near
-                               ///< electrode [Pa/m]
+  /// Gradient of the residual stress over the thickness [Pa/m]; positive: curls away from the near electrode.
+  double stress_gradient = 0;
 
   template <class S>
   static consteval auto fields() {
@@ -95,7 +95,7 @@ struct Cantilever : Beam {
     return stress_gradient < 0 ? rest_offset(device, device.structure.length) : 0;
   }
 
-  /// Returns true when no residual stress curls the beam.
+  /// Returns true when no residual stress curls the cantilever.
   [[nodiscard]] bool is_straight() const {
     return stress_gradient == 0 &&
            std::none_of(layers.begin(), layers.end(), [](const LayerPart& layer) { return layer.stress != 0; });
@@ -115,8 +115,8 @@ struct Bridge : Beam {
       "between two clamps the layer's axial force is not released: it would stretch or buckle the beam, and pull off its middle "
       "line; a layer needs a cantilever";
 
-  double residual_stress = 0;  ///< stress before the beam bends, positive in tension [Pa]
-  bool biaxial = false;        ///< true for the equal biaxial stress of a film, of which (1 - nu) remains
+  double residual_stress = 0;  ///< residual stress before the beam bends, positive in tension [Pa]
+  bool biaxial = false;        ///< true for the equal biaxial stress of a film, of which (1 - nu) remains, nu Poisson's ratio
   bool stretches = true;       ///< true when bending stretches the beam
 
   template <class S>

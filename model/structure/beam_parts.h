@@ -1,5 +1,5 @@
-// The parts of a beam: sections one after the other along it, layers on its faces, and compliant ends. They are plain numbers;
-// model/built_beam.h computes their effect on the beam.
+// The parts of a beam: sections one after the other along the beam, layers on its faces, and compliant ends. They are plain
+// numbers; model/built_beam.h computes their effect on the beam.
 #pragma once
 
 #include <cmath>
@@ -13,53 +13,55 @@ namespace softland {
 
 /// Square holes in a square pattern, their sides along and across the beam; no holes when the numbers are not given.
 struct Holes {
-  double pitch = not_given;  ///< distance from centre to centre [m]
-  double size = not_given;   ///< side of a hole [m]
+  double pitch = not_given;  ///< distance between the centres of neighbouring holes [m]
+  double size = not_given;   ///< side of a square hole [m]
 
   [[nodiscard]] bool exist() const { return size > 0; }
 };
 
-/// One section of a beam. A number that is not given is that of the structure.
+/// One section of a beam. A number that is not given is that of the whole structure.
 struct SectionPart {
-  double length = 0;                  ///< length along the beam [m]
-  double width = not_given;           ///< width at the section's start [m]
-  double end_width = not_given;       ///< width at the section's end, linear in between; by default `width` [m]
-  double thickness = not_given;       ///< [m]
-  double youngs_modulus = not_given;  ///< [Pa]
-  double density = not_given;         ///< [kg/m^3]
+  double length = 0;                  ///< length of the section along the beam [m]
+  double width = not_given;           ///< width of the beam at the section's start [m]
+  double end_width = not_given;       ///< width of the beam at the section's end, linear in between; by default `width` [m]
+  double thickness = not_given;       ///< thickness of the section [m]
+  double youngs_modulus = not_given;  ///< Young's modulus of the section [Pa]
+  double density = not_given;         ///< density of the section [kg/m^3]
   Holes holes = {};
 };
 
-/// A layer on one face of the beam, as wide as the beam. When several layers cover the same place of a face, later layers lie
+/// A layer on one face of the beam, as wide as the beam. When several layers cover the same part of a face, later layers lie
 /// outside.
 struct LayerPart {
-  Side face = Side::far;              ///< near or far
-  Place begin, end;                   ///< interval along the beam
-  double thickness = 0;               ///< [m]
-  double youngs_modulus = 0;          ///< [Pa]
-  double density = 0;                 ///< [kg/m^3]
-  double stress = 0;                  ///< stress along the beam before its release, positive in tension [Pa]
-  double poissons_ratio = not_given;  ///< needed with plate_strain
+  Side face = Side::far;              ///< face of the beam that carries the layer, near or far from the electrode
+  Place begin, end;                   ///< begin and end of the layer along the beam
+  double thickness = 0;               ///< thickness of the layer [m]
+  double youngs_modulus = 0;          ///< Young's modulus of the layer [Pa]
+  double density = 0;                 ///< density of the layer [kg/m^3]
+  double stress = 0;                  ///< stress in the layer along the beam before release, positive in tension [Pa]
+  double poissons_ratio = not_given;  ///< Poisson's ratio of the layer; needed with plate_strain
 };
 
-/// The rest shape of a released beam as a table: straight lines between heights at places along the beam.
+/// The shape of a released beam at rest as a table: straight lines between heights at positions along the beam.
 struct RestShape {
-  std::vector<Place> positions;  ///< positions, rising from 0 to the far end
-  std::vector<double> heights;   ///< heights over the straight shape, away from the near electrode, one per position [m]
+  std::vector<Place> positions;  ///< positions along the beam, rising from 0 to the far end
+  /// Heights of the beam at the positions over its straight shape, away from the near electrode [m].
+  std::vector<double> heights;
 
-  /// Returns the positions on a beam of this length [m].
+  /// Returns the positions of the table on a beam of this length [m].
   [[nodiscard]] std::vector<double> places(double length) const;
-  /// Returns the height at x [m]; beyond the last position the last line continues.
+  /// Returns the height of the beam at rest over its straight shape at x [m]; beyond the last position of the table the last
+  /// line continues.
   [[nodiscard]] double height(double x, double length) const;
-  /// Returns the least height of a beam of this length [m].
+  /// Returns the least height, over its straight shape, of a beam of this length at rest [m].
   [[nodiscard]] double lowest(double length) const;
 };
 
-/// Stiffnesses of the support at an end of a beam; infinite in a direction in which the end is rigid.
+/// Stiffnesses of the anchor at an end of a beam; infinite in a direction in which the end is rigid.
 struct Anchor {
   static constexpr double rigid = std::numeric_limits<double>::infinity();
-  double rotation = rigid;     ///< moment per rotation [N m/rad]
-  double translation = rigid;  ///< force per deflection [N/m]
+  double rotation = rigid;     ///< moment of the anchor per rotation of the beam's end [N m/rad]
+  double translation = rigid;  ///< force of the anchor per deflection of the beam's end [N/m]
 
   [[nodiscard]] bool is_clamp() const { return std::isinf(rotation) && std::isinf(translation); }
   [[nodiscard]] bool is_free() const { return rotation == 0 && translation == 0; }

@@ -1,4 +1,4 @@
-// A kind of structure is a struct with its numbers and
+// How to write a kind of structure (such as a beam or a plate): a kind is a struct with the numbers of the structure and
 //
 // - `static constexpr std::string_view name`, by which a scene names it
 // - `fields()`, consteval of a template argument S, an array of Field (base/field.h) of the Structure S: its keys.
@@ -39,7 +39,7 @@ namespace softland {
 /// The usual process variation of a key of [structure], for scenes that give none.
 struct UsualSpread {
   std::string_view key, cov;
-  bool has_default = false;  ///< true when the key also varies if a scene does not write the key
+  bool has_default = false;  ///< true when the key also varies in a scene that does not contain it
 };
 
 /// Returns the kind of a structure, which must be of type `Part` or derive from this type.

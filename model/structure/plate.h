@@ -22,25 +22,24 @@ namespace softland {
 
 class RigidPlate {
  public:
-  /// The single normalised mode of a rigid plate: 1 everywhere.
+  /// The single normalised mode shape of a rigid plate: 1 everywhere.
   struct FlatMode {
     [[nodiscard]] Eigen::VectorXd value(double) const { return Eigen::VectorXd::Ones(1); }
     [[nodiscard]] Eigen::VectorXd slope(double) const { return Eigen::VectorXd::Zero(1); }
-    /// A rigid plate that is held at its contact cannot move at all. The frequency of the free plate is used instead: a rebound
-    /// takes no longer than the plate's period.
+    /// Returns the inverse squared frequency of the held plate. A rigid plate that is held at its contact cannot move at all;
+    /// the frequency of the free plate is used instead: a rebound takes no longer than the plate's period.
     [[nodiscard]] double pinned_inverse_square(double, std::optional<double> = {}) const { return 1; }
   };
 
-  /// Takes length [m], moving mass [kg], stiffness [N/m].
+  /// Takes length [m], moving mass [kg], stiffness of all springs [N/m].
   RigidPlate(double length, double mass, double stiffness)
       : length_(length), scale_(1 / std::sqrt(mass)), frequency_scale_(std::sqrt(stiffness / mass)) {}
 
-  [[nodiscard]] Eigen::VectorXd angular_frequencies() const {
-    return Eigen::VectorXd::Constant(1, frequency_scale_);
-  }                                                                          ///< [rad/s]
-  [[nodiscard]] double length() const { return length_; }                    ///< [m]
-  [[nodiscard]] double scale() const { return scale_; }                      ///< phi [kg^(-1/2)]
-  [[nodiscard]] double frequency_scale() const { return frequency_scale_; }  ///< [rad/s]
+  /// Returns the angular frequency of the plate, its only mode [rad/s].
+  [[nodiscard]] Eigen::VectorXd angular_frequencies() const { return Eigen::VectorXd::Constant(1, frequency_scale_); }
+  [[nodiscard]] double length() const { return length_; }  ///< length along which loads act: area over width [m]
+  [[nodiscard]] double scale() const { return scale_; }    ///< mass-normalised mode shape, the same everywhere [kg^(-1/2)]
+  [[nodiscard]] double frequency_scale() const { return frequency_scale_; }  ///< angular frequency of the plate [rad/s]
   [[nodiscard]] const FlatMode* normalised() const { return &mode_; }
 
  private:
@@ -48,7 +47,7 @@ class RigidPlate {
   FlatMode mode_;
 };
 
-/// The kind "plate": its length is its area over its width.
+/// The kind of structure "plate" in a scene: its length is its area over its width.
 struct Plate {
   static constexpr std::string_view name = "plate", whose = "on a plate",
                                     why_no_layer = "a rigid plate does not bend; a layer needs a beam",
@@ -57,8 +56,8 @@ struct Plate {
   static constexpr bool is_rigid = true;
   static constexpr std::array usual_spread{UsualSpread{"stiffness", "6.7 %"}};
 
-  double mass = 0;       ///< moving mass [kg]
-  double stiffness = 0;  ///< stiffness of all springs together [N/m]
+  double mass = 0;       ///< mass of the moving plate [kg]
+  double stiffness = 0;  ///< stiffness of all springs of the plate together [N/m]
 
   template <class S>
   static consteval auto fields() {

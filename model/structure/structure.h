@@ -1,4 +1,4 @@
-// The moving part: one of the kinds of structures, with their common properties. A new kind needs its own header
+// The moving part of a switch: one of the kinds of structures, with their common properties. A new kind needs its own header
 // (model/structure/kind.h describes the header) and an entry in StructureKind.
 #pragma once
 
@@ -28,11 +28,11 @@ struct Structure {
   /// The largest number of modes of a beam that moves.
   static constexpr int most_modes = 20;
 
-  double length = 0;             ///< L [m]; area over width for a plate; length of the table for a table of modes
-  double width = 0;              ///< a [m]
-  double thickness = not_given;  ///< b [m]
-  int modes = 4;                 ///< number of modes; a plate has one mode, whatever this number is
-  double damping_ratio = 0;      ///< zeta of every mode
+  double length = 0;  ///< length of the structure [m]; area over width for a plate; length of the table for a table of modes
+  double width = 0;   ///< width of the structure [m]
+  double thickness = not_given;  ///< thickness of the structure [m]
+  int modes = 4;                 ///< number of modes in the simulation; a plate has one mode, whatever this number is
+  double damping_ratio = 0;      ///< ratio of the modal damping to critical damping, for every mode
   StructureKind kind = Cantilever{};
 
   /// Returns the kind that the structure holds if its type is `Part`, or derives from `Part`; null otherwise.
@@ -52,17 +52,18 @@ struct Structure {
   /// Returns the scene-file key of the damping ratio, which every kind of structure has.
   [[nodiscard]] static consteval Field<Structure> damping();
 
-  /// Returns true when the structure moves as a rigid body: it has one mode, and all places along it are equal.
+  /// Returns true when the structure moves as a rigid body: the structure has one mode, and all places along it are equal.
   [[nodiscard]] bool is_rigid() const;
-  /// Returns true when the far end is held, by a clamp or by a compliant anchor.
+  /// Returns true when the far end of the structure is held, by a clamp or by a compliant anchor.
   [[nodiscard]] bool has_far_clamp() const;
-  /// Return the stiffnesses of the supports at the ends: from the anchors of a beam if given, otherwise by the kind of
-  /// structure.
+  /// Returns the stiffnesses of the support at the clamped end; far_hold() returns those at the far end. They are those of the
+  /// beam's anchors if given, otherwise those of the kind of structure.
   [[nodiscard]] Anchor near_hold() const;
   [[nodiscard]] Anchor far_hold() const;
   /// Returns true when the size changes along the structure: a beam with sections or layers, or a table of modes with widths.
   [[nodiscard]] bool is_built() const;
-  /// Return the reason why the structure cannot have a piezo layer, or surface skins; empty when it can.
+  /// Returns the reason why the structure cannot have a piezo layer; empty when it can. The next function does so for surface
+  /// skins.
   [[nodiscard]] std::string_view why_no_layer() const;
   [[nodiscard]] std::string_view why_no_skins() const;
   /// Returns the last words of the message about a number that this kind of structure requires, such as "on a plate". Empty

@@ -27,37 +27,41 @@
 
 namespace softland {
 
-/// The content of a file with a table of modes: the same for all devices of a scene.
+/// A table of vibration modes of a structure: the same for all devices of a scene.
 class ModalTable {
  public:
   /// Takes at least three `positions` [m] that rise from 0, `frequencies` [Hz] that rise, and for each frequency a shape
-  /// [kg^(-1/2)] with a value per position, which is 0 at the first one. `rest_offsets` [m] are those of the face at rest,
-  /// positive towards the near electrode: one per position, or none for a straight structure. `widths` [m] are linear between
-  /// positions: one per position, or none for a structure of constant width. A clamped far end must not move in any mode, and
-  /// the first mode must have no slope there. Throws InvalidInput with the rule that is broken.
+  /// [kg^(-1/2)] with a value per position, which is 0 at the first one. `rest_offsets` [m] are heights of the structure's face
+  /// at rest, positive towards the near electrode: one per position, or none for a straight structure. `widths` [m] are linear
+  /// between positions: one per position, or none for a structure of constant width. A clamped far end must not move in any
+  /// mode, and the first mode must have no slope there. Throws InvalidInput with the broken rule.
   ModalTable(std::vector<double> positions, std::vector<double> frequencies, std::vector<std::vector<double>> shapes,
              std::vector<double> rest_offsets = {}, std::vector<double> widths = {}, SplineEnd far_end = SplineEnd::free);
 
   [[nodiscard]] int count() const { return static_cast<int>(frequencies_.size()); }
-  [[nodiscard]] double length() const { return positions_.back(); }                         ///< [m]
-  [[nodiscard]] const std::vector<double>& positions() const { return positions_; }         ///< [m]
-  [[nodiscard]] const std::vector<double>& frequencies() const { return frequencies_; }     ///< [Hz]
-  [[nodiscard]] const std::vector<std::vector<double>>& shapes() const { return shapes_; }  ///< [kg^(-1/2)]
-  [[nodiscard]] double value(int mode, double x) const {
-    return splines_[static_cast<std::size_t>(mode)].value(x);
-  }  ///< phi of a mode at x [m]
+  /// Returns the length of the structure, the last position of the table [m].
+  [[nodiscard]] double length() const { return positions_.back(); }
+  /// Returns the positions of the table along the structure [m].
+  [[nodiscard]] const std::vector<double>& positions() const { return positions_; }
+  /// Returns the frequencies of the modes in the table [Hz].
+  [[nodiscard]] const std::vector<double>& frequencies() const { return frequencies_; }
+  /// Returns the mass-normalised mode shapes at the positions of the table [kg^(-1/2)].
+  [[nodiscard]] const std::vector<std::vector<double>>& shapes() const { return shapes_; }
+  /// Returns the shape of a mode at the position x [m] along the structure [kg^(-1/2)].
+  [[nodiscard]] double value(int mode, double x) const { return splines_[static_cast<std::size_t>(mode)].value(x); }
   [[nodiscard]] double slope(int mode, double x) const { return splines_[static_cast<std::size_t>(mode)].slope(x); }
-  [[nodiscard]] const std::vector<double>& rest_offsets() const { return rest_offsets_; }  ///< [m]
-  [[nodiscard]] const std::vector<double>& widths() const { return widths_; }              ///< [m]
-  /// Returns the distance of the face at rest from its height at the clamp, away from the near electrode [m]: linear between
-  /// the positions of the table.
+  /// Returns the heights of the structure's face at rest at the positions of the table [m].
+  [[nodiscard]] const std::vector<double>& rest_offsets() const { return rest_offsets_; }
+  [[nodiscard]] const std::vector<double>& widths() const { return widths_; }  ///< widths of the structure at the positions [m]
+  /// Returns the distance of the structure's face at rest from its height at the clamp, away from the near electrode [m]:
+  /// linear between the positions of the table.
   [[nodiscard]] double rest_offset(double x) const;
-  /// Returns the smallest rest offset [m].
+  /// Returns the smallest distance of the structure's face at rest from its height at the clamp [m].
   [[nodiscard]] double lowest_rest_offset() const;
-  /// Returns true when the last place of the table does not move in any mode, so that the far end is held as well.
+  /// Returns true when the last position of the table does not move in any mode, so that the far end is held as well.
   [[nodiscard]] bool is_held_at_both_ends() const;
   [[nodiscard]] bool has_far_clamp() const { return far_end_ == SplineEnd::clamped; }
-  /// Returns the integrals of phi_i' phi_j' of the first modes, column by column [1/(kg m)].
+  /// Returns the integrals of the products of slopes of the first modes, column by column [1/(kg m)].
   [[nodiscard]] std::vector<double> slope_products(int modes) const;
   [[nodiscard]] bool operator==(const ModalTable& other) const {
     return positions_ == other.positions_ && frequencies_ == other.frequencies_ && shapes_ == other.shapes_ &&
@@ -74,7 +78,7 @@ class ModalTable {
 
 class TabulatedModes {
  public:
-  /// The first modes of a table, as functions of x in units of the table's length.
+  /// The shapes of the first modes of a table, as functions of x in units of the table's length.
   struct Shapes {
     std::shared_ptr<const ModalTable> table;
     int modes = 0;
@@ -91,13 +95,15 @@ class TabulatedModes {
     }
   };
 
-  /// Throws InvalidInput unless 1 <= modes <= table->count().
+  /// Takes the first `modes` modes of a table, and a factor on their frequencies. Throws InvalidInput unless 1 <= modes <=
+  /// table->count().
   TabulatedModes(std::shared_ptr<const ModalTable> table, int modes, double frequency_factor);
 
-  [[nodiscard]] const Eigen::VectorXd& angular_frequencies() const { return frequencies_; }  ///< [rad/s]
-  [[nodiscard]] double length() const { return shapes_.table->length(); }                    ///< [m]
+  /// Angular frequencies of the modes [rad/s].
+  [[nodiscard]] const Eigen::VectorXd& angular_frequencies() const { return frequencies_; }
+  [[nodiscard]] double length() const { return shapes_.table->length(); }  ///< length of the structure [m]
   [[nodiscard]] static double scale() { return 1; }
-  [[nodiscard]] double frequency_scale() const { return frequencies_[0]; }  ///< [rad/s]
+  [[nodiscard]] double frequency_scale() const { return frequencies_[0]; }  ///< angular frequency of the first mode [rad/s]
   [[nodiscard]] const Shapes* normalised() const { return &shapes_; }
 
  private:
@@ -105,7 +111,7 @@ class TabulatedModes {
   Eigen::VectorXd frequencies_;
 };
 
-/// The kind "modes": clamped at x = 0, and free or clamped at its far end.
+/// The kind of structure "modes" in a scene: clamped at x = 0, and free or clamped at its far end.
 struct ModalStructure {
   static constexpr std::string_view name = "modes", whose = "beside the modes of a file",
                                     length_is = "the {} of the modes' table",
@@ -115,10 +121,10 @@ struct ModalStructure {
   static constexpr std::array usual_spread{UsualSpread{"frequency_factor", "3.5 %", true}};
 
   std::shared_ptr<const ModalTable> table = {};
-  double frequency_factor = 1;         ///< factor of all natural frequencies, over those of the table
-  double axial_stiffness = not_given;  ///< force per elongation between the clamps, E A / L of an even beam [N/m]
+  double frequency_factor = 1;         ///< factor on the natural frequencies of the table
+  double axial_stiffness = not_given;  ///< axial force per elongation between the clamps, E A / L of a uniform beam [N/m]
 
-  /// The scene-file keys other than those of the file with the table (config/modal_table.h).
+  /// The scene-file keys of this kind of structure, other than those of the file with the table (config/modal_table.h).
   template <class S>
   static consteval auto fields() {
     constexpr std::string_view follows_no_size = "the modes of a file do not follow it; vary structure.frequency_factor";
@@ -160,7 +166,7 @@ struct ModalStructure {
   [[nodiscard]] double lowest_rest_offset(const Device&) const {
     return table->lowest_rest_offset();
   }
-  /// Returns the stiffness of mid-plane stretching; none when the scene gives no axial stiffness.
+  /// Returns the law of mid-plane stretching; none when the scene gives no axial stiffness.
   template <class S>
   [[nodiscard]] std::optional<MidPlaneStretching> stretching(const TabulatedModes& modes, const S&) const {
     if (std::isnan(axial_stiffness)) return std::nullopt;
