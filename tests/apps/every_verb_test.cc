@@ -372,7 +372,7 @@ TEST(EveryKind, OfNewSceneIsCheckedAndSaysHowDevicesDiffer_optimized) {
   }
 }
 
-// A new scene is used in all the ways that docs/own-switch.md suggests next.
+// A new scene is used in all the ways that the manual suggests next.
 TEST(EveryKind, OfNewSceneIsSimulatedSearchedAndJudged_slow) {
   const Workplace here;
   for (const std::string& kind : kinds_of_new(here)) {
