@@ -43,7 +43,7 @@ class ChildProcess {
   pid_t child_ = 0;
   Pipes pipes_;
   LineReader lines_;
-  std::optional<int> status_;  // exit status as wait() gives it
+  std::optional<int> status_;  // exit status of the command as waitpid() gives it; none while the command runs
 };
 
 }  // namespace softland::apps

@@ -17,7 +17,7 @@ class LineReader {
   enum class End { line, closed, late };
   struct Line {
     End end = End::closed;
-    std::string text = {};  ///< text without the line feed
+    std::string text = {};  ///< text of the line, without its line feed
   };
   /// Returns the next line; the last line may lack its line feed. Returns `late` if no line came within `patience`; without
   /// `patience`, waits without limit. Throws Interrupted after a signal to stop.

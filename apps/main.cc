@@ -34,7 +34,8 @@ std::string command_line(const std::vector<std::string>& words) {
 void describe(CLI::App& app) {
   app.name("softland");
   app.get_formatter()->label("SUBCOMMAND", "VERB");
-  app.get_formatter()->column_width(25);  // leaves two blanks after the longest name of one line
+  // Width of option names in --help: two blanks after the longest name that fits on one line [characters].
+  app.get_formatter()->column_width(25);
   app.require_subcommand(1);
   app.set_help_flag("-h,--help", "print this help");
   app.set_version_flag("--version", "softland " + std::string(version), "print the version");
@@ -58,7 +59,7 @@ bool parse(CLI::App& app, std::vector<std::string> words, const std::vector<std:
   if (!words.empty() && !words.front().starts_with("-") && std::ranges::find(names, words.front()) == names.end())
     throw InvalidInput("unknown verb '" + words.front() + "' (see softland --help)");
   try {
-    std::reverse(words.begin(), words.end());  // CLI11 takes the words from the back
+    std::reverse(words.begin(), words.end());  // CLI11 expects the words of the command line in reverse order
     app.parse(words);
     return true;
   } catch (const CLI::CallForHelp&) {
@@ -104,7 +105,7 @@ int run(int argc, char** argv) {
   } catch (const OutputInterrupted&) {
     throw;
   } catch (const Interrupted&) {
-    // There are no results yet: the JSON has only the status "interrupted".
+    // The run was interrupted before it had any result: the file of --json gets only the status "interrupted".
     if (!common.json.empty())
       print_json_or(common, {{"status", "interrupted"}, {"version", version}, {"command", common.command}}, "");
     throw;

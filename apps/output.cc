@@ -19,7 +19,8 @@ namespace softland::apps {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// Refuses a file of --json that is standard output under a path, or the name of unfinished results in --out.
+// Throws InvalidInput if the file of --json cannot be written, is standard output under a path such as /dev/stdout, or has a
+// name that the folder of --out reserves for unfinished results.
 void check_json_place(const std::string& file, const fs::path& folder) {
   if (!folder.empty()) {
     const fs::path inside =

@@ -14,12 +14,12 @@
 namespace softland::apps {
 
 /// Reserves the file of --json and the folder of --out for this run. Call it after reading the scene and before any long
-/// computation. This run will write `files` to the folder; it continues the files `kept` of an earlier run. Throws InvalidInput
-/// if a file cannot be written, or would replace an input or another output of this run.
+/// computation. This run will write `files` to the folder; the files `kept` of an earlier run are continued, not replaced.
+/// Throws InvalidInput if a file cannot be written, or would replace an input or another output of this run.
 [[nodiscard]] std::optional<ResultFolder> reserve_outputs(const Common& common, const std::vector<std::string>& files,
                                                           const std::vector<std::string>& kept = {});
 
-/// Returns the text "In FOLDER: FILE, FILE".
+/// Returns a text that lists written files: "In FOLDER: FILE, FILE".
 [[nodiscard]] std::string files_written(const std::filesystem::path& folder, const std::vector<std::string>& files);
 
 /// Writes `data` as JSON if --json is given, and prints `text` unless the JSON goes to standard output.

@@ -18,8 +18,8 @@ struct Overview {
     std::int64_t least_at = 0, most_at = 0;
   };
   std::map<std::string, std::int64_t> by_status;
-  std::map<std::string, std::string> first_reasons;  // first message of failure, by status
-  std::vector<Extent> extents;                       // smallest and largest value, by column
+  std::map<std::string, std::string> first_reasons;  // message of the first point that failed, by the status of the point
+  std::vector<Extent> extents;  // smallest and largest value of every figure, by its column in the database file
   bool has_figures = false;
 };
 

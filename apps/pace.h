@@ -9,15 +9,16 @@
 namespace softland::apps {
 
 struct Pace {
-  std::int64_t remaining = 0;  ///< points that are neither computed nor copied yet
+  std::int64_t remaining = 0;  ///< points of the exploration that are neither computed nor copied yet
   std::int64_t computed = 0, reused = 0;
-  std::int64_t earlier = 0;  ///< number of earlier results, an upper bound of the points that can still be copied
-  double seconds = 0;        ///< time since the first computed point began [s]
+  /// Number of results of earlier explorations, an upper bound of the points that can still be copied.
+  std::int64_t earlier = 0;
+  double seconds = 0;  ///< time since the first point that had to be computed was begun [s]
 
   /// Returns the estimated number of points still to compute, if the share of copied points stays as it is, and at most
   /// `earlier` points are copied. NaN before the first point is done.
   [[nodiscard]] double to_compute() const;
-  /// Returns the remaining time [s]; NaN before the first point is computed.
+  /// Returns the remaining time of an exploration [s]; NaN before the first point is computed.
   [[nodiscard]] double seconds_left() const;
 };
 
@@ -27,8 +28,8 @@ class WorkPace {
   /// Records that the share `part`, 0 to 1, of stage `what` is done at `elapsed` [s] after the start. Another name begins a new
   /// stage.
   void note(std::string_view what, double part, double elapsed);
-  /// Returns "closing: 43 %, 12 s, about 16 s left". The remaining time is that of the current stage; it is omitted until it
-  /// can be estimated.
+  /// Returns the progress as text: "closing: 43 %, 12 s, about 16 s left". The remaining time is that of the current stage; it
+  /// is omitted until it can be estimated.
   [[nodiscard]] std::string words(double elapsed) const;
 
  private:

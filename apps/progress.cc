@@ -14,7 +14,8 @@ Bar::Bar(bool quiet) : terminal_(isatty(2) != 0), quiet_(quiet), start_(std::chr
 
 bool Bar::due() const {
   const bool is_first = shown_ == start_;
-  const int wait = terminal_ ? 200 : is_first ? 5000 : 10000;  // shortest time between two updates [ms]
+  // Shortest time between two updates of the displayed progress [ms].
+  const int wait = terminal_ ? 200 : is_first ? 5000 : 10000;
   return !quiet_ && std::chrono::steady_clock::now() - shown_ >= std::chrono::milliseconds(wait);
 }
 
@@ -83,7 +84,7 @@ std::pair<double, std::string> SearchProgress::state(double elapsed) const {
   std::string state = of_;
   state += timed ? fmt::format("{:.0f} of {:g} s, {} {}", elapsed, seconds_, progress_.evaluations, counted_)
                  : fmt::format("{} of {} {}, {:.0f} s", progress_.evaluations, budget_, counted_, elapsed);
-  constexpr long telling = 100;  // the remaining time is estimated from 1/100 of the budget on
+  constexpr long telling = 100;  // the remaining time of a search is estimated once 1/100 of its budget is used
   if (!timed && progress_.evaluations > budget_ / telling && progress_.evaluations < budget_) {
     const auto done = static_cast<double>(progress_.evaluations);
     state += fmt::format(", about {:.0f} s left", elapsed * (static_cast<double>(budget_) - done) / done);

@@ -19,17 +19,17 @@ class Bar {
  public:
   explicit Bar(bool quiet);
 
-  /// A function that returns the state of the computation: the done share, 0 to 1, and a text.
+  /// A function that returns the state of a computation `elapsed` [s] after its start: the done share, 0 to 1, and a text.
   using State = std::function<std::pair<double, std::string>(double elapsed)>;
-  /// Prints the result of `state` if an update is due.
+  /// Shows the progress that `state` returns, if the last update is long enough ago.
   void show(const State& state);
-  /// Ends the display; the last state of the bar remains on the screen.
+  /// Ends the display of the progress; the last state of the bar remains on the screen.
   void close(const State& state);
 
  private:
   friend class ShownWork;
   [[nodiscard]] bool due() const;
-  [[nodiscard]] double elapsed() const;  // time since the start [s]
+  [[nodiscard]] double elapsed() const;  // time since the display was started [s]
   void print(const State& state) const;
 
   bool terminal_, quiet_;
@@ -47,7 +47,7 @@ class ShownWork {
   [[nodiscard]] const Progress& progress() const { return progress_; }
 
  private:
-  std::mutex mutex_;  // guards the members below, as several threads may report progress
+  std::mutex mutex_;  // guards the display, as several threads may report progress
   Bar bar_;
   bool shown_ = false;
   MonotoneProgress monotone_;
@@ -55,7 +55,7 @@ class ShownWork {
   Progress progress_;
 };
 
-/// The progress of a search.
+/// Shows the progress of a search for a waveform.
 class SearchProgress {
  public:
   /// `counted` is the unit of the budget, such as "evaluations"; `of` is the text in front of the progress.

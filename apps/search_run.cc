@@ -34,7 +34,7 @@ AskedSearch asked(const Common& c, const verbs::OptimizeRequest& request) {
   return asked;
 }
 
-// Returns "knots, dual-pulse or staircase:5".
+// Returns the names of waveform families as words for a message: "knots, dual-pulse or staircase:5".
 std::string families_in_words(const std::string& families) {
   const std::vector<std::string> names = families_of(families);
   std::string words = names.front();
@@ -42,7 +42,8 @@ std::string families_in_words(const std::string& families) {
   return words;
 }
 
-// Returns the names of the drives in names of variables such as "knots.main.level_1_V" or "main.level_1_V", each drive once.
+// Returns the names of the drives (actuating electrodes or piezos) that occur in names of search variables such as
+// "knots.main.level_1_V" or "main.level_1_V"; every drive is named once.
 std::vector<std::string> shaped_in(const std::vector<std::string>& variables) {
   std::vector<std::string> drives;
   for (const std::string& name : variables) {
@@ -105,7 +106,7 @@ SearchRun::SearchRun(const Common& c, StoredSearch& search, const std::optional<
   }
 }
 
-// Estimates the duration of the search and its number of closings.
+// Returns a sentence with the estimated duration of the search and its number of simulated closings.
 std::string SearchRun::duration_prose(int jobs, double max_seconds) const {
   if (!estimate_) return {};
   const SearchEstimate& e = *estimate_;
@@ -123,7 +124,8 @@ std::string SearchRun::duration_prose(int jobs, double max_seconds) const {
   return text + ", fewer than usual, because its closings are slow to simulate";
 }
 
-// Prints a row for a better waveform; before the first row, the head of the table of the best waveforms so far.
+// Prints a row of the table of the best waveforms so far, for a better waveform that was found; prints the table's head before
+// the first row.
 void SearchRun::tell(const Leading& leading) {
   const auto row = [&](const std::string& name, const std::vector<DeviceOutcome>& outcomes, const std::string& after) {
     const auto figure = [](double value, std::string_view unit) {

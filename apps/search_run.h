@@ -14,18 +14,19 @@
 namespace softland::apps {
 
 /// Returns the search that the command line describes. With --resume, the search in the folder of --out is continued, and
-/// `known` receives its database files. Throws InvalidInput with option, value and rule, or, if the folder holds another
-/// search, with the difference.
+/// `known` receives the database files of that earlier search. Throws InvalidInput with option, value and rule, or, if the
+/// folder holds another search, with the difference.
 [[nodiscard]] StoredSearch new_or_resumed(const Common& common, const verbs::OptimizeRequest& request,
                                           std::optional<KnownSearch>& known);
 
-/// Returns the folder of --out as the output of a search.
+/// Returns the folder of --out as the place to which a search writes its results.
 [[nodiscard]] SearchOutput output_of(const Common& common);
 
 /// A search that stores its evaluations in a folder and shows its progress.
 class SearchRun {
  public:
-  /// `places`: see SearchSession. Sets the callbacks of search.options; `search` must outlive this object.
+  /// `places`: folders that the searches of several seeds share; null for a single search. Sets the callbacks of
+  /// search.options; `search` must outlive this object.
   SearchRun(const Common& common, StoredSearch& search, const std::optional<KnownSearch>& known, const SearchOutput& output,
             SearchPlaces* places = nullptr);
 
@@ -46,7 +47,7 @@ class SearchRun {
   SearchSession session_;
 };
 
-/// Returns "gold.toml: searching a pulse waveform, actuator electrostatic, target bounce".
+/// Returns a line that describes a search: "gold.toml: searching a pulse waveform, actuator electrostatic, target bounce".
 [[nodiscard]] std::string search_prose(const Common& common, const StoredSearch& search);
 
 }  // namespace softland::apps

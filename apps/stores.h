@@ -13,10 +13,10 @@ namespace softland::apps {
 /// their numbers may differ.
 void tell_of_other_programs(const std::string& store);
 
-/// Returns a count of rows or points with all its digits.
+/// Returns a number of rows or points as text with all digits.
 [[nodiscard]] std::string whole(std::int64_t count);
 
-/// Returns "2 min" or "3.4 h".
+/// Returns a duration as text: "2 min" or "3.4 h".
 [[nodiscard]] std::string duration_prose(double seconds);
 
 }  // namespace softland::apps

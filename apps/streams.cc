@@ -32,20 +32,22 @@ void write_to_standard_error(std::string_view text) {
 void open_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
-    // open() returns the lowest free descriptor, `stream`. A read-only descriptor refuses writes.
+    // The standard stream `stream` is closed, so open() returns its number as the lowest free descriptor. A read-only
+    // descriptor refuses writes.
     (void)::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
   }
 }
 
 void print(std::string_view text) {
   const std::string clean = printable(text);
-  constexpr int check_interval = 200, patience = 600;  // [ms]
+  // Time between two checks for a request to stop; longest wait for a reader after that request [ms].
+  constexpr int check_interval = 200, patience = 600;
   int waited = 0;
   for (std::string_view rest = clean; !rest.empty();) {
-    // A writable pipe takes PIPE_BUF bytes without waiting for the reader.
+    // A pipe that poll() reports as writable takes PIPE_BUF bytes without waiting for the reader.
     pollfd output{.fd = STDOUT_FILENO, .events = POLLOUT, .revents = 0};
     if (const int ready = ::poll(&output, 1, check_interval); ready <= 0) {
-      // Count only the time after the request to stop; a signal ends a call of poll() early.
+      // Count only the waiting time after the request to stop the program; a signal ends a call of poll() early.
       if (ready == 0 && stop_requested()) waited += check_interval;
       if (waited >= patience) throw OutputInterrupted();
       continue;

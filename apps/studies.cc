@@ -28,7 +28,8 @@ using verbs::OptionRow;
 // Option values that CLI11 sets, by name of the option.
 struct Given {
   std::map<std::string, std::string> texts;
-  std::map<std::string, std::optional<std::string>> optional;  // values that may be empty texts
+  // Option values that may be empty texts; none: the option was not given.
+  std::map<std::string, std::optional<std::string>> optional;
   std::map<std::string, bool> flags;
   std::map<std::string, std::vector<std::string>> repeated;
 
@@ -59,7 +60,8 @@ DriveWaveforms waveforms_of(const std::string& result, const PreparedScene& nomi
   return drives.waveforms();
 }
 
-// Writes the files of an outcome. Returns the list of files, and the commands that use them.
+// Writes the files of a verb's outcome to the folder of --out. Returns text for the user: the names of the files, and the shell
+// commands that use these files.
 std::string leave(ResultFolder& folder, const verbs::Outcome& outcome) {
   const bool interrupted = outcome.ending == Ending::interrupted;
   std::vector<std::string> listed;

@@ -6,10 +6,10 @@
 
 namespace softland::apps {
 
-/// A function that runs a verb whose computation differs between the command line and Python.
+/// A function that runs a verb on the command line; the verb has another implementation in the Python module.
 using RunTold = int (*)(const Common&, const verbs::Arguments&);
 
-/// Runs a verb that is the same for the command line and Python; returns the exit status.
+/// Runs a verb whose computation the command line and the Python module share; returns the exit status of the program.
 [[nodiscard]] int run_study(const verbs::Study& study, const Common& common, const verbs::Arguments& arguments);
 
 /// Declares the options of the verb, and its action: `run` if the study describes no computation, otherwise run_study().

@@ -38,7 +38,7 @@ class CommandLab final : public TuningLab {
       : name_("--device " + shortened(command)), patience_(patience), child_(command, longest_line) {}
 
   std::optional<ContactRecord> fire(const CommandedShot& shot, const SentSignals&) override {
-    // A closed pipe is not an error yet: the answer may be buffered.
+    // The command may close its input after it has written its answer: read the answer before reporting a closed pipe.
     const ChildProcess::Delivery told = child_.tell(line_text(shot_json(shot)), patience_);
     if (told == ChildProcess::Delivery::late) throw late(fmt::format("did not read shot {}", shot.number));
     const LineReader::Line line = child_.next_line(patience_);
@@ -70,12 +70,12 @@ class CommandLab final : public TuningLab {
   ChildProcess child_;
 };
 
-// Thrown when the user answers "stop".
+// Thrown when the user answers "stop" instead of reporting what the device did.
 struct Stopped {};
 
 class HandLab final : public TuningLab {
  public:
-  // Remove the files of shots of an earlier tuning, unless that tuning is continued.
+  // Remove the files of shots (voltages for one closing each) of an earlier tuning, unless that tuning is continued.
   HandLab(HandLabRequest request, const PreparedScene& scene) : request_(std::move(request)), scene_(scene) {
     if (request_.goes_on) return;
     const std::vector<std::string> endings = sent_endings(scene_);
@@ -110,7 +110,7 @@ class HandLab final : public TuningLab {
   }
 
  private:
-  // Returns true if `name` is the file of a shot, such as "shot-12.csv" or "shot-12-main.arb".
+  // Returns true if `name` is the file of a shot (voltages of one closing), such as "shot-12.csv" or "shot-12-main.arb".
   [[nodiscard]] static bool is_shot(std::string_view name, const std::vector<std::string>& endings) {
     constexpr std::string_view before = "shot-";
     if (!name.starts_with(before)) return false;

@@ -18,10 +18,11 @@ namespace softland::apps {
 class TuningLab {
  public:
   virtual ~TuningLab() = default;
-  /// Applies the voltages of a shot, whose signals are `sent`, and returns the record; none if the user wants no more shots.
-  /// Throws InvalidInput if there is no record, and Interrupted after a signal to stop.
+  /// Applies the voltages of a shot and returns the record of the contact; none if the user wants no more shots. `sent` holds
+  /// the signals of the shot as the voltage sources receive them. Throws InvalidInput if the laboratory gives no record, and
+  /// Interrupted after a signal to stop.
   [[nodiscard]] virtual std::optional<ContactRecord> fire(const CommandedShot& shot, const SentSignals& sent) = 0;
-  /// Ends the session; no shot follows.
+  /// Ends the session with the laboratory; no shot follows.
   virtual void finish() {}
 
  protected:
@@ -38,7 +39,8 @@ struct HandLabRequest {
   std::filesystem::path folder;
   bool goes_on = false;  ///< true: an earlier tuning in `folder` is continued, and the files of its shots stay
   std::string format = "csv";
-  std::optional<ContactTraceKeys> contact = {};  ///< keys for reading recorded voltages of the contact, if there are records
+  /// How to read a recorded voltage across the contact; none: the user reports times of the contact.
+  std::optional<ContactTraceKeys> contact = {};
 };
 /// Makes a laboratory in which a person applies the voltages and reports what the device did. The voltages of each shot are
 /// written to FOLDER/shot-N.csv, or in another format of the verb `export` (scene_export.h). The program asks for the
@@ -48,7 +50,8 @@ struct HandLabRequest {
 /// Reads the times at which a contact closes and opens from a CSV file: a header time_s,closed and a row for each edge, with 1
 /// where the contact closes and 0 where it opens. Throws InvalidInput with file, line and rule.
 [[nodiscard]] ContactRecord read_edges_file(const std::string& file);
-/// Reads the times at which a contact closes and opens from a recorded voltage across the contact. Throws as read_edges_file().
+/// Reads the times at which a contact closes and opens from a recorded voltage across the contact. Throws the exceptions of
+/// read_edges_file().
 [[nodiscard]] ContactRecord read_contact_trace(const std::string& file, const ContactTraceKeys& keys);
 
 }  // namespace softland::apps

@@ -19,7 +19,7 @@ struct Named {
   std::string_view name;
 };
 
-/// A list of at most 12 words, for a member of a table's row.
+/// A list of at most 12 words that a constant expression can hold, as a member of a row in a table of choices.
 class Words {
  public:
   constexpr Words(std::initializer_list<std::string_view> words) {
@@ -41,7 +41,8 @@ class Words {
 namespace internal {
 template <auto value>
 [[nodiscard]] consteval bool is_enumerator() {
-  // A value without a name is printed as a number in brackets: "[value = softland::Side::far]", "[value = (softland::Side)3]".
+  // The compiler prints an enumerator by its name, but a value without an enumerator as a number in brackets or parentheses:
+  // "[value = softland::Side::far]", "[value = (softland::Side)3]".
   constexpr std::string_view text = __PRETTY_FUNCTION__, what = "value = ";
   return text[text.find(what) + what.size()] != '(';
 }
@@ -71,7 +72,7 @@ template <class Row, std::size_t n>
   return row_of(rows, value).name;
 }
 
-/// Returns the row with this name, or null.
+/// Returns the row of a table of choices that has this name; null if no row has this name.
 template <class Row, std::size_t n>
 [[nodiscard]] constexpr const Row* find_named(const std::array<Row, n>& rows, std::string_view name) {
   for (const Row& row : rows) {
@@ -87,7 +88,7 @@ template <class Row, std::size_t n>
   return names;
 }
 
-/// Returns for example "bounce, count or energy".
+/// Returns the names of the rows of a table of choices as words: "bounce, count or energy".
 template <class Row, std::size_t n>
 [[nodiscard]] std::string listed(const std::array<Row, n>& rows) {
   std::string text;
@@ -95,7 +96,7 @@ template <class Row, std::size_t n>
   return text;
 }
 
-/// Returns for example "bounce, count and energy" for a list of texts.
+/// Returns a list of texts as words: "bounce, count and energy".
 template <class Texts>
 [[nodiscard]] std::string in_words(const Texts& texts, const std::string& last = " and ") {
   std::string words;
@@ -104,7 +105,7 @@ template <class Texts>
   return words;
 }
 
-/// Returns the names of the rows whose `keys` contain `key`.
+/// Returns the names of the rows in a table of choices whose member `keys` contains `key`.
 template <class Row, std::size_t n>
 [[nodiscard]] std::vector<std::string_view> with_key(const std::array<Row, n>& rows, std::string_view key) {
   std::vector<std::string_view> names;

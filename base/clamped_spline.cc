@@ -10,7 +10,8 @@
 namespace softland {
 namespace {
 
-// Returns the integral of f g, exact where f g is a polynomial of degree 7 at most between two points.
+// Returns the integral of f g from the first of the points x to the last; exact where f g is a polynomial of degree 7 at most
+// between two neighbouring points.
 template <class F, class G>
 double integral_of_product(const std::vector<double>& points, F f, G g) {
   constexpr int exact = 4;
@@ -79,7 +80,8 @@ double ClampedSpline::integral_of_slopes(const ClampedSpline& other) const {
 }
 
 bool is_hinged(const std::vector<double>& x, const std::vector<double>& y) {
-  // The deflection of thick beams grows with exponents of 1.4 to 1.5 near the clamp, where shear gives them a slope.
+  // Near a hinge the deflection grows with exponent 1, near a clamp with exponent 2; near the clamp of a thick beam, where
+  // shear gives the beam a slope, with 1.4 to 1.5. The share `near` of the length counts as near the end.
   constexpr double near = 0.2, between = 1.2;
   if (x.size() < 4 || !(x[2] < near * x.back()) || !(y[1] * y[2] > 0)) return false;
   return std::log(y[2] / y[1]) / std::log(x[2] / x[1]) < between;

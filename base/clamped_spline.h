@@ -19,25 +19,26 @@ class ClampedSpline {
   /// Throws InvalidInput unless x and y have the same size, at least 2, and x increases.
   ClampedSpline(std::vector<double> x, std::vector<double> y, SplineEnd end = SplineEnd::free);
 
-  /// Returns the value; the outermost cubics continue beyond the ends.
+  /// Returns the value of the spline at x; the outermost cubics continue beyond the ends.
   [[nodiscard]] double value(double x) const;
   [[nodiscard]] double slope(double x) const;
-  /// Returns the integral of s^2 from the first point to the last.
+  /// Returns the integral of s(x)^2, s being this spline, from the first point to the last.
   [[nodiscard]] double integral_of_square() const;
-  /// Returns the integral of s' t' from the first point to the last, t being another spline through points at the same x.
+  /// Returns the integral of s' t' from the first point to the last, s being this spline and t another spline through points at
+  /// the same x.
   [[nodiscard]] double integral_of_slopes(const ClampedSpline& other) const;
 
  private:
   [[nodiscard]] std::size_t interval(double x) const;
 
-  std::vector<double> x_, y_, curvature_;  // curvature: s'' at the points
+  std::vector<double> x_, y_, curvature_;  // points (x, y) of the spline s, and its second derivative s'' at the points
 };
 
 /// Returns true when the deflection y has a slope at its first place, as at a hinge. Near a clamp the deflection grows with the
 /// square of the distance, near a hinge with the distance itself. Returns false when fewer than three places lie in the first
 /// fifth of the beam.
 [[nodiscard]] bool is_hinged(const std::vector<double>& x, const std::vector<double>& y);
-/// Returns true when the deflection y has a slope at its last place; see is_hinged().
+/// Returns true when the deflection y has a slope at its last place, as at a hinge; is_hinged() tests the first place.
 [[nodiscard]] bool is_hinged_at_end(std::vector<double> x, std::vector<double> y);
 
 }  // namespace softland

@@ -1,4 +1,4 @@
-// Companions of a database: the files that SQLite has beside an open database, and the lock file of a store.
+// Companions of a database: the files that SQLite has beside an open database, and the lock file of a study's database file.
 #pragma once
 
 #include <array>

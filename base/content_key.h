@@ -1,4 +1,4 @@
-// A hash by which equal contents are recognised.
+// A hash by which equal inputs of a computation are recognised.
 #pragma once
 
 #include <compare>

@@ -25,7 +25,7 @@ std::vector<std::string_view> cells(std::string_view line) {
   }
 }
 
-/// Returns the index of column `name`, which must exist exactly once.
+/// Returns the index of column `name` in the header of a CSV file, which must have it exactly once.
 std::size_t column(const std::vector<std::string_view>& header, std::string_view name, const std::string& place) {
   const auto count = std::count(header.begin(), header.end(), name);
   require(count == 1, [&] {

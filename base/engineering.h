@@ -43,7 +43,8 @@ namespace softland {
                             first.find('^') == std::string_view::npos;
   if (takes_prefix) {
     for (const auto& [exponent, prefix] : prefixes) {
-      const double scaled = value / std::pow(10, exponent), size = std::abs(scaled) * (1 + 1e-12);  // 999.999... counts as 1000
+      // A number that rounds up to 1000, such as 999.9999999999, is written with the next prefix.
+      const double scaled = value / std::pow(10, exponent), size = std::abs(scaled) * (1 + 1e-12);
       if (size >= 1 && size < 1000) {
         number = scaled;
         chosen = prefix;

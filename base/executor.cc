@@ -22,7 +22,7 @@
 namespace softland {
 namespace {
 
-constexpr int most_threads = 256;  // oneTBB has no more on machines of up to 64 cores
+constexpr int most_threads = 256;  // largest number of threads of a loop; oneTBB permits no more on machines of up to 64 cores
 
 // Returns how many further threads the machine can start now, at most `wanted`.
 int threads_available(int wanted) {
@@ -84,7 +84,8 @@ class Workers {
   }
 
   void meet(int arriving) {
-    // A worker that is busy in another loop may miss this time; its thread has been started already.
+    // The longest wait for all workers to begin their task. A worker that is busy in another loop may begin later, but oneTBB
+    // has started its thread already.
     constexpr std::chrono::seconds patience{1};
     std::unique_lock lock(meeting_);
     missing_ -= arriving;
@@ -92,7 +93,7 @@ class Workers {
     all_here_.wait_for(lock, patience, [this] { return missing_ <= 0; });
   }
 
-  std::mutex mutex_;  // guards provide()
+  std::mutex mutex_;  // lets one thread at a time run provide()
   int count_ = 0;
   std::unique_ptr<tbb::global_control> limit_;
   tbb::task_arena kept_{1};  // oneTBB ends its threads when the last arena is destroyed
@@ -102,7 +103,8 @@ class Workers {
   int missing_ = 0;
 };
 
-// Makes the writes of one thread visible to the next. oneTBB does so too, but invisibly to the thread sanitizer.
+// Makes the writes of one thread visible to the next thread. oneTBB also does this, but in a way that the thread sanitizer
+// cannot see.
 void hand_over() {
   static std::mutex mutex;
   const std::scoped_lock lock(mutex);

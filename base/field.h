@@ -31,35 +31,36 @@ inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
 /// `count`, `flag` nor `words` is a number that sets no member: separate code reads it.
 template <class Owner>
 struct Field {
-  std::string_view key;              ///< key in a scene, and in messages
-  std::string_view unit = {};        ///< SI unit; empty for a plain number and for a word
-  std::string_view about = {};       ///< description for people, one line
-  double& (*in)(Owner&) = nullptr;   ///< number of the struct, see reach(); null for other fields
-  int& (*count)(Owner&) = nullptr;   ///< whole number of the struct
-  bool& (*flag)(Owner&) = nullptr;   ///< flag of the struct
-  std::string_view or_word = {};     ///< word that may replace a whole number
-  bool required = false;             ///< true when a scene must give this field; an absent field has the value of an Owner{}
-  Range range = positive;            ///< allowed range; in a scene, the widest range of the unit bounds open ends
-  std::string_view fallback = {};    ///< value of an Owner{} as a scene writes it; empty where an absent field means "none"
+  std::string_view key;             ///< key of the field in a scene and in messages
+  std::string_view unit = {};       ///< SI unit of the field; empty for a plain number and for a word
+  std::string_view about = {};      ///< description of the field for people, one line
+  double& (*in)(Owner&) = nullptr;  ///< number of the struct that the field sets, see reach(); null for other fields
+  int& (*count)(Owner&) = nullptr;  ///< whole number of the struct that the field sets; null for other fields
+  bool& (*flag)(Owner&) = nullptr;  ///< flag of the struct that the field sets; null for other fields
+  std::string_view or_word = {};    ///< word that a scene may give instead of a whole number
+  bool required = false;            ///< true when a scene must give this field; an absent field has the value of an Owner{}
+  Range range = positive;           ///< allowed range of the number; in a scene, the widest range of the unit bounds open ends
+  /// Value of the field in a default Owner{} as a scene writes it; empty where an absent field means "none".
+  std::string_view fallback = {};
   std::string_view instead_of = {};  ///< key of another field of the law that excludes this field
-  std::string_view unless = {};      ///< key whose presence makes this field optional
-  std::string_view not_below = {};   ///< key of another field of the law, whose value is the lower bound
-  std::string_view such_as = {};     ///< example value for messages, where the usual example of the unit does not fit
-  std::string_view beyond = {};      ///< advice for a value outside the range; the range then applies to scenes only
-  std::string_view why_fixed = {};   ///< reason why process variation cannot vary this field; empty where it can
-  std::string_view if_list = {};     ///< advice in the message when a scene gives a list instead of the number
+  std::string_view unless = {};      ///< key of another field whose presence makes this field optional
+  std::string_view not_below = {};   ///< key of another field of the law, whose value is the lower bound of this field
+  std::string_view such_as = {};    ///< example value of the field for messages, where the usual example of the unit does not fit
+  std::string_view beyond = {};     ///< advice for a value outside the range; the range then applies to scenes only
+  std::string_view why_fixed = {};  ///< reason why process variation cannot vary this field; empty where it can
+  std::string_view if_list = {};    ///< advice in the message when a scene gives a list instead of the number
   std::vector<std::string_view> (*words)() = nullptr;    ///< words that the field accepts
-  void (*choose)(Owner&, std::string_view) = nullptr;    ///< sets the enumerator of a word
+  void (*choose)(Owner&, std::string_view) = nullptr;    ///< sets the member of the struct to the enumerator that a word names
   std::string_view refused_word = {}, why_refused = {};  ///< word that users may expect for this field, and why it is refused
 };
 
-/// Returns the member at the end of a path of members: reach<Law, &Law::summits, &Summits::radius>.
+/// Returns the member of a struct at the end of a path of members: reach<Law, &Law::summits, &Summits::radius>.
 template <class Owner, auto... path>
 [[nodiscard]] constexpr auto& reach(Owner& owner) {
   return (owner.*....*path);
 }
 
-/// Returns the fields of several blocks of a law, one after the other.
+/// Returns one array with the fields of several arrays of fields, one after the other.
 template <class Law, std::size_t... n>
 [[nodiscard]] consteval auto joined(const std::array<Field<Law>, n>&... arrays) {
   std::array<Field<Law>, (n + ...)> all{};
@@ -68,7 +69,7 @@ template <class Law, std::size_t... n>
   return all;
 }
 
-/// The fields of a law, computed at compile time.
+/// The array of the fields of a law, computed at compile time.
 template <class Law>
 inline constexpr auto fields_of = Law::fields();
 
@@ -111,7 +112,7 @@ template <class Variant>
   for_each_law<Variant>([&]<class Law>(std::type_identity<Law>) { names.push_back(Law::name); });
   return names;
 }
-/// Returns for example "strip, veijola or linear".
+/// Returns the names of the laws of a variant as words: "strip, veijola or linear".
 template <class Variant>
 [[nodiscard]] std::string listed_laws() {
   const std::vector<std::string_view> names = names_of_laws<Variant>();

@@ -9,7 +9,8 @@ struct GaussRule {
   std::vector<double> points, weights;
 };
 
-/// Returns n points, exact for polynomials of degree 2 n - 1 (Golub & Welsch 1969: eigenvalues of the Jacobi matrix).
+/// Returns the rule with n points, which is exact for polynomials of degree 2 n - 1 (Golub & Welsch 1969: eigenvalues of the
+/// Jacobi matrix).
 [[nodiscard]] GaussRule gauss_rule(int n);
 
 }  // namespace softland

@@ -11,13 +11,13 @@ namespace softland {
 inline constexpr std::size_t lanes = 4;
 using Lane = Eigen::Array<double, lanes, 1>;
 
-/// Returns the values, padded with `idle` to whole lanes.
+/// Returns the values, padded with `idle` to a multiple of the four numbers of a lane.
 [[nodiscard]] inline std::vector<double> padded_to_lanes(std::vector<double> values, double idle) {
   values.resize((values.size() + lanes - 1) / lanes * lanes, idle);
   return values;
 }
 
-/// Returns the lane of a padded array that begins at index `begin`.
+/// Returns the lane (four numbers) of a padded array that begins at index `begin`.
 inline Eigen::Map<Lane> lane(std::vector<double>& values, std::size_t begin) { return Eigen::Map<Lane>(values.data() + begin); }
 inline Eigen::Map<const Lane> lane(const std::vector<double>& values, std::size_t begin) {
   return Eigen::Map<const Lane>(values.data() + begin);

@@ -18,10 +18,11 @@
 namespace softland {
 namespace {
 
-constexpr std::string_view word = "process ";  // first word in a lock file
-// holder_of() takes a shared lock for a moment, so one failed attempt does not mean that another run has the lock.
+constexpr std::string_view word = "process ";  // first word in a lock file, before the number of the process
+// Number of attempts to lock the file: holder_of() takes a shared lock for a moment, so one failed attempt does not mean that
+// another run has the lock.
 constexpr int most_attempts = 20;
-constexpr useconds_t between_attempts = 10'000;  // [us]
+constexpr useconds_t between_attempts = 10'000;  // wait between two attempts to lock the file [us]
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
@@ -64,7 +65,8 @@ LockFile::LockFile(const std::filesystem::path& file, const LockedPlace& place, 
       throw InvalidInput(taken ? fmt::format("{}: {} ({})", place.name, place.occupied, who)
                                : fmt::format("{}: the {} cannot be locked: {}", place.name, place.kind, reason(error)));
     }
-    // The previous holder may have removed the file after this process opened it and before this process locked it.
+    // Open and lock the file again if it is gone: its previous holder may have removed it after this process opened it and
+    // before this process locked it.
     if (held()) break;
     ::close(descriptor_);
   }

@@ -1,4 +1,4 @@
-// Progress that never decreases.
+// Progress reports of several threads, turned into progress that never decreases.
 #pragma once
 
 #include <algorithm>
@@ -13,9 +13,10 @@ namespace softland {
 /// reports late, does not change the progress. A computation that begins again is shown with a count, "closing (2)".
 class MonotoneProgress {
  public:
-  /// Returns the name to show, and the completed part, 0 to 1.
+  /// Returns the name of the computation to show, and its completed part, 0 to 1.
   [[nodiscard]] std::pair<std::string, double> updated(std::string_view what, double part) {
-    constexpr double begins_again = 0.5;  // a part below this share of the reported part means a new beginning
+    // A reported part below this share of the shown part means that the computation began again.
+    constexpr double begins_again = 0.5;
     Round& round = rounds_[std::string(what)];
     if (part < begins_again * round.part) {
       ++round.number;

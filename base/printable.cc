@@ -32,10 +32,10 @@ CodePoint first_of(std::string_view text) {
 
 bool acts_on_a_terminal(char32_t c) {
   const auto within = [c](char32_t first, char32_t last) { return c >= first && c <= last; };
-  return c < 0x20 || within(0x7F, 0x9F) ||         // C0, DEL, C1
-         c == 0x061C || within(0x200E, 0x200F) ||  // marks of direction
-         within(0x2028, 0x202E) ||                 // separators; embeddings and overrides of direction
-         within(0x2066, 0x2069);                   // isolates
+  return c < 0x20 || within(0x7F, 0x9F) ||         // control characters: the Unicode sets C0 and C1, and DEL
+         c == 0x061C || within(0x200E, 0x200F) ||  // characters that set the direction of text
+         within(0x2028, 0x202E) ||  // separators of lines and paragraphs; embeddings and overrides of the direction of text
+         within(0x2066, 0x2069);    // characters that isolate text of another direction
 }
 
 std::string cleaned(std::string_view text, std::string_view kept) {

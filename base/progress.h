@@ -15,7 +15,8 @@ class Interrupted : public std::exception {
 };
 
 struct Progress {
-  const std::atomic<bool>* stop = nullptr;  ///< set by another thread (Ctrl-C); the computation ends with its result so far
+  /// Flag that another thread sets (Ctrl-C) to stop the computation, which then ends with its result so far.
+  const std::atomic<bool>* stop = nullptr;
   /// Function that is called often, from the threads that compute, one at a time, with the name of the computation and its
   /// completed part, 0 to 1.
   std::function<void(std::string_view what, double part)> report = {};

@@ -21,24 +21,25 @@ enum class Stream : std::uint64_t {
   normals = 4,
   scene = 5,
   perturbation = 6,
-  spread = 7,              ///< devices of an ensemble
-  indices = 8,             ///< points of the estimates of Sobol' indices
-  bootstrap = 9,           ///< indices of the values that a bootstrap sample takes
-  folds = 10,              ///< partition of values for a cross-validation
-  measurement = 11,        ///< errors of measurements on a device
-  fresh = 12,              ///< seeds of simulated devices that a search has not used
-  jitter = 13,             ///< delays of the edges of a drive (jitter)
-  classes = 14,            ///< devices that are sorted into classes, and the starts of the search for the classes
-  plan = 15,               ///< points of an exploration of a design space
-  offspring = 16,          ///< members of a population that become parents, and the variation of their child
-  hop = 17,                ///< distance from the best point at which a local search begins
-  race = 18,               ///< seeds of the rounds of a search over waveform families
-  tuning = 19,             ///< devices that represent the current estimate of the device under test
+  spread = 7,        ///< parameters of the varied devices of an ensemble (Monte Carlo sample)
+  indices = 8,       ///< devices from which Sobol' indices are estimated
+  bootstrap = 9,     ///< indices of the values that a bootstrap sample takes
+  folds = 10,        ///< partition of devices into the parts of a cross-validation
+  measurement = 11,  ///< errors of the simulated measurements on a device
+  fresh = 12,        ///< seeds of simulated devices that a search has not used
+  jitter = 13,       ///< delays of the edges of a drive's waveform (jitter)
+  classes = 14,      ///< devices that are sorted into classes, and the starts of the search for the classes
+  plan = 15,         ///< points of an exploration of a design space
+  offspring = 16,    ///< members of an evolutionary search's population that become parents, and the variation of their child
+  hop = 17,          ///< distance from the best point of a search at which a local search begins
+  /// Seeds of the rounds of a search over waveform families, in which a round is a stage that compares the families.
+  race = 18,
+  tuning = 19,             ///< parameter values of simulated devices that represent the current estimate of the device under test
   practice_device = 21,    ///< parameter values of a simulated device to practise tuning on
   practice_gain = 22,      ///< gain of the sources of the practice device, and the scatter of this gain
   practice_edges = 23,     ///< errors of the measured times at which the contact of the practice device closes and opens
   piezo_measurement = 24,  ///< errors of the measured deflection by a piezo
-  fit = 25,                ///< starts of the minimisations of a fit
+  fit = 25,                ///< starts of the minimisations of a fit to measurements
 };
 
 /// Returns output number n, counted from 0, of SplitMix64 with this seed.

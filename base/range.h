@@ -17,7 +17,7 @@ struct Range {
   [[nodiscard]] constexpr bool contains(double value) const {
     return (least_open ? value > least : value >= least) && (most_open ? value < most : value <= most);
   }
-  /// Returns for example "must be in [1 pm, 1 m]" or "must be in [0, 1)".
+  /// Returns the rule for a value of the range as text: "must be in [1 pm, 1 m]" or "must be in [0, 1)".
   [[nodiscard]] std::string rule(std::string_view unit) const;
   [[nodiscard]] constexpr bool operator==(const Range&) const = default;
 };

@@ -34,7 +34,8 @@ void require(bool rule_holds, Message&& message, std::source_location where = st
   if (!rule_holds) throw InvalidInput(message(), where);
 }
 
-/// Returns the name of a field of a request with a mark, for the message of an InvalidRequest.
+/// Returns the name of a field of a request between two marks. with_fields() later replaces the marks in the message of an
+/// InvalidRequest.
 [[nodiscard]] inline std::string requested(std::string_view field) { return '\x02' + std::string(field) + '\x03'; }
 
 /// Returns the text with `before` in front of each field name that requested() has marked: "--" for a command line, "" for a
@@ -80,7 +81,7 @@ class InvalidParameter : public InvalidInput {
  public:
   InvalidParameter(std::string_view parameter, const std::string& message, std::source_location where)
       : InvalidInput(message, where), parameter_(parameter) {}
-  /// Returns the name of the parameter.
+  /// Returns the name of the parameter that breaks the rule.
   [[nodiscard]] const std::string& parameter() const noexcept { return parameter_; }
 
  private:

@@ -14,7 +14,7 @@ concept LaneOfNumbers = requires(const S& lane) {
   lane[0];
 };
 
-/// Sets `to` where the condition holds.
+/// Sets the numbers of the lane `to` to those of `from` where the condition holds.
 template <LaneOfNumbers Lane>
 void assign_where(const typename Lane::mask_type& condition, Lane& to, const Lane& from) {
   where(condition, to) = from;

@@ -8,7 +8,8 @@
 
 namespace softland {
 
-/// Returns the parts: "a,b,,c" at ',' is "a", "b", "" and "c"; an empty text is one empty part.
+/// Returns the parts of a text between its separators: "a,b,,c" at ',' is "a", "b", "" and "c"; an empty text is one empty
+/// part.
 [[nodiscard]] inline std::vector<std::string> split(std::string_view text, char separator) {
   std::vector<std::string> parts;
   for (std::size_t begin = 0; begin <= text.size();) {

@@ -72,7 +72,7 @@ std::filesystem::path behind_links(const std::filesystem::path& path) {
   return error ? path : target;
 }
 
-/// Returns a message with the path, the failed action and the text of errno.
+/// Returns an error message with the path, the failed action and the text of errno.
 std::string failure(const std::filesystem::path& path, const char* what) {
   return fmt::format("{}: cannot {}: {}", path.string(), what, std::generic_category().message(errno));
 }

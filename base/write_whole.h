@@ -15,11 +15,11 @@ void check_writable(const std::filesystem::path& path);
 
 /// Writes `content` to `path` whole: a temporary name in the same folder, fsync, rename, fsync of the folder. A symbolic link
 /// remains; the file to which it leads is replaced. After any failure an existing file is unchanged and the temporary file is
-/// removed. Throws as check_writable() does, and OutputLost with path and reason if the content cannot be written, as on a full
-/// disk.
+/// removed. Throws the exceptions of check_writable(), and OutputLost with path and reason if the content cannot be written, as
+/// on a full disk.
 void write_whole(const std::filesystem::path& path, std::string_view content);
 
-/// Writes content that comes in parts: `content` passes each part to its argument.
+/// Writes a file as write_whole() above does, from content that comes in parts: `content` passes each part to its argument.
 void write_whole(const std::filesystem::path& path,
                  const std::function<void(const std::function<void(std::string_view)>&)>& content);
 

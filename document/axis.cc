@@ -25,13 +25,13 @@ Points drawable(const Points& points) {
 double Axis::transformed(double value) const { return scale == AxisScale::linear ? value : std::log10(value); }
 
 double Axis::pixel(double value) const {
-  constexpr double farthest = 1e7;  // limit beyond any paper [px]
+  constexpr double farthest = 1e7;  // largest coordinate in a drawing, beyond any paper [px]
   const double part = part_between(transformed(low), transformed(high), transformed(value));
   return std::clamp(pixel_low + part * (pixel_high - pixel_low), -farthest, farthest);
 }
 
 double part_between(double low, double high, double value) {
-  constexpr double middle = 0.5, quarter = 0.25;  // factors for numbers whose difference overflows
+  constexpr double middle = 0.5, quarter = 0.25;  // factors that scale two numbers down where their difference would overflow
   const double way = high - low;
   const double part =
       std::isfinite(way) ? (value - low) / way : (quarter * value - quarter * low) / (quarter * high - quarter * low);
@@ -52,7 +52,7 @@ std::vector<double> linear_ticks(double low, double high, int wanted) {
     }
   }
   const double first = std::ceil(low / step - 1e-9);
-  constexpr double countable = 4503599627370496;  // doubles from this size on are whole numbers
+  constexpr double countable = 4503599627370496;  // doubles from this size on, 2^52, are whole numbers
   if (!(step > 0 && std::abs(first) < countable)) return low < high ? std::vector{low, high} : std::vector{low};
   std::vector<double> out;
   for (int k = 0; k <= 10 * wanted; ++k) {
@@ -75,7 +75,7 @@ std::vector<double> ticks(const Axis& axis, int wanted) {
   const int every = std::max(1, (last - first + 7) / 8);
   for (int exponent = first; exponent <= last; exponent += every) out.push_back(std::pow(10, exponent));
   if (out.size() > 2) return out;
-  out.clear();  // a range of few powers of ten also has ticks at 2 and 5 times a power
+  out.clear();  // an axis over few powers of ten also has ticks at 2 and 5 times each power
   for (int exponent = first - 1; exponent <= last; ++exponent) {
     for (const double part : {1.0, 2.0, 5.0}) {
       const double tick = part * std::pow(10, exponent);

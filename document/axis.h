@@ -7,8 +7,8 @@
 
 namespace softland::internal {
 
-inline constexpr const char* ink = "#1b1f24";    // colour of text and of the main curves
-inline constexpr const char* muted = "#5f6b76";  // colour of ticks and frames
+inline constexpr const char* ink = "#1b1f24";    // colour of text and of the main curves in a chart
+inline constexpr const char* muted = "#5f6b76";  // colour of ticks and frames of a chart
 
 /// Returns `value` if a chart can draw it, NaN if it is beyond 1e100, and 0 if it is within 1e-100 of 0. Only a damaged file
 /// has values that large or small; such values would overflow the coordinates of a chart.
@@ -19,7 +19,7 @@ inline constexpr const char* muted = "#5f6b76";  // colour of ticks and frames
 /// Maps data to pixels along one axis.
 struct Axis {
   AxisScale scale = AxisScale::linear;
-  double low = 0, high = 1;  // ends of the axis in units of the data
+  double low = 0, high = 1;  // values of the data at the ends of the axis
   double pixel_low = 0, pixel_high = 1;
 
   [[nodiscard]] double transformed(double value) const;

@@ -10,14 +10,14 @@
 
 namespace softland {
 
-/// Points [x, y] in order.
+/// Points [x, y] of a curve, in order.
 using Points = std::vector<std::array<double, 2>>;
 
 }  // namespace softland
 
 namespace softland::internal {
 
-/// Columns by name, all of equal length; Chart::x_column and Series::column name them.
+/// Columns of a table of curves by name, all of equal length; Chart::x_column and Series::column name them.
 using CurveTable = std::map<std::string, std::vector<double>>;
 using CurveTables = std::map<std::string, CurveTable>;
 
@@ -30,7 +30,7 @@ enum class AxisScale { linear, logarithmic };
 struct Series {
   std::string table;
   std::string column;
-  std::string label;  ///< name in the legend; empty: not in the legend
+  std::string label;  ///< name of the curve in the legend; empty: not in the legend
   Role role = Role::best;
 };
 
@@ -49,27 +49,27 @@ struct Mark {
 };
 
 struct Chart {
-  std::string id;  ///< identifier: letters, digits and dashes only
+  std::string id;  ///< identifier of the chart in a page: letters, digits and dashes only
   std::string title;
   std::string caption;
   std::string x_column;
   std::string x_label;
-  std::string x_unit;  ///< unit of x; empty: a count
+  std::string x_unit;  ///< unit of the values on the x axis; empty: x is a count
   std::string y_label;
   std::string y_unit;
-  AxisScale scale = AxisScale::linear;          ///< scale of y
-  AxisScale x_scale = AxisScale::linear;        ///< scale of x; logarithmic: a curve has a dot at every point
-  std::array<double, 2> x_home{0, 1};           ///< range of x shown before any zoom
-  std::array<double, 2> x_whole{0, 1};          ///< range of x of all data
-  std::optional<std::array<double, 2>> y_home;  ///< range of y before any zoom; not set: the range of the data in view
+  AxisScale scale = AxisScale::linear;    ///< scale of the y axis: linear or logarithmic
+  AxisScale x_scale = AxisScale::linear;  ///< scale of the x axis; where it is logarithmic, a curve has a dot at every point
+  std::array<double, 2> x_home{0, 1};     ///< range of the x axis that is shown before any zoom
+  std::array<double, 2> x_whole{0, 1};    ///< range of the x axis that contains all data
+  std::optional<std::array<double, 2>> y_home;  ///< range of the y axis before any zoom; not set: the range of the data in view
   bool zero_line = false;
   std::string zero_label;
-  bool zero_label_left = false;  ///< true: the zero label stands at the left end of the line
+  bool zero_label_left = false;  ///< true: the label of the line y = 0 stands at its left end
   std::string group;             ///< charts of one group share cursor and zoom; empty: alone
   int height = 300;              ///< height of the chart [px]
   std::vector<Series> series;
   std::vector<Mark> marks;
-  std::vector<Band> bands = {};  ///< bands are drawn below the curves, and in static pictures only
+  std::vector<Band> bands = {};  ///< filled areas between two columns, drawn below the curves, and in static pictures only
   /// true: each series is a horizontal bar, one below the other: solid where its value is 1, pale where it is between 0 and 1.
   bool is_of_bars = false;
 };

@@ -9,8 +9,8 @@
 
 namespace softland::internal {
 
-/// Returns {"unit": u, "steps": [...]}: value k is u times the sum of steps 0 ... k; null stands for a value that is not
-/// available and adds nothing.
+/// Returns the values of a column as JSON in small whole numbers, {"unit": u, "steps": [...]}: value k is u times the sum of
+/// steps 0 ... k; null stands for a value that is not available and adds nothing.
 [[nodiscard]] nlohmann::json packed(const std::vector<double>& column, double unit);
 /// Returns curve tables and charts for the page's script. Columns are thinned to at most `rows` rows per table and stored as
 /// integer steps of a unit. The unit, one part in ten million of the largest value, is too small to see.

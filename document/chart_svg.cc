@@ -25,7 +25,7 @@ constexpr double below = 46;  // height of tick labels and axis label [px]
 struct Stroke {
   const char* colour;
   double width;
-  const char* dash;  // dash pattern; empty: solid
+  const char* dash;  // dash pattern of a curve's line; empty: solid
 };
 
 Stroke stroke(Role role) {
@@ -109,8 +109,8 @@ std::array<double, 2> range_in_view(const CurveTables& tables, const Chart& char
   lowest = std::min(lowest, 0.0);
   highest = std::max(highest, 0.0);
   const double margin = highest > lowest ? 0.06 * (highest - lowest) : 1.0;
-  const double words =
-      chart.zero_label.empty() ? 0 : 0.1 * (highest - lowest) * 240 / chart.height;  // height of the zero label below the line
+  // Height of the label below the zero line, in units of the y axis.
+  const double words = chart.zero_label.empty() ? 0 : 0.1 * (highest - lowest) * 240 / chart.height;
   return {lowest - (lowest < 0 || chart.zero_line ? std::max(margin, words) : 0), highest + margin};
 }
 
@@ -141,7 +141,7 @@ std::string tick_text(double value) {
 /// A halo in the colour of the paper keeps curves from running through labels.
 constexpr const char* halo = " paint-order=\"stroke\" stroke=\"#fff\" stroke-width=\"4\" stroke-linejoin=\"round\"";
 
-/// Returns "Time (µs)", "Gap (nm)" or "cost".
+/// Returns the title of an axis with its unit: "Time (µs)", "Gap (nm)" or "cost".
 std::string axis_title(const std::string& name, const std::string& unit, const Prefix& prefix) {
   return unit.empty() ? name : fmt::format("{} ({}{})", name, prefix.symbol, unit);
 }
@@ -171,7 +171,7 @@ Axes axes_of(const CurveTables& tables, const Chart& chart, double width, double
 
 std::string chart_legend(const Chart& chart, double top) {
   std::string out;
-  if (chart.is_of_bars) return out;  // a bar has its name beside it instead
+  if (chart.is_of_bars) return out;  // a chart of bars has no legend: each bar has its name beside it
   double legend_x = left;
   for (const Series& one : chart.series) {
     if (one.label.empty()) continue;
@@ -188,7 +188,7 @@ std::string chart_legend(const Chart& chart, double top) {
   return out;
 }
 
-/// Draws grid, tick labels and names of the axes.
+/// Draws the grid, the tick labels and the names of the axes of a chart.
 std::string chart_scales(const Chart& chart, const Axes& axes) {
   const auto& [x, y] = axes;
   std::string out;
@@ -256,12 +256,13 @@ std::string chart_curve(const CurveTable& table, const Chart& chart, const Serie
       path, pen.colour, pen.width, *pen.dash ? pen.dash : "none");
 }
 
-// Draws a bar. A stretch shorter than a pixel is drawn one pixel long; stretches less than a pixel apart are drawn as one.
+// Draws a horizontal bar of a chart. A stretch shorter than a pixel is drawn one pixel long; stretches less than a pixel apart
+// are drawn as one.
 std::string chart_bar(const CurveTable& table, const Chart& chart, std::size_t number, const Axes& axes) {
   const Series& one = chart.series[number];
   const std::vector<double>&xs = table.at(chart.x_column), &ys = table.at(one.column);
   constexpr double pixel = 1;
-  std::array<std::string, 2> paths;  // paths of the pale and the solid stretches
+  std::array<std::string, 2> paths;  // SVG paths of the pale and of the solid stretches of the bar
   std::array<double, 2> ends{-1, -1};
   const double middle = axes.y.pixel_high + bar_height * (static_cast<double>(number) + 0.5);
   for (std::size_t row = 1; row < xs.size(); ++row) {

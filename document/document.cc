@@ -203,7 +203,8 @@ std::string internal::words_html(std::string_view words) {
   std::string out;
   while (!words.empty()) {
     const std::size_t end = std::min(words.find_first_of(ends), words.size());
-    const std::size_t stop = end > 0 && words[end - 1] == '.' ? end - 1 : end;  // end of the word without a full stop
+    // End of the word, without a full stop behind it.
+    const std::size_t stop = end > 0 && words[end - 1] == '.' ? end - 1 : end;
     const std::string_view word = words.substr(0, stop);
     out += has_index(word) ? symbol_html(word) : escaped(word);
     out += escaped(words.substr(stop, std::min(end + 1, words.size()) - stop));

@@ -19,10 +19,10 @@ namespace softland {
 /// A cell of a table, or the heading of a column. A page shows a symbol such as "t_i" with a subscript.
 struct TableCell {
   std::string text;
-  std::string style = {};                                   ///< class in the CSS of the page; may be empty
-  std::size_t columns = 1;                                  ///< number of columns that the cell spans
-  std::string html = {};                                    ///< HTML that replaces the text on a page; empty: the text
-  TableCell(std::string words) : text(std::move(words)) {}  // NOLINT(google-explicit-constructor): a cell is its text
+  std::string style = {};   ///< CSS class of the cell on a page; may be empty
+  std::size_t columns = 1;  ///< number of columns that the cell spans
+  std::string html = {};    ///< HTML that replaces the text of the cell on a page; empty: the text
+  TableCell(std::string words) : text(std::move(words)) {}  // NOLINT(google-explicit-constructor): a text converts to a cell
   TableCell(const char* words) : text(words) {}             // NOLINT(google-explicit-constructor)
   TableCell(std::string_view words) : text(words) {}        // NOLINT(google-explicit-constructor)
   TableCell(std::string words, std::string name, std::size_t wide = 1)
@@ -40,13 +40,13 @@ struct ReportTable {
 
 struct Paragraph {
   std::string text;
-  bool is_note = false;  ///< true for a note below a table
+  bool is_note = false;  ///< true if the paragraph is a note below a table
 };
-/// The heading of a part of a section.
+/// A heading within a section of a report.
 struct SubHeading {
   std::string text;
 };
-/// Lines that are not broken, such as commands.
+/// Lines of text that are never wrapped, such as commands.
 struct ReportList {
   std::vector<std::string> lines;
 };
@@ -56,7 +56,7 @@ struct Drawing {
 };
 [[nodiscard]] Drawing drawing_of(std::string html);
 
-/// The media that show a section.
+/// The media (web page, terminal) that show a section of a report.
 enum class ShownIn { everywhere, page, terminal };
 
 /// A part of a page under a heading; a terminal omits the heading.
@@ -69,35 +69,35 @@ struct ReportSection {
 /// A number with its name, at the top of a page.
 struct KeyNumber {
   std::string name, value;
-  std::string change = {};  ///< change against the plain step, in words; may be empty
-  std::string before = {};  ///< value under the plain step; may be empty
-  std::string style = {};   ///< class of `change` in the CSS of the page
-  bool is_words = false;    ///< true for a value without a number
+  std::string change = {};  ///< change of the number from its value under the plain voltage step, in words; may be empty
+  std::string before = {};  ///< value of the number under the plain voltage step; may be empty
+  std::string style = {};   ///< CSS class of the text `change` on the page
+  bool is_words = false;    ///< true if the value is words instead of a number
 };
 
 /// The data from which the contents of a page can be computed again.
 struct MadeAgain {
-  std::string version, command;  ///< version of the program; command line
-  std::string made_with;         ///< compiler and machine, one line; empty if unknown
-  std::string scene;             ///< resolved scene as the text of a scene file; may be empty
+  std::string version, command;  ///< version of the program, and command line, that gave the results
+  std::string made_with;         ///< compiler and machine that gave the results, one line; empty if unknown
+  std::string scene;             ///< resolved scene (all defaults written out) as the text of a scene file; may be empty
   std::optional<std::uint64_t> seed = {};
-  double tolerance = std::numeric_limits<double>::quiet_NaN();  ///< tolerance of the integrator
+  double tolerance = std::numeric_limits<double>::quiet_NaN();  ///< relative tolerance of the integrator that gave the results
   std::vector<std::string> reproduce = {};                      ///< command lines that give the result again; empty: `command`
 };
 
 /// Keeps a reference to the record from which the document was made; the record must outlive the document.
 struct Document {
-  std::string title;  ///< title of the scene; may be empty
+  std::string title;  ///< title of the scene that the report is about; may be empty
   std::string origin;
   std::string headline, headline_rest;
   std::string doubt;
   std::vector<KeyNumber> keys;
   std::vector<ReportSection> sections;
   std::vector<std::string> warnings;
-  std::vector<std::string> page_warnings = {};  ///< further warnings, for the page alone
-  std::function<internal::Picture()> draw;      ///< makes the charts for the page's script; may be empty
-  MadeAgain made = {};                          ///< data for computing the contents again
-  /// CSS and HTML of the page for pictures that `draw` does not return.
+  std::vector<std::string> page_warnings = {};  ///< warnings that only the page shows, besides those of the terminal
+  std::function<internal::Picture()> draw;      ///< returns the charts for the page's script; may be empty
+  MadeAgain made = {};                          ///< data for computing the contents of the page again
+  /// CSS and HTML that the page needs for pictures other than those that `draw` returns.
   std::string style = {}, scripts = {};
 };
 

@@ -19,10 +19,10 @@ namespace softland::internal {
 namespace {
 
 constexpr double map_left = 84;
-constexpr double map_right = 128;  // width of the colour scale [px]
+constexpr double map_right = 128;  // width of the colour scale beside the map [px]
 constexpr double map_above = 14;
 constexpr double map_below = 84;    // height of tick labels, axis label and legend of hatches [px]
-constexpr int steps_of_scale = 32;  // number of distinct colours
+constexpr int steps_of_scale = 32;  // number of distinct colours of the map's colour scale
 
 std::vector<double> finite(const std::vector<double>& values) {
   std::vector<double> out;
@@ -144,7 +144,7 @@ class Cells {
   }
 
   [[nodiscard]] double edge(std::size_t k) const { return axis_.pixel(edges_[k]); }
-  /// Returns the pixel of a position k between the centres of cells.
+  /// Returns the pixel coordinate of a position k, in numbers of cells, between the centres of cells.
   [[nodiscard]] double place(double k) const {
     const auto lower = std::min(static_cast<std::size_t>(k), values_.size() - 1);
     const auto upper = std::min(lower + 1, values_.size() - 1);
@@ -164,7 +164,8 @@ std::string axis_label(const std::string& label, const std::string& unit, const 
   return escaped(label) + (unit.empty() ? "" : fmt::format(" ({}{})", prefix.symbol, escaped(unit)));
 }
 
-/// Returns SVG paths of rectangles by class of cell; neighbouring cells of one class in a row make one rectangle.
+/// Returns SVG paths of rectangles by class (colour or hatch) of cell; neighbouring cells of one class in a row make one
+/// rectangle.
 std::map<std::size_t, std::string> rectangles(const std::vector<std::size_t>& classes, const Cells& x, const Cells& y,
                                               std::size_t columns) {
   std::map<std::size_t, std::string> paths;
@@ -219,7 +220,8 @@ std::string contours(const HeatMap& map, const Cells& x, const Cells& y, const C
   for (const double level : contour_levels(map.values, 9)) {
     if (level <= range.low || level >= range.high) continue;
     for (const ContourLine& line : contour_lines(map.values, columns, level)) {
-      constexpr std::size_t shortest = 4, labelled = 14;  // least number of pieces of a drawn line, and of a labelled line
+      // Least number of pieces of a contour line that is drawn, and of one that is labelled.
+      constexpr std::size_t shortest = 4, labelled = 14;
       if (line.size() < shortest) continue;
       for (std::size_t k = 0; k < line.size(); ++k)
         paths += fmt::format("{}{:.1f} {:.1f}", k == 0 ? "M" : "L", x.place(line[k][0]), y.place(line[k][1]));
@@ -331,7 +333,7 @@ std::vector<double> contour_levels(const std::vector<double>& values, int wanted
 }
 
 bool is_ragged(const std::vector<double>& values, std::size_t columns) {
-  // Neighbouring values of a smooth figure differ by a small part of the range, random values by a third.
+  // Neighbouring values of a smooth figure differ by at most this share of the range; random values differ by a third.
   constexpr double smooth = 0.1;
   const ColourRange range = colour_range(values);
   double sum = 0;

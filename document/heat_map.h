@@ -12,13 +12,13 @@ namespace softland::internal {
 
 struct HeatMapAxis {
   std::string label;
-  std::string unit;            ///< unit; empty: a number without unit
-  std::vector<double> values;  ///< values of the variable, ascending, at least one
+  std::string unit;            ///< unit of the variable on an axis of the map; empty: a number without unit
+  std::vector<double> values;  ///< values of the variable on an axis of the map, ascending, at least one
 };
 
 struct HeatMap {
   HeatMapAxis x, y;
-  std::string label;  ///< name of the figure
+  std::string label;  ///< name of the figure whose values the map shows
   std::string unit;
   std::vector<double> values;  ///< value of cell (i, j) at j * x.values.size() + i; NaN: no value
   /// Reason why a cell has no value, as an index into `reasons`; ignored where the cell has a value.

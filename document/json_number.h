@@ -1,4 +1,4 @@
-// JSON has no non-finite numbers: a figure that is not finite becomes null.
+// JSON has no non-finite numbers: a number that is not finite becomes null.
 #pragma once
 
 #include <cmath>

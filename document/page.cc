@@ -9,7 +9,7 @@
 namespace softland::internal {
 namespace {
 
-/// largest number of bytes of text in a block; the rest is cut
+/// largest number of bytes in a block of text on a page; the rest is cut
 constexpr std::size_t most_text = 100'000;
 /// Number of rows of a curve in a page: several times the pixels of a wide screen, so that zooming shows more detail, at about
 /// 100 kB per curve.

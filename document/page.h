@@ -21,7 +21,7 @@ namespace softland::internal {
 [[nodiscard]] std::string small_picture(const CurveTables& tables, const Chart& chart);
 /// Returns the HTML of a chart: title, caption, and the element in which the script draws the chart.
 [[nodiscard]] std::string figure_html(const CurveTables& tables, const Chart& chart);
-/// Returns the style and the scripts that draw the charts of a page.
+/// Returns the HTML that a page needs to draw charts: the CSS style and the scripts.
 [[nodiscard]] std::string chart_style();
 [[nodiscard]] std::string chart_scripts(const Picture& drawn);
 

@@ -21,7 +21,8 @@ constexpr double beyond_prefixes = 1e15;
 constexpr const char* no_break_space = "\u00a0";
 constexpr const char* none = "—";
 constexpr double most_times = 1000;
-constexpr double most_percent = 10;  // ratio 10, which is a thousand per cent: larger ratios are factors
+// Largest ratio that is shown in percent: 10, which is a thousand per cent; larger ratios are shown as factors.
+constexpr double most_percent = 10;
 
 /// Returns the decimal exponent of the first digit of a value that is not 0; for an infinite value, the exponent of the largest
 /// double.
@@ -33,7 +34,7 @@ int exponent_of(double value) {
 /// Rounds `value` to a multiple of 10^place.
 double rounded(double value, int place) {
   if (value == 0) return 0;
-  const int digits = exponent_of(value) - place;  // digits after the first
+  const int digits = exponent_of(value) - place;  // number of shown digits after the first digit
   if (digits < -1) return 0;
   if (digits < 0) return std::abs(value) < 0.5 * std::pow(10, place) ? 0 : std::copysign(std::pow(10, place), value);
   const double near = std::strtod(fmt::format("{:.{}e}", value, digits).c_str(), nullptr);
@@ -43,7 +44,7 @@ double rounded(double value, int place) {
 /// Returns the smallest multiple of 10^place that is at least `error`, so that a rounded error still covers the error.
 double rounded_up(double error, int place) {
   const double last = std::pow(10, place);
-  if (last == 0) return error;  // 10^place underflows
+  if (last == 0) return error;  // 10^place underflows to 0
   return std::min(std::ceil(error / last * (1 - 1e-9)) * last, std::numeric_limits<double>::max());
 }
 
@@ -81,10 +82,11 @@ struct Shown {
 };
 
 Shown shown(double value, double error, std::string_view unit, int digits) {
-  Shown s{.value = rounded(value, last_place(value, error, unit, digits))};  // round first: 999.96 becomes 1.00 k, not 1000
+  // Round before choosing the prefix: 999.96 becomes 1.00 k, not 1000.
+  Shown s{.value = rounded(value, last_place(value, error, unit, digits))};
   s.place = last_place(s.value != 0 ? s.value : value, error, unit, digits);
   if (unit.empty()) return s;
-  // Choose the prefix by the error if the error is larger than the value.
+  // Choose the SI prefix by the error of a value if the error is larger than the value.
   const double beside = error > 0 && std::isfinite(error) ? rounded_up(error, s.place) : 0;
   s.prefix = prefix_for(std::max(std::abs(s.value), beside));
   return s;
@@ -151,7 +153,7 @@ std::string quantity_within(double value, double error, std::string_view unit, i
   if (!std::isfinite(value)) return none;
   if (is_fast(value, unit)) return quantity_within(per_microsecond * value, per_microsecond * error, fast_slew, digits);
   const double least = resolution(unit);
-  const bool known = !(error >= least);  // true unless the error is above the resolution
+  const bool known = !(error >= least);  // true unless the error of the value is above the resolution of its unit
   if (known && value > 0 && value < least) return "< " + quantity(least, unit, 1);
   const Shown s = shown(value, error, unit, digits);
   if (unit.empty() && !(error > 0)) return plain_number(value, digits);
@@ -177,7 +179,8 @@ std::string plain_number(double value, int digits) {
   if (!std::isfinite(value)) return none;
   const double size = std::abs(value);
   if (size != 0 && (size < 1e-4 || size >= 1e6)) return scientific(value, digits);
-  const int whole_digits = size >= 1 ? exponent_of(size) + 1 : 1;  // 2500 remains 2500, even if fewer digits are requested
+  // Digits before the decimal point, all of which are shown: 2500 remains 2500 even if fewer digits are requested.
+  const int whole_digits = size >= 1 ? exponent_of(size) + 1 : 1;
   return with_true_minus(fmt::format("{:.{}g}", value == 0 ? 0.0 : value, std::max(digits, whole_digits)));
 }
 

@@ -1,8 +1,8 @@
 // Formats every number that people read; JSON keeps all digits.
 //
 // A number has an SI prefix, a true minus sign (U+2212) and a no-break space before its unit. Digits beyond the requested
-// number, below the resolution of the unit, or below the error of the value are not shown: 26 as is "< 1 fs", 306.8 µs with an
-// error of 12 µs is 307 µs.
+// number, below the resolution of the unit, or below the error of the value are not shown: 26 attoseconds are "< 1 fs", 306.8
+// µs with an error of 12 µs is 307 µs.
 #pragma once
 
 #include <string>

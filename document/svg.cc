@@ -15,7 +15,7 @@
 namespace softland {
 namespace {
 
-constexpr double between = 14;  // distance between parts of a picture [px]
+constexpr double between = 14;  // distance between the charts of a picture [px]
 
 /// Breaks words into lines of at most `columns` bytes; a longer word stands alone.
 std::vector<std::string> wrapped(const std::string& text, std::size_t columns) {

@@ -1,4 +1,4 @@
-// The evaluator for Python: figures of devices from arrays of their varied values.
+// The evaluator for Python: it computes the figures of closings of devices from arrays of the devices' varied values.
 #include "studies/devices/evaluator.h"
 
 #include <fmt/format.h>
@@ -49,7 +49,7 @@ std::unique_ptr<Evaluator> made_evaluator(const PyScene& scene, const std::vecto
   });
 }
 
-// Returns (figures, status, reasons), with a row for each device.
+// Returns (figures, status, reasons) of the closings of devices, with a row for each device.
 py::tuple evaluate(const Evaluator& evaluator, const Rows& rows, int jobs, const py::object& on_progress) {
   const auto keys = static_cast<py::ssize_t>(evaluator.keys().size()),
              figures = static_cast<py::ssize_t>(evaluator.figures().size());
@@ -65,7 +65,7 @@ py::tuple evaluate(const Evaluator& evaluator, const Rows& rows, int jobs, const
     evaluator.evaluate(in, out, ends, jobs, progress);
     return true;
   });
-  // There are few different statuses: each is converted to a Python text once.
+  // Few statuses of closings occur: each is converted to a Python text once.
   std::map<std::string, py::str> texts;
   py::list status(count);
   py::dict reasons;

@@ -16,7 +16,7 @@ namespace py = pybind11;
 namespace softland::python {
 namespace {
 
-// Raises softland.InvalidInput(message, key, file, line).
+// Raises the Python exception softland.InvalidInput(message, key, file, line).
 void raise_invalid(const InvalidInput& error) {
   const auto* key = dynamic_cast<const InvalidKey*>(&error);
   const auto text = [](const std::string& one) { return one.empty() ? py::object(py::none()) : py::object(py::str(one)); };

@@ -18,10 +18,11 @@ namespace py = pybind11;
 namespace {
 
 constexpr std::size_t fewest_intervals = 8, most_intervals = 512, most_known = 64;
-// Accuracy of the polynomials relative to the largest voltage; better than own_waveform_accuracy, because they converge fast.
+// Accuracy of the polynomials that approximate a voltage, relative to the largest voltage; the polynomials converge so fast
+// that they can be more accurate than own_waveform_accuracy.
 constexpr double aim = 1e-12;
 
-// Returns Chebyshev point k for a number of intervals over [begin, end]; points run from the end to the begin.
+// Returns Chebyshev point k of [begin, end] divided into `intervals`; the points run from the end to the beginning.
 double chebyshev_point(double begin, double end, std::size_t k, std::size_t intervals) {
   return (begin + end) / 2 + (end - begin) / 2 * std::cos(pi * static_cast<double>(k) / static_cast<double>(intervals));
 }
@@ -30,7 +31,7 @@ py::array_t<double> array(std::span<const double> values) {
   return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
-// Returns an object with its type for messages, such as "'abc' (str)".
+// Returns a Python object with its type for messages, such as "'abc' (str)".
 std::string shown(const py::handle& given) {
   constexpr std::size_t longest = 80;
   std::string text = py::repr(given);
@@ -40,7 +41,8 @@ std::string shown(const py::handle& given) {
 
 // Converts the value that a Python function returned to numbers; `who` names the function in messages.
 std::vector<double> numbers(const py::object& given, const std::string& who) {
-  const auto values = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);  // clears the error
+  // Clears the Python error of a failed conversion.
+  const auto values = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
   require(static_cast<bool>(values), [&] { return who + " returned " + shown(given) + "; it must return an array of numbers"; });
   return {values.data(), values.data() + values.size()};
 }
@@ -74,7 +76,8 @@ double PythonWaveform::Arc::at(double time) const {
     above += weight * values[k], below += weight;
   }
   const double value = above / below;
-  // Values beyond the samples by rounding are set to the extreme sample, so that they keep the limits of a driver.
+  // A polynomial may exceed the samples of the voltage by rounding. Set such a value to the extreme sample, so that the
+  // waveform keeps the limits of the voltage source.
   if (value < least && least - value <= own_waveform_accuracy * std::max(-least, most)) return least;
   if (value > most && value - most <= own_waveform_accuracy * std::max(-least, most)) return most;
   return value;
@@ -111,8 +114,9 @@ std::shared_ptr<const PythonWaveform::Course> PythonWaveform::course(std::span<c
     std::vector<std::size_t> open(made->arcs.size());
     for (std::size_t i = 0; i < open.size(); ++i) open[i] = i;
     for (std::size_t intervals = fewest_intervals; !open.empty() && intervals <= most_intervals; intervals *= 2) {
-      // One call returns the voltages of all arcs between breakpoints that are not accurate yet. At a breakpoint the Python
-      // function returns the voltage after a jump, so that the end of an arc is evaluated slightly before the breakpoint.
+      // One call of the Python function returns the voltages of all intervals between breakpoints that are not accurate yet. At
+      // a breakpoint the function returns the voltage after a jump, so the end of an interval is evaluated slightly before the
+      // breakpoint.
       std::vector<double> times;
       for (const std::size_t i : open) {
         const Arc& arc = made->arcs[i];
@@ -154,7 +158,7 @@ std::vector<double> PythonWaveform::breakpoints(std::span<const double> x) const
 
 double PythonWaveform::voltage(double time, std::span<const double> x) const {
   const auto known = course(x);
-  if (known->arcs.empty()) {  // no breakpoints: the waveform is constant
+  if (known->arcs.empty()) {  // the waveform has no breakpoints: its voltage is constant
     const py::gil_scoped_acquire held;
     return called({time}, x)[0];
   }

@@ -16,8 +16,8 @@
 
 namespace softland::python {
 
-/// Keeps the first exception of Python functions that the library calls. The library treats the exception as an infeasible
-/// candidate; FirstError raises it after the computation.
+/// Keeps the first exception of Python functions that the library calls. The library treats a waveform whose function throws as
+/// infeasible, and continues; this class raises the exception after the computation.
 class FirstError {
  public:
   void keep(std::exception_ptr error) {
@@ -62,8 +62,8 @@ class PythonWaveform final : public OwnWaveform {
  private:
   struct Arc {
     double begin = 0, end = 0;
-    std::vector<double> values;  // voltages at Chebyshev points, from the end to the begin
-    double least = 0, most = 0;  // smallest and largest of `values`
+    std::vector<double> values;  // voltages at Chebyshev points between two breakpoints, from the end to the beginning [V]
+    double least = 0, most = 0;  // smallest and largest of the voltages `values` [V]
     [[nodiscard]] double at(double time) const;
   };
   struct Course {
@@ -77,7 +77,8 @@ class PythonWaveform final : public OwnWaveform {
   std::vector<OwnParameter> parameters_;
   pybind11::object breakpoints_, voltage_;
   mutable std::mutex lock_;
-  mutable std::vector<std::shared_ptr<const Course>> known_;  // voltages of the latest candidates
+  // Voltages over time of the latest waveforms that a search has tried.
+  mutable std::vector<std::shared_ptr<const Course>> known_;
   mutable FirstError first_;
 };
 

@@ -47,7 +47,8 @@ py::list channels_of(const Recording& recording) {
   return all;
 }
 
-// Returns the edges of a contact from t = 0 on: rows of time and state, 1 for closing and 0 for opening.
+// Returns the times from t = 0 on at which a contact closes or opens: rows of time [s] and state, 1 for closing and 0 for
+// opening.
 py::array_t<double> edges(const Column& times, const Column& volts, double threshold, bool is_closed_below, double hysteresis,
                           double merge, bool from_zero) {
   require(times.ndim() == 1 && times.size() == volts.size() && times.size() > 0,

@@ -32,13 +32,14 @@ class StoppedByInterrupt {
 /// One call from Python into the library.
 class InterruptibleRun {
  public:
-  /// `on_progress` is called with the name of the current stage and its completed share, at most ten times a second; or None.
+  /// `on_progress` is a Python function that is called with the name of the current stage and its completed share, at most ten
+  /// times a second; or None.
   explicit InterruptibleRun(pybind11::object on_progress = pybind11::none());
   InterruptibleRun(const InterruptibleRun&) = delete;
   InterruptibleRun& operator=(const InterruptibleRun&) = delete;
 
   /// Returns the result of work(progress), run without the GIL. Raises an exception of a Python callback, KeyboardInterrupt
-  /// after Ctrl-C, and exceptions of the work.
+  /// after Ctrl-C, and exceptions that `work` throws.
   template <class Work>
   auto operator()(Work&& work) {
     std::optional<std::invoke_result_t<Work, const Progress&>> result;
@@ -74,7 +75,8 @@ class InterruptibleRun {
       keep(std::current_exception());
     }
   }
-  /// Keeps an exception and stops the work; the library may treat the exception as an infeasible candidate.
+  /// Keeps an exception and stops the computation. Without the stop, the library would treat the exception as an infeasible
+  /// waveform.
   void keep(std::exception_ptr error);
 
  private:
@@ -85,12 +87,12 @@ class InterruptibleRun {
   std::exception_ptr first_;
   pybind11::object on_progress_;
   std::atomic<std::chrono::steady_clock::rep> told_ = 0;
-  std::mutex progress_lock_;  // guards the members below
+  std::mutex progress_lock_;  // guards `shown_` and `progress_`, since several threads may report progress
   MonotoneProgress shown_;
   Progress progress_;
 
  public:
-  /// Ends the work because a callback returned True; the result is the best point so far.
+  /// Ends the computation because a callback returned True; the result is the best waveform or point so far.
   void end_by_wish() {
     ended_by_wish_ = true;
     stop_ = true;

@@ -45,7 +45,7 @@ std::shared_ptr<const PreparedScene> driven_by(const std::shared_ptr<const Prepa
     Drive& driven = own->drives.at(drive);
     if (driven.limits) {
       const Signal commanded = own->commanded(own->drives.place(drive), waveform);
-      // The cubics that approximate an own waveform may exceed a limit by this error.
+      // The cubics that approximate a user's own waveform may exceed a voltage limit by this error.
       const double missed = std::holds_alternative<Own>(waveform) ? own_waveform_accuracy * commanded.peak() : 0;
       const std::string why = violation(commanded, {.min_voltage = driven.limits->min_voltage - missed,
                                                     .max_voltage = driven.limits->max_voltage + missed,
@@ -61,14 +61,14 @@ namespace {
 
 using Value = std::variant<bool, int, double, std::string>;
 
-// Changes a key as the option --set does; a number is in the SI unit of the key.
+// Changes a key of the scene as the option --set does; a number is in the SI unit of the key.
 void change(SceneFile& file, const std::string& key, const Value& value) {
   if (const auto* text = std::get_if<std::string>(&value)) return file.set(key + "=" + *text);
   try {
     if (const auto* flag = std::get_if<bool>(&value)) return file.assign(key, SceneValue(*flag));
     if (const auto* whole = std::get_if<int>(&value)) return file.assign(key, SceneValue(*whole));
     file.assign(key, SceneValue(std::get<double>(value)));
-  } catch (const std::logic_error&) {  // read_scene() reports the error of the key
+  } catch (const std::logic_error&) {  // leave the key: read_scene() reports its error
     file.set(key + "=" +
              std::visit(
                  []<class T>(const T& one) {
@@ -85,7 +85,8 @@ void change(SceneFile& file, const std::string& key, const Value& value) {
 
 std::string json_of_scene(const SceneFile& file) { return json_text(file.json()); }
 
-// Returns time, deflection, velocity, acceleration and contact force, with a row for each knot.
+// Returns time, deflection, velocity, acceleration and contact force of a simulated motion, with a row for each knot (a point
+// between two steps of the integrator).
 py::array_t<double> points_of(const Trajectory& run) {
   py::array_t<double> all({static_cast<py::ssize_t>(run.points.size()), py::ssize_t{5}});
   auto to = all.mutable_unchecked<2>();
@@ -127,8 +128,8 @@ Motion motion_of(const PyClosing& c, const Progress& progress) {
   return motion;
 }
 
-// Returns the states at begin and end of each step: times (steps x 2), and coordinates, velocities and accelerations of the modes
-// (steps x 2 x 3 x modes).
+// Returns the modal motion at the beginning and end of each integrator step: times (steps x 2), and coordinates, velocities and
+// accelerations of the modes (steps x 2 x 3 x modes).
 py::tuple arrays_of(const Motion& motion) {
   const auto steps = static_cast<py::ssize_t>(motion.tape.arcs().size()), modes = static_cast<py::ssize_t>(motion.modes);
   py::array_t<double> times({steps, py::ssize_t{2}}), states({steps, py::ssize_t{2}, py::ssize_t{3}, modes});

@@ -20,10 +20,11 @@ namespace softland::python {
 /// A scene file and its prepared forms, which are reused until the scene changes.
 struct PyScene {
   SceneFile file;
-  std::filesystem::path directory;                                ///< folder to which relative paths in the scene refer
-  std::shared_ptr<const PreparedScene> plain = {}, limited = {};  ///< prepared scene without and with default voltage limits
+  std::filesystem::path directory;  ///< folder to which relative paths in the scene refer
+  /// The prepared scene without and with default limits of the drive voltages; null until requested.
+  std::shared_ptr<const PreparedScene> plain = {}, limited = {};
 
-  /// Returns the prepared scene; the first call prepares the scene.
+  /// Returns the scene prepared for simulation; the first call prepares it.
   [[nodiscard]] std::shared_ptr<const PreparedScene> ready(bool default_limits, InterruptibleRun& run);
   [[nodiscard]] std::shared_ptr<const PreparedScene> ready(bool default_limits = false) {
     InterruptibleRun run;
@@ -73,11 +74,13 @@ auto in_keywords(const char* verb, Work&& work) {
   }
 }
 
-/// Runs a verb of verbs/study.h on a scene. `waveforms` are further waveforms to evaluate, by name and drive.
+/// Runs a verb of verbs/study.h on a scene. `waveforms` are further drive waveforms to evaluate, by name of the set of
+/// waveforms and by drive.
 [[nodiscard]] Outcome study(PyScene& scene, const std::string& verb, const verbs::Arguments& arguments,
                             const pybind11::dict& waveforms, std::string command, const pybind11::object& on_progress);
 
-/// Returns the scene with other waveforms. Throws InvalidInput for an unknown drive, and for a waveform beyond driver limits.
+/// Returns the scene with other drive waveforms. Throws InvalidInput for an unknown drive, and for a waveform beyond the limits
+/// of its voltage source.
 [[nodiscard]] std::shared_ptr<const PreparedScene> driven_by(const std::shared_ptr<const PreparedScene>& prepared,
                                                              const DriveWaveforms& waveforms);
 

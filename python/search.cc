@@ -30,7 +30,7 @@ struct Request {
   std::vector<py::dict> starts;
   py::object callback, on_progress;
   std::string command;
-  std::string out;  // folder of the search; empty: nothing is stored
+  std::string out;  // folder in which the search is stored; empty: nothing is stored
 };
 
 PlannedSearch planned_search(const Request& request, const SceneFile& file, InterruptibleRun& run) {
@@ -49,7 +49,8 @@ PlannedSearch planned_search(const Request& request, const SceneFile& file, Inte
   return search;
 }
 
-// Returns a search that is stored in a folder. Its start waveforms become part of its plan; a file must be able to hold them.
+// Returns a search that is stored in a folder. The stored request (plan) of the search includes the start waveforms; a file
+// must be able to hold them.
 StoredSearch kept_search(const Request& request, const PyScene& scene, std::optional<KnownSearch>& known, InterruptibleRun& run) {
   require(!request.objective && request.own_waveforms.empty(),
           "out: must not be given for a search with Python functions, which cannot be stored in a file");
@@ -69,7 +70,7 @@ StoredSearch kept_search(const Request& request, const PyScene& scene, std::opti
 }
 
 // Sets callbacks that report to Python, which may end the search by run.stop(). Callbacks during the search throw nothing,
-// because the search would treat an exception as an infeasible candidate.
+// because the search would treat an exception as an infeasible waveform.
 void listen(PlannedSearch& search, const Request& request, InterruptibleRun& run, SearchSession* session = nullptr) {
   OptimizeOptions& options = search.options;
   options.on_preparation = [&run](std::string_view what, double part) {
@@ -102,7 +103,7 @@ void listen(PlannedSearch& search, const Request& request, InterruptibleRun& run
   };
 }
 
-// Runs `work`; an error of a Python function takes precedence over the error that the library reports as a consequence.
+// Calls work(); an error of a Python function takes precedence over the error that the library reports as a consequence.
 template <class Work>
 auto searched(const Request& request, InterruptibleRun& run, Work&& work) {
   const auto raise = [&] {
@@ -122,7 +123,8 @@ auto searched(const Request& request, InterruptibleRun& run, Work&& work) {
   }
 }
 
-// Returns the result of a search for an own waveform, which no file can hold: the keys of result.json without the waveform.
+// Returns the result of a search for a waveform that is a Python function, which no file can hold: the keys of result.json
+// without the waveform.
 Outcome outcome_of_own(const OptimizeResult& found) {
   nlohmann::json parameters = nlohmann::json::object();
   for (const auto& [name, value] : found.parameters) parameters[name] = value;
@@ -144,7 +146,7 @@ bool is_own(const OptimizeResult& found) {
          });
 }
 
-// Runs a search; a session, if any, stores the search in a folder.
+// Runs a search; the session, if it is not null, stores the search in a folder.
 Outcome run_search(PlannedSearch& search, const Request& request, InterruptibleRun& running, SearchSession* session = nullptr) {
   listen(search, request, running, session);
   return searched(request, running, [&](const Progress& progress) {

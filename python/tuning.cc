@@ -20,7 +20,7 @@ namespace py = pybind11;
 
 namespace {
 
-// A tuning session with its scene and its request.
+// A tuning session (closings of a real device that improve its waveform) with its scene and its request.
 struct PyTuning {
   TuningSession session;
   std::string command;
@@ -41,7 +41,8 @@ std::unique_ptr<PyTuning> made_tuning(const PyScene& scene, const verbs::Argumen
   return tuning;
 }
 
-// Returns (number, duration of the hold [s], (times, volts) by drive, line for a command) of a shot.
+// Returns (number, duration of the hold [s], (times, volts) by drive, line of text for a laboratory command) of a shot, the
+// voltages for one closing.
 py::tuple shot_of(const PyTuning& tuning) {
   const CommandedShot shot = tuning.session.commanded();
   py::dict drives;
@@ -75,7 +76,7 @@ std::unique_ptr<PracticeDevice> practice(const PyScene& scene, const verbs::Argu
   return run([&](const Progress&) { return std::make_unique<PracticeDevice>(file, options); });
 }
 
-// Returns the answer of a simulated device to a line of input, as `softland device` gives it.
+// Returns the answer of a simulated device to a line with a shot, as the command `softland device` gives it.
 std::string answered(const PracticeDevice& device, const std::string& line) {
   const CommandedShot shot = read_shot(read_line(line));
   const std::vector<Waveform> waveforms = shot.waveforms(device.nominal());

@@ -24,7 +24,8 @@ DriveWaveforms waveforms_of(const py::dict& given, InterruptibleRun&) {
 
 namespace {
 
-// Returns a waveform of a family with the given parameters in SI units; other parameters have the defaults of the family.
+// Returns a waveform of the named waveform family with the given parameters in SI units; other parameters have the defaults of
+// the family.
 PyWaveform made(const std::string& name, const py::dict& parameters) {
   std::optional<Waveform> found;
   std::vector<std::string_view> families;
@@ -83,7 +84,8 @@ py::array_t<double> voltages(const PyWaveform& waveform,
   return volts;
 }
 
-// Returns a table of samples at k / rate, connected by straight lines, with the hold voltage as the last row.
+// Returns a waveform as a table of samples at the times k / rate, connected by straight lines, with the hold voltage as the
+// last row.
 PyWaveform resampled(const PyWaveform& waveform, double rate, double end) {
   require(rate > 0 && end > 0 && std::isfinite(rate * end) && rate * end <= 1e7,
           "resampled: rate and end must be above 0, and at most 1e7 samples");

@@ -72,7 +72,7 @@ void keep(Picture& drawn, Chart chart) {
   drawn.charts.push_back(std::move(chart));
 }
 
-// Returns error against computing time for an integrator, one point per tolerance.
+// Returns the points (computing time, error) of an integrator, one per tolerance.
 Points work_precision(const AccuracyStudy& study, const std::vector<AccuracyRow>& rows, Integrator integrator) {
   Points points;
   for (const AccuracyRow& row : rows) {
@@ -96,7 +96,7 @@ Picture picture(const AccuracyStudy& study) {
     add_curve(drawn, work, std::string(to_string(all_integrators[i])), pens[i % pens.size()],
               work_precision(study, study.rows, all_integrators[i]));
     if (all_integrators[i] != own) continue;
-    for (Mark& mark : work.marks) {  // label each tolerance once only
+    for (Mark& mark : work.marks) {  // label each tolerance of the integrator at one point only
       for (const AccuracyRow& row : study.rows) {
         const bool shown = row.integrator == own && row.points_per_length == own_points(study) && row.seconds == mark.x;
         if (shown && mark.role == pens[i % pens.size()]) mark.text = internal::scientific(row.tolerance);
@@ -105,7 +105,8 @@ Picture picture(const AccuracyStudy& study) {
   }
   keep(drawn, std::move(work));
 
-  // The curves compare the integrator of `simulate` with the integrator that loses its history at every restart.
+  // The curves compare the integrator of `simulate` with one that loses its history of earlier steps at every restart after a
+  // contact.
   Chart contact = logarithmic_chart(
       "contact", "With and without a restart at make and break of contact: largest relative error of " + figures, time, "s", 260);
   contact.caption = restart_text(study);
@@ -133,7 +134,8 @@ Picture picture(const AccuracyStudy& study) {
   return drawn;
 }
 
-// Makes a table of errors and costs of settings; `first` is the heading of the settings.
+// Makes a table of errors and computing costs, with a row per setting of the integrator or the model; `first` is the heading of
+// the column with the settings.
 ReportTable errors_table(const TableRow& first, const std::vector<const AccuracyRow*>& rows,
                          const std::function<TableRow(const AccuracyRow&)>& setting) {
   ReportTable table{.head = first, .rows = {}};
@@ -276,14 +278,14 @@ std::vector<KeyNumber> reference_keys(const AccuracyStudy& study) {
   return keys;
 }
 
-// Returns the accuracy that the scene requests.
+// Returns the relative accuracy of the figures that the scene requests.
 double asked_accuracy(const Origin& origin) {
   const auto simulate = origin.scene.find("simulate");
   const bool is_written = simulate != origin.scene.end() && simulate->is_object() && simulate->contains("accuracy");
   return is_written && (*simulate)["accuracy"].is_number() ? (*simulate)["accuracy"].get<double>() : SimulateOptions{}.accuracy;
 }
 
-// Compares the accuracy that the scene requests with the nearest accuracy of the study.
+// Returns the headline of the report: it compares the accuracy that the scene requests with the nearest accuracy of the study.
 std::pair<std::string, std::string> headline(const AccuracyRecord& record) {
   const AccuracyStudy& study = record.found;
   const std::string figures = symbols(study, true);

@@ -43,7 +43,7 @@ void members(A& a, AccuracyRow& row) {
 
 namespace {
 
-// In JSON, the errors of the reference are named "resolution": they are the uncertainty of the reference.
+// In JSON, the errors of the reference run are named "resolution": they are the uncertainty of the reference.
 json reference_json(const AccuracyStudy& study) {
   json reference = internal::record_json(study.reference);
   reference["resolution"] = reference["relative_errors"];
@@ -78,7 +78,8 @@ std::vector<Recommendation> read_recommendations(const json& from, const std::ve
   return all;
 }
 
-// Sets the error of a figure to infinity if the reference has the figure and the row lacks it; JSON cannot express infinity.
+// Sets the error of a figure to infinity if the reference run has the figure and the row's run lacks the figure; the row was
+// read from JSON, which cannot express infinity.
 void set_missing(std::vector<AccuracyRow>& rows, const Metrics& reference) {
   for (AccuracyRow& row : rows) {
     for (std::size_t i = 0; i < row.errors.size(); ++i) {

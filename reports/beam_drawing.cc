@@ -37,14 +37,15 @@ std::string label(double x, double y, const std::string& text, const char* colou
   return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"12\" fill=\"{}\">{}</text>\n", x, y, colour, text);
 }
 
-constexpr double most_holes = 4000;  // largest number of drawn holes
+constexpr double most_holes = 4000;  // largest number of holes of the beam that are drawn
 
 class BeamSketch {
  public:
   BeamSketch(const Device& device, double width)
       : d_(device), s_(device.structure), sections_(local_sections(s_)), scale_(width / s_.length) {}
 
-  // Returns the elements of the view from above, beginning at the height `top`, and their lower end.
+  // Returns the SVG elements of the beam seen from above, beginning at the height `top`, and the lower end of these elements
+  // [px].
   std::pair<std::string, double> from_above(double top) const {
     double widest = 0;
     for (const LocalSection& one : sections_) widest = std::max({widest, one.width, one.end_width});
@@ -83,9 +84,10 @@ class BeamSketch {
       if (d_.contacts[c].side == Side::far) highest = std::max(highest, stop_plane(c));
     }
     constexpr double most_height = 220;
-    const double up = most_height / (highest + d_.gap.electrode), ground = top + 20 + most_height;  // [px/m]
+    // Scale of heights in the view from the side [px/m].
+    const double up = most_height / (highest + d_.gap.electrode), ground = top + 20 + most_height;
     const auto y = [&](double above_electrode) { return ground - above_electrode * up; };
-    constexpr double least = 2;  // least height of a layer [px]
+    constexpr double least = 2;  // least drawn height of a layer [px]
     double deepest = 0;
     std::string out = label(0, top,
                             fmt::format("from the side, heights enlarged {:.3g} times: {} above the electrode", up / scale_,
@@ -95,7 +97,7 @@ class BeamSketch {
       band(one.begin, one.end, corners, y, [&](double) { return std::pair{0.0, one.thickness}; });
       out += polygon(corners, filled(of_beam, 0.8));
     }
-    // Layers are stacked outwards from the face of the beam.
+    // Layers are stacked outwards from the face of the beam: height of the layers drawn so far [px].
     double lifted = 0;
     for (const LayerPart& layer : part_of<Beam>(s_).layers) {
       const double begin = layer.begin.on(s_.length), end = layer.end.on(s_.length);
@@ -119,14 +121,15 @@ class BeamSketch {
     for (const Electrode& e : d_.electrodes) {
       for (const Stretch& pad : e.pads(s_.length)) {
         if (e.side == Side::far) continue;
-        const double metal = e.dielectric ? std::max(least, e.dielectric->thickness * up) : 0;  // depth [px]
+        // Drawn thickness of the dielectric on the electrode [px].
+        const double metal = e.dielectric ? std::max(least, e.dielectric->thickness * up) : 0;
         out += rectangle(x(pad.begin), ground + metal, x(pad.end), ground + metal + 8, filled(of_electrode));
         if (e.dielectric) out += rectangle(x(pad.begin), ground, x(pad.end), ground + metal, filled(of_dielectric));
         deepest = std::max(deepest, metal);
       }
     }
     for (std::size_t c = 0; c < d_.contacts.size(); ++c) {
-      if (d_.contacts[c].along_face) continue;  // the face of the dielectric is the contact
+      if (d_.contacts[c].along_face) continue;  // the face of the dielectric is the contact, so no separate contact is drawn
       const double at = x(d_.contact_position(c)), half = 3;
       if (d_.contacts[c].side == Side::far)
         out += rectangle(at - half, y(stop_plane(c)) - 8, at + half, y(stop_plane(c)), filled(of_stop));
@@ -141,13 +144,13 @@ class BeamSketch {
   static constexpr int places = 100;
 
   [[nodiscard]] double x(double place) const { return place * scale_; }
-  /// Returns the height above the electrode of the plane of contact c, a stop on the far side [m].
+  /// Returns the height above the electrode of the plane of contact c, a stop on the far side (above the beam) [m].
   [[nodiscard]] double stop_plane(std::size_t c) const { return height(d_.contact_position(c), true) + d_.contact_gap(c); }
   /// Draws contacts as dots; equal contacts stand side by side across the beam. A contact along a face has no dots.
   [[nodiscard]] std::string dots(std::size_t c, double across, double middle) const {
     const Contact& contact = d_.contacts[c];
     if (contact.along_face) return {};
-    constexpr double most = 12;  // largest number of drawn dots
+    constexpr double most = 12;  // largest number of dots drawn for one contact
     const int count = static_cast<int>(std::min(most, contact.count));
     const double at = d_.contact_position(c), apart = width_at(s_, at) * across / count;
     std::string out;
@@ -160,7 +163,7 @@ class BeamSketch {
   [[nodiscard]] double height(double at, bool upper) const {
     return d_.gap.electrode + d_.rest_offset(at) + (upper ? section_at(s_, at).thickness : 0);
   }
-  // Adds the corners of the area between two heights over the lower face, from position `begin` to `end`.
+  // Adds the corners of the area between two heights above the lower face of the beam, from position `begin` to `end`.
   template <class ToPixel, class Heights>
   void band(double begin, double end, Corners& corners, ToPixel&& y, Heights&& heights) const {
     const double inside = 1e-9 * s_.length;
@@ -193,7 +196,7 @@ class BeamSketch {
   const Device& d_;
   const Structure& s_;
   std::vector<LocalSection> sections_;
-  double scale_;  // [px/m]
+  double scale_;  // scale along the beam [px/m]
 };
 
 }  // namespace

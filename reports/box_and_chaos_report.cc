@@ -17,7 +17,7 @@ using DriveRecord = RobustnessRecord::Drive;
 using BoxAndChaosRecord = RobustnessRecord::BoxAndChaosRecord;
 using RangeRecord = BoxAndChaosRecord::Range;
 
-constexpr double predicted_well = 0.1;  // largest share of the variance that a good model may miss
+constexpr double predicted_well = 0.1;  // largest share of the variance of a figure that a good polynomial chaos model may miss
 
 const FigureStatistics& sampled(const DriveRecord& drive, std::string_view key) { return drive.figures[figure_of(key)]; }
 
@@ -25,10 +25,11 @@ std::string figure_text(double value, std::string_view key) {
   return std::isinf(value) ? "∞" : quantity(value, figure_of(key).unit);
 }
 
-// Prefer q2 on devices that were not in the training set: the error on training devices is too small.
+// Prefer the coefficient of determination q2 on devices that were not in the training set: the error on training devices is too
+// small.
 double missed(const FigureChaos& chaos) { return 1 - (std::isfinite(chaos.q2_unseen) ? chaos.q2_unseen : chaos.q2); }
 
-// A prediction that misses all of the variance or more is no better than the mean.
+// A polynomial chaos prediction that misses all of the variance or more is no better than the mean.
 std::string missed_share(double share) { return share >= 1 ? "all" : percent(std::max(0.0, share)); }
 std::string missed_text(double q2) { return std::isfinite(q2) ? missed_share(1 - q2) : "—"; }
 
@@ -101,8 +102,8 @@ std::string chaos_prose(const BoxAndChaosRecord& ways) {
   return words;
 }
 
-// Makes the record of a device at the worst point in the box of varied quantities, with the varying quantities as in
-// robustness_report.h.
+// Makes the record of the device at the worst point in the box of varied quantities, with the values of the varied quantities
+// as in robustness_report.h.
 BoxAndChaosRecord::InBox in_box(const BoxDevice& device, const PreparedScene& nominal) {
   BoxAndChaosRecord::InBox record{.figure = device.figure,
                                   .values = {},

@@ -14,7 +14,7 @@ using nlohmann::json;
 
 namespace {
 
-// A single electrode has no name in JSON; several electrodes are distinguished by name.
+// Returns pull-in voltages as JSON. A single electrode has no name in JSON; several electrodes are distinguished by name.
 json by_electrode(const std::map<std::string, PullInRecord>& all) {
   json of = json::object();
   for (const auto& [name, one] : all) of[name] = internal::record_json(one);
@@ -72,7 +72,7 @@ std::string text_of(const CheckRecord& record) {
   std::string text = fmt::format("{}: valid{}\n\n", printable_line(record.file), title.empty() ? "" : " (" + title + ")");
   for (const CheckRecord::Line& line : record.lines) text += fmt::format("{:<20} {}\n", line.name, line.value);
   for (const std::string& warning : record.warnings) {
-    if (is_few_summits_warning(warning)) continue;  // the line of text about the contact has this warning already
+    if (is_few_summits_warning(warning)) continue;  // the text about the contact contains this warning already
     text += "\n" + wrapped("warning: " + warning) + "\n";
   }
   return text;

@@ -20,26 +20,28 @@ struct CheckRecord {
   /// The rest shape of a structure that is not straight at rest. A rise is measured from the straight shape, away from the
   /// electrodes of the near side.
   struct Rest {
-    double far_end_rise = Metrics::unset;  ///< rise of the far end [m]
-    double far_end_gap = Metrics::unset;   ///< distance of the far end to the plane of the electrode [m]
-    double contact_rise = Metrics::unset;  ///< rise of the structure at the first contact [m]
+    double far_end_rise = Metrics::unset;  ///< rise of the far end of the structure above its straight shape [m]
+    double far_end_gap = Metrics::unset;   ///< distance of the structure's far end to the plane of the electrode [m]
+    double contact_rise = Metrics::unset;  ///< rise of the structure at the first contact above its straight shape [m]
     double contact_gap = Metrics::unset;   ///< distance of the structure at the first contact to the contact plane [m]
-    double least_gap = Metrics::unset;     ///< smallest gap over the electrodes of the near side [m]
+    double least_gap = Metrics::unset;     ///< smallest gap between the structure and the electrodes of the near side [m]
   };
   Origin origin;
-  std::string file;  ///< name of the file as the user gave it
+  std::string file;  ///< name of the scene file as the user gave it
   std::string title;
-  std::vector<double> frequencies;              ///< natural angular frequencies [rad/s]
-  std::optional<Rest> rest_shape;               ///< rest shape; not set for a straight structure
-  std::map<std::string, PullInRecord> pull_in;  ///< pull-in voltages by electrode; from JSON, the name of a single electrode is
-                                                ///< empty
-  std::map<std::string, std::array<double, 2>> hold_windows;  ///< release voltage and voltage of collapse onto the electrode [V]
-  double dynamic_precision = Metrics::unset;                  ///< relative precision of dynamic pull-in voltages
+  std::vector<double> frequencies;  ///< natural angular frequencies of the structure [rad/s]
+  std::optional<Rest> rest_shape;   ///< shape of the structure at rest; not set for a straight structure
+  /// Pull-in voltages by electrode; a single electrode read from JSON has an empty name.
+  std::map<std::string, PullInRecord> pull_in;
+  /// Per electrode: release voltage, and voltage at which the closed structure collapses onto the electrode [V].
+  std::map<std::string, std::array<double, 2>> hold_windows;
+  double dynamic_precision = Metrics::unset;  ///< relative precision to which dynamic pull-in voltages were searched
   std::optional<ClosedState> closed_state;
   std::optional<StablePathRecord> stable_path;
-  double duration = Metrics::unset, tolerance = Metrics::unset;  ///< simulated time [s]; tolerance of the integrator
+  /// Length of the simulated time [s]; relative tolerance of the integrator.
+  double duration = Metrics::unset, tolerance = Metrics::unset;
   std::vector<std::string> warnings;
-  std::vector<Line> lines;  ///< derived numbers with their names, as text
+  std::vector<Line> lines;  ///< numbers derived from the scene, with their names, as text
 };
 
 [[nodiscard]] nlohmann::json json_of(const CheckRecord& record);

@@ -36,33 +36,38 @@ constexpr bool only_pushes =
 
 // A dialect writes operands of formulas in one language, SPICE or Verilog-A.
 struct Dialect {
-  std::string voltage;  // "v" or "V"
-  bool has_variables;   // true if the language has named numbers besides voltages of nodes
+  std::string voltage;  // operand of a formula for the voltage of a node: "v" or "V"
+  bool has_variables;   // true if the circuit language has named numbers besides voltages of nodes
   [[nodiscard]] Formula node(const std::string& name) const { return Formula::named(fmt::format("{}({})", voltage, name)); }
   [[nodiscard]] Formula between(const std::string& name) const { return Formula::named(fmt::format("{}({},g)", voltage, name)); }
   [[nodiscard]] Formula variable(const std::string& name) const { return has_variables ? Formula::named(name) : node(name); }
 };
 
 struct Point {
-  std::string gap, velocity;  // sums over the modes: of Y, in contact gaps, and of U
-  std::string load;           // load times quadrature weight, acting on the first mode
-  std::vector<double> share;  // load on every mode over the load on the first mode
+  // Sums over the modes that give the local gap in contact gaps (of Y), and the local velocity (of U).
+  std::string gap, velocity;
+  std::string load;           // load at a quadrature point of the beam times its quadrature weight, acting on the first mode
+  std::vector<double> share;  // by mode: load on the mode divided by the load on the first mode
 };
 
-// The parts of the switch as formulas in one language.
+// The parts of the switch as formulas in one circuit language.
 struct Circuit {
-  std::vector<std::string> drives;                             // pins of the drives, in the order of Switch::drives()
-  double tau = 0;                                              // [s]
-  double gap = 0;                                              // rest gap of the contact [m]
-  std::vector<double> stiffness, friction, start, at_contact;  // mode: (tau omega)^2, 2 zeta tau omega, Y at rest, share of y
-  std::vector<std::vector<std::pair<std::string, double>>> pushes;  // per mode: drives with a proportional force (piezo)
+  std::vector<std::string> drives;  // names of the circuit's pins for the drives, in the order of Switch::drives()
+  double tau = 0;                   // time scale 1 / omega_1 of the model [s]
+  double gap = 0;                   // rest gap of the contact [m]
+  // Per mode: (tau omega)^2, 2 zeta tau omega, Y at rest, and share of Y in the contact's deflection y.
+  std::vector<double> stiffness, friction, start, at_contact;
+  // Per mode: pins of the drives whose force is proportional to their voltage (piezos), with the factor.
+  std::vector<std::vector<std::pair<std::string, double>>> pushes;
   std::vector<Point> points;
-  std::vector<std::pair<std::string, std::string>> charges;           // pins, each with the formula of its charge [C]
-  std::vector<std::pair<std::string, std::vector<double>>> currents;  // pins, each with the factors of U of every mode [A]
-  std::optional<std::string> contact;                                 // contact force on the first mode; none without a contact
-  double force_scale = 0;                                             // scale of the contact force [N]
-  std::string deflection, rate;                                       // y over the gap; dy/dt over gap / tau
-  std::vector<std::string> tension;                                   // tension, then its pull on every mode; may be empty
+  std::vector<std::pair<std::string, std::string>> charges;  // pins of the electrodes, each with the formula of its charge [C]
+  // Pins of the piezos, each with the factors of the velocities U of every mode that give its current [A].
+  std::vector<std::pair<std::string, std::vector<double>>> currents;
+  std::optional<std::string> contact;  // formula of the contact force on the first mode; none for a switch without a contact
+  double force_scale = 0;              // scale of the contact force in the formulas [N]
+  std::string deflection, rate;  // formulas of the contact's deflection over the contact gap, and of its rate over gap / tau
+  // Formula of the tension of the beam, then of the pull of the tension on every mode; empty without tension.
+  std::vector<std::string> tension;
 };
 
 std::string sum_of(const Dialect& d, char letter, const Eigen::VectorXd& factors, double constant) {
@@ -130,7 +135,8 @@ class SubcircuitWriter {
 
   void find_points() {
     std::vector<Formula> charges(device_.electrodes.size(), Formula(0));
-    const double scale = c_.tau * c_.tau * unit_ * unit_ / c_.gap;  // scale of a force on the first mode
+    // Scale of a force on the first mode in the equations of the circuit.
+    const double scale = c_.tau * c_.tau * unit_ * unit_ / c_.gap;
     for (Eigen::Index p = 0; p < model_.quadrature().points(); ++p) {
       const Eigen::VectorXd shape = model_.quadrature().shapes().row(p).head(model_.modes()) / unit_;
       const double x = model_.quadrature().positions()[p], weight = model_.quadrature().weights()[p];
@@ -215,11 +221,11 @@ class SubcircuitWriter {
         model_.contact());
   }
 
-  // Writes the tension of a stretched middle line by the law of model/stretching.h.
+  // Writes the tension of a stretched middle line of the beam by the law of model/stretching.h.
   void find_tension() {
     if (!model_.stretching()) return;
     const MidPlaneStretching& s = *model_.stretching();
-    const double q = c_.gap / unit_;  // modal coordinate q at Y = 1
+    const double q = c_.gap / unit_;  // modal coordinate q of the first mode at Y = 1
     std::vector<Formula> pulls;
     Formula strain = 0;
     for (std::size_t i = 0; i < s.modes; ++i) {
@@ -229,7 +235,7 @@ class SubcircuitWriter {
       pulls.push_back(pull);
     }
     const double scale = s.stiffness * c_.tau * c_.tau * unit_ / c_.gap;
-    c_.tension.push_back((Formula(scale) * strain).text());  // first the tension, then its pull on every mode
+    c_.tension.push_back((Formula(scale) * strain).text());  // first the tension of the beam, then its pull on every mode
     for (const Formula& pull : pulls) c_.tension.push_back(pull.text());
   }
 
@@ -246,7 +252,8 @@ std::string title(const PreparedScene& p) {
   return fmt::format("{}: {} modes, {} quadrature points", p.scene.file.name(), p.model.modes(), p.model.quadrature().points());
 }
 
-// Returns comment lines, which begin with `comment`, with the pins whose names differ from those of their drives.
+// Returns comment lines of the circuit file, which begin with `comment`, with the pins whose names differ from those of their
+// drives.
 std::string renamed_in(const PreparedScene& p, std::string_view comment) {
   std::string text;
   for (const std::string& line : renamed_pins(p.drive_names())) text += fmt::format("{} {}\n", comment, line);
@@ -256,11 +263,11 @@ std::string renamed_in(const PreparedScene& p, std::string_view comment) {
 // Names that pins must not have: pins and numbers of the model itself, the ground of SPICE, and words of Verilog-AMS 2.4 (annex
 // B).
 constexpr std::array reserved_names{
-    // names of the model
+    // names that the circuit model defines itself
     "g", "s", "d", "y", "vel", "force", "at", "rate", "line", "push", "rc", "roff", "softland_switch",
-    // SPICE
+    // names that SPICE reserves
     "0", "gnd", "time", "temper", "hertz",
-    // Verilog-AMS
+    // words that Verilog-AMS reserves
     "above", "abs", "absdelay", "absdelta", "abstol", "access", "acos", "acosh", "ac_stim", "aliasparam", "always", "analog",
     "analysis", "and", "asin", "asinh", "assert", "assign", "atan", "atan2", "atanh", "automatic", "begin", "branch", "buf",
     "bufif0", "bufif1", "case", "casex", "casez", "ceil", "cell", "cmos", "config", "connect", "connectmodule", "connectrules",
@@ -396,7 +403,7 @@ std::string spice_model(const PreparedScene& p) {
 
 std::string spice_bench(const PreparedScene& p) {
   const Circuit c = SubcircuitWriter(p, spice).make();
-  std::map<std::string, Signal> driven;  // waveforms at the sources, by pin
+  std::map<std::string, Signal> driven;  // waveforms at the voltage sources, by pin of the drive
   const std::vector<std::string> names = circuit_pins(p.drive_names());
   const std::vector<Signal> signals = p.signals();
   std::string sources, pins;
@@ -407,8 +414,8 @@ std::string spice_bench(const PreparedScene& p) {
     sources += fmt::format("Xdrive_{0} {0} 0 softland_{0}\n", pin);
     pins += " " + pin;
   }
-  // Choose the step of the trapezoidal rule such that the first mode has an error of 1e-6 and the fastest mode has 40 steps per
-  // period. A single mode permits shorter steps, and a tenth of that error.
+  // Choose the time step of the circuit simulator's trapezoidal rule such that the first mode has an error of 1e-6 and the
+  // fastest mode has 40 steps per period. A single mode permits shorter steps, and a tenth of that error.
   const Eigen::VectorXd& omega = p.model.basis().angular_frequencies();
   const double step = 2 * pi / std::max(40 * omega.maxCoeff(), (omega.size() == 1 ? 8000 : 1500) * omega[0]);
   std::string text = title(p) + "\n" + renamed_in(p, "*") + subcircuit(c) + spice_pwl(driven, p.duration) + sources;

@@ -24,7 +24,7 @@ bool bounces(const RunRecord& run) { return figure_of_run(run, &Metrics::bounce_
 
 bool is_clean_run(const ConfirmationRecord& check) { return check.figures && is_clean(*check.figures); }
 
-/// Describes the waveform of a drive: "runs between 0 V and 30 V, with a jump"; `both` is for two runs with equal waveforms.
+/// Describes the waveform of a drive: "runs between 0 V and 30 V, with a jump"; `both` is true if two runs have this waveform.
 std::string range_prose(const Points& waveform, const DriveScale& scale, bool both) {
   const DriveDemand demand = drive_demand(waveform, scale.rest);
   if (!std::isfinite(demand.lowest)) return {};
@@ -37,7 +37,8 @@ std::string range_prose(const Points& waveform, const DriveScale& scale, bool bo
                      quantity_beside(demand.highest, demand.lowest, scale.unit), slew);
 }
 
-// Returns a key that is larger for a worse closing: the switch stays open, else by rebound height, then by impact velocity.
+// Returns a key that is larger for a worse closing. A closing in which the switch stays open is worst; rebound height, then
+// impact velocity order the others.
 std::array<double, 3> badness(const ConfirmationRecord& check) {
   if (!check.figures || !touches(*check.figures)) return {2, 0, 0};
   return {is_clean_run(check) ? 0.0 : 1.0, is_clean_run(check) ? 0.0 : rebound_height(*check.figures),
@@ -48,7 +49,8 @@ std::string impact_velocity_of(const ConfirmationRecord& check) {
   return quantity((*check.figures)[&Metrics::impact_velocity], "m/s");
 }
 
-// Describes a bad confirmation: "it rebounds by up to 2.16 nm after an impact velocity of 32.5 mm/s".
+// Describes how the switch closes in a confirmation that fails: "it rebounds by up to 2.16 nm after an impact velocity of 32.5
+// mm/s".
 std::string course_of(const ConfirmationRecord& check) {
   if (!check.figures || !touches(*check.figures)) return "it does not close";
   const double height = rebound_height(*check.figures);
@@ -58,7 +60,8 @@ std::string course_of(const ConfirmationRecord& check) {
          impact_velocity_of(check);
 }
 
-// Returns the settings of numerical confirmations: "a tolerance of 1e-9 and with 6, 8 and 10 modes".
+// Returns the settings of the confirmations (re-runs with other numerical settings) as text: "a tolerance of 1e-9 and with 6, 8
+// and 10 modes".
 std::string names_of(const std::vector<ConfirmationRecord>& numerics) {
   std::string tolerance, modes;
   for (const ConfirmationRecord& check : numerics) {
@@ -69,7 +72,7 @@ std::string names_of(const std::vector<ConfirmationRecord>& numerics) {
     } else if (check.name.starts_with("modes ")) {
       modes += (modes.empty() ? "" : &check == &numerics.back() ? " and " : ", ") + value;
     } else {
-      return "other settings";  // the file is from an earlier version
+      return "other settings";  // a file of an earlier version lacks the settings of its confirmations
     }
   }
   return tolerance + (modes.empty() ? "" : (tolerance.empty() ? "" : " and with ") + modes + " modes");
@@ -87,7 +90,7 @@ std::string of_modes(const ClosingRecord& result) {
                      worst.name.substr(worst.name.find(' ') + 1), course_of(worst));
 }
 
-// States the share of devices that fail under any waveform, after a search under process variation.
+// Returns the share of devices that fail under any waveform, as a sentence for the report of a search under process variation.
 std::string of_devices_that_fail(const ClosingRecord& result) {
   const std::optional<RobustFindings>& robust = result.search->robust;
   if (!robust || !(robust->failing > 0)) return {};
@@ -291,7 +294,8 @@ std::string waveform_caption(const ClosingRecord& result, const std::string& dri
 
 std::string search_caption(const ClosingRecord& result, const SearchRecord& search) {
   const std::string whole_name = search.course.value_name.empty() ? "cost" : search.course.value_name;
-  const std::string name = whole_name.substr(0, whole_name.find(','));  // only "cost", without ", on the nominal device"
+  // Only "cost", without what follows a comma, such as ", on the nominal device".
+  const std::string name = whole_name.substr(0, whole_name.find(','));
   const double own = result.best.cost;
   double first = std::numeric_limits<double>::quiet_NaN();
   double last = first;
@@ -301,7 +305,7 @@ std::string search_caption(const ClosingRecord& result, const SearchRecord& sear
     if (!std::isfinite(first)) first = value;
     if (value >= last) continue;
     last = value;
-    // The best waveform may not have the lowest cost: a waveform that meets the goal is preferred.
+    // Find the evaluation of the best waveform. It may not have the lowest cost: a waveform that meets the goal is preferred.
     if (!(last < own)) found_at = index;
   }
   std::string words = capitalised(name) + " of every waveform tried (dots) and of the best so far (line)";

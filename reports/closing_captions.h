@@ -19,14 +19,15 @@ struct Headline {
 };
 [[nodiscard]] Headline headline(const ClosingRecord& result);
 
-/// Returns the simulated time [s]: the last time of any curve; NaN without curves.
+/// Returns the simulated time of the runs in a record [s]: the last time of any curve; NaN without curves.
 [[nodiscard]] double window_end(const ClosingRecord& record);
-/// Returns the indices of the evaluations that the record of a search lists, ascending; indices may be missing in between.
+/// Returns the indices of the evaluations that the record of a search lists, ascending; the list may leave out evaluations.
 [[nodiscard]] std::vector<double> evaluation_indices(const SearchCourse& course);
-/// Returns the number of listed evaluations with an index of at most `index`; `index` itself if no evaluations are listed.
+/// Returns the number of evaluations in the list `indices` with an index of at most `index`; `index` itself if the list is
+/// empty.
 [[nodiscard]] double evaluations_until(const std::vector<double>& indices, double index);
 
-/// Each of the functions below returns one or two sentences as the caption of a chart.
+/// The functions from gap_caption() on each return one or two sentences as the caption of a chart.
 [[nodiscard]] std::string gap_caption(const ClosingRecord& result);
 [[nodiscard]] std::string contact_caption(const ClosingRecord& result);
 [[nodiscard]] std::string landing_caption(const ClosingRecord& result);
@@ -44,15 +45,16 @@ struct Headline {
 /// Returns false if the best waveform closes without a bounce in the search, but bounces in a confirmation with another
 /// integrator tolerance or number of modes.
 [[nodiscard]] bool checks_agree(const ClosingRecord& result);
-/// Returns true if the best waveform closes without a bounce in all confirmations.
+/// Returns true if the best waveform closes without a bounce in all confirmations (re-runs with other numerical settings).
 [[nodiscard]] bool all_checks_land(const SearchRecord& search);
-/// Returns the worst confirmation: one in which the switch stays open, then that of the highest rebound, then that of the
-/// highest impact velocity. Returns null without confirmations.
+/// Returns the worst of the confirmations (re-runs with other settings): one in which the switch stays open, else that of the
+/// highest rebound, else that of the highest impact velocity. Returns null without confirmations.
 [[nodiscard]] const ConfirmationRecord* worst_check(const std::vector<ConfirmationRecord>& checks);
-/// Returns the key of the figure by which this confirmation is the worst.
+/// Returns the key of the figure (time of first contact if the switch stays open, rebound height or impact velocity) by which
+/// this confirmation is the worst.
 [[nodiscard]] std::string_view worst_figure(const ConfirmationRecord& check);
 
-/// Returns "Softland's waveform"; "closing" for a single run.
+/// Returns the name of the best waveform in legends: "Softland's waveform"; "closing" for a single run.
 [[nodiscard]] std::string best_label(const ClosingRecord& result);
 [[nodiscard]] std::string baseline_label();
 

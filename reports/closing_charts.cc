@@ -57,7 +57,7 @@ CurveTable curve_table(const CurveRecord& curve) {
   return table;
 }
 
-/// Extends the waveform of a drive by the level `rest` before t = 0 and by its last level up to the end of the window.
+/// Extends the waveform of a drive by the level `rest` before t = 0 and by its last level up to the time `end`.
 Points whole_waveform(const Points& waveform, double rest, double end) {
   Points points = drawable(waveform);
   if (points.empty()) return points;
@@ -99,8 +99,8 @@ std::vector<Mark> rebound_marks(const ClosingRecord& result) {
   return marks;
 }
 
-/// Returns the end of the time range to enlarge: it covers the landing and the changes of the drives under the best waveform,
-/// and the highest rebound under the plain step.
+/// Returns the end of the time range that the enlarged chart shows [s]. The range covers the closing and the changes of the
+/// drive voltages under the best waveform, and the highest rebound under the plain step.
 double landing_end(const ClosingRecord& result, const CurveTables& tables, double window) {
   double end = std::numeric_limits<double>::quiet_NaN();
   const auto cover = [&](double time) {
@@ -128,7 +128,7 @@ double landing_end(const ClosingRecord& result, const CurveTables& tables, doubl
   return end > 0 ? std::min(window, margin * end) : window;
 }
 
-/// Returns a column of a run; empty if the run lacks the column.
+/// Returns a column of the curves of a run; empty if the run lacks the column.
 const std::vector<double>& column_of(const CurveTables& tables, const char* run, const char* name) {
   static const std::vector<double> none;
   const auto table = tables.find(run);
@@ -137,7 +137,7 @@ const std::vector<double>& column_of(const CurveTables& tables, const char* run,
   return column == table->second.end() ? none : column->second;
 }
 
-/// Returns the largest value of a column in any run, at least 0.
+/// Returns the largest value of a column of the curves in any run, at least 0.
 double largest(const CurveTables& tables, const char* name) {
   double value = 0;
   for (const Drawn& drawn : runs) {
@@ -146,8 +146,9 @@ double largest(const CurveTables& tables, const char* name) {
   return value;
 }
 
-/// Returns the range of gaps around the contact plane to enlarge [m]: below the plane, the deepest indentation before `end`;
-/// above the plane, the rebounds under the best waveform or twice that depth. Not set if no run touches.
+/// Returns the range of gaps around the contact plane that the enlarged chart shows [m]: below the plane, the deepest
+/// indentation before `end`; above the plane, the rebounds under the best waveform or twice the indentation. Not set if no run
+/// touches.
 std::optional<std::array<double, 2>> plane_band(const ClosingRecord& result, const CurveTables& tables, double end) {
   double lowest = 0;
   for (const Drawn& drawn : runs) {
@@ -161,7 +162,7 @@ std::optional<std::array<double, 2>> plane_band(const ClosingRecord& result, con
   return std::array{margin * lowest, margin * std::fmax(-2 * lowest, height)};
 }
 
-/// Adds the tables of runs and drives to a picture; returns the names of the drives.
+/// Adds the tables of curves and of drive waveforms to a picture; returns the names of the drives.
 std::set<std::string> add_time_tables(const ClosingRecord& result, double window, Picture& out) {
   std::set<std::string> drives;
   for (const Drawn& drawn : runs) {
@@ -181,7 +182,7 @@ std::set<std::string> add_time_tables(const ClosingRecord& result, double window
   return drives;
 }
 
-/// Draws the charts over time of a picture that has their tables.
+/// Draws the charts over time of a picture that already has the tables of curves.
 class TimeCharts {
  public:
   TimeCharts(const ClosingRecord& result, double window, Picture& out)
@@ -198,7 +199,7 @@ class TimeCharts {
     gap.height = 320;
     add_series(gap, "", "tip_gap_m");
     Chart near = gap;
-    constexpr double readable = 0.05;  // least share of the gap: labels need this height
+    constexpr double readable = 0.05;  // least share of the gap range for a label, which needs this height
     for (Mark& mark : gap.marks) {
       if (mark.y < readable * largest(out_.tables, "tip_gap_m")) mark.text.clear();
     }
@@ -245,7 +246,7 @@ class TimeCharts {
     const DriveLimits limits = drive_limits(result_, drive);
     for (const auto& [name, level] :
          {std::pair{"upper limit of the driver", limits.highest}, {"lower limit of the driver", limits.lowest}}) {
-      if (!std::isfinite(drawable(level)) || drawable(level) == 0) continue;  // the axis shows 0 already
+      if (!std::isfinite(drawable(level)) || drawable(level) == 0) continue;  // the axis shows the level 0 already
       const std::string table = fmt::format("driver/{}/{}", drive, level > limits.lowest ? "most" : "least");
       add_columns(out_.tables[table], "time_s", "level", {{0, level}, {window_, level}});
       drawn.series.push_back({table, "level", name, Role::limit});
@@ -312,7 +313,7 @@ class TimeCharts {
   }
 
   const ClosingRecord& result_;
-  double window_, landing_;  // ends of the whole and of the enlarged time range [s]
+  double window_, landing_;  // end of the whole time range and of the enlarged time range of the charts [s]
   Picture& out_;
 };
 
@@ -358,7 +359,7 @@ void add_search_chart(const ClosingRecord& result, const SearchRecord& search, P
     chart.series.push_back({"tried", "value", "each waveform tried", Role::evaluations});
   }
   if (!best.empty()) {
-    Points stairs;  // the best cost so far remains until a better one is found
+    Points stairs;  // points of the best cost so far over the evaluations: the cost stays constant until a better one is found
     for (const auto& point : best) {
       if (!stairs.empty()) stairs.push_back({point[0], stairs.back()[1]});
       stairs.push_back(point);

@@ -10,18 +10,19 @@
 namespace softland {
 
 /// Returns a static SVG document, 900 px wide: the result in words, the gap against time under the plain step and under the
-/// best waveform (the whole closing, and the landing enlarged), and the drive waveforms below. Parts without data are left out.
+/// best waveform (the whole closing, and the contact with its rebounds enlarged), and the drive waveforms below. Parts without
+/// data are left out.
 [[nodiscard]] std::string svg_gap_chart(const ClosingRecord& result);
-/// Returns the charts of svg_gap_chart().
+/// Returns the charts of svg_gap_chart() as a description: the gap over time and the drive waveforms.
 [[nodiscard]] internal::Picture gap_and_drives(const ClosingRecord& result);
 
 namespace internal {
 
-/// Returns all charts of a record, in the order of the page: gap, contact, landing, drives, velocity, force, resistance,
-/// search. Charts without data are left out.
+/// Returns all charts of a record, in the order of the page: gap, contact, enlarged rebounds, drives, velocity, force,
+/// resistance, search. Charts without data are left out.
 [[nodiscard]] Picture picture(const ClosingRecord& result);
-/// Returns the columns time_s and closed for a chart of bars: 1 while the contact is closed, 0 while it is open, until `window`
-/// [s].
+/// Returns the columns "time_s" and "closed" for a chart of bars: "closed" is 1 while the contact is closed, 0 while it is
+/// open, until `window` [s].
 [[nodiscard]] CurveTable closed_table(const std::vector<ClosedStretch>& closed, double window);
 
 }  // namespace internal

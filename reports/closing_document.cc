@@ -43,7 +43,8 @@ std::string verdict_class(Verdict verdict) {
   return "neutral";
 }
 
-// Figures that judge a landing. They are columns of the table of confirmations; all but the first are key numbers of the page.
+// Figures that judge how the switch closes. They are columns of the table of confirmations; all but the first are key numbers
+// of the page.
 constexpr std::array leading_figures{figure_of(&Metrics::initial_contact_time), figure_of(&Metrics::permanent_contact_time),
                                      figure_of(&Metrics::bounce_count), figure_of(&Metrics::major_bounce_height),
                                      figure_of(&Metrics::impact_velocity)};
@@ -72,12 +73,13 @@ std::vector<KeyNumber> key_numbers(const ClosingRecord& result) {
   return keys;
 }
 
-/// Adds rows for the demands of each drive on its source if there are several drives.
+/// Adds rows for what the waveform of each drive demands of its voltage source (extreme voltages, slew rate) if there are
+/// several drives.
 void add_drive_rows(ReportTable& table, const ClosingRecord& result, bool pair) {
   if (result.best.waveforms.size() < 2) return;
   for (const auto& [drive, found] : result.best.waveforms) {
     const DriveScale scale = drive_scale(drive);
-    if (scale.unit.empty()) continue;  // a factor needs no source
+    if (scale.unit.empty()) continue;  // the waveform is a factor without unit, which no voltage source supplies
     const DriveDemand own = drive_demand(found, scale.rest);
     const DriveDemand step = drive_demand(waveform(result.baseline(), drive), scale.rest);
     const auto add = [&, name = &drive](const Figure& what, const std::string& value, const std::string& before) {
@@ -93,10 +95,10 @@ void add_drive_rows(ReportTable& table, const ClosingRecord& result, bool pair) 
 }
 
 TableCell error_cell(const ClosingRecord& result, const Figure& one) {
-  constexpr double ill = 0.1;  // least error of an ill-conditioned figure, as a share of the figure
+  constexpr double ill = 0.1;  // least relative error from which a figure counts as ill-conditioned
   const double own = figure_of_run(result.best, one.member), error = result.best.errors[one];
   const std::string cloud = cloud_text(result, one), stated = error_text(one, own, error);
-  const bool is_hidden = stated.starts_with('<');  // true when the error is below the last digit shown
+  const bool is_hidden = stated.starts_with('<');  // true when the error of the figure is below the last digit shown
   TableCell cell(cloud.empty() ? stated : cloud);
   if (!cloud.empty() || (!is_hidden && error > ill * std::abs(own)))
     cell.html = escaped(cell.text) + " <span class=\"note\">ill-conditioned</span>";
@@ -149,7 +151,7 @@ ReportTable contacts_table(const ClosingRecord& result) {
   return table;
 }
 
-// Returns a note for a scene with a piezo layer whose charging is not part of the drive energy.
+// Returns a note for a scene with a piezo layer: the drive energy does not include the charging of the layer.
 std::string uncounted_layer_caption(const ClosingRecord& result) {
   const bool told = std::isfinite(figure_of_run(result.best, &Metrics::drive_energy)) ||
                     std::isfinite(figure_of_run(result.baseline(), &Metrics::drive_energy));
@@ -206,7 +208,7 @@ ReportSection search_section(const ClosingRecord& result) {
   return section;
 }
 
-/// Draws the switch from the side.
+/// Returns the drawing of the switch from the side as HTML.
 std::string drawn_switch(const ClosingRecord& result) {
   const std::string drawing = device_picture(result.scene);
   if (drawing.empty()) return {};
@@ -215,7 +217,8 @@ std::string drawn_switch(const ClosingRecord& result) {
 
 ReportSection checks_section(const ClosingRecord& result) {
   ReportSection section{.id = "checks", .heading = "Confirmation by re-runs", .parts = {}};
-  // A terminal shows no confirmations of a best waveform that bounces: there is nothing to confirm.
+  // A terminal shows no confirmations (re-runs with other settings) of a best waveform that bounces: there is nothing to
+  // confirm.
   if (figure_of_run(result.best, &Metrics::bounce_count) != 0) section.shown = ShownIn::page;
   if (!result.search || result.search->checks.empty()) return section;
   ReportTable table{.head = {"Simulated with"}, .rows = {}};
@@ -233,7 +236,7 @@ ReportSection checks_section(const ClosingRecord& result) {
   return section;
 }
 
-/// Splits "piezo.level_1_V" into "piezo.level_1" and "V".
+/// Splits the name of a waveform parameter into name and unit: "piezo.level_1_V" into "piezo.level_1" and "V".
 std::pair<std::string, std::string_view> without_unit(const std::string& name) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 4> units{
       {{"_rad_s", "rad/s"}, {"_rad", "rad"}, {"_s", "s"}, {"_V", "V"}}};
@@ -243,7 +246,7 @@ std::pair<std::string, std::string_view> without_unit(const std::string& name) {
   return {name, ""};
 }
 
-/// Returns a number by which parameters sort in the order of the times at which they act.
+/// Returns a number by which waveform parameters sort in the order of the times at which they act.
 int place_in_time(const std::string& name) {
   constexpr std::array<std::pair<std::string_view, int>, 8> stems{{{"rise_time", 0},
                                                                    {"start", 0},
@@ -254,7 +257,7 @@ int place_in_time(const std::string& name) {
                                                                    {"duration", 5},
                                                                    {"fade", 6}}};
   const std::size_t digits = name.size() - name.find_last_not_of("0123456789") - 1;
-  if (digits > 0 && digits <= 4) {  // level_10 follows level_9
+  if (digits > 0 && digits <= 4) {  // sort by the number at the end of the name: level_10 follows level_9
     const int number = 10 * std::stoi(name.substr(name.size() - digits));
     return name.starts_with("level") ? number : number + 1;
   }
@@ -262,13 +265,14 @@ int place_in_time(const std::string& name) {
   return found == stems.end() ? 1000000 : found->second;
 }
 
-/// Returns the bounds between which a parameter was searched.
+/// Returns the cell with the bounds between which a waveform parameter was searched.
 TableCell searched_cell(const ClosingRecord& result, const std::string& parameter, std::string_view unit) {
   const auto box = result.search->bounds.find(parameter);
   if (box == result.search->bounds.end()) return "";
   const auto [low, high] = box->second;
   const double value = result.search->parameters.at(parameter);
-  constexpr double near = 0.01;  // largest distance of a value "at" a bound, as a share of the searched range
+  // Largest distance of a parameter from a bound "at" which it lies, as a share of the searched range.
+  constexpr double near = 0.01;
   const char* bound = value - low <= near * (high - low)    ? "at its lower bound"
                       : high - value <= near * (high - low) ? "at its upper bound"
                                                             : "";
@@ -277,7 +281,7 @@ TableCell searched_cell(const ClosingRecord& result, const std::string& paramete
   return cell;
 }
 
-/// Returns the parameters of the waveform, in the order in which they act.
+/// Returns the section with the parameters of the waveform, in the order in which the parameters act.
 ReportSection parameters_section(const ClosingRecord& result) {
   ReportSection section{.id = "parameters", .heading = "Parameters of the waveform", .parts = {}, .shown = ShownIn::page};
   if (!result.search || result.search->parameters.empty()) return section;
@@ -312,7 +316,7 @@ ReportSection parameters_section(const ClosingRecord& result) {
   return section;
 }
 
-/// Returns what the user requested, and properties of the device.
+/// Returns the section with what the user requested and with properties of the device.
 ReportSection facts(const ClosingRecord& result) {
   std::string out;
   const auto fact = [&](std::string_view name, std::string value) {
@@ -332,7 +336,7 @@ ReportSection facts(const ClosingRecord& result) {
     fact("Evaluations", std::isfinite(search.evaluations) ? whole(search.evaluations) : "");
     fact("Stopped by", search.termination);
   }
-  if (result.pull_in.size() == 1) {  // only for a single electrode: the text of several is too long
+  if (result.pull_in.size() == 1) {  // only for a single actuating electrode: the text for several is too long
     const PullInOfElectrode& voltages = result.pull_in.begin()->second;
     const std::string shift = voltages.static_by_modes ? shift_prose(*voltages.static_by_modes) : "";
     fact("Static pull-in", measured(voltages.static_pull_in, "V", 5) +
@@ -367,7 +371,7 @@ Document closing_document(const ClosingRecord& result) {
                     .warnings = result.warnings,
                     .draw = [&result] { return picture(result); },
                     .made = made_again(result.origin, {}, result.tolerance)};
-  if (result.search) {  // the text of a search on a terminal shows only results of the search
+  if (result.search) {  // on a terminal, the text about a search leaves out all but the results of the search
     const auto few = std::stable_partition(document.warnings.begin(), document.warnings.end(),
                                            [](const std::string& one) { return !is_few_summits_warning(one); });
     document.page_warnings.assign(few, document.warnings.end());

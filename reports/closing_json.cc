@@ -39,7 +39,7 @@ std::vector<Rebound> internal::read_rebounds(const json& rows) {
   return all;
 }
 
-// Each row is [begin, end, touches].
+// Each row of JSON is [begin, end, touches]: an interval in which the contact is closed [s], and its number of touches.
 json internal::closed_json(const std::optional<std::vector<ClosedStretch>>& closed) {
   json rows = json::array();
   for (const ClosedStretch& one : *closed) rows.push_back({one.begin, json_number(one.end), one.touches});
@@ -72,7 +72,7 @@ std::map<std::string, std::vector<ClosedStretch>> internal::read_closed_contacts
   return all;
 }
 
-// Each row is [x, y], where x is a whole number.
+// Each row of JSON is [x, y], where x is a whole number.
 json internal::counted_json(const Points& points) {
   json all = json::array();
   for (const auto& [index, value] : points) all.push_back({std::llround(index), json_number(value)});
@@ -81,7 +81,7 @@ json internal::counted_json(const Points& points) {
 
 Points internal::read_points(const json& points) { return JsonReader::read<Points>(points); }
 
-// A single electrode has no name in JSON; several electrodes are distinguished by name.
+// Writes pull-in voltages. A single electrode has no name in JSON; several electrodes are distinguished by name.
 json internal::pull_in_json(const std::map<std::string, PullInOfElectrode>& pull_in) {
   if (pull_in.empty()) return nullptr;
   if (pull_in.size() == 1) return record_json(pull_in.begin()->second);
@@ -90,14 +90,14 @@ json internal::pull_in_json(const std::map<std::string, PullInOfElectrode>& pull
   return all;
 }
 
-// A single electrode has no name in JSON.
+// Reads pull-in voltages. A single electrode has no name in JSON.
 std::map<std::string, PullInOfElectrode> internal::read_pull_in(const json& volts) {
   if (!volts.is_object()) return {};
   if (volts.contains("static_V") || volts.contains("dynamic_V")) return {{"", JsonReader::read<PullInOfElectrode>(volts)}};
   return JsonReader::read<std::map<std::string, PullInOfElectrode>>(volts);
 }
 
-// Writes, for each ill-conditioned figure, its spread over repeated runs.
+// Writes the spread of each ill-conditioned figure over repeated runs with slightly changed settings.
 json internal::certified_json(const std::vector<IllConditioned>& figures) {
   json all = json::object();
   for (const IllConditioned& f : figures) all[std::string(f.figure.key)] = record_json(f.spread);
@@ -198,7 +198,7 @@ json metrics_json(const Metrics& m) { return internal::record_json(m); }
 
 namespace {
 
-// Adds the result of the confirmations.
+// Adds whether the confirmations agree with the best waveform of the search.
 void add_verdict(json& j, const ClosingRecord& r) {
   if (!r.best.figures || r.search->checks.empty()) return;
   j["confirmed"] = internal::all_checks_land(*r.search);
@@ -224,7 +224,8 @@ json json_of(const ClosingRecord& r) {
 
 json summary_json(json result) {
   for (const char* key : {"curves", "scene_toml", "search"}) result.erase(key);
-  if (!result.contains("baseline")) result.erase("best");  // a single run has its figures at the top level
+  // The record of a single run has its figures at the top level of the JSON.
+  if (!result.contains("baseline")) result.erase("best");
   return result;
 }
 

@@ -24,7 +24,7 @@ inline bool figure_of_contact(const Figure& figure) {
 }
 inline bool figure_of_number(const Figure& figure) { return !figure.is_yes_or_no(); }
 
-// In JSON, the status is a member of the object that holds the figures.
+// Lists status and figures of a run: in JSON, the status is a member of the object that holds the figures.
 template <class A, class Asked>
 void figures_and_status(A& a, FigureValues& figures, std::string& status, const Asked& asked) {
   a.object("metrics", [&](auto& metrics) {
@@ -45,7 +45,7 @@ void figure_errors(A& a, FigureValues& errors) {
   a.object("errors", [&](auto& inside) { inside.figures(errors, figure_of_number); });
 }
 
-/// Returns true if the JSON of a closing also has a search.
+/// Returns true if the JSON of a closing also has the members of a search.
 [[nodiscard]] bool is_of_search(const nlohmann::json& record);
 [[nodiscard]] nlohmann::json rebounds_json(const std::vector<Rebound>& rebounds);
 [[nodiscard]] std::vector<Rebound> read_rebounds(const nlohmann::json& rows);
@@ -63,15 +63,15 @@ void figure_errors(A& a, FigureValues& errors) {
 [[nodiscard]] std::vector<IllConditioned> read_certified(const nlohmann::json& figures);
 [[nodiscard]] inline std::string integrator_name(Integrator integrator) { return std::string(to_string(integrator)); }
 [[nodiscard]] Integrator read_integrator(const nlohmann::json& name);
-/// These functions write an eigenvalue, or the voltages of electrodes, by the number of modes, with the converged value. JSON
-/// is null if the structure has no more modes than the scene.
+/// These functions write figures of the structure for several numbers of modes, with the converged value. They write an
+/// eigenvalue, or the pull-in voltages of electrodes. JSON is null if the structure has no more modes than the scene.
 [[nodiscard]] nlohmann::json eigenvalues_json(const std::optional<ByModes>& found);
 [[nodiscard]] nlohmann::json voltages_json(const std::map<std::string, ByModes>& of_electrodes);
 [[nodiscard]] std::map<std::string, ByModes> read_voltages(const nlohmann::json& of_electrodes);
 [[nodiscard]] HoldWindows read_windows(const nlohmann::json& windows);
-/// Writes each choice of a waveform with the quantiles of its row in the table of results.
+/// Writes each choice among the found waveforms with the quantiles of its row in the table of results.
 [[nodiscard]] nlohmann::json choices_json(const DevicesFindings& devices);
-/// Writes the outcome of the searches with several seeds together.
+/// Writes the common outcome of searches with several seeds.
 [[nodiscard]] nlohmann::json seeds_summary(const SeedsFindings& seeds);
 
 }  // namespace internal

@@ -9,8 +9,8 @@
 namespace softland::internal {
 namespace {
 
-/// Estimated errors (half a bounce, a relative error of a time) beyond which a figure is quoted with "about". If the error is
-/// unknown, a figure after more than a few rebounds is also quoted with "about".
+/// Estimated errors of figures (half a bounce, a relative error of a time) beyond which a figure is quoted with "about". If the
+/// error is unknown, a figure after more than a few rebounds is also quoted with "about".
 constexpr double doubtful_count = 0.5;
 constexpr double doubtful_time = 0.01;
 constexpr double few_rebounds = 5;
@@ -22,7 +22,8 @@ std::string closes(const Actor& actor, const std::string& how) {
                               : fmt::format("{} closes {} {}", actor.subject, actor.object, how);
 }
 
-/// Returns the moving switch as a subject: "the switch", or "with the plain step it" for the waveform that moves it.
+/// Returns the moving switch as the subject of a clause: "the switch", or "with the plain step it" if the clause is about a
+/// waveform.
 std::string moving(const Actor& actor) {
   return actor.object.empty() ? actor.subject : fmt::format("with {} {}", actor.subject, actor.object);
 }
@@ -31,13 +32,13 @@ bool doubtful(const FigureValues& figures, double error, double limit) {
   return std::isfinite(error) ? error > limit : figures[&Metrics::bounce_count] > few_rebounds;
 }
 
-/// Describes the number of bounces: "bounces about 79 times".
+/// Describes the number of bounces of a closing: "bounces about 79 times".
 std::string bounces(const FigureValues& figures, const FigureValues& errors) {
   const bool about = doubtful(figures, errors[&Metrics::bounce_count], doubtful_count);
   return fmt::format("bounces {}{}", about ? "about " : "", times_word(figures[&Metrics::bounce_count]));
 }
 
-/// Returns the settling time; with "about" if its error is large.
+/// Returns the settling time of the contact as text; with "about" if its error is large.
 std::string settling(const FigureValues& figures, const FigureValues& errors) {
   const double settled = figures[&Metrics::permanent_contact_time];
   const double error = errors[&Metrics::permanent_contact_time];
@@ -96,7 +97,7 @@ std::string open_clause(const Actor& actor, const FigureValues& figures) {
                                              : ", and has not come to rest when the window ends");
 }
 
-// Describes the opening in a run that began closed, which has no landing.
+// Describes the opening in a run that began with a closed contact, so that no first contact follows.
 std::string opening_clause(const Actor& actor, const FigureValues& figures, const std::string& end) {
   const double settling = figures[&Metrics::open_settling_time];
   if (!std::isfinite(settling))
@@ -106,7 +107,7 @@ std::string opening_clause(const Actor& actor, const FigureValues& figures, cons
                      quantity(settling, "s"), quantity(figures[&Metrics::static_deflection], "m"));
 }
 
-// Describes how the run opens on command; empty if no drive commands an opening.
+// Describes how the switch opens on command in a run; empty if no drive commands an opening.
 std::string opening_on_command(const FigureValues& figures) {
   const double command = figures[&Metrics::open_command], opening = figures[&Metrics::opening_time];
   if (!std::isfinite(command)) return {};

@@ -42,7 +42,7 @@ inline constexpr const char* step_switch = "with the plain step the switch";
 
 /// Returns the words with a capital letter at the beginning.
 [[nodiscard]] std::string capitalised(std::string words);
-/// Returns "A; b." without an empty part; empty if both parts are empty.
+/// Joins two clauses to the sentence "A; b."; an empty clause is left out. Returns an empty text if both clauses are empty.
 [[nodiscard]] std::string joined(const std::string& first, const std::string& second);
 
 }  // namespace softland::internal

@@ -21,7 +21,7 @@
 namespace softland {
 namespace {
 
-// Replaces non-finite figures by NaN: JSON has no such numbers.
+// Replaces figures that are not finite by NaN: JSON has no infinity.
 FigureValues finite(FigureValues values) {
   for (const Figure& figure : all_figures) {
     if (!std::isfinite(values[figure])) values[figure] = Metrics::unset;
@@ -29,7 +29,7 @@ FigureValues finite(FigureValues values) {
   return values;
 }
 
-// Returns the points; of a long waveform, at most most_curve_rows that draw the same picture.
+// Returns the points of a waveform; of a long waveform, at most most_curve_rows points that draw the same picture.
 Points at_most_rows(Points all) {
   if (all.size() <= most_curve_rows) return all;
   std::vector<double> levels;
@@ -48,7 +48,8 @@ std::map<std::string, Points> waveforms(const PreparedScene& p) {
   for (std::size_t k = 0; k < names.size(); ++k) {
     const double swing = signals[k].maximum(p.duration) - signals[k].minimum(p.duration);
     const bool is_factor = names[k] == dispersion_drive;
-    if (is_factor && signals[k].is_zero()) continue;  // the nominal dispersion force is not shown
+    // The factor of the dispersion force is shown only if it differs from its nominal value.
+    if (is_factor && signals[k].is_zero()) continue;
     for (const auto& [t, v] : polyline(signals[k], p.duration, 1e-3 * swing, 0))
       all[names[k]].push_back({t, is_factor ? 1 + v : v});
     all[names[k]] = at_most_rows(std::move(all[names[k]]));
@@ -100,7 +101,7 @@ std::map<std::string, PullInOfElectrode> pull_in(const PreparedScene& p) {
   return all;
 }
 
-// Makes the part of the record that simulations and searches have in common: the scene and this program.
+// Makes the part of the record that simulations and searches have in common: the scene, and the version of this program.
 ClosingRecord begun(const char* kind, const PreparedScene& p, const std::string& command) {
   for (const auto& [drive, waveform] : p.drives.waveforms()) {
     if (const Own* own = std::get_if<Own>(&waveform))
@@ -182,7 +183,8 @@ CurveRecord curve_of(const Trajectory& t, const std::vector<Rebound>& all_reboun
 std::vector<ClosedStretch> closed_stretches(const std::vector<Touch>& touches, std::size_t most) {
   std::vector<double> openings;
   for (std::size_t k = 1; k < touches.size(); ++k) openings.push_back(touches[k].begin - touches[k - 1].end);
-  double joined = -std::numeric_limits<double>::infinity();  // touches are joined across openings up to this one [s]
+  // The contact counts as closed across openings up to this duration [s].
+  double joined = -std::numeric_limits<double>::infinity();
   if (touches.size() > most) {
     std::vector<double> by_length = openings;
     const auto last = by_length.begin() + static_cast<std::ptrdiff_t>(touches.size() - most - 1);

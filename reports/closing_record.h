@@ -29,38 +29,40 @@ struct EffectsLeftOut {
     double influence = Metrics::unset;
   };
   std::vector<LeftOut> left_out;
-  double influence = Metrics::unset;  ///< influence of all omitted effects together
+  double influence = Metrics::unset;  ///< estimated relative influence of all omitted effects together on the figures
 };
 
 struct PullInOfElectrode {
-  double static_pull_in = Metrics::unset, dynamic_pull_in = Metrics::unset;  ///< pull-in voltages [V]
-  std::optional<ByModes> static_by_modes = {};  ///< static pull-in; none if there are no more modes than in the scene
+  /// Static and dynamic pull-in voltage of the electrode [V].
+  double static_pull_in = Metrics::unset, dynamic_pull_in = Metrics::unset;
+  /// Static pull-in voltage by number of modes; none if the structure has no more modes than the scene.
+  std::optional<ByModes> static_by_modes = {};
 };
 
 struct ClosingRecord {
-  Origin origin;  ///< origin with the kind "simulate" or "optimize"
+  Origin origin;  ///< source of the record, with the kind "simulate" or "optimize"
   std::string status, message, title;
-  RunRecord best;                                  ///< the single run, or the run under the best waveform of a search
-  std::map<std::string, ContactFigures> contacts;  ///< figures by contact, if there are several; `best` has the figures of the
-                                                   ///< connection
+  RunRecord best;  ///< the single run, or the run under the best waveform of a search
+  /// Figures by contact, if there are several; `best` has the figures of the electrical connection they make.
+  std::map<std::string, ContactFigures> contacts;
   std::optional<Certificate> certificate;
-  std::optional<ClosedState> closed_state;           ///< closed state under the hold levels; none without a contact
-  std::map<std::string, PullInOfElectrode> pull_in;  ///< pull-in voltages by electrode
-  std::vector<double> natural_frequencies;           ///< natural angular frequencies [rad/s]
-  std::optional<Work> work;                          ///< numerical work of the shown run
+  std::optional<ClosedState> closed_state;  ///< state of the closed switch under the hold voltages; none without a contact
+  std::map<std::string, PullInOfElectrode> pull_in;  ///< pull-in voltages by actuating electrode
+  std::vector<double> natural_frequencies;           ///< natural angular frequencies of the structure [rad/s]
+  std::optional<Work> work;                          ///< numerical work (steps, evaluations) of the run that the record shows
   std::vector<std::string> warnings;
   DrawnScene scene;
   std::optional<EffectsLeftOut> effects;
-  double tolerance = Metrics::unset;   ///< tolerance of the integrator in the shown run
-  std::optional<SearchRecord> search;  ///< the search that found the run; none for a single run
+  double tolerance = Metrics::unset;   ///< relative tolerance of the integrator in the run that the record shows
+  std::optional<SearchRecord> search;  ///< the search that found the shown run; none for a single run
 
-  /// Returns the run under the plain step, for a search; an empty run otherwise.
+  /// Returns the run under the plain voltage step that a search compares with; an empty run if there was no search.
   [[nodiscard]] const RunRecord& baseline() const;
-  /// Returns the findings about process variation; null if there are none.
+  /// Returns the findings of a search about devices under process variation; null if there are none.
   [[nodiscard]] const DevicesFindings* devices() const { return search && search->devices ? &*search->devices : nullptr; }
 };
 
-/// Returns the motion of a run: the steps of the integrator, and points of the interpolant where steps are long. A long run
+/// Returns the motion of a run: the points between integrator steps, and interpolated points where steps are long. A long run
 /// keeps the most_curve_rows points that draw the same picture, with all extremes, and its most_rebounds highest rebounds.
 [[nodiscard]] CurveRecord curve_of(const Trajectory& trajectory, const MetricsOptions& options);
 /// Returns the motion of a run whose rebounds are known. If `is_thinned`, no points are added between those of the trajectory.
@@ -90,12 +92,12 @@ struct ClosingRecord {
 [[nodiscard]] ClosingRecord record_of(const RobustSearchResult& found, const OptimizeOptions& options, std::string next_command,
                                       const std::string& command);
 
-/// Returns JSON for programs: SI units in the names, non-finite numbers as null.
+/// Returns the record of a closing as JSON for programs: SI units in the names, non-finite numbers as null.
 [[nodiscard]] nlohmann::json json_of(const ClosingRecord& record);
-/// Returns the record as --json writes it: without large parts (curves, the text of the scene, the log of the search) and
-/// without repetitions.
+/// Returns the record of a closing as --json writes it: without large parts (curves, the text of the scene, the log of the
+/// search) and without repetitions.
 [[nodiscard]] nlohmann::json summary_json(nlohmann::json record);
-/// Returns status and figures of a run, except figures of the drives.
+/// Returns status and figures of a run as JSON, except figures of the drives.
 [[nodiscard]] nlohmann::json metrics_json(const Metrics& metrics);
 
 /// Parses the content of a result.json: an object of kind "simulate" or "optimize"; all other members may be missing or of
@@ -103,12 +105,13 @@ struct ClosingRecord {
 [[nodiscard]] nlohmann::json parse_closing(std::string_view content, const std::string& name);
 /// Throws InvalidInput unless the record has figures and a scene, which a report needs.
 void require_reportable(const nlohmann::json& record);
-/// Returns the record in the JSON. Every part is optional: a part that is missing, null or of another type is not available.
-/// Throws InvalidInput when `from` is not an object.
+/// Returns the record of a closing from its JSON. Every part is optional: a part that is missing, null or of another type is
+/// not available. Throws InvalidInput when `from` is not an object.
 [[nodiscard]] ClosingRecord read_closing(const nlohmann::json& from);
 
 namespace internal {
-/// Returns {"5": number, "10": ..., "20": ..., "converged": number}; a number that is not available is null.
+/// Returns a figure by number of modes as JSON: {"5": number, "10": ..., "20": ..., "converged": number}; a number that is not
+/// available is null.
 [[nodiscard]] nlohmann::json by_modes_json(const ByModes& found);
 [[nodiscard]] std::optional<ByModes> read_by_modes(const nlohmann::json& found);
 }  // namespace internal

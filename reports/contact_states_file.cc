@@ -29,7 +29,7 @@ std::string prefix(const StateChannel& one) {
   return (one.device ? device_name(*one.device) + "_" : std::string()) + contact_prefix(one);
 }
 
-// Interpolates linearly between points; the value is constant before and after them.
+// Returns the contact resistance at a time by linear interpolation between points; the value is constant before and after them.
 double on_line(const ResistanceLine& points, double time) {
   const auto to = std::ranges::upper_bound(points, time, {}, &std::pair<double, double>::first);
   if (to == points.begin()) return points.front().second;
@@ -38,11 +38,11 @@ double on_line(const ResistanceLine& points, double time) {
   return std::lerp(from, to->second, (time - a) / (to->first - a));
 }
 
-// Reads one channel at times that do not decrease.
+// Reads the state of one contact (channel) at times that do not decrease.
 class StateReader {
  public:
   explicit StateReader(const StateChannel& channel) : channel_(channel) {}
-  /// Appends the value just before, or just after, a time.
+  /// Appends the value of the channel just before, or just after, a time.
   void append(std::string& text, double time, bool after) {
     const std::vector<ClosedSpan>& spans = channel_.spans;
     while (next_ < spans.size() && (after ? spans[next_].end <= time : spans[next_].end < time)) ++next_;
@@ -72,12 +72,13 @@ std::string identifier(std::size_t number) {
 
 // A change of the variable number `place` in a value change dump.
 struct DumpedChange {
-  std::int64_t time = 0;  // [ps]
+  std::int64_t time = 0;  // time of the change [ps]
   std::size_t place = 0;
   std::string text;
 };
 
-// Writes the changes in order of time. Of several changes of a variable within a picosecond, only the last one is written.
+// Writes the changes of a value change dump in order of time. Of several changes of a variable within a picosecond, only the
+// last one is written.
 std::string text_of(std::vector<DumpedChange> changes) {
   std::ranges::stable_sort(changes, {}, [](const DumpedChange& one) { return std::pair(one.time, one.place); });
   std::string text;
@@ -104,7 +105,7 @@ void dump_state(const StateChannel& one, std::size_t place, std::vector<DumpedCh
 }
 
 void dump_resistance(const StateChannel& one, std::size_t place, std::vector<DumpedChange>& changes) {
-  constexpr double step = 0.05;  // relative step of a resistance that is written
+  constexpr double step = 0.05;  // relative step of the contact resistance beyond which the dump has a new value
   const auto set = [&](double time, double resistance) {
     changes.push_back({picoseconds(time), place, fmt::format("r{:.{}g} {}\n", resistance, resistance_digits, identifier(place))});
   };
@@ -127,7 +128,8 @@ void dump_resistance(const StateChannel& one, std::size_t place, std::vector<Dum
 
 // Returns the state or the resistance of a channel as a piecewise linear signal, with short edges in place of jumps.
 Signal on_edges(const StateChannel& one, bool is_resistance, double end) {
-  constexpr double edge = 1e-9, share = 0.25;  // edge [s]; largest half-edge over the time to the next jump
+  // Duration of an edge [s]; largest half of an edge as a share of the time to the next jump.
+  constexpr double edge = 1e-9, share = 0.25;
   const auto value = [&](const ClosedSpan* span, double time) {
     if (!is_resistance) return span != nullptr ? 1.0 : 0.0;
     return span != nullptr && !span->resistance.empty() ? on_line(span->resistance, time) : open_resistance;

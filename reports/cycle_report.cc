@@ -27,9 +27,10 @@ using internal::percent;
 using internal::quantity;
 using nlohmann::json;
 
-constexpr std::size_t most_of_course = 4000;  // largest number of points of a curve of the gap
-constexpr double line_tolerance = 1e-4;       // largest error of piecewise linear waveforms, as a share of the peak
-constexpr std::size_t told_cycles = 3;        // number of reported cycles: the first cycles, and the last one
+constexpr std::size_t most_of_course = 4000;  // largest number of points in a drawn curve of the gap over the cycles
+// Largest error of the piecewise linear waveforms in the report, as a share of the peak voltage.
+constexpr double line_tolerance = 1e-4;
+constexpr std::size_t told_cycles = 3;  // number of cycles in the report: the first cycles, and the last one
 constexpr std::size_t most_drawn_cycles = 200;
 
 CycleRecord::Devices devices_of(const CycledDrive& drive, double rate) {
@@ -42,7 +43,7 @@ CycleRecord::Devices devices_of(const CycledDrive& drive, double rate) {
           .steady = static_cast<double>(steady) / static_cast<double>(rates.size())};
 }
 
-// Returns the waveforms of one cycle, without the factor of the dispersion force.
+// Returns the waveforms of the drives in one cycle, without the factor of the dispersion force.
 std::map<std::string, Points> waveforms_of(const PreparedScene& given, const CycledDrive& drive, const CycleTimes& times) {
   std::map<std::string, Points> all;
   CycleTimes once = times;
@@ -74,14 +75,14 @@ const CycleRecord::Drive& found_of(const CycleRecord& r) { return r.drives.back(
 
 std::string rate_prose(double rate) { return std::isfinite(rate) ? quantity(rate, "Hz") : std::string("none"); }
 
-// Returns the largest value of a figure in the reported cycles.
+// Returns the largest value of a figure in the cycles that the report shows.
 double hardest(const CycleRecord::Drive& drive, double Metrics::*figure) {
   double most = 0;
   for (const CycleRecord::Cycle& cycle : drive.cycles) most = std::fmax(most, cycle.metrics.*figure);
   return most;
 }
 
-// Compares the found waveforms with plain steps at the reported rate.
+// Compares the found waveforms with plain steps at the cycle rate of the report.
 std::string comparison(const CycleRecord& r) {
   const auto words = [&](const CycleRecord::Drive& drive) {
     const bool sticks = std::ranges::any_of(drive.cycles, [](const auto& c) { return !std::isfinite(c.metrics.opening_time); });
@@ -310,7 +311,7 @@ internal::Role role_of(const CycleRecord& r, const CycleRecord::Drive& d) {
   return &d == &r.drives.front() ? internal::Role::baseline : internal::Role::best;
 }
 
-// Returns charts over the time of the cycles. The charts share their zoom, and begin with the first cycles in view.
+// Returns charts over the time of the cycles. The charts share their zoom and at first show the first cycles.
 internal::Picture picture_of(const CycleRecord& r) {
   using internal::Chart;
   const double period = 1 / r.rate, first = period * static_cast<double>(std::min<std::uint64_t>(r.cycles, told_cycles));
@@ -372,7 +373,8 @@ std::string cycle_charts(const internal::Picture& drawn) {
   return charts;
 }
 
-// Draws the rates of the scan in a row for each pair of waveforms: a dot for steady cycles, a ring for others.
+// Draws the cycle rates that were simulated in a row for each pair of waveforms: a dot where the cycles are steady, a ring for
+// other rates.
 std::string drawn_rates(const CycleRecord& r) {
   constexpr double left = 110, right = 780, row = 26;
   internal::Axis axis{.scale = internal::AxisScale::logarithmic, .low = 1e300, .high = 0, .pixel_low = left, .pixel_high = right};

@@ -18,48 +18,50 @@
 namespace softland {
 
 struct CycleRecord {
-  /// Largest steady cycle rates under process variation, and the share of devices that are steady at the reported rate.
+  /// Largest cycle rates with steady cycles under process variation, and the share of devices whose cycles are steady at the
+  /// rate of the report.
   struct Devices {
     std::uint64_t count = 0;
-    double at_5 = Metrics::unset, at_50 = Metrics::unset, at_95 = Metrics::unset;  ///< percentiles of the largest rate over the
-                                                                                   ///< devices [Hz]
+    /// 5th, 50th and 95th percentile over the devices of the largest rate with steady cycles [Hz].
+    double at_5 = Metrics::unset, at_50 = Metrics::unset, at_95 = Metrics::unset;
     double steady = Metrics::unset;
   };
   struct Course {
-    std::vector<double> time, gap;                     ///< time [s], and gap of the contact [m]
-    std::optional<std::vector<ClosedStretch>> closed;  ///< times in which the contact touches
+    std::vector<double> time, gap;                     ///< time since the start of the run [s], and gap of the contact [m]
+    std::optional<std::vector<ClosedStretch>> closed;  ///< times in which the contact is closed [s]; not set if unknown
   };
   struct Cycle {
-    Metrics metrics;                  ///< figures of the cycle, see CycleFigures
+    Metrics metrics;                  ///< figures of one cycle, as CycleFigures holds them
     double on_time = Metrics::unset;  ///< time in which the switch is electrically closed in the cycle [s]
   };
   struct Drive {
     std::string name;
-    double largest = Metrics::unset;                ///< largest rate at which the cycles are steady [Hz]
-    std::vector<std::array<double, 2>> windows;     ///< ranges above `largest` in which cycles are steady again [Hz]
-    std::vector<double> steady_rates, other_rates;  ///< rates of the scan with steady cycles, and with others [Hz]
+    double largest = Metrics::unset;                ///< largest cycle rate at which the cycles are steady [Hz]
+    std::vector<std::array<double, 2>> windows;     ///< ranges of rates above `largest` in which cycles are steady again [Hz]
+    std::vector<double> steady_rates, other_rates;  ///< simulated cycle rates with steady cycles, and those without [Hz]
     std::optional<Devices> devices;
-    std::optional<std::string> status, message;  ///< status and message at the end of the run at the reported rate
+    std::optional<std::string> status, message;  ///< status and message at the end of the run at the cycle rate of the report
     std::vector<Cycle> cycles;
     std::map<std::string, Points> waveforms;  ///< waveforms of one cycle, by drive: time [s] and level [V]
   };
-  /// The search that found the waveforms for the reported rate.
+  /// The search that found the waveforms for the cycle rate of the report.
   struct Search {
-    std::string target, family;  ///< target; waveform family of the closing waveform
+    std::string target, family;  ///< target figure of the search; waveform family of the closing waveform
     std::uint64_t evaluations = 0;
     double cost = Metrics::unset, plain_cost = Metrics::unset;
     std::map<std::string, double> parameters;
   };
   Origin origin;
   std::string status;
-  double rate = Metrics::unset, duty = Metrics::unset;  ///< rate [Hz]; duty [1]
+  /// Cycle rate [Hz]; share of the cycle in which the switch is commanded closed [1].
+  double rate = Metrics::unset, duty = Metrics::unset;
   std::uint64_t cycles = 0, seed = 1;
   double contact_gap = Metrics::unset;  ///< rest gap of the contact [m]
   std::vector<Drive> drives;            ///< results by pair of a closing and an opening waveform; plain steps come first
   std::optional<Search> search;         ///< search for the waveforms; none if the waveforms were given
   std::vector<std::string> warnings;    ///< warnings of the scene
 
-  std::map<std::string, Course> curves;  ///< gap over time by name of Drive; only in files
+  std::map<std::string, Course> curves;  ///< gap over time, by the name of the pair of waveforms; only in files
 };
 [[nodiscard]] CycleRecord record_of(const PreparedScene& given, const Cycling& cycling, const std::string& command);
 [[nodiscard]] CycleRecord record_of(const CycleSearchResult& found, const CycleSearchOptions& options,
@@ -69,9 +71,10 @@ struct CycleRecord {
 
 [[nodiscard]] nlohmann::json json_of(const CycleRecord& record);
 [[nodiscard]] CycleRecord read_cycles(const nlohmann::json& from);
-/// Returns sentences and tables, and charts of the gap if the record has curves. The document keeps a reference to the record.
+/// Returns a report with sentences and tables, and charts of the gap if the record has curves. The document keeps a reference
+/// to the record.
 [[nodiscard]] Document document_of(const CycleRecord& record);
-/// Draws gap, contact and drives over the first cycles; the record must have curves.
+/// Draws the gap, the closed contact and the drive waveforms over the first cycles; the record must have curves.
 [[nodiscard]] std::string svg_of(const CycleRecord& record);
 
 }  // namespace softland

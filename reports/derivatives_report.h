@@ -1,14 +1,14 @@
-// The section of the report of `softland robustness` on the derivatives of the figures of the nominal device by the varying
-// quantities (studies/devices/derivatives.h).
+// The section of the report of `softland robustness` on the derivatives of the figures of the nominal device by the quantities
+// that process variation changes (studies/devices/derivatives.h).
 #pragma once
 
 #include "reports/robustness_report.h"
 
 namespace softland::internal {
 
-/// Makes the record of the derivatives under the waveforms of `drive`.
+/// Makes the record of the derivatives of figures by the varied quantities, under the waveforms of `drive`.
 [[nodiscard]] RobustnessRecord::Derived record_of(const Derivatives& derivatives, const DriveRobustness& drive);
-/// Makes the section with all figures; it has no parts if no derivatives were computed.
+/// Makes the section on the derivatives of all figures; the section is empty if no derivatives were computed.
 [[nodiscard]] ReportSection derivatives_section(const RobustnessRecord::Derived& derivatives,
                                                 const RobustnessRecord::Drive& drive);
 

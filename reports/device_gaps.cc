@@ -20,7 +20,7 @@ namespace {
 
 using namespace internal;
 
-// Returns true if every device has a gap at every instant; a damaged file may lack some.
+// Returns true if every device has a contact gap at every instant; a damaged file may lack gaps.
 bool is_drawable(const DevicesFindings::Courses& courses) {
   if (!(courses.end > 0 && courses.unit > 0) || courses.step.empty() || courses.own.empty()) return false;
   const std::size_t instants = courses.step.front().size();
@@ -28,7 +28,7 @@ bool is_drawable(const DevicesFindings::Courses& courses) {
   return instants > 1 && std::ranges::all_of(courses.step, has_all) && std::ranges::all_of(courses.own, has_all);
 }
 
-// Returns a table of gaps with the columns "time", "low", "high", "median" and one for each device.
+// Returns a table of contact gaps over time with the columns "time", "low", "high", "median" and one for each device.
 CurveTable courses_table(const DevicesFindings::Courses& courses, const std::vector<std::vector<int>>& gaps) {
   CurveTable table;
   const std::size_t instants = gaps.front().size();
@@ -101,13 +101,14 @@ std::string internal::gaps_html(const DevicesFindings& d) {
 std::string svg_devices(const ClosingRecord& result) {
   Picture drawn = gaps_picture(*result.devices());
   const std::string words = drawn.charts.empty() ? result.title : result.title + ". " + drawn.charts.front().caption;
-  // The waveforms of the drives are drawn below the gaps.
+  // The waveforms of the drives are drawn below the contact gaps of the devices.
   Picture others = gap_and_drives(result);
   for (Chart& chart : others.charts) {
     if (!chart.id.starts_with("drive")) continue;
     if (result.devices()->courses) chart.x_home = {0, result.devices()->courses->end};
     for (Series& one : chart.series) {
-      if (one.role == Role::limit) one.label.clear();  // half a page is too narrow for this label
+      // A chart of half the page width is too narrow for the label of a voltage limit.
+      if (one.role == Role::limit) one.label.clear();
     }
     drawn.charts.push_back(std::move(chart));
   }

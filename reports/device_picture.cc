@@ -16,7 +16,7 @@
 namespace softland::internal {
 namespace {
 
-constexpr double width = 740;  // width with the labels to the right of a rigid plate [px]
+constexpr double width = 740;  // width of the drawing of a rigid plate, with the labels to its right [px]
 
 /// Draws a dimension line between two heights, with its label to the right.
 std::string height_measure(double x, double top, double bottom, const std::string& text) {
@@ -28,10 +28,11 @@ std::string height_measure(double x, double top, double bottom, const std::strin
 struct Described {
   struct Place {
     std::string name;
-    double from, to;  // times [s]
+    double from, to;  // times between which the waveform is drawn [s]
   };
   std::vector<Place> spans;
-  std::vector<std::pair<std::string, double>> levels;  // name of a level, time of its label [s]
+  // Names of the voltage levels, each with the time at which its label stands [s].
+  std::vector<std::pair<std::string, double>> levels;
 };
 
 /// Returns the parameters of the waveform of a drive, whose level is constant from `moves` on [s]. Empty if the waveform family
@@ -59,7 +60,7 @@ Described described_parameters(const ClosingRecord& result, const std::string& d
   return known ? d : Described{};
 }
 
-/// Draws the beam or plate, its supports, and its layer.
+/// Draws the beam or plate, its supports, and its piezo layer.
 std::string drawn_beam(const DrawnScene& scene, const SideView& view) {
   constexpr double left = SideView::left, thick = SideView::thick, layer = SideView::layer;
   const double top = view.top, right = view.right;
@@ -84,7 +85,8 @@ double plane_of(const SideView& view, const DrawnScene& scene, double gap) {
   return view.bottom + view.gap * std::min(1.0, gap / scene.electrode_gap);
 }
 
-/// Draws contacts, with their gaps: a contact with a name is drawn at its position, a contact on the far side above the beam.
+/// Draws the contacts and their gaps. A contact with a name is drawn at its position, a contact on the side away from the
+/// electrodes above the beam.
 std::string drawn_contacts(const DrawnScene& scene, const SideView& view) {
   constexpr double wide = 12, foot = SideView::electrode;
   const double usual = view.plate || view.both_ends ? 0.5 : 1;

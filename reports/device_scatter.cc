@@ -20,11 +20,11 @@ namespace {
 using namespace internal;
 
 constexpr std::size_t most_dots = 300;
-constexpr std::size_t groups = 16;  // number of groups of devices, each with a median
+constexpr std::size_t groups = 16;  // number of groups into which the devices are sorted, each with a median
 constexpr std::size_t fewest_of_group = 5;
-constexpr double shown_share = 0.99;  // share of the devices with this figure that is in view
+constexpr double shown_share = 0.99;  // share of the devices with this figure that the axis shows
 
-// A varying quantity, by device; a factor is given as its deviation in percent.
+// A varied quantity by device; a factor is given as its deviation in percent.
 struct VariedQuantity {
   std::string name, unit;
   std::vector<double> values;
@@ -45,7 +45,7 @@ std::vector<VariedQuantity> quantities_of(const RobustnessReport& report) {
   return all;
 }
 
-// Returns the medians of groups of devices with neighbouring x. A device without the figure counts as the worst device.
+// Returns the medians of y in groups of devices with neighbouring x. A device without a value y counts as the worst device.
 CurveTable medians(const std::vector<double>& x, const std::vector<double>& y) {
   std::vector<std::size_t> order(x.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

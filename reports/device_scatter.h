@@ -6,8 +6,8 @@
 
 namespace softland::internal {
 
-/// Draws small scatter plots for the last drive: a dot for each of at most 300 devices, and a line through the medians of
-/// groups of all devices. Empty if nothing can be drawn.
+/// Draws small scatter plots of the closings under the last waveform of the report: a dot for each of at most 300 devices, and
+/// a line through the medians of groups of all devices. Empty if nothing can be drawn.
 [[nodiscard]] ReportSection device_scatter(const RobustnessReport& report);
 
 }  // namespace softland::internal

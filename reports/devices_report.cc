@@ -65,7 +65,7 @@ std::string cell_of(std::string_view key, double value) {
   return quantity(value, figure_of(key).unit);
 }
 
-// Returns two values, the second in parentheses: "2.45 (33.8) mm/s"; with different units "723 µm/s (34.0 mm/s)".
+// Returns two values as text, the second in parentheses: "2.45 (33.8) mm/s"; with different units "723 µm/s (34.0 mm/s)".
 std::string with_bracket(const std::string& value, const std::string& other) {
   constexpr std::string_view blank = "\u00a0";
   const std::size_t unit = value.find(blank), other_unit = other.find(blank);
@@ -75,8 +75,8 @@ std::string with_bracket(const std::string& value, const std::string& other) {
                  : fmt::format("{} ({})", value, other);
 }
 
-// Returns "2.0 / 98 / 100 %": the shares of devices that rebound by at most each of the yield heights. Shares are rounded down,
-// so that 100 % means all devices.
+// Returns the cell "2.0 / 98 / 100 %": the shares of devices that rebound by at most each of the yield heights. Shares are
+// rounded down, so that 100 % means all devices.
 std::string yields_cell(const DevicesFindings::Row& row) {
   if (row.yield.empty()) return "—";
   std::string cell;
@@ -88,7 +88,7 @@ std::string yields_cell(const DevicesFindings::Row& row) {
   return cell + " %";
 }
 
-// Returns the name of a row in tables: the choice of waveform and the file of the waveform.
+// Returns the name of a row in tables of waveforms: the choice (such as the fastest) and the file of the waveform.
 std::string shown_name(const DevicesFindings& d, const DevicesFindings::Row& row) {
   if (row.name == for_the_drawing) return "nominal design: drawing.toml";
   for (const DevicesFindings::Choice& one : d.choices) {
@@ -98,21 +98,22 @@ std::string shown_name(const DevicesFindings& d, const DevicesFindings::Row& row
   return row.name == for_the_devices ? "best.toml" : is_calibrated ? "per-device calibration: " + row.name : row.name;
 }
 
-constexpr double least_share = 0.0005;  // smaller shares of devices are not shown
+constexpr double least_share = 0.0005;  // least share of failing devices that is shown
 
-// Returns true if this share of devices is large enough in any row for a column in the table.
+// Returns true if this share of devices is large enough in any row of the table to deserve a column.
 bool any_of(const std::vector<DevicesFindings::Row>& rows, double DevicesFindings::Row::*share) {
   return std::ranges::any_of(rows, [&](const DevicesFindings::Row& row) { return row.*share > least_share; });
 }
 
-// Returns a heading with a longer text for a page than for a terminal.
+// Returns a column heading whose text is longer on a page than on a terminal.
 TableCell headed(std::string_view on_terminal, std::string_view on_page) {
   TableCell cell(on_terminal);
   cell.html = escaped(capitalised(std::string(on_page)));
   return cell;
 }
 
-// Draws the choices of waveforms and the plain step: impact velocity against the time from which the contact force is steady.
+// Draws the waveforms among which the user can choose, and the plain step, as points: impact velocity against the time from
+// which the contact force is steady.
 std::string choices_picture(const DevicesFindings& d) {
   if (d.choices.size() < 2) return {};
   CurveTables tables;
@@ -164,7 +165,7 @@ std::string choices_picture(const DevicesFindings& d) {
          "</div>\n";
 }
 
-// Draws the bounce-free share and the impact velocity against the error of the measured pull-in voltage Vdp.
+// Draws the bounce-free share of devices and the impact velocity against the error of the measured pull-in voltage Vdp.
 std::string error_curve(const DevicesFindings& d) {
   if (d.by_error.size() < 2) return {};
   CurveTables tables;
@@ -248,7 +249,7 @@ std::vector<KeyNumber> internal::devices_keys(const DevicesFindings& d) {
   const DevicesFindings::Row *step = d.row(plain_step_row), *own = d.row(for_the_devices);
   if (step == nullptr || own == nullptr) return {};
   std::vector<KeyNumber> keys;
-  for (std::size_t i = 0; i < 4; ++i) {  // the columns up to the steady force
+  for (std::size_t i = 0; i < 4; ++i) {  // the columns from the first one up to the time of steady contact force
     const std::string_view key = columns[i].key;
     keys.push_back({.name = capitalised(std::string(columns[i].heading)) + ", 95th percentile",
                     .value = cell_of(key, value_in(own->at_95, key)),
@@ -259,7 +260,7 @@ std::vector<KeyNumber> internal::devices_keys(const DevicesFindings& d) {
 
 namespace {
 
-// Returns a table of these rows, with the given names in the first column.
+// Returns a table of these waveforms and their figures on the devices, with the given names in the first column.
 ReportTable devices_table(const DevicesFindings& d, const std::vector<std::pair<std::string, const DevicesFindings::Row*>>& rows,
                           ShownIn where) {
   ReportTable table{.head = {"95th percentile (99th)"}, .rows = {}};
@@ -289,7 +290,8 @@ ReportTable devices_table(const DevicesFindings& d, const std::vector<std::pair<
   return table;
 }
 
-// Returns a table of the choices of waveforms, the plain step, and the row with the best measurement.
+// Returns a table of the waveforms among which the user can choose, the plain step, and the best waveform with per-device
+// calibration.
 ReportTable choices_table(const DevicesFindings& d) {
   std::vector<std::pair<std::string, const DevicesFindings::Row*>> rows;
   const auto add = [&](const std::string& row) {
@@ -303,7 +305,7 @@ ReportTable choices_table(const DevicesFindings& d) {
   return devices_table(d, rows, ShownIn::terminal);
 }
 
-// Returns a table of all rows, first the choices of waveforms.
+// Returns a table of all found waveforms, beginning with those among which the user can choose.
 ReportTable all_rows(const DevicesFindings& d) {
   std::vector<std::pair<std::string, const DevicesFindings::Row*>> rows;
   const auto add = [&](const DevicesFindings::Row* row) {
@@ -338,7 +340,7 @@ std::string delay_prose(const DevicesFindings& d) {
       quantity(d.step_delay, "s"));
 }
 
-// Describes the gain by per-device calibration.
+// Describes the gain by scaling the waveform to each device's measured pull-in voltage (per-device calibration).
 std::string measuring_prose(const DevicesFindings& d) {
   const DevicesFindings::Row *own = d.row(for_the_devices), *measured = d.row(d.measured);
   const bool were_judged =

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-// Returns the value at this path of keys; null if any key is missing.
+// Returns the value in JSON at this path of keys; null if any key is missing.
 const json& at(const json& value, std::initializer_list<std::string_view> path) {
   static const json nothing;
   const json* here = &value;
@@ -49,7 +49,7 @@ std::vector<double> quantities(const json& list) {
   return all;
 }
 
-// Returns the members of an object, each read by `read`, by name.
+// Returns the members of a JSON object by name, each converted by the function `read`.
 template <class Read>
 auto members_of(const json& object, const Read& read) {
   std::map<std::string, decltype(read(object))> all;
@@ -71,7 +71,7 @@ std::optional<std::array<double, 2>> span_on(double length, const json& span) {
   return std::isfinite(ends[0]) && std::isfinite(ends[1]) ? std::optional(ends) : std::nullopt;
 }
 
-// Returns the length of the structure, or the sum of its sections.
+// Returns the length of the structure in a scene, or the sum of the lengths of its sections.
 double length_of(const json& structure) {
   const double length = quantity(at(structure, {"length"}));
   const json& sections = at(structure, {"sections"});

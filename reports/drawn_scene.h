@@ -15,8 +15,8 @@ namespace softland {
 
 /// The limits of the voltage source of a drive; a limit that the scene does not set is NaN.
 struct DriveLimits {
-  double lowest = Metrics::unset, highest = Metrics::unset;  ///< limits of the voltage [V]
-  double slew = Metrics::unset;                              ///< limit of the slew rate [V/s]
+  double lowest = Metrics::unset, highest = Metrics::unset;  ///< lowest and highest voltage that the source permits [V]
+  double slew = Metrics::unset;                              ///< largest slew rate that the source permits [V/s]
 };
 
 /// A kind of structure for a drawing from the side.
@@ -31,7 +31,8 @@ enum class SideOfStructure {
 
 /// The parts of a scene that reports show.
 struct DrawnScene {
-  using Span = std::optional<std::array<double, 2>>;  ///< distances from the clamped end [m]
+  /// Begin and end of a part of the beam: distances from the clamped end [m].
+  using Span = std::optional<std::array<double, 2>>;
   struct Piezo {
     Span span;
   };
@@ -39,28 +40,30 @@ struct DrawnScene {
     std::string name;
     Span span;
     bool far_side = false;
-    double gap = Metrics::unset;  ///< rest gap [m]
+    double gap = Metrics::unset;  ///< rest gap of the electrode [m]
   };
   struct Contact {
     std::string name;
-    double at = Metrics::unset;   ///< distance from the clamped end [m]; NaN: at the tip, or the middle
-    double gap = Metrics::unset;  ///< rest gap [m]
+    double at = Metrics::unset;   ///< distance of the contact from the clamped end [m]; NaN: at the tip, or at the middle
+    double gap = Metrics::unset;  ///< rest gap of the contact [m]
     bool far_side = false;
   };
   struct Waveform {
     std::string family;
-    std::vector<double> times;                                                   ///< times of the waveform [s]
-    double edge = Metrics::unset, start = Metrics::unset, end = Metrics::unset;  ///< duration of its edges, start and end [s]
+    std::vector<double> times;  ///< times at which the parameters of the waveform act [s]
+    /// Duration of an edge (ramp) of the waveform; start and end of the waveform [s].
+    double edge = Metrics::unset, start = Metrics::unset, end = Metrics::unset;
   };
 
   SideOfStructure structure = SideOfStructure::unknown;
-  double length = Metrics::unset;                                       ///< length of the structure [m]
-  double electrode_gap = Metrics::unset, contact_gap = Metrics::unset;  ///< rest gaps [m]
-  double pad_length = Metrics::unset;                                   ///< length of the contact pad [m]
+  double length = Metrics::unset;  ///< length of the structure [m]
+  /// Rest gap of the electrode and rest gap of the contact [m].
+  double electrode_gap = Metrics::unset, contact_gap = Metrics::unset;
+  double pad_length = Metrics::unset;  ///< length of the contact pad [m]
   std::optional<Piezo> piezo;
   std::vector<Electrode> electrodes;
   std::vector<Contact> contacts;              ///< contacts that have names
-  std::map<std::string, Waveform> waveforms;  ///< waveforms by drive
+  std::map<std::string, Waveform> waveforms;  ///< waveforms by name of the drive
   std::map<std::string, DriveLimits> drivers;
   double significant_rebound = MetricsOptions{}.significant_rebound;  ///< least height of a significant rebound [m]
 };

@@ -8,21 +8,21 @@
 
 namespace softland::internal {
 
-/// The quantity that the waveform of a drive gives.
+/// The quantity that the waveform of a drive prescribes: a voltage, or a factor of the dispersion force.
 struct DriveScale {
-  std::string_view name;  ///< name that begins a sentence
-  std::string_view unit;  ///< unit; empty: a plain number
-  double rest = 0;        ///< level before t = 0
+  std::string_view name;  ///< name of the quantity, as the first word of a sentence
+  std::string_view unit;  ///< unit of the quantity; empty: a plain number
+  double rest = 0;        ///< level of the waveform before t = 0, in the unit of the quantity
 };
-/// Returns the scale of a voltage; for the drive named "dispersion", the scale of a factor.
+/// Returns the quantity that a drive's waveform prescribes: a voltage; for the drive named "dispersion", a factor.
 [[nodiscard]] DriveScale drive_scale(std::string_view drive);
 [[nodiscard]] DriveLimits drive_limits(const ClosingRecord& result, const std::string& drive);
 /// Returns the waveform of a drive in a run; empty if the run has none.
 [[nodiscard]] const Points& waveform(const RunRecord& run, const std::string& drive);
-/// The demand of a waveform on its voltage source, beginning at the level `rest`.
+/// The voltages and the slew rate that a waveform, which begins at the level `rest`, demands of its voltage source.
 struct DriveDemand {
-  double lowest = 0, highest = 0;  ///< extreme levels; NaN without a waveform
-  double slew = 0;                 ///< largest slew rate; infinite where the waveform jumps
+  double lowest = 0, highest = 0;  ///< lowest and highest level of the waveform [V]; NaN without a waveform
+  double slew = 0;                 ///< largest slew rate of the waveform [V/s]; infinite where the waveform jumps
   [[nodiscard]] double peak() const;
 };
 [[nodiscard]] DriveDemand drive_demand(const Points& waveform, double rest);

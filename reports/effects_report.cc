@@ -21,12 +21,12 @@ namespace {
 using internal::json_number;
 using nlohmann::json;
 
-// Returns the relative change of a figure from the closing of the scene to another closing.
+// Returns the relative change of a figure from the closing `own` of the complete scene to a closing without an effect.
 double change(const Figure& figure, const Metrics& metrics, const Metrics& own) {
   return relative_change(figure.value(metrics), figure.value(own));
 }
 
-// Writes each closing with its changes from the closing of the scene.
+// Writes each closing without an effect with its changes from the closing of the complete scene.
 template <class Closing>
 json compared_json(const std::vector<Closing>& closings, const Metrics& own) {
   json all = json::array();
@@ -42,7 +42,7 @@ std::string size_of(const NamedNumber& n) {
   return std::isfinite(n.value) ? fmt::format("{} {}", n.name, internal::quantity(n.value, n.unit)) : std::string();
 }
 
-// Returns a table with a row for each effect, for the closing without this effect.
+// Returns a table with a row for each physical effect: the closing without this effect.
 ReportTable omissions_table(const Effects& effects) {
   const Effect& own = effects.own("gas");
   ReportTable table{.head = {"left out", {"", "words"}}, .rows = {}};
@@ -94,7 +94,7 @@ std::string spread_of_laws(const Effects& effects) {
                    words + ".";
 }
 
-// Returns a line per closing whose simulation stopped before the end of the window.
+// Returns a line per closing whose simulation stopped before the end of the simulated time.
 std::vector<std::string> bounds_of(const Effects& effects) {
   std::vector<std::string> lines;
   const auto tell = [&](const std::string& closing, const Metrics& figures, const std::optional<double>& end) {
@@ -111,9 +111,10 @@ std::vector<std::string> bounds_of(const Effects& effects) {
   return lines;
 }
 
-// Returns a line per warning, with the names of the laws that give the warning.
+// Returns a line per warning, with the names of the laws to which the warning applies.
 std::vector<std::string> warnings_of(const Effects& effects) {
-  std::vector<std::pair<std::string, std::string>> warnings;  // laws and text of each warning
+  // Per warning: names of the laws to which it applies, and its text.
+  std::vector<std::pair<std::string, std::string>> warnings;
   for (const Effect& e : effects.list) {
     for (const std::string& w : e.warnings) {
       const auto same = std::find_if(warnings.begin(), warnings.end(), [&](const auto& known) { return known.second == w; });

@@ -20,13 +20,13 @@
 namespace softland::internal {
 namespace {
 
-constexpr std::size_t most_values = 800'000;  // largest number of values on a page, at two letters each
-constexpr std::size_t most_reasons = 300;     // largest number of different failure reasons
-constexpr int steps = 4094;                   // number of steps between the ends of a column
+constexpr std::size_t most_values = 800'000;  // largest number of table values on a page; each takes two letters
+constexpr std::size_t most_reasons = 300;     // largest number of different failure reasons on a page
+constexpr int steps = 4094;                   // number of steps between the ends of a column into which its values are rounded
 constexpr std::size_t most_bins = 24;
 constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-/// Appends a number below 4096 as two letters.
+/// Appends a number below 4096 to the text as two letters.
 void append_letters(std::string& text, std::size_t number) {
   text += letters[number / 64];
   text += letters[number % 64];
@@ -53,7 +53,7 @@ ColumnRange range_of(const ExplorationReport& report, std::size_t column) {
   return range;
 }
 
-/// Returns the number of the step, counted from the low end of a column, that is nearest to a value.
+/// Returns the number of steps from the low end of a column to the step nearest to a value.
 std::size_t step_of(double low, double step, double value) {
   const double way = value - low;
   const double count = std::isfinite(way) ? way / step : value / step - low / step;
@@ -69,7 +69,7 @@ double shortened_to(int digits, double value) {
 /// Returns the values of a column as steps between the ends of the column; steps of equal ratio if the column spans decades.
 nlohmann::json column_json(const ExplorationReport& report, std::size_t column, const std::vector<std::size_t>& rows) {
   const ColumnRange range = range_of(report, column);
-  constexpr double decades = 100;  // least ratio of high to low for steps of equal ratio
+  constexpr double decades = 100;  // least ratio of the largest value of a column to the smallest for steps of equal ratio
   const bool logarithmic = range.is_known() && range.all_positive && range.high > decades * range.low;
   const auto scaled = [&](double value) { return logarithmic ? std::log(value) : value; };
   const double low = range.is_known() ? scaled(range.low) : 0, high = range.is_known() ? scaled(range.high) : 0;
@@ -85,7 +85,7 @@ nlohmann::json column_json(const ExplorationReport& report, std::size_t column, 
                      {"log", logarithmic},
                      {"prefix", takes_prefix(about.unit)},
                      {"known", range.is_known()}};
-  if (!range.is_known() || step == 0) return out;  // the column is empty or constant
+  if (!range.is_known() || step == 0) return out;  // the column is empty or constant: it needs no steps
   std::string text;
   for (const std::size_t k : rows) {
     const double value = report.points[k].values[column];
@@ -95,7 +95,7 @@ nlohmann::json column_json(const ExplorationReport& report, std::size_t column, 
   return out;
 }
 
-/// A stride k keeps every k-th value of a variable.
+/// One stride per variable: a stride k keeps every k-th value of the variable.
 using Strides = std::vector<std::size_t>;
 
 std::size_t kept_values(std::size_t count, std::size_t stride) { return (count + stride - 1) / stride; }
@@ -118,7 +118,7 @@ Strides strides_for(const ExploredGrid& grid, std::size_t most_points) {
   return strides;
 }
 
-/// The points to draw, ascending, and the rule by which they were chosen.
+/// The points of the exploration to draw, ascending, and the rule by which the points were chosen.
 struct Choice {
   std::vector<std::size_t> points;
   Strides strides;
@@ -152,7 +152,7 @@ Choice chosen_points(const ExplorationReport& report, const std::optional<Explor
       }
       how = stride_prose(report, *grid, choice.strides);
     } else {
-      // Choose each point with the same probability, independent of its position in the plan.
+      // Choose each point with the same probability, whatever its position in the list of the exploration's points.
       const double part = static_cast<double>(most) / static_cast<double>(count);
       for (std::size_t k = 0; k < count; ++k)
         kept[k] = static_cast<char>(random_uniform(0, Stream::scene, static_cast<std::uint64_t>(report.points[k].number)) < part);
@@ -339,7 +339,7 @@ std::vector<EffectBin> effect_of(const ExplorationReport& report, std::size_t va
       pairs.emplace_back(point.values[variable], point.values[figure]);
   }
   std::sort(pairs.begin(), pairs.end());
-  // Points with equal values belong to one group.
+  // Points with equal values of the variable belong to one group.
   std::vector<std::pair<std::size_t, std::size_t>> groups;
   for (std::size_t begin = 0; begin < pairs.size();) {
     std::size_t end = begin;
@@ -392,7 +392,8 @@ std::size_t leading_figure(const ExplorationReport& report) {
 
 ExplorationData exploration_data(const ExplorationReport& report, const std::optional<ExploredGrid>& grid,
                                  const ExploredFront& front) {
-  // Status and reason take as much space as 1.5 columns; numbers and coordinates of points as two.
+  // Number of values stored per point beside the columns: status and reason take as much space as 1.5 columns, number and
+  // coordinates as two.
   std::size_t stored = grid ? 2 : 4;
   for (std::size_t c = 0; c < report.columns.size(); ++c) {
     const ColumnRange range = range_of(report, c);

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t most_waveforms = 400;  // largest number of waveforms of a Pareto front
+constexpr std::size_t most_waveforms = 400;  // largest number of waveforms that are shown for a Pareto front
 
 Plan plan_of(const StudyReader& store) { return Plan(exploration_in(store)); }
 
@@ -33,7 +33,7 @@ ExplorationReport read_exploration(const StudyReader& store, const std::string& 
     try {
       extra.at("waveforms").get_to(report.waveforms[row.point]);
     } catch (const json::exception&) {
-      report.waveforms.erase(row.point);  // the waveform is from another version
+      report.waveforms.erase(row.point);  // another version of the program wrote the waveform
     }
   });
   if (!pareto.empty() || plan.is_search()) report.aims = explored_aims(report.columns, pareto.empty() ? plan.pareto() : pareto);

@@ -33,7 +33,7 @@ using nlohmann::json;
 
 constexpr std::size_t most_front_rows = 40;  // largest number of rows of the table of the Pareto front
 
-/// Returns the factor that makes an aim one to minimise: -1 for an aim to maximise.
+/// Returns the factor that turns an aim into one to minimise: -1 for a figure to maximise, 1 otherwise.
 double sign_of(const ExploredAim& aim) { return aim.is_largest ? -1 : 1; }
 
 std::string aim_name(const ExplorationReport& report, const ExploredAim& aim) {
@@ -124,7 +124,7 @@ std::vector<KeyNumber> keys_of(const ExplorationReport& report, const ExploredFr
   return keys;
 }
 
-/// Returns an empty element, which the script of the page fills, and the static picture `still`.
+/// Returns an HTML element that the script of the page fills, with the static picture `still`.
 Drawing drawn(const std::string& still = {}) { return drawing_of("<div class=\"part\"></div>\n" + still); }
 
 /// Draws a map as static SVG; empty if the map has more than `most_cells` cells.
@@ -170,7 +170,7 @@ std::string front_prose(const ExplorationReport& report, const ExploredFront& fr
   return words + ".";
 }
 
-// Returns a heading in which a page may break a key after its dots.
+// Returns a column heading in which a page may break a scene key after its dots.
 TableCell column_head(const std::string& name) {
   TableCell cell(name);
   for (const std::string_view part : split(name, '.'))
@@ -178,7 +178,8 @@ TableCell column_head(const std::string& name) {
   return cell;
 }
 
-// Returns a table of points along the Pareto front, one per `stride`, with the knee and the ends of the front.
+// Returns a table of points along the Pareto front, one per `stride`, with the knee (the best compromise) and the ends of the
+// front.
 ReportTable front_table(const ExplorationReport& report, const ExploredFront& front, std::size_t stride) {
   std::vector<std::size_t> columns;
   for (const ExploredAim& aim : report.aims) columns.push_back(aim.column);
@@ -339,7 +340,8 @@ std::vector<std::size_t> grid_variables(const ExplorationReport& report) {
 std::string exploration_map_svg(const ExplorationReport& report, std::size_t x, std::size_t y, std::size_t figure) {
   const std::optional<internal::ExploredGrid> grid = internal::grid_of(report);
   require(grid.has_value(), "a map needs points on a grid of at least two variables");
-  constexpr std::size_t most_cells = 40'000;  // more cells of some 30 bytes are invisible and slow down the opening of the file
+  // A map with more cells, of some 30 bytes each, gains nothing visible and makes the file slow to open.
+  constexpr std::size_t most_cells = 40'000;
   const internal::HeatMap map = internal::thinned_map(internal::heat_map_of(report, *grid, x, y, figure), most_cells);
   return svg_frame(fmt::format("{} over {} and {}", map.label, report.columns[x].name, report.columns[y].name), report.title,
                    [&](double width, double top) {

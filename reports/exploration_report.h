@@ -18,9 +18,9 @@ namespace softland {
 
 struct ExploredPoint {
   std::int64_t number = 0;
-  std::string status;  ///< status at the end of the point: "done"
+  std::string status;  ///< status of the point at the end of its computation: "done"
   std::string reason;
-  std::vector<double> values;  ///< values, one per column [SI]; NaN: unknown
+  std::vector<double> values;  ///< values of variables and figures, one per column [SI]; NaN: unknown
 };
 
 struct ExplorationReport {
@@ -28,26 +28,29 @@ struct ExplorationReport {
   std::string study;  ///< verb that was run at every point: "simulate"
   std::vector<ExploredColumn> columns;
   std::vector<ExploredPoint> points;
-  std::int64_t planned = 0;       ///< points of the plan
-  std::vector<ExploredAim> aims;  ///< aims of the Pareto front; may be empty
-  /// Waveforms by number of the point and drive, as far as known.
+  std::int64_t planned = 0;       ///< number of points in the plan, the list of points to compute
+  std::vector<ExploredAim> aims;  ///< figures to minimise or maximise, which define the Pareto front; may be empty
+  /// Drive waveforms by number of the point and drive, as far as known.
   std::map<std::int64_t, std::map<std::string, Points>> waveforms;
-  std::string plan;       ///< text of the plan
-  std::string command;    ///< command that computed the points
-  std::string made_with;  ///< program and processor
+  std::string plan;       ///< text of the plan, the stored request of the exploration
+  std::string command;    ///< command line that computed the points
+  std::string made_with;  ///< version of the program, and processor, that computed the points
 };
 
 /// Returns true if a point with this status has valid figures: "done", or "not_settled", when the simulation ended before the
 /// last rebound.
 [[nodiscard]] bool has_figures(std::string_view status);
 
-/// The Pareto front of the aims, among all points that have the figures of the aims and a status that permits comparison.
+/// The Pareto front of several figures to minimise or maximise, among all points that have these figures and a status that
+/// permits comparison.
 struct ExploredFront {
-  std::vector<std::size_t> members;     ///< indices of points in the report, sorted by the first aim
-  std::optional<std::size_t> knee;      ///< index in the report of the knee, a member of the front
-  std::vector<double> reference;        ///< worst value of every aim among the points
-  double hypervolume = Metrics::unset;  ///< volume below the reference, in the units of the aims; NaN: more than three aims
-  /// Hypervolume as a share of the box between best and worst values.
+  /// Indices in the report of the points on the front, sorted by the first aim (figure to minimise or maximise).
+  std::vector<std::size_t> members;
+  std::optional<std::size_t> knee;  ///< index in the report of the knee, the member of the front that is the best compromise
+  std::vector<double> reference;    ///< worst value of every aim (figure to minimise or maximise) among the points
+  /// Hypervolume that the front dominates up to the reference, in the units of the aims; NaN: more than three aims.
+  double hypervolume = Metrics::unset;
+  /// Hypervolume that the front dominates, as a share of the box between the best and the worst values of the aims.
   double share = Metrics::unset;
 };
 [[nodiscard]] ExploredFront explored_front(const ExplorationReport& report);
@@ -59,7 +62,7 @@ struct ExploredFront {
 [[nodiscard]] Document exploration_document(const ExplorationReport& report);
 [[nodiscard]] nlohmann::json exploration_json(const ExplorationReport& report);
 
-/// Returns the variables of the grid, in their order; none if the points are no grid of at least two variables.
+/// Returns the variables of the grid of points, in their order; none if the points are no grid of at least two variables.
 [[nodiscard]] std::vector<std::size_t> grid_variables(const ExplorationReport& report);
 
 /// Draws the map of a figure over two variables as an SVG file; each other variable has the middle one of its values. Throws

@@ -12,13 +12,13 @@
 namespace softland::internal {
 namespace {
 
-constexpr int figure_digits = 4;  // digits in tables, unless the error permits fewer
+constexpr int figure_digits = 4;  // significant digits of a figure in tables, unless the error of the figure permits fewer
 
 }  // namespace
 
 Change change(double before, double after, bool lower_is_better, ChangeKind kind) {
   if (!std::isfinite(before) || !std::isfinite(after)) return {};
-  constexpr double visible = 0.005;  // a ratio within half a per cent of 1 counts as unchanged
+  constexpr double visible = 0.005;  // a figure within half a per cent of its value under the plain step counts as unchanged
   if (std::abs(after - before) <= visible * std::abs(before)) return {"unchanged", Verdict::same};
   const bool lower = after < before;
   const Verdict verdict = !lower_is_better ? Verdict::neutral : lower ? Verdict::better : Verdict::worse;

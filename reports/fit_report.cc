@@ -23,7 +23,7 @@ using internal::plain_number;
 using internal::quantity;
 using nlohmann::json;
 
-constexpr double unlikely = 3;  // number of standard errors from which a deviation is unlikely
+constexpr double unlikely = 3;  // number of standard errors from which a residual of a fit is unlikely
 
 // Describes a direction in which the data determine nothing: "+1 % of a with −2.1 % of b".
 std::string direction_prose(const Fit& fit, const WeakDirection& weak) {
@@ -63,7 +63,9 @@ std::vector<std::string> fit_prose(const Fit& fit) {
     return all;
   }
   const auto free = static_cast<double>(freedom(fit));
-  constexpr double beyond = 4;  // largest excess of chi squared in standard deviations
+  // Largest excess of chi squared over its expectation at which a fit describes its data, in standard deviations of chi
+  // squared.
+  constexpr double beyond = 4;
   if (free > 0 && fit.chi_squared() > free + beyond * std::sqrt(2 * free))
     all.push_back(fmt::format(
         "The device does not match the model within the errors of the data: chi squared of {} residuals is {}, and {} is "
@@ -205,7 +207,7 @@ void add_residual_chart(const FitRecord& fit, internal::Picture& drawn) {
   drawn.charts.push_back(std::move(chart));
 }
 
-// Draws measurements against level or time, with the predictions of the scene before and after the fit.
+// Draws measurements against the voltage level or the time, with the predictions of the scene before and after the fit.
 void add_courses(const FitRecord& fit, internal::Picture& drawn) {
   constexpr std::size_t most = 12;
   std::map<std::tuple<std::string, Measurable, bool>, std::vector<const FitResidual*>> groups;
@@ -281,7 +283,7 @@ std::vector<KeyNumber> keys_of(const FitRecord& fit) {
 
 namespace internal {
 
-/// The prior mean and deviation of an unknown.
+/// The mean and the standard deviation of an unknown of the fit, as given before the measurements.
 struct Prior {
   double mean = Metrics::unset, deviation = Metrics::unset;
 };
@@ -431,7 +433,7 @@ Document document_of(const FitRecord& fit) {
                     .headline = fit_headline(fit),
                     .sections = {values_section(fit)},
                     .made = made_again(fit.origin, fit.seed, fit.tolerance)};
-  constexpr std::size_t most = 12;  // largest number of unknowns in a readable table of correlations
+  constexpr std::size_t most = 12;  // largest number of unknowns of a fit whose table of correlations is readable
   if (fit.unknowns.size() >= 2 && fit.correlation.size() == fit.unknowns.size() && fit.unknowns.size() <= most)
     document.sections.push_back({.id = "correlation",
                                  .heading = "Correlations of the errors",

@@ -1,4 +1,4 @@
-// The results of a fit: JSON with SI units, and a document.
+// The results of `softland fit`: JSON with SI units, and a document.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -24,23 +24,24 @@ struct FitRecord {
   };
   Origin origin;
   std::string status;
-  std::vector<std::string> doubts;  ///< reasons to doubt the fit, see Fit::doubts
+  std::vector<std::string> doubts;  ///< reasons to doubt the fit, in sentences
   std::string title;
   std::vector<FittedUnknown> unknowns;
   Matrix correlation;
-  std::vector<std::vector<std::string>> indistinguishable;  ///< groups of unknowns that the data cannot tell apart
+  std::vector<std::vector<std::string>> indistinguishable;  ///< groups of unknowns of the fit that the data cannot tell apart
   std::vector<NextMeasurement> next;
   std::size_t minima = 0, starts = 0, converged = 0;
   std::vector<FitResidual> residuals;
   std::vector<FittedTrace> traces;
-  double chi_squared = Metrics::unset, chi_squared_before = Metrics::unset;  ///< after and before the fit; NaN if the fit
-                                                                             ///< failed
-  /// Sentences on the residuals as a whole, data that contradict each other, indistinguishable unknowns, and minima.
+  /// Chi squared of the residuals after and before the fit; NaN if the fit failed.
+  double chi_squared = Metrics::unset, chi_squared_before = Metrics::unset;
+  /// Sentences on the residuals of the fit as a whole, data that contradict each other, indistinguishable unknowns, and several
+  /// minima of chi squared.
   std::vector<std::string> words;
   bool spread_assumed = false;
   Loss loss = Loss::huber;
   std::uint64_t seed = 1;
-  double tolerance = Metrics::unset;  ///< tolerance of the integrator
+  double tolerance = Metrics::unset;  ///< relative tolerance of the integrator in the simulations of the fit
   std::optional<Population> population;
 
   [[nodiscard]] bool is_found() const { return status != to_string(Status::numerical_failure); }

@@ -31,7 +31,8 @@ std::string nominal_text(const FittedUnknown& u) {
 }
 
 std::string fitted_error_text(const FittedUnknown& u) {
-  constexpr double nothing = 100;  // least standard error, in scales of the unknown, of a value that is not known
+  // Standard error, in scales of the unknown, from which the value of an unknown counts as not known.
+  constexpr double nothing = 100;
   if (!(u.standard_error < nothing * u.scale)) return "not known";
   if (u.unit.empty()) return plain_number(100 * u.standard_error, 2) + "\u00a0%";
   const std::string share =

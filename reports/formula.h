@@ -8,7 +8,8 @@ namespace softland {
 
 class Formula {
  public:
-  Formula(double constant) : constant_(true), value_(constant) {}  // NOLINT(google-explicit-constructor): as a number does
+  // NOLINT(google-explicit-constructor): a number converts to a formula.
+  Formula(double constant) : constant_(true), value_(constant) {}
   /// Makes an operand from a text: a name, a call, or an expression in parentheses.
   static Formula named(std::string operand);
 

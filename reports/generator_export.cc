@@ -20,7 +20,7 @@ namespace {
 using internal::plain_number;
 using internal::quantity;
 
-// Returns sample rate and resolution of a source: "27 MS/s, 14 bit".
+// Returns sample rate and resolution of a voltage source as text: "27 MS/s, 14 bit".
 std::string words(const DriverModel& source) {
   const std::string rate = internal::given_quantity(*source.sample_rate, "S/s");
   return source.bits ? fmt::format("{}, {} bit", rate, *source.bits) : rate;
@@ -30,8 +30,8 @@ std::string clause(const PreparedScene& p, const Closing& closing) {
   return internal::closing_clause({.subject = "the switch"}, record_of(p, closing, {}).best, p.duration);
 }
 
-// Returns true if the closing with samples does not settle although the closing under the scene's waveform settles, or if it
-// bounces more often and higher.
+// Returns true if the closing under the samples of a waveform does not settle although the closing under the scene's waveform
+// settles, or if the closing under the samples bounces more often and higher.
 bool is_worse(const Metrics& sampled, const Metrics& drawn) {
   if (drawn.settled && !sampled.settled) return true;
   constexpr double noticeable = 1.05;
@@ -72,7 +72,7 @@ std::string amplifier_prose(const Drive& drive, double factor) {
 }
 
 void set_sampling(SceneFile& file, const std::vector<std::string>& drives, const Sampling& sampling) {
-  // Messages about keys of the scene become messages about the options.
+  // Errors about keys of the scene are reported as errors of the options that set these keys.
   const auto set = [&](std::string_view option, const std::string& told, const std::string& assignment,
                        const std::string& drive) {
     try {

@@ -16,32 +16,33 @@
 
 namespace softland {
 
-/// The options for sampling a waveform.
+/// The options for sampling a waveform as an arbitrary waveform generator does.
 struct Sampling {
-  std::optional<std::string> rate, bits;  ///< replace sample rate and bits in [driver]
-  std::string drive = {};                 ///< the only drive that is exported; empty: all
-  std::optional<std::string> amplifier;   ///< volts at the switch per volt at the generator; not set: the value in [driver]
-  std::optional<std::string> marker;      ///< time at which the sync output of the generator falls, as text
+  /// Sample rate and number of bits of the generator, as text; they replace those of [driver].
+  std::optional<std::string> rate, bits;
+  std::string drive = {};                ///< the only drive (electrode or piezo) that is exported; empty: all
+  std::optional<std::string> amplifier;  ///< volts at the switch per volt at the generator; not set: the value in [driver]
+  std::optional<std::string> marker;     ///< time at which the sync output of the generator falls, as text
 };
 
 /// Returns the voltage drives to export: the drive `named`, or all drives that are not always at 0 V. Throws InvalidInput for a
-/// name that is not such a drive.
+/// name that is not a voltage drive.
 [[nodiscard]] std::vector<std::string> exported_drives(const PreparedScene& prepared, const std::string& named);
 
-/// Returns the factor from the volts at the generator to the volts at the switch: that of `sampling`, else that of the drive,
-/// else 1. Throws InvalidInput unless the factor is above 0.
+/// Returns the factor from the volts at the generator to the volts at the switch: that of `sampling`, else that of the drive in
+/// the scene, else 1. Throws InvalidInput unless the factor is above 0.
 [[nodiscard]] double amplification(const Drive& drive, const Sampling& sampling);
-/// Describes the factor of amplification() in words; empty if it is 1.
+/// Describes the factor from generator to switch voltage, which amplification() returns, in words; empty if the factor is 1.
 [[nodiscard]] std::string amplifier_prose(const Drive& drive, double factor);
 
-/// Writes sample rate and bits into [driver] of these drives.
+/// Writes the sample rate and the number of bits of the generator into [driver] of these drives.
 void set_sampling(SceneFile& file, const std::vector<std::string>& drives, const Sampling& sampling);
 
-/// Throws InvalidRequest if the source has no sample rate, which a file of this format needs.
+/// Throws InvalidRequest if the voltage source has no sample rate, which a file of this format needs.
 void require_samples(std::string_view format, const std::string& drive, const DriverModel& source);
 
 /// Returns the samples of a drive as a file of this format; `told` is the signal commanded to the source of the drive, from t =
-/// 0 on. Throws InvalidInput if the source does not use samples, and what generator_file() throws.
+/// 0 on. Throws InvalidInput if the source does not use samples, and the exceptions of generator_file().
 [[nodiscard]] std::string generator_text(const GeneratorFormat& format, const PreparedScene& prepared, const std::string& drive,
                                          const Signal& told, const Sampling& sampling);
 

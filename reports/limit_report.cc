@@ -46,7 +46,7 @@ TableRow least_row(const std::string& name, const LeastTime& least) {
           least.from_start ? "found from the waveform of --start" : ""};
 }
 
-// Returns a table of least times over a varied quantity, which `name` formats.
+// Returns a table of the least closing times of any waveform over a varied quantity, whose values `name` formats.
 template <class Name>
 ReportTable list_table(const char* title, const std::vector<LeastTime>& all, Name name) {
   ReportTable table{.head = {title, "least time", {"", "words"}}, .rows = {}};
@@ -57,14 +57,14 @@ ReportTable list_table(const char* title, const std::vector<LeastTime>& all, Nam
   return table;
 }
 
-// Names the model for which a least time is a bound: a beam with more modes may close earlier. Empty for a rigid plate, which
-// has one mode.
+// Names the model for which the least closing time is a bound: a beam with more modes may close earlier. Empty for a rigid
+// plate, which has one mode.
 std::string model_of(const LimitRecord& limit) {
   if (read_drawn_scene(limit.origin.scene).structure == SideOfStructure::on_springs) return {};
   return fmt::format("{} mode{}", limit.modes, limit.modes == 1 ? "" : "s");
 }
 
-// Describes the motion of a landing after its first touch.
+// Describes the motion of the switch after its first contact under the waveform of least closing time.
 std::string words_after(const LimitRecord::Landing& landing) {
   if (landing.bounce_free) return "bounce-free, confirmed";
   const Metrics& own = landing.metrics;
@@ -103,7 +103,7 @@ ReportTable touches_table(const LimitRecord& limit) {
   return table;
 }
 
-// Adds the columns x and y of a curve to a table, without values that were not found.
+// Adds the columns x and y of a curve to a table; leaves out values that were not found.
 template <class X>
 void add_curve(internal::CurveTables& tables, const std::string& name, const std::vector<LeastTime>& all, X x) {
   for (const LeastTime& least : all) {
@@ -115,7 +115,7 @@ void add_curve(internal::CurveTables& tables, const std::string& name, const std
 
 internal::Chart curve(const std::string& table, const std::string& title, const std::string& x_label, const std::string& x_unit,
                       const internal::CurveTable& columns) {
-  constexpr double beside = 0.1;  // space beside a curve that has a single x, as a share of x
+  constexpr double beside = 0.1;  // space beside a curve that has points at a single x only, as a share of x
   const auto [low, high] = std::minmax_element(columns.at("x").begin(), columns.at("x").end());
   const double around = *low < *high ? 0 : beside * *low;
   internal::Chart chart{
@@ -127,7 +127,7 @@ internal::Chart curve(const std::string& table, const std::string& title, const 
   return chart;
 }
 
-// States the lowest impact velocity at which one slow waveform closes all devices.
+// States the lowest impact velocity at which one slow (quasi-static) waveform closes all varied devices.
 std::string quasi_static_prose(const LimitRecord& limit) {
   if (!limit.quasi_static || !std::isfinite(limit.quasi_static->speed)) return {};
   const auto& [name, touch_places, steady, speed] = *limit.quasi_static;

@@ -1,4 +1,5 @@
-// The results of `softland limit`: JSON with SI units in the names, a table for a terminal, and a picture.
+// The results of `softland limit`, the least closing time of any waveform: JSON with SI units in the names, a table for a
+// terminal, and a picture.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -26,36 +27,37 @@ struct LimitRecord {
   struct Landing {
     LeastTime path;
     bool at_rest = false;
-    double catch_delay = Metrics::unset, catch_time = Metrics::unset;  ///< times from first contact to the pull, and to the
-                                                                       ///< hold levels [s]
+    /// Times from first contact to the pull that keeps the switch closed, and to the hold levels [s].
+    double catch_delay = Metrics::unset, catch_time = Metrics::unset;
     bool bounce_free = false;
     Metrics metrics;
-    std::vector<Check> checks;  ///< confirmations with a tighter integrator and a beam with more modes
+    std::vector<Check> checks;  ///< confirmations of the closing by a tighter integrator and by a beam with more modes
     nlohmann::json scene;
   };
   Origin origin;
   std::string status;
   Actuator actuator = Actuator::electrostatic;
-  double impact_velocity = Metrics::unset;  ///< permitted impact velocity [m/s]
+  double impact_velocity = Metrics::unset;  ///< largest permitted impact velocity [m/s]
   int modes = 0;
-  bool has_start = false;  ///< true when the user gave a waveform to start with
+  bool has_start = false;  ///< true when the user gave a waveform from which the search for the least time starts
   Metrics step;
   LeastTime touch, rest;
   std::optional<QuasiStatic> quasi_static;
   ClosedState closed_state;
-  std::string hold_warning;           ///< warning about the hold levels; may be empty
-  std::vector<std::string> warnings;  ///< warnings of the scene, of its hold levels, and of few summits that carry the force
+  std::string hold_warning;  ///< warning that the hold levels do not keep the switch closed; may be empty
+  /// Warnings of the scene, of its hold levels, and of few summits (asperities) that carry the contact force.
+  std::vector<std::string> warnings;
   std::optional<Landing> landing;
   std::vector<LeastTime> over_velocity, over_peak;
-  std::optional<ClosingRecord> landed;  ///< run of the landing; only files have the run
+  std::optional<ClosingRecord> landed;  ///< run of the closing with the least time; in files only
 };
 [[nodiscard]] LimitRecord record_of(const Limit& limit, const std::string& command);
 
 [[nodiscard]] nlohmann::json json_of(const LimitRecord& record);
 [[nodiscard]] LimitRecord read_limit(const nlohmann::json& from);
 [[nodiscard]] std::string text_of(const LimitRecord& record);
-/// Draws gap and waveforms of the landing, and the least time against peak voltage and against permitted impact velocity, as
-/// far as they were computed.
+/// Draws gap and waveforms of the closing with the least time, and the least time against peak voltage and against permitted
+/// impact velocity, as far as they were computed.
 [[nodiscard]] std::string svg_of(const LimitRecord& record);
 
 }  // namespace softland

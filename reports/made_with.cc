@@ -73,7 +73,7 @@ std::string processor() {
       const std::size_t colon = line.find(": ");
       if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
     }
-  } catch (const InvalidInput&) {  // some machines have no such file
+  } catch (const InvalidInput&) {  // some machines have no /proc/cpuinfo, and then the processor's name stays unknown
   }
   return {};
 }

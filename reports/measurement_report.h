@@ -13,10 +13,11 @@ namespace softland {
 struct MeasurementsRecord {
   struct Figure {
     std::string name, unit;
-    double nominal = Metrics::unset;    ///< value of the figure on the nominal device [unit]
-    double variation = Metrics::unset;  ///< standard deviation over the mean, over the devices with this figure
-    double error = 0;                   ///< relative error of a measurement of the figure
-    std::size_t devices = 0;            ///< number of devices with this figure
+    double nominal = Metrics::unset;  ///< value of the figure on the nominal device [unit]
+    /// Standard deviation of the figure over the devices that have the figure, divided by its mean.
+    double variation = Metrics::unset;
+    double error = 0;         ///< relative error of a measurement of the figure
+    std::size_t devices = 0;  ///< number of devices with this figure
   };
   struct Row {
     Prediction found;
@@ -34,7 +35,7 @@ struct MeasurementsRecord {
 
 [[nodiscard]] nlohmann::json json_of(const MeasurementsRecord& record);
 [[nodiscard]] MeasurementsRecord read_measurements(const nlohmann::json& from);
-/// Returns a table of at most `most` rows, without pairs of figures that predict no better than one of the two alone.
+/// Returns a table of at most `most` rows, without pairs of figures that predict no better than one figure of the pair alone.
 [[nodiscard]] std::string text_of(const MeasurementsRecord& record, std::size_t most = 24);
 
 }  // namespace softland

@@ -23,7 +23,7 @@ using nlohmann::json;
 
 constexpr double travel = 130;  // distance from the electrode to the highest position of the beam [px]
 constexpr double right_end = 520, detail_left = 650,
-                 detail_wide = 150;  // ends of the moving part and of the picture beside it [px]
+                 detail_wide = 150;  // right end of the moving part; left end and width of the enlarged picture beside it [px]
 constexpr double figure_width = 820;
 constexpr double detail_top = 6, contact_wide = 12;
 
@@ -71,7 +71,7 @@ std::size_t place_of(const ShownMotion& m, double at) {
   return static_cast<std::size_t>(nearest - m.places.begin());
 }
 
-// Returns the height of the lower face of the beam at a place and instant [m].
+// Returns the height of the lower face of the beam at one of the recorded places and instants [m].
 double height(const ShownMotion& m, std::size_t row, std::size_t place) {
   double sum = m.rest[place];
   for (std::size_t i = 0; i < m.shapes.size(); ++i) sum -= m.amplitudes[i][row] * m.shapes[i][place];
@@ -83,7 +83,7 @@ std::size_t row_of(const ShownMotion& m, double time) {
   return next == m.time.end() ? m.time.size() - 1 : static_cast<std::size_t>(next - m.time.begin());
 }
 
-// Returns the largest round length up to `most` for a scale bar [m].
+// Returns the largest round length up to `most` for the scale bar of a picture [m].
 double round_length(double most) {
   const double power = std::pow(10, std::floor(std::log10(most)));
   return power * (most >= 5 * power ? 5 : most >= 2 * power ? 2 : 1);
@@ -142,10 +142,10 @@ class MotionView {
     return bottom() + 14 + (motion_.contacts.size() > 1 ? 14 * static_cast<double>(near) : 0);
   }
 
-  /// Draws the parts that do not move.
+  /// Draws the parts of the switch that do not move.
   [[nodiscard]] std::string surroundings() const {
     std::string out = drawn_supports(view_) + drawn_electrodes(scene_, view_);
-    double names = bottom() + 28;  // baseline below the names of electrodes
+    double names = bottom() + 28;  // baseline of the text line below the names of electrodes
     for (std::size_t k = 0; k < motion_.contacts.size(); ++k) {
       const ShownMotion::Contact& c = motion_.contacts[k];
       out += drawn_contact(k);
@@ -163,7 +163,7 @@ class MotionView {
     return out + drawn_words(centre, bottom() + 14, "middle", "at the contact, enlarged");
   }
 
-  /// Returns the moving part at an instant as the data of an SVG path.
+  /// Returns the outline of the moving part at an instant as the data of an SVG path.
   [[nodiscard]] std::string shape(const ShownMotion& m, std::size_t row) const {
     std::string lower, upper;
     for (std::size_t k = 0; k < m.places.size(); ++k) {
@@ -186,7 +186,7 @@ class MotionView {
                        detail_wide, style);
   }
 
-  /// Returns the constants that the script needs to draw the runs.
+  /// Returns the constants of the picture that the script needs to draw the runs.
   [[nodiscard]] json json_of() const {
     json all{{"bottom", view_.bottom}, {"perMetre", per_metre_}, {"thick", SideView::thick}, {"contacts", json::array()}};
     for (std::size_t k = 0; k < motion_.contacts.size(); ++k)
@@ -232,15 +232,15 @@ class MotionView {
 
   const std::vector<ShownRun>& runs_;
   const ShownMotion& motion_;
-  double far_ = 0;        // largest gap on the far side [m]
-  double per_metre_ = 0;  // scale [px/m]
+  double far_ = 0;        // largest gap of the electrodes and contacts above the beam [m]
+  double per_metre_ = 0;  // scale of lengths in the picture [px/m]
   SideView view_;
   DrawnScene scene_;
   std::optional<std::array<double, 2>> layer_;
   double detail_plane_ = 0, detail_per_metre_ = 0;
 };
 
-// Returns the main instants of a run and their names.
+// Returns the main instants of a run (such as first contact) and their names.
 std::vector<std::pair<double, std::string>> told_instants(const CurveRecord& curve) {
   std::vector<std::pair<double, std::string>> all{{curve.motion->time.front(), "at the start"}};
   const bool closes = curve.closed && !curve.closed->empty();
@@ -271,7 +271,7 @@ std::string strobe(const MotionView& view, const CurveRecord& curve) {
   return "<g class=\"strobe\">\n" + shapes + names + "</g>\n";
 }
 
-// Returns a run for the script. The contact is open before and after the recorded times.
+// Returns a run as JSON for the script of the page. The contact is open before and after the recorded times.
 json run_json(const ShownRun& run, const MotionView& view) {
   constexpr double fine = 1e-6;
   const ShownMotion& m = run.motion();

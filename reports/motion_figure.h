@@ -1,4 +1,4 @@
-// The moving part of a switch during a closing, as a figure that the script of a page animates.
+// The moving part of a switch during a closing, as a picture that the script of a page animates.
 #pragma once
 
 #include <string>

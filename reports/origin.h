@@ -13,20 +13,21 @@ namespace softland {
 
 /// The origin of the record of a study; `scene` is null if the study has no scene.
 struct Origin {
-  std::string kind;  ///< name of the verb, by which the verb `report` recognises the record
+  std::string kind;  ///< name of the verb that made the record, by which the verb `report` recognises the record
   std::string version, command;
   MadeWith made_with;
-  nlohmann::json scene = {};    ///< resolved scene, quantities as text
-  std::string scene_toml = {};  ///< resolved scene as the text of a scene file; empty if no page shows it
+  nlohmann::json scene = {};  ///< resolved scene (all defaults written out) as JSON, quantities as text
+  /// Resolved scene (all defaults written out) as the text of a scene file; empty if no page shows it.
+  std::string scene_toml = {};
 };
 [[nodiscard]] Origin origin_of(const char* kind, const std::string& command);
 [[nodiscard]] Origin origin_of(const char* kind, const PreparedScene& scene, const std::string& command);
-/// Makes the origin with the text of the scene in scene_toml.
+/// Makes the origin of a record, with the text of the scene in scene_toml.
 [[nodiscard]] Origin whole_origin_of(const char* kind, const PreparedScene& scene, const std::string& command);
-/// Returns the data for computing the result of a document again: origin, seed and tolerance.
+/// Returns the data for computing the result of a document again: origin of the record, seed and tolerance.
 [[nodiscard]] MadeAgain made_again(const Origin& origin, std::optional<std::uint64_t> seed = {},
                                    double tolerance = std::numeric_limits<double>::quiet_NaN());
-/// Returns the title of the scene; empty if the scene has none.
+/// Returns the title of the scene from which a record was made; empty if the scene has none.
 [[nodiscard]] std::string title_of(const Origin& origin);
 
 /// Returns the record with the members version, made_with and command.
@@ -34,7 +35,7 @@ struct Origin {
 /// Returns the record with the members version, made_with, command and the resolved scene.
 [[nodiscard]] nlohmann::json with_origin(nlohmann::json record, const PreparedScene& scene, const std::string& command);
 
-/// Describes the writer of a database file: this program on this machine, run with this command.
+/// Describes the writer of a database file: this program on this machine, run with the command line `command`.
 [[nodiscard]] StoredOrigin stored_origin(const std::string& command);
 
 }  // namespace softland

@@ -26,7 +26,7 @@ using nlohmann::json;
 
 namespace {
 
-// JSON keys of voltages by number of modes.
+// JSON keys of the static voltages by number of modes.
 constexpr std::array by_modes_rows{std::pair("static_V", &VoltagesByModes::static_pull_in),
                                    std::pair("release_V", &VoltagesByModes::release),
                                    std::pair("pulled_through_V", &VoltagesByModes::pulled_through)};
@@ -43,7 +43,7 @@ std::string csv_cell(double value) { return std::isfinite(value) ? fmt::format("
 
 std::string_view branch_name(const SweepPoint& p) { return p.is_up ? "up" : "down"; }
 
-// Returns the points of one branch, up or down, as columns in rising order of the voltage.
+// Returns the points of the rising or the falling half of a voltage sweep as columns in rising order of the voltage.
 internal::CurveTable branch_of(std::vector<SweepPoint> points, bool is_up) {
   std::erase_if(points, [&](const SweepPoint& p) { return p.is_up != is_up || p.state == SweepState::none; });
   std::stable_sort(points.begin(), points.end(), [](const SweepPoint& a, const SweepPoint& b) { return a.voltage < b.voltage; });
@@ -72,7 +72,7 @@ internal::Chart sweep_chart(const std::string& column, const std::string& title,
   return chart;
 }
 
-// Describes the kind of static pull-in; empty without pull-in.
+// Describes the kind of static pull-in (how the stable equilibrium ends); empty without pull-in.
 std::string kind_prose(const std::string& kind) {
   if (kind.empty()) return {};
   return kind == to_string(StaticKind::fold) ? " (fold of the static branch)" : " (the contact point reaches the contact first)";
@@ -162,7 +162,7 @@ void members(A& a, SweepPoint& point) {
 template <class A>
 void members(A& a, PullInsRecord& record) {
   a("electrodes", record.electrodes);
-  // In JSON, the members of a single electrode are repeated at the top level.
+  // In JSON, the pull-in members of a single electrode are repeated at the top level.
   if (!A::reads && record.electrodes.size() == 1) members(a, record.electrodes.begin()->second);
   std::map<std::string, PullInRecord> voltages;
   for (const auto& [name, one] : record.electrodes) voltages[name] = one.volts;
@@ -190,7 +190,8 @@ ElectrodeRecord record_of(const PreparedScene& p, std::size_t k, const Electrode
                                   .deflection = s.deflection,
                                   .neutral = p.model.neutral_voltage(k) != 0 ? p.model.neutral_voltage(k) : Metrics::unset,
                                   .dynamic_kind = dynamic_kind(p, k, s.voltage, d.voltage)}};
-  const bool was_found = d.status != Status::interrupted;  // false after an interruption: no more modes are computed
+  // False after an interruption, when no voltages of further numbers of modes were computed.
+  const bool was_found = d.status != Status::interrupted;
   if (const ModeLadder ladder(p); was_found && ladder.exists() && std::isfinite(s.voltage))
     found.volts.by_modes = voltages_by_modes(ladder, p.scene, k, closed.pulled_through);
   const std::vector<std::string> names = p.drive_names();

@@ -1,5 +1,5 @@
-// The results of `softland pull-in`: JSON with SI units in the names, text, and a sweep as CSV and picture. The verb `check`
-// also reports the voltages of an electrode and the stable path.
+// The results of `softland pull-in`: JSON with SI units in the names, text, and a voltage sweep as CSV and picture. The verb
+// `check` also reports the voltages of an electrode and the stable path.
 #pragma once
 
 #include <cstddef>
@@ -19,46 +19,53 @@ namespace softland {
 
 inline constexpr const char* no_open_state = "no pull-in voltage: the switch has no open state";
 
-/// The pull-in and release voltages of an electrode while the other drives have the levels of bias_of() [V].
+/// The pull-in and release voltages of an electrode while the other drives have their constant levels of bias_of() [V].
 struct PullInRecord {
   double static_pull_in = Metrics::unset, dynamic_pull_in = Metrics::unset, release = Metrics::unset,
          pulled_through = Metrics::unset;
-  std::string static_kind;                  ///< name by to_string(StaticKind); empty if there is no static pull-in
-  double deflection = Metrics::unset;       ///< deflection of the contact point at static pull-in [m]
-  double neutral = Metrics::unset;          ///< Switch::neutral_voltage() of a charged dielectric; unset without charge [V]
-  std::string dynamic_kind;                 ///< "overshoot", "overdamped", "unstable_rest"; empty if there is no voltage
-  std::optional<VoltagesByModes> by_modes;  ///< none if the structure has no more modes, or after an interruption
+  /// Name of the kind of static pull-in (how the stable equilibrium ends); empty if there is no static pull-in.
+  std::string static_kind;
+  double deflection = Metrics::unset;  ///< deflection of the contact point at static pull-in [m]
+  double neutral = Metrics::unset;     ///< voltage that cancels the charge of a dielectric [V]; unset without charge
+  /// Kind of dynamic pull-in: "overshoot", "overdamped", "unstable_rest"; empty if no voltage was found.
+  std::string dynamic_kind;
+  /// Static voltages by number of modes; none if the structure has no more modes, or after an interruption.
+  std::optional<VoltagesByModes> by_modes;
 };
 struct ElectrodeRecord {
   Status status = Status::not_run;
   PullInRecord volts;
-  std::map<std::string, double> bias;         ///< levels of the other drives that are not at 0 [V]
-  std::map<std::string, double> bias_factor;  ///< factor of the dispersion force, if it is not 1
+  std::map<std::string, double> bias;         ///< levels of the other drives that are not at 0, by drive [V]
+  std::map<std::string, double> bias_factor;  ///< factor of the dispersion force by name of its drive, if the factor is not 1
 };
 [[nodiscard]] ElectrodeRecord record_of(const PreparedScene& prepared, std::size_t k, const ElectrodePullIn& known);
 
-/// Returns the voltage as text, "22.469 V", or "none" if it is NaN.
+/// Returns a voltage as text, "22.469 V", or "none" if it is NaN.
 [[nodiscard]] std::string volts(double value);
-/// Returns the levels of other drives that are not at 0, such as "piezo -1.5 V"; empty if all are at 0.
+/// Returns the levels of the other drives that are not at 0, such as "piezo -1.5 V", while the voltage of the electrode varies;
+/// empty if all are at 0.
 [[nodiscard]] std::string bias_prose(const ElectrodeRecord& electrode);
 /// Describes the dynamic pull-in voltage. This voltage equals the static pull-in voltage if damping prevents an overshoot, or
-/// if no lower step moves the beam.
+/// if no lower voltage step moves the beam.
 [[nodiscard]] std::string dynamic_prose(const PullInRecord& found);
 
 /// Returns true if the charge of the dielectric keeps a closed switch closed at 0 V.
 [[nodiscard]] bool sticks_by_charge(const PullInRecord& found);
-/// Describes how the charge of the dielectric shifts the voltages of both polarities; empty without charge.
+/// Describes how the charge of the dielectric shifts the pull-in and release voltages of both polarities; empty without charge.
 [[nodiscard]] std::string charge_prose(const PullInRecord& found);
 
 /// The drive that moves the switch to its contact through stable equilibria, with all other drives at 0.
 struct StablePathRecord {
   std::string drive;
-  double reaches = Metrics::unset, limit = Metrics::unset;  ///< level at first touch of the nominal design; limit of source [V]
-  std::optional<double> share;                              ///< share of the devices of [spread] that reach the contact
+  /// Level at which the nominal design first touches its contact; limit of the drive's voltage source [V].
+  double reaches = Metrics::unset, limit = Metrics::unset;
+  std::optional<double> share;  ///< share of the varied devices of [spread] that reach the contact by this drive alone
 };
-/// Returns the stable path of the scene; none if no drive has one, or if there is no contact.
+/// Returns the drive that alone moves the switch to its contact through stable equilibria; none if no drive does, or if there
+/// is no contact.
 [[nodiscard]] std::optional<StablePathRecord> stable_path_of(const PreparedScene& prepared, const Progress& progress);
-/// Returns "the piezo alone reaches the contact at -0.9483 V through stable equilibria; 96.5 % of devices do within -1 V".
+/// Describes the stable path to the contact: "the piezo alone reaches the contact at -0.9483 V through stable equilibria; 96.5
+/// % of devices do within -1 V".
 [[nodiscard]] std::string words_of(const std::optional<StablePathRecord>& path);
 
 struct PullInsRecord {
@@ -70,16 +77,19 @@ struct PullInsRecord {
   std::vector<SweepPoint> sweep;      ///< points of the voltage sweep
   std::vector<std::string> left_out;  ///< names of results that are missing after an interruption
 };
-/// Name in left_out for a stable path that is missing after an interruption.
+/// Name in `left_out` of the stable path (through stable equilibria to the contact) when an interruption prevented its
+/// computation.
 inline constexpr const char* stable_path_left_out = "the stable path";
 
 [[nodiscard]] nlohmann::json json_of(const PullInsRecord& record);
 [[nodiscard]] PullInsRecord read_pull_ins(const nlohmann::json& from);
 [[nodiscard]] std::string text_of(const PullInsRecord& record);
-/// Returns "voltage_V,deflection_m,capacitance_F,branch,status" and one row per point, with all digits; branch is up or down,
-/// status as by to_string(SweepState). Deflection and capacitance of a beam that lies on the electrode are unknown, and empty.
+/// Returns the voltage sweep as CSV, "voltage_V,deflection_m,capacitance_F,branch,status" and one row per point, with all
+/// digits; branch is up or down, status as by to_string(SweepState). Deflection and capacitance of a beam that lies on the
+/// electrode are unknown, and empty.
 [[nodiscard]] std::string sweep_csv(const std::vector<SweepPoint>& points);
-/// Draws deflection and capacitance against the voltage, up and down. The pull-in voltage is marked if it is within the sweep.
+/// Draws deflection and capacitance against the voltage of a rising and falling sweep. The pull-in voltage is marked if it is
+/// within the sweep.
 [[nodiscard]] std::string sweep_svg(const PullInsRecord& record);
 
 }  // namespace softland

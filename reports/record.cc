@@ -13,7 +13,8 @@ namespace softland {
 void internal::require_same(const json& written, const json& read) {
   const json changes = json::diff(read, written);
   if (changes.empty()) return;
-  std::string key = changes[0]["path"].get<std::string>();  // JSON pointer of the first difference: "/touch/least_time_s"
+  // JSON pointer of the first difference between two records: "/touch/least_time_s".
+  std::string key = changes[0]["path"].get<std::string>();
   for (char& letter : key) {
     if (letter == '/') letter = '.';
   }

@@ -60,14 +60,14 @@ Chosen(T&, const Rows&) -> Chosen<Rows>;
 
 template <class Record>
 [[nodiscard]] json record_json(const Record& record);
-/// Throws InvalidInput with the first difference, unless the JSON that was `written` from a record equals the JSON that was
-/// `read`.
+/// Throws InvalidInput with the first difference, unless the JSON `written` from a record that was read equals the JSON that
+/// was `read`.
 void require_same(const json& written, const json& read);
 
 class JsonWriter {
  public:
   static constexpr bool reads = false;
-  /// Returns true if the writer writes a member that exists only if `where` holds.
+  /// Returns whether the writer writes members of a record that exist only if `where` holds.
   [[nodiscard]] static bool has(bool where) { return where; }
 
   template <class T>
@@ -78,14 +78,14 @@ class JsonWriter {
   void operator()(std::string_view key, const std::optional<T>& value) {
     if (value) (*this)(key, *value);
   }
-  /// Writes two numbers as a list.
+  /// Writes two numbers as a list of JSON.
   void pair(std::string_view key, double low, double high) { json_[std::string(key)] = {json_number(low), json_number(high)}; }
-  /// Writes a value by a separate conversion to JSON.
+  /// Writes a value that a separate function converts to JSON.
   template <class T, class Write, class Read>
   void custom(std::string_view key, const T& value, const Write& write, const Read&) {
     json_[std::string(key)] = write(value);
   }
-  /// Writes a value that is computed from other members; a reader skips it.
+  /// Writes a value that is computed from other members of the record; a reader skips it.
   template <class T>
   void derived(std::string_view key, const T& value) {
     (*this)(key, value);
@@ -97,7 +97,7 @@ class JsonWriter {
     inside(own);
     json_[std::string(key)].update(own.json_);
   }
-  /// Writes the figures for which `asked` returns true.
+  /// Writes the figures of merit for which `asked` returns true.
   template <class Asked>
   void figures(const FigureValues& values, const Asked& asked) {
     for (const Figure& figure : all_figures) {
@@ -200,7 +200,7 @@ class JsonReader {
       take(figure, at(figure.key), values[figure]);
     }
   }
-  /// Returns a value of a type with members(), from the JSON members that are present.
+  /// Reads a value of a type with members(), from the JSON members that are present.
   template <class T>
   [[nodiscard]] static T read(const json& from) {
     T value = blank<T>();
@@ -209,7 +209,7 @@ class JsonReader {
   }
   /// Returns the JSON that this reader reads.
   [[nodiscard]] const json& whole() const { return *json_; }
-  /// Returns the value of a key; null if the key is missing.
+  /// Returns the JSON value of a key; null if the key is missing.
   [[nodiscard]] const json& at(std::string_view key) const {
     static const json nothing;
     if (!json_->is_object()) return nothing;
@@ -283,7 +283,7 @@ class JsonReader {
       if (one.is_string() && one != "") all.push_back(one.get<std::string>());
     }
   }
-  // A point is a list of two entries; other entries in a list of points are skipped.
+  // A point in JSON is a list of two entries; other entries in a list of points are skipped.
   static bool is_point(const json& from) { return from.is_array() && from.size() == 2; }
   static std::array<double, 2> point(const json& from) {
     std::array<double, 2> both{Metrics::unset, Metrics::unset};
@@ -325,11 +325,12 @@ class JsonReader {
 template <class Record>
 json record_json(const Record& record) {
   JsonWriter archive;
-  members(archive, const_cast<Record&>(record));  // a writer does not change the record
+  members(archive, const_cast<Record&>(record));  // writing does not change the record, so the const may be removed
   return std::move(archive).take();
 }
 
-/// Returns the record in this JSON. Throws InvalidInput if any part is missing, unknown, or not as json_of() would write it.
+/// Returns the record of a study from its JSON. Throws InvalidInput if any part is missing, unknown, or not as json_of() would
+/// write it.
 template <class Record>
 [[nodiscard]] Record whole_record(const json& from) {
   Record record = JsonReader::read<Record>(from);

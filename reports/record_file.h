@@ -7,10 +7,11 @@
 
 namespace softland {
 
-/// Returns JSON on one line, or with `indent` blanks per level. Bytes that are not UTF-8, as in some paths, become U+FFFD.
+/// Returns JSON as text on one line, or with `indent` blanks per level. Bytes that are not UTF-8, as in some paths, become
+/// U+FFFD.
 [[nodiscard]] std::string json_text(const nlohmann::json& data, int indent = -1);
 
-/// Returns the record of a study as the option --json writes it.
+/// Returns the record of a study as the option --json writes it, without curves over time.
 [[nodiscard]] nlohmann::json without_curves(nlohmann::json record);
 
 /// Parses the content of a file: a JSON object that states its kind; all other members may be missing or of another type.

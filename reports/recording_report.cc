@@ -27,7 +27,7 @@ constexpr int digits = 6;
 struct ChannelFigures {
   std::size_t samples = 0;
   double first = std::numeric_limits<double>::quiet_NaN(), last = first, minimum = first,
-         maximum = first;  ///< [unit of the channel]
+         maximum = first;  ///< first, last, smallest and largest sample [unit of the channel]
 };
 
 ChannelFigures figures_of(const Channel& channel) {
@@ -47,7 +47,7 @@ std::string shown(double value, const Channel& channel) {
                                   : quantity(value, "", digits) + (channel.unit.empty() ? "" : " " + channel.unit);
 }
 
-// Returns the rows without the interior of constant stretches, so that steps are drawn as steps.
+// Returns the indices of the rows to draw: all but the interior of constant stretches, so that steps are drawn as steps.
 std::vector<std::size_t> corners(const std::vector<double>& values) {
   std::vector<std::size_t> rows;
   for (std::size_t i = 0; i < values.size(); ++i) {

@@ -8,12 +8,12 @@
 
 namespace softland {
 
-/// Returns
+/// Returns the content of a recording as JSON
 /// {"format","time":{"first_s","last_s","interval_s","repeated"},"channels":[{"name","unit","samples","first","last","minimum",
 /// "maximum"}],"left_out":[],"notes":[]}; a time that the file lacks is null.
 [[nodiscard]] nlohmann::json recording_json(const Recording& recording);
 
-/// Returns a line about the file, and a table of its channels.
+/// Returns text: a line about the file of the instrument, and a table of its channels.
 [[nodiscard]] std::string recording_text(const Recording& recording);
 
 /// Returns a static SVG document with every channel against time. A long recording is drawn by the extremes of short intervals.

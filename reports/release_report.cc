@@ -28,9 +28,9 @@ using internal::spread_prose;
 using nlohmann::json;
 
 constexpr const char* plain_prose = "plain opening";
-constexpr double curve_tolerance = 1e-4;  // largest error of piecewise linear waveforms, as a share of the peak
+constexpr double curve_tolerance = 1e-4;  // largest error of the piecewise linear waveforms, as a share of the peak voltage
 
-// Returns the signals of all voltage drives, by name.
+// Returns the signals of all voltage drives in an opening, by name of the drive.
 std::map<std::string, Signal> voltages(const OpeningResult& r, const Opening& o) {
   std::map<std::string, Signal> all;
   const std::vector<std::string> names = r.given.drive_names();
@@ -45,14 +45,14 @@ double hold_of(const OpeningResult& r, const std::string& drive) {
   return r.holds[static_cast<std::size_t>(std::find(names.begin(), names.end(), drive) - names.begin())];
 }
 
-// Returns the waveform of a drive, beginning at the hold level.
+// Returns the waveform of a drive in an opening as points of time [s] and level [V], beginning at the hold level.
 std::vector<std::pair<double, double>> line_of(const OpeningResult& r, const std::string& drive, const Signal& signal,
                                                double end) {
   const double hold = hold_of(r, drive);
   const double size = std::max({std::abs(hold), signal.peak(), 1e-9});
   std::vector<std::pair<double, double>> points = polyline(signal, end, curve_tolerance * size, 0);
   if (points.size() > 1 && points[0].first == 0 && points[1].first == 0)
-    points.erase(points.begin());  // remove the start at 0 V: at t = 0 the drive has its hold level
+    points.erase(points.begin());  // remove the start at 0 V: in an opening the drive has its hold level at t = 0
   if (points.front().second != hold) points.insert(points.begin(), {0, hold});
   return points;
 }
@@ -96,7 +96,7 @@ std::string finding(const ReleaseRecord& r) {
   return words + ".";
 }
 
-// Describes how the figures were computed and confirmed.
+// Describes how the figures of the opening were computed and confirmed.
 std::string remarks(const ReleaseRecord& r) {
   std::string words = fmt::format(
       "At rest means that the contact point stays within {} of its open position ({} of the contact gap). The residual vibration "
@@ -121,7 +121,7 @@ double shown_until(const ReleaseRecord& r, double window) {
   return std::min(window, longer * end);
 }
 
-// Returns a table of 95th percentiles over the devices, for the plain and the found opening.
+// Returns a table of 95th percentiles of figures over the devices, for the plain and the found opening.
 ReportSection devices_section(const ReleaseRecord::Devices& found) {
   ReportTable table{.head = {"", plain_prose, "found"}, .rows = {}};
   table.rows = {{"come to rest in the open position", percent(found.plain.open), percent(found.best.open)},
@@ -307,11 +307,11 @@ std::string svg_of(const ReleaseRecord& r) {
   }
   drawn.charts.push_back(gap);
   for (const Drawn& run : runs) {
-    std::size_t place = 1;  // position of the drive's chart
+    std::size_t place = 1;  // position of the drive's chart among the charts of the page
     for (const auto& [drive, points] : run.run->waveforms) {
       const std::string table = fmt::format("{}/{}", run.name, drive);
       Points line = points;
-      if (!line.empty() && line.back()[0] < shown) {  // the drive remains at its last level
+      if (!line.empty() && line.back()[0] < shown) {  // the drive remains at its last level until the end of the chart
         const bool is_flat = line.size() > 1 && line[line.size() - 2][1] == line.back()[1];
         if (!is_flat) line.push_back(line.back());
         line.back()[0] = shown;

@@ -17,13 +17,14 @@ struct ReleaseRecord {
   struct Run {
     OpeningFigures figures;
     std::string message;
-    double drives_end = Metrics::unset;       ///< time from which all drives stay at 0 V [s]
-    std::map<std::string, Points> waveforms;  ///< waveforms by drive, beginning at the hold levels: time [s] and level [V]
+    double drives_end = Metrics::unset;  ///< time from which all drives stay at 0 V in the opening [s]
+    /// Waveforms of the opening by drive, beginning at the hold levels: time [s] and level [V].
+    std::map<std::string, Points> waveforms;
   };
   struct Gap {
-    std::vector<double> time, gap;  ///< time [s], and gap of the contact [m]
+    std::vector<double> time, gap;  ///< time [s], and gap of the contact [m], during an opening
   };
-  /// The openings of simulated devices, and the process variation in words.
+  /// The openings of simulated devices under process variation, and the process variation in words.
   struct Devices {
     std::uint64_t count = 0;
     bool spread_assumed = false;
@@ -33,10 +34,11 @@ struct ReleaseRecord {
   Origin origin;
   std::string status;
   Actuator actuator = Actuator::electrostatic;
-  std::map<std::string, double> hold_levels;  ///< hold levels by drive [V]
-  double contact_force = Metrics::unset, open_position = Metrics::unset,
-         band = Metrics::unset;        ///< force before opening [N]; [m]
-  double band_share = Metrics::unset;  ///< the band as a share of the contact gap
+  std::map<std::string, double> hold_levels;  ///< hold levels before the opening, by drive [V]
+  /// Contact force before opening [N]; open rest position, and largest distance from it at which the switch is at rest [m].
+  double contact_force = Metrics::unset, open_position = Metrics::unset, band = Metrics::unset;
+  /// Largest distance from the open rest position at which the switch is at rest, as a share of the contact gap.
+  double band_share = Metrics::unset;
   Run plain;
   std::optional<Run> best;
   std::map<std::string, double> parameters;
@@ -46,18 +48,18 @@ struct ReleaseRecord {
   long evaluations = 0;
   std::uint64_t seed = 1;
   std::string termination;
-  std::vector<std::string> warnings;  ///< warnings of the scene, and on a contact force that few asperities carry
-  std::map<std::string, Gap> gaps;    ///< gap over time by opening, "plain" or "best"; only in files
+  std::vector<std::string> warnings;  ///< warnings of the scene, and about a contact force that few asperities carry
+  std::map<std::string, Gap> gaps;    ///< gap over time in each opening, "plain" or "best"; only in files
 };
 [[nodiscard]] ReleaseRecord record_of(const OpeningResult& release, const std::string& command);
 
 [[nodiscard]] nlohmann::json json_of(const ReleaseRecord& record);
 [[nodiscard]] ReleaseRecord read_release(const nlohmann::json& from);
 [[nodiscard]] std::string text_of(const ReleaseRecord& record);
-/// Draws the gap in the plain opening and in the best opening, and the drives; the record must have the gaps.
+/// Draws the gap in the plain opening and in the best opening, and the drive waveforms; the record must have the gaps.
 [[nodiscard]] std::string svg_of(const ReleaseRecord& record);
-/// Returns the drives of the best opening, or else of the plain opening, beginning at the hold levels: a header
-/// `time_s,<drive>,...` [s, V], straight lines between the rows; rows of the same time are a jump.
+/// Returns the drive waveforms of the best opening, or else of the plain opening, as CSV that begins at the hold levels. A
+/// header `time_s,<drive>,...` is followed by rows [s, V] with straight lines between them; rows of the same time are a jump.
 [[nodiscard]] std::string release_csv(const OpeningResult& release);
 
 }  // namespace softland

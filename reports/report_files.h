@@ -18,7 +18,8 @@ struct ReportFile {
   std::function<std::string(const Report&)> text;
 };
 
-/// Lists report.html, gap.svg, result.json, and trajectory.csv if the record has a trajectory.
+/// Lists the files of the report on a closing: report.html, gap.svg, result.json, and trajectory.csv if the record has a
+/// trajectory.
 [[nodiscard]] std::vector<ReportFile<ClosingRecord>> files_of(const ClosingRecord& result);
 
 /// Names of the files on simulated devices, by `robustness` or at the end of a search over devices.
@@ -28,7 +29,8 @@ inline constexpr std::array robustness_files{"robustness.html", "robustness.json
 /// Names of further files of a search over devices.
 inline constexpr std::array for_devices_files{"drawing.toml", "drawing.csv", "calibrated.toml", "calibrated.csv", "fast.toml",
                                               "fast.csv",     "soft.toml",   "soft.csv",        "devices.svg"};
-/// Lists the files of the result, the waveforms found (as scenes and as commanded voltages), and the files on the devices.
+/// Lists the files of a search's result, of the waveforms found (as scenes and as commanded voltages), and of the report on the
+/// devices.
 [[nodiscard]] std::vector<ReportFile<SearchReport>> files_of(const SearchReport& report);
 
 }  // namespace softland

@@ -60,7 +60,7 @@ ResultFolder::ResultFolder(const fs::path& folder, const std::string& called, co
 
 void ResultFolder::RemoveEmpty::operator()(const fs::path* folder) const {
   std::error_code ignored;
-  fs::remove(*folder, ignored);  // has no effect on a folder with files
+  fs::remove(*folder, ignored);  // remove() has no effect on a folder with files
   delete folder;
 }
 
@@ -87,11 +87,12 @@ void ResultFolder::remove_abandoned() const {
   for (int k = 1; k <= most_stages; ++k) {
     const fs::path stage = staged(folder_, k);
     if (!fs::is_directory(stage, error)) continue;
-    // Adopt only files of this verb's kind of run: a simulation must not discard the unfinished search in its folder.
+    // Adopt unfinished results only of this verb's kind of run: a simulation must not discard the unfinished search in its
+    // folder.
     bool ours = true;
     for (const auto& entry : fs::directory_iterator(stage, error)) {
       std::string name = name_to_be(entry.path().filename());
-      for (const std::string_view end : companion_endings) {  // files beside the database file of a killed run
+      for (const std::string_view end : companion_endings) {  // files that SQLite left beside the database file of a killed run
         if (name.ends_with(end)) name.resize(name.size() - end.size());
       }
       ours = ours && is_of(files_, name) && !was_read(entry.path());

@@ -16,16 +16,17 @@ class ResultFolder {
  public:
   /// Creates and locks the folder for a run with the command line `command`, which will write `files` to the folder. The run
   /// continues the files `kept` of an earlier run, which stay in place. Messages begin with `called`, such as "--out run1".
-  /// Throws InvalidInput, before any change, if the run cannot write there, or if another of `files` is an input of this run.
+  /// Throws InvalidInput, before any change, if the run cannot write there, or if one of `files` that is not continued is an
+  /// input of this run.
   ResultFolder(const std::filesystem::path& folder, const std::string& called, const std::string& command,
                const std::vector<std::string>& files, const std::vector<std::string>& kept = {});
 
-  /// Writes a file into the unfinished results.
+  /// Writes a file into the subfolder of unfinished results.
   void write(const std::string& name, std::string_view content);
   /// Returns the path at which another writer may write a file of the unfinished results; the writer must close the file before
   /// publish().
   [[nodiscard]] std::filesystem::path place(const std::string& name);
-  /// Continues the unfinished results of a killed run, in the folder `stage`.
+  /// Continues the unfinished results of a killed run, which are in the folder `stage`.
   void adopt(const std::filesystem::path& stage);
   /// Returns the paths that a file of this name may have in `folder`, among finished and unfinished results, the newest first.
   [[nodiscard]] static std::vector<std::filesystem::path> places(const std::filesystem::path& folder, const std::string& name);
@@ -48,7 +49,8 @@ class ResultFolder {
     void operator()(const std::filesystem::path* folder) const;
   };
 
-  std::unique_ptr<const std::filesystem::path, RemoveEmpty> made_;  // declared before the lock, and so destroyed after it
+  // Removes the folder; declared before the lock, and so destroyed after the lock.
+  std::unique_ptr<const std::filesystem::path, RemoveEmpty> made_;
   std::filesystem::path folder_;
   std::vector<std::string> files_, written_, kept_;
   std::unique_ptr<const LockFile> lock_;

@@ -56,7 +56,7 @@ std::string label_of(const Figure& f) {
   return fmt::format("{}{}{}", f.name, has_index ? ", " : "", has_index ? f.symbol : "");
 }
 
-// Returns the role of set of waveforms number i in charts: the last set is `best`, the plain step `baseline`.
+// Returns the role in charts of the set of drive waveforms number i: the last set is `best`, the plain step `baseline`.
 internal::Role role_of(std::size_t i, std::size_t count) {
   if (i + 1 == count && i > 0) return internal::Role::best;
   if (i == 0) return internal::Role::baseline;
@@ -95,7 +95,7 @@ internal::Chart distribution_chart(const RobustnessReport& report, std::string_v
       table["x"].push_back(values[k]);
       table["y"].push_back(100 * static_cast<double>(k + 1) / all);
     }
-    // Choose the range of x so that it covers 99 % of the devices under every set of waveforms.
+    // Choose the range of x of a figure so that it covers 99 % of the devices under every set of drive waveforms.
     most = std::max(most, values[std::min(values.size() - 1, values.size() * 99 / 100)]);
     chart.series.push_back(
         {.table = name, .column = "y", .label = shown_drive(drives[i].name), .role = role_of(i, drives.size())});
@@ -202,13 +202,14 @@ internal::Picture picture_of(const RobustnessReport& report) {
   return drawn;
 }
 
-// Returns the end of a name, which is more telling than its beginning: the last folder of a path, for example.
+// Returns the end of a name, which tells more than its beginning: for example the last folder of a path.
 std::string end_of(const std::string& name, std::size_t columns) {
   if (internal::display_width(name) <= columns) return name;
   std::string end = name;
   while (internal::display_width(end) >= columns) {
     std::size_t first = 1;
-    while (first < end.size() && (static_cast<unsigned char>(end[first]) & 0xC0U) == 0x80U) ++first;  // bytes of one letter
+    // Skip the further bytes of a letter of UTF-8.
+    while (first < end.size() && (static_cast<unsigned char>(end[first]) & 0xC0U) == 0x80U) ++first;
     end.erase(0, first);
   }
   return "…" + end;
@@ -250,7 +251,8 @@ ReportSection statistics_section(const RobustnessRecord& found) {
                     Paragraph{.text = internal::window_prose(found.windows), .is_note = true}}};
 }
 
-// Shows the value of per-device calibration: the last set of waveforms, with more and more quantities measured on every device.
+// Returns the section on the value of per-device calibration: results of the last set of waveforms, with more and more
+// quantities measured on every device.
 ReportSection knowledge_section(const RobustnessRecord& found) {
   ReportSection section{.id = "knowledge", .heading = "Value of per-device calibration", .parts = {}};
   if (found.by_knowledge.empty()) return section;
@@ -268,7 +270,7 @@ ReportSection knowledge_section(const RobustnessRecord& found) {
   return section;
 }
 
-// Returns a Sobol' index with its confidence interval: "62 % (55 to 69)".
+// Returns a Sobol' index with its confidence interval as text: "62 % (55 to 69)".
 std::string index_text(const SobolIndex& index) {
   if (!std::isfinite(index.value)) return "—";
   const auto share = [](double value) { return 100 * internal::share_of(value) + 0.0; };
@@ -392,7 +394,7 @@ Document robustness_document(const RobustnessReport& report) {
   if (report.found.devices == 0) return document;
   document.draw = [&report] { return picture_of(report); };
   document.sections.front().parts.emplace_back(internal::all_charts());
-  constexpr std::ptrdiff_t behind_figures = 3;  // number of sections before the scatter plots
+  constexpr std::ptrdiff_t behind_figures = 3;  // number of sections of the page before the scatter plots
   document.sections.insert(document.sections.begin() + behind_figures, internal::device_scatter(report));
   return document;
 }

@@ -19,7 +19,7 @@ std::string spread_prose(const DeviceSpread& spread) {
   for (const SpreadVariable& v : spread.variables) {
     std::string keys;
     for (const VariedKey& key : v.keys) keys += (keys.empty() ? "" : " and ") + key.name();
-    // A uniform distribution is usually stated by its half width.
+    // Process variation with a uniform distribution is usually stated by its half width.
     const bool is_uniform = v.distribution.kind() == DistributionKind::uniform;
     const double size = v.distribution.standard_deviation() * (is_uniform ? std::sqrt(3.0) : 1);
     words += fmt::format("{}{} {}{} ({})", words.empty() ? "" : ", ", keys, is_uniform ? "within " : "",

@@ -17,14 +17,14 @@ namespace softland::internal {
 /// the name in the record.
 [[nodiscard]] std::string shown_drive(const std::string& name);
 
-/// Returns "structure.thickness ± 2 % (normal), ...".
+/// Describes the process variation in words: "structure.thickness ± 2 % (normal), ...".
 [[nodiscard]] std::string spread_prose(const DeviceSpread& spread);
-/// Returns a sentence about the errors of the voltage sources; empty for exact sources.
+/// Returns a sentence about the errors of the voltage sources that vary between devices; empty for exact sources.
 [[nodiscard]] std::string_view error_prose(const DeviceSpread& spread);
 /// Returns the number of devices that are outside the limits of the model, and the reason for the first of them; empty if all
 /// devices are inside.
 [[nodiscard]] std::string outside_prose(const Robustness& found);
-/// Returns "Vdp ± 1 %, frequency ± 0.5 %".
+/// Describes the measurements of a per-device calibration with their errors: "Vdp ± 1 %, frequency ± 0.5 %".
 [[nodiscard]] std::string calibration_prose(const Calibration& calibration);
 [[nodiscard]] bool is_erring(const Calibration& calibration);
 
@@ -38,15 +38,15 @@ namespace softland::internal {
 [[nodiscard]] bool is_had(const RobustnessRecord& found, const Figure& figure);
 /// Returns true if some waveform pulls the beam of a device onto the electrode.
 [[nodiscard]] bool some_collapse(const RobustnessRecord& found);
-/// A sentence on how statistics count a device without a figure.
+/// A sentence of reports on how statistics count a device that lacks a figure.
 inline constexpr std::string_view worst_prose =
     "A device without a figure, because it does not close or has not settled, counts as the worst: ∞.";
 [[nodiscard]] const EstimatedQuantile& quantile_95(const RobustnessRecord::Drive& drive, std::string_view key);
 
 /// Returns a Sobol' index clamped to [0, 1], which its estimate may leave by chance.
 [[nodiscard]] inline double share_of(double index) { return std::clamp(index, 0.0, 1.0); }
-/// Returns the reason why a figure has no Sobol' indices. The indices use other devices than the sample; a device for the
-/// indices may stay open although all devices of the sample close.
+/// Returns the reason why a figure has no Sobol' indices. The indices need simulations of other devices than the sample, in
+/// `rows` rows; some of these devices may stay open although all devices of the sample close.
 [[nodiscard]] std::string why_no_indices(std::size_t rows, std::size_t failed_rows);
 
 }  // namespace softland::internal

@@ -133,7 +133,7 @@ std::string about_prose(const RobustnessReport& report) {
       internal::error_prose(spread), internal::outside_prose(found));
 }
 
-// Writes or reads the parts of a record by figure, in the order of `keys`.
+// Writes or reads the parts of a record that belong to one figure each, in the order of `keys`.
 template <class A, class Part, class Keys>
 void by_figure(A& a, std::vector<Part>& parts, const Keys& keys) {
   if constexpr (A::reads) {
@@ -437,7 +437,7 @@ std::string robustness_csv(const RobustnessReport& report) {
                interrupted] = report;
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   std::string text = "device";
-  // A name may have commas and quotes.
+  // The name of a set of waveforms may have commas and quotes, which a CSV cell must escape.
   const auto cell = [](const std::string& name) {
     std::string quoted = "\"";
     for (const char c : name) quoted += c == '"' ? "\"\"" : std::string(1, c);

@@ -26,36 +26,36 @@ struct RobustnessReport {
   const PreparedScene& nominal;
   const Robustness& found;
   RobustnessOptions options;
-  std::string command;          ///< command line
+  std::string command;          ///< command line that made the report
   bool spread_assumed = false;  ///< true when the scene gives no process variation, and the usual one is assumed
   Sensitivity sensitivity = {};
   Derivatives derivatives = {};
   std::vector<DeviceCourse> courses = {};
   std::optional<BoxAndChaos> box_and_chaos = {};  ///< worst cases and polynomial chaos, for the last set of waveforms
-  HoldWindows windows = {};                       ///< hold voltages that keep devices closed, by electrode
-  std::string unheld = {};                        ///< hold_warning() for the last set of waveforms
-  bool interrupted = found.interrupted;           ///< true when the study or add_details() was interrupted
+  HoldWindows windows = {};                       ///< hold voltages between which the devices stay closed, by electrode
+  std::string unheld = {};  ///< warning that the last set of waveforms does not keep the nominal switch closed; may be empty
+  bool interrupted = found.interrupted;  ///< true when the study or add_details() was interrupted
 };
 
-/// Adds sensitivity, derivatives, hold voltages and courses for the last set of waveforms; with `other_ways_too` also worst
-/// cases and polynomial chaos, which take further searches. Adds nothing after an interruption.
+/// Adds sensitivity, derivatives, hold voltages and curves over time for the last set of waveforms; with `other_ways_too` also
+/// worst cases and polynomial chaos, which take further searches. Adds nothing after an interruption.
 void add_details(RobustnessReport& report, bool other_ways_too, const Progress& progress);
 
-/// The record from which JSON, text and tables are made.
+/// The record of a robustness study, from which JSON, text and tables are made.
 struct RobustnessRecord {
   /// A quantity that varies from device to device.
   struct Varied {
     std::string name;
     std::vector<std::string> keys;
-    std::string distribution, unit;  ///< distribution; unit of the quantity's first key
+    std::string distribution, unit;  ///< distribution of the quantity in words; unit of the quantity's first key
     bool is_factor = true;
     double mean = Metrics::unset, deviation = Metrics::unset;
   };
   struct Device {
     std::size_t number = 0;
-    std::map<std::string, double> values;  ///< values of the varying quantities [SI unit, or factor]
+    std::map<std::string, double> values;  ///< values of the varied quantities of a device, by name [SI unit, or factor]
     std::string status, failure;
-    std::map<std::string, double> figures;  ///< figures by key of device_figures
+    std::map<std::string, double> figures;  ///< figures of the closing of a device, by key of device_figures
   };
   struct Drive {
     std::string name;
@@ -65,7 +65,7 @@ struct RobustnessRecord {
     std::map<std::string, Points> waveforms;
     Yield closing, collapsed, bounce_free;
     PerFigure<FigureStatistics> figures;
-    std::map<std::string, std::size_t> failures;  ///< number of devices by the reason why they do not close
+    std::map<std::string, std::size_t> failures;  ///< number of devices that do not close, by the reason
     std::vector<Device> worst;
   };
   struct Sensitive {
@@ -74,7 +74,8 @@ struct RobustnessRecord {
     };
     std::string_view key;
     std::size_t rows = 0, failed_rows = 0;
-    std::map<std::string, Indices> variables;  ///< Sobol' indices by variable; none where too many rows failed
+    /// Sobol' indices of a figure by varied quantity; none where too many of their simulations failed.
+    std::map<std::string, Indices> variables;
   };
   struct Derived {
     struct Variable {
@@ -83,15 +84,16 @@ struct RobustnessRecord {
     };
     struct Slope {
       double derivative = Metrics::unset;
-      double relative = Metrics::unset;  ///< relative change of the figure over that of the quantity; NaN if one of these
-                                         ///< values is 0
-      double step = Metrics::unset;      ///< change of the figure for one standard deviation of the quantity
+      /// Relative change of the figure divided by that of the varied quantity; NaN if one of these values is 0.
+      double relative = Metrics::unset;
+      double step = Metrics::unset;  ///< change of the figure for one standard deviation of the varied quantity
     };
     struct Of {
       std::string_view key;
       double nominal = Metrics::unset, deviation = Metrics::unset, error = Metrics::unset;
       std::map<std::string, Slope> by;
-      bool agrees = false;  ///< true if the sample varies as much as the derivatives predict, or if the variation is unknown
+      /// True if the figure varies in the sample as much as the derivatives predict, or if its variation is unknown.
+      bool agrees = false;
       std::string why_none;
     };
     std::string drive, why_none;
@@ -123,7 +125,7 @@ struct RobustnessRecord {
   std::size_t devices = 0;
   std::uint64_t seed = 1;
   PointSet points = PointSet::sobol;
-  double duration = Metrics::unset, tolerance = Metrics::unset;  ///< window [s]; tolerance of the integrator
+  double duration = Metrics::unset, tolerance = Metrics::unset;  ///< simulated time [s]; relative tolerance of the integrator
   std::vector<std::string> about;                                ///< paragraphs of the report that describe the devices
   std::vector<Varied> spread;
   HoldWindows windows;
@@ -151,8 +153,8 @@ struct RobustnessRecord {
 
 namespace internal {
 
-/// Returns the lower and upper hold voltage by electrode [V]. The pair is null if no voltage keeps that many devices closed; a
-/// voltage that does not exist is null.
+/// Returns, by electrode, the lower and upper hold voltage between which 99 % of the devices stay closed [V]. JSON is null if
+/// no voltage does this; an upper voltage that does not exist is null.
 [[nodiscard]] nlohmann::json windows_json(const HoldWindows& windows);
 
 }  // namespace internal

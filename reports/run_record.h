@@ -17,18 +17,19 @@
 
 namespace softland {
 
-/// A time span in which a contact is closed.
+/// A time span in which a contact is closed, in the record of a run.
 struct ClosedStretch {
-  double begin = 0;                                       ///< time at which the contact closes [s]
-  double end = std::numeric_limits<double>::quiet_NaN();  ///< time at which it opens [s]; NaN: closed at the end of the window
-  std::uint64_t touches = 1;  ///< number of touches; openings between several touches are not recorded
+  double begin = 0;  ///< time at which the contact closes [s]
+  /// Time at which the contact opens [s]; NaN: still closed at the end of the simulated time.
+  double end = std::numeric_limits<double>::quiet_NaN();
+  std::uint64_t touches = 1;  ///< number of touches in the span; openings between several touches are not recorded
 };
 
 /// The motion of a run at the contact point. A column whose length differs from that of `time` is damaged or missing.
 struct CurveRecord {
-  std::vector<double> time;      ///< [s]
-  std::vector<double> gap;       ///< distance to the contact plane [m]
-  std::vector<double> velocity;  ///< towards the contact [m/s]
+  std::vector<double> time;      ///< times since the start of the run [s]
+  std::vector<double> gap;       ///< distance of the contact point to the contact plane [m]
+  std::vector<double> velocity;  ///< velocity of the contact point towards the contact [m/s]
   std::vector<double> force;     ///< contact force on the beam [N]
   /// Resistance of the connection, NaN while the connection is open [Ohm]; empty if the contacts have no resistivity.
   std::vector<double> resistance = {};
@@ -39,13 +40,14 @@ struct CurveRecord {
   std::optional<ShownMotion> motion = {};  ///< motion of the whole structure; none if the run stopped early
 };
 
-/// A run with the best waveform of a search, with the plain step, or of a single simulation.
+/// The run under the best waveform of a search, the run under the plain step, or the run of a single simulation.
 struct RunRecord {
   std::string status;
-  std::optional<FigureValues> figures;  ///< figures of merit; none if there was no such run
+  std::optional<FigureValues> figures;  ///< figures of merit of the run; none if there was no such run
   FigureValues errors;
   CurveRecord curve;
-  std::map<std::string, Points> waveforms;  ///< time [s] and level [V] by drive; for the dispersion force, its factor
+  /// Waveforms by drive: time [s] and level [V]; for the dispersion force, its factor.
+  std::map<std::string, Points> waveforms;
   double cost = Metrics::unset;
   double collapse_time = Metrics::unset;  ///< time at which the beam touched the electrode [s]
 };

@@ -33,7 +33,7 @@ namespace {
 using internal::plain_number;
 using NoteSink = std::function<void(const std::string&)>;
 
-constexpr double usual_error = 0.01;  // default of the relative error of a measurement
+constexpr double usual_error = 0.01;  // relative error of a measurement on a device for which the scene gives no error
 
 // Formats for other programs than waveform generators.
 constexpr std::array<std::string_view, 6> other_formats{"csv", "spice-pwl", "codes", "spice-model", "spice-bench", "verilog-a"};
@@ -60,7 +60,7 @@ static_assert(is_complete<sent_names>());
 struct Measured {
   std::string_view name;
   Dimension due;
-  std::string said = {};  // text of the quantity as the user gave it
+  std::string said = {};  // text of the measured quantity as the user gave it
   std::optional<double> value = {};
 
   void read(const std::string& option, const std::string& text) {
@@ -83,8 +83,10 @@ struct Measured {
 struct Measurements {
   Measured pull_in{.name = measured_pull_in, .due = dimension::voltage};
   Measured frequency{.name = measured_frequency, .due = dimension::frequency};
-  Measured piezo{.name = measured_piezo, .due = dimension::inverse_voltage};  // deflection per volt over contact gap
-  Measured time{.name = measured_time, .due = dimension::time};               // closing time under a step to closing_step Vdp
+  // Measured deflection of the contact per volt of the piezo, divided by the contact gap.
+  Measured piezo{.name = measured_piezo, .due = dimension::inverse_voltage};
+  // Measured closing time under a voltage step to closing_step times Vdp.
+  Measured time{.name = measured_time, .due = dimension::time};
 
   explicit Measurements(const ExportRequest& request) {
     if (request.device_pull_in) pull_in.read(requested("device-vdp"), *request.device_pull_in);
@@ -115,7 +117,7 @@ struct Measurements {
   }
 };
 
-// Returns the relative error of a measurement: that of [calibration], or the default, with a remark.
+// Returns the relative error of a measurement on a device: that of [calibration], or the default, with a remark.
 double error_of(const Measured& measured, const std::optional<double>& given, const NoteSink& note) {
   if (given && *given > 0) return *given;
   note(fmt::format("{}: its error is taken to be {}, because [calibration] gives none for {}", measured.said,
@@ -124,7 +126,8 @@ double error_of(const Measured& measured, const std::optional<double>& given, co
 }
 
 // Warns about a device that is unlike nearly all devices of [spread], whose standard deviation is `deviation`. The argument
-// `ratio` is the measured unit over that of the nominal device; `own` is the measured value over the nominal value.
+// `ratio` is the voltage or time unit from the measurement divided by that of the nominal device; `own` is the measured value
+// divided by the nominal value.
 void warn_if_strange(const Measured& measured, double own, double ratio, double deviation, const std::optional<double>& error,
                      const NoteSink& note) {
   constexpr double strange = 4;
@@ -136,13 +139,13 @@ void warn_if_strange(const Measured& measured, double own, double ratio, double 
                   measured.said, plain_number(100 * std::abs(own - 1), 3), plain_number(off / sigma, 2)));
 }
 
-// Returns the scene; with the usual process variation if the scene gives none.
+// Returns the scene as it is, or with the usual process variation if the scene gives none.
 PreparedScene with_spread(const PreparedScene& p) {
   SceneFile file = p.scene.file;
   return assume_spread(file) ? prepare(file) : p;
 }
 
-// Returns the factors of voltages and times for the device with these measurements.
+// Returns the factors by which the voltages and times of a waveform are scaled for the device with these measurements.
 DeviceUnits units_of(const PreparedScene& p, const Measurements& measured, int jobs, const Progress& progress,
                      const NoteSink& note) {
   const PullInMeter meter(p, {.pull_in = measured.pull_in.value.has_value(),
@@ -175,7 +178,8 @@ DeviceUnits units_of(const PreparedScene& p, const Measurements& measured, int j
   return known.of({.volts = volts, .time = time, .piezo = piezo, .volts_by_time = told.volts_by_time});
 }
 
-// Returns the waveforms for the device with these measurements. Throws InvalidInput if a voltage source cannot produce them.
+// Returns the waveforms scaled for the device with these measurements. Throws InvalidInput if a voltage source cannot produce
+// them.
 std::vector<Waveform> waveforms_of(const PreparedScene& p, const Measurements& measured, int jobs, const Progress& progress,
                                    const NoteSink& note) {
   const std::vector<Waveform> own = in_units(p.waveforms(), p.scene.device, units_of(p, measured, jobs, progress, note));
@@ -190,7 +194,8 @@ std::vector<Waveform> waveforms_of(const PreparedScene& p, const Measurements& m
   return own;
 }
 
-// Returns the drives whose source has a number of bits, as integers; `note` receives the names of the other drives.
+// Returns the waveforms of the drives whose source has a number of bits, as integers; `note` receives the names of the other
+// drives.
 std::map<std::string, Coded> coded(const PreparedScene& p, const SentSignals& sent, const NoteSink& note) {
   std::map<std::string, Coded> all;
   const std::vector<std::string> names = p.drive_names();
@@ -220,10 +225,11 @@ double last_breakpoint(const std::map<std::string, Signal>& signals) {
   return last;
 }
 
-// The exported scene, with the samples that the request specifies.
+// The exported scene, with the sampling that the request specifies.
 struct Exported {
   PreparedScene sampled;
-  std::optional<PreparedScene> drawn;  // scene without the samples of the request; set if the request specifies samples
+  // Scene with the original waveforms, without sampling; set only if the request specifies samples.
+  std::optional<PreparedScene> drawn;
   std::vector<std::string> drives;
 };
 Exported exported(SceneFile file, const ExportRequest& request, bool need_pull_in, const Progress& progress) {
@@ -234,7 +240,7 @@ Exported exported(SceneFile file, const ExportRequest& request, bool need_pull_i
   return {prepare_and_choose(file, need_pull_in, progress), std::move(drawn), std::move(drives)};
 }
 
-// Writes the signals of these drives in a format; the file of a generator has a single drive.
+// Writes the drive signals as a file of the given format; the file of a generator has a single drive.
 std::string sent_text(const std::string& format, const PreparedScene& p, const std::vector<std::string>& drives,
                       const SentSignals& sent, double end, const Sampling& sampling, const NoteSink& note) {
   if (format == "csv") return csv(sent.signals, end, sent.sample_rates);
@@ -308,7 +314,8 @@ std::string exported_text(const SceneFile& file, const ExportRequest& request, c
             plain_number(amplifier, 6), name));
     }
   }
-  const double end = std::max(p.duration, last_breakpoint(sent.signals));  // the hold level is part of the waveform
+  // The hold level after the last change is part of the exported waveform.
+  const double end = std::max(p.duration, last_breakpoint(sent.signals));
   std::string text = sent_text(request.format, p, what.drives, sent, end, request.sampling, note);
   if (generator == nullptr) return text;
   const Drive& drive = p.drives.at(what.drives.front());

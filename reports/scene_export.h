@@ -16,26 +16,27 @@ namespace softland {
 
 struct ExportRequest {
   std::string format = "csv";
-  std::string signal = "told";  ///< signal: "told" (commanded voltages) or "output" (applied voltages)
-  std::string measured = {};    ///< measured quantities: "Vdp=54.2 V,frequency=10.2 kHz,piezo=1.6 %/V"
-  std::optional<std::string> device_pull_in, device_frequency;  ///< the first two of `measured`, each as a separate option
+  std::string signal = "told";  ///< signal to export: "told" (commanded voltages) or "output" (applied voltages)
+  std::string measured = {};    ///< measured quantities of a device: "Vdp=54.2 V,frequency=10.2 kHz,piezo=1.6 %/V"
+  /// Measured pull-in voltage and frequency of a device, each as a separate option.
+  std::optional<std::string> device_pull_in, device_frequency;
   Sampling sampling = {};
   int jobs = 1;
 };
 
 /// Returns the text of the exported file. `note` receives remarks, in lines, such as how the switch closes under the samples;
-/// remarks mark names of fields as requested() does. Throws InvalidRequest, Interrupted.
+/// remarks mark names of fields as requested() does. Throws InvalidRequest and Interrupted.
 [[nodiscard]] std::string exported_text(const SceneFile& scene, const ExportRequest& request, const Progress& progress = {},
                                         const std::function<void(const std::string&)>& note = {});
 
-/// A file that a generator loads.
+/// A file that a waveform generator loads.
 struct SentFile {
-  std::string ending;  ///< end of the file name: ".csv" for all drives, "-main.arb" for one drive
+  std::string ending;  ///< end of the exported file's name: ".csv" for all drives, "-main.arb" for one drive
   std::string text;
 };
 /// Returns the files with the signals of a shot in a format of `export`, in volts before the amplifiers of [driver], up to
-/// `end` [s]. Depending on the format, a file holds all drives, or one drive that is not always at 0 V. Throws as
-/// exported_text().
+/// `end` [s]. Depending on the format, a file holds all drives, or one drive that is not always at 0 V. Throws the exceptions
+/// of exported_text().
 [[nodiscard]] std::vector<SentFile> sent_files(const std::string& format, const PreparedScene& scene, const SentSignals& sent,
                                                double end);
 /// Returns all values of SentFile::ending that files for the drives of this scene may have.

@@ -23,12 +23,13 @@ class SearchLog {
 
   /// Records an evaluation for evaluations.csv.
   void evaluated(const Evaluation& evaluation);
-  /// Records a better scene. best.toml and evaluations.csv are then written completely, but at most once a second.
+  /// Records a scene with a better waveform. best.toml and evaluations.csv are then written completely, but at most once a
+  /// second.
   void improved(const SceneFile& best);
-  /// Writes all evaluations and scenes that are not yet on the disk.
+  /// Writes all evaluations and better scenes that are not yet on the disk.
   void flush();
 
-  /// Returns the evaluations by index; call it only after the last call of evaluated().
+  /// Returns the evaluations of the search by index; call it only after the last call of evaluated().
   [[nodiscard]] const std::map<long, Evaluation>& evaluations() const { return evaluations_; }
 
  private:
@@ -36,8 +37,8 @@ class SearchLog {
 
   ResultFolder& folder_;
   FamilyColumns columns_;
-  std::mutex mutex_;                        // guards the members below
-  std::map<long, Evaluation> evaluations_;  // evaluations by index: the order is the same for any number of threads
+  std::mutex mutex_;                        // guards evaluations and best scene, which several threads record
+  std::map<long, Evaluation> evaluations_;  // evaluations by index, so that their order is the same for any number of threads
   std::string best_;
   bool pending_ = false;
   std::chrono::steady_clock::time_point written_{};

@@ -17,52 +17,54 @@
 
 namespace softland {
 
-/// A simulation of the best waveform with other settings.
+/// A repeated simulation of the best waveform with other settings, which confirms its figures.
 struct ConfirmationRecord {
   std::string name, status;
   std::optional<FigureValues> figures;
-  /// Returns true if the simulation has another gas law: it then differs in physics, not in the numerical method.
+  /// Returns true if the repeated simulation has another gas law: it then differs in physics, not in the numerical method.
   [[nodiscard]] bool is_of_gas() const { return name.starts_with("gas "); }
 };
 
 struct SearchCourse {
   std::string value_name;  ///< name of the value that the search minimises
-  Points best_so_far;      ///< index of an evaluation, least value until then
-  Points evaluations;      ///< index of every evaluation, value; a value is NaN for an infeasible candidate
+  Points best_so_far;      ///< points (index of an evaluation, least minimised value up to this evaluation)
+  Points evaluations;      ///< points (index, minimised value) of every evaluation; the value is NaN for an infeasible waveform
 };
 
 /// The least closing time of any waveform for the same drives and limits, with at most the impact velocity of the best
 /// waveform.
 struct TouchLimit {
-  double least_time = Metrics::unset, impact_velocity = Metrics::unset;  ///< least time [s], permitted impact velocity [m/s]
+  /// Least closing time [s], permitted impact velocity [m/s].
+  double least_time = Metrics::unset, impact_velocity = Metrics::unset;
 };
 
 /// Searches that differ only in their seeds; the result is that of the best search.
 struct SeedsFindings {
-  std::uint64_t planned = 0;           ///< planned number of searches
-  std::vector<SearchOfSeed> searches;  ///< completed searches, ascending by seed
-  std::size_t best = 0;                ///< index of the best search
+  std::uint64_t planned = 0;           ///< planned number of searches, one per seed
+  std::vector<SearchOfSeed> searches;  ///< results of the completed searches, ascending by seed
+  std::size_t best = 0;                ///< index in `searches` of the best search
 };
 
 /// The record of a search. A member that is not available is NaN, empty or not set.
 struct SearchRecord {
   std::string target, actuator, waveform, optimizer, termination, termination_message;
-  std::vector<SearchedFamilyResult> families;  ///< empty unless several families were searched
+  std::vector<SearchedFamilyResult> families;  ///< results by waveform family; empty unless several families were searched
   std::optional<std::uint64_t> seed;
   std::optional<bool> goal_met, better_than_baseline, plain_step_wins;
-  double harder_than_step = Metrics::unset;  ///< voltage or slew rate over that of the plain step, see OptimizeResult
+  /// Factor by which the best waveform exceeds the plain step in voltage or slew rate, whichever is larger.
+  double harder_than_step = Metrics::unset;
   double evaluations = Metrics::unset;
-  RunRecord baseline;                                   ///< run of the plain step
-  std::map<std::string, double> parameters;             ///< parameters of the best waveform, by "drive.name"
-  std::map<std::string, std::array<double, 2>> bounds;  ///< lower and upper bound of each parameter
+  RunRecord baseline;                                   ///< run under the plain step, with which the search compares
+  std::map<std::string, double> parameters;             ///< parameters of the best waveform, by "drive.name" of the parameter
+  std::map<std::string, std::array<double, 2>> bounds;  ///< lower and upper bound between which each parameter was searched
   std::vector<ConfirmationRecord> checks;
-  double evaluations_of_modes = Metrics::unset;  ///< evaluations with more modes, see OptimizeResult
+  double evaluations_of_modes = Metrics::unset;  ///< number of further evaluations that simulated several numbers of modes
   SearchCourse course;
   std::optional<RobustFindings> robust;
   std::optional<DevicesFindings> devices;
   std::optional<SeedsFindings> seeds;
   std::optional<TouchLimit> limit;
-  std::vector<std::string> reproduce;  ///< command lines that reproduce the result
+  std::vector<std::string> reproduce;  ///< command lines that reproduce the result of the search
 };
 
 }  // namespace softland

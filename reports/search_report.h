@@ -13,19 +13,20 @@
 
 namespace softland {
 
-/// A search with its records. `result` and `devices` keep references to `found`: a SearchReport must not be moved.
+/// A search result with its records. `result` and `devices` keep references to `found`: a SearchReport must not be moved.
 struct SearchReport {
   explicit SearchReport(FoundSearch search) : found(std::move(search)) {}
   SearchReport(const SearchReport&) = delete;
   SearchReport& operator=(const SearchReport&) = delete;
 
   FoundSearch found;
-  std::optional<RobustnessReport> devices = {};  ///< report on simulated devices; none if no devices were simulated
+  /// Report on simulated devices under process variation; none if no devices were simulated.
+  std::optional<RobustnessReport> devices = {};
   ClosingRecord result = {};
 };
 
-/// Adds the report on devices. After a search that minimises one statistic of the devices, this takes further simulations,
-/// which `progress` watches; an interruption marks the search as interrupted.
+/// Adds the report on devices under process variation. After a search that minimises one statistic of the devices, this takes
+/// further simulations, which `progress` watches; an interruption marks the search as interrupted.
 void add_devices(SearchReport& report, const PlannedSearch& search, const std::string& command, const Progress& progress);
 
 /// Adds the record of the result. `folder` is the final folder of the files, for the command line that suggests how to use the

@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Returns the names of all files that any search may write: files of an earlier search must not remain beside the results.
+// Returns the names of all files that any search may write: files of an earlier search must not remain beside the results of a
+// new search.
 std::vector<std::string> files_of_searches() {
   std::vector<std::string> files{"best.toml",      "best.csv",        "report.html",    "gap.svg", "result.json",
                                  "trajectory.csv", "evaluations.csv", evaluations_file, seeds_file};
@@ -36,7 +37,7 @@ ResultFolder claimed(const SearchOutput& output, const StoredSearch& search, con
   if (stays) kept = {evaluations_file};
   if (stays && search.seeds > 1) kept.emplace_back(seeds_file);
   ResultFolder folder = output.claim(files_of_searches(), kept);
-  // Another run may have moved the database file before the current run locked the folder.
+  // Another run may have moved the database file of the search to continue before the current run locked the folder.
   require_request(!known || is_store(known->place / evaluations_file), [&] {
     return fmt::format("{}: {} was removed; try again", requested("resume"), (known->place / evaluations_file).string());
   });
@@ -63,7 +64,8 @@ void SearchSession::begin(const FamilyColumns& columns) {
   if (places_ == nullptr) places_ = &own_.emplace(output_, search_, known_, columns);
   search_.options.memory = &places_->evaluations();
   FamilyColumns of_log = columns;
-  of_log.families.resize(families_of(search_.options.family).size());  // additional families are not in evaluations.csv
+  // Waveform families that the search adds itself are not in evaluations.csv.
+  of_log.families.resize(families_of(search_.options.family).size());
   log_.emplace(places_->folder(), std::move(of_log));
 }
 

@@ -29,54 +29,56 @@ namespace softland {
 /// Name of the database file in the folder of a search with several seeds.
 inline constexpr const char* seeds_file = "seeds.sqlite";
 
-/// The output of a search.
+/// The place to which a search writes its results.
 struct SearchOutput {
   std::filesystem::path folder;
   std::string command;
-  /// Claims the folder for `files`, of which `kept` are files of an earlier run: see ResultFolder.
+  /// Locks the result folder for a search that will write `files` and continue the files `kept` of an earlier run: see
+  /// ResultFolder.
   std::function<ResultFolder(const std::vector<std::string>& files, const std::vector<std::string>& kept)> claim;
 };
 
 class SearchPlaces {
  public:
-  /// Claims the folder and opens the database file of evaluations for a search with these parameters.
+  /// Locks the result folder and opens the database file of evaluations for a search with these waveform parameters.
   SearchPlaces(const SearchOutput& output, const StoredSearch& search, const std::optional<KnownSearch>& known,
                const FamilyColumns& columns);
 
   [[nodiscard]] ResultFolder& folder() { return folder_; }
   [[nodiscard]] EvaluationStore& evaluations() { return evaluations_; }
-  /// Returns the path of another database file of the search.
+  /// Returns the path of the database file `name` of the search, other than that of the evaluations.
   [[nodiscard]] std::filesystem::path store(const std::string& name);
   /// Returns true if the database files are, or will be, in the folder `place`.
   [[nodiscard]] bool stores_go_to(const std::filesystem::path& place) const { return !kept_ || place == folder_.path(); }
 
  private:
-  std::optional<std::filesystem::path> kept_;  // set when the search continues the database files in the folder itself
+  // Folder of the database files; set when the search continues database files in the result folder itself.
+  std::optional<std::filesystem::path> kept_;
   ResultFolder folder_;
   EvaluationStore evaluations_;
 };
 
 class SearchSession {
  public:
-  /// Keeps references to `search`, `known`, `output` and `places`. `places` are the folders of a study of several seeds; null:
-  /// the session claims its own folder in begin().
+  /// Keeps references to `search`, `known` (an earlier search to continue), `output` and `places`. `places` are the folders of
+  /// a study of several seeds; null: the session claims its own folder in begin().
   SearchSession(StoredSearch& search, const std::optional<KnownSearch>& known, const SearchOutput& output,
                 SearchPlaces* places = nullptr);
 
-  /// Opens folder, database file and log, and gives the search the evaluations in the database file; call it when the
-  /// parameters are known. Throws as the opened objects do.
+  /// Opens result folder, database file and log, and gives the search the evaluations in the database file. Call it when the
+  /// parameters of the searched waveforms are known. Throws the exceptions of ResultFolder, EvaluationStore and SearchLog.
   void begin(const FamilyColumns& columns);
   /// Adds an evaluation to the log. Throws the error if the database file could not be written.
   void evaluated(const Evaluation& evaluation);
   void improved(const SceneFile& best) { log_->improved(best); }
   /// Closes the database file; call it when the search has ended.
   void close();
-  /// Returns the final folder of the files.
+  /// Returns the folder that the result files have at the end.
   [[nodiscard]] std::filesystem::path destination(const SearchReport& report) const;
-  /// Adds the costs of all evaluations, and the command lines that reproduce the result.
+  /// Adds the costs of all evaluations, and the command lines that reproduce the result, to the record of the search.
   void add_log(SearchRecord& search, const SearchReport& report) const;
-  /// Writes the files and moves them to their final folder. Returns the names of these files, and of the files written during
-  /// the search.
+  /// Writes the result files and moves them to their final folder. Returns the names of these files, and of the files written
+  /// during the search.
   std::vector<std::string> leave(const SearchReport& report);
 
  private:

@@ -58,7 +58,7 @@ json five_json(const FiveNumbers& n) {
           {"most", json_number(n[4])}};
 }
 
-// Returns the reason why a search failed; empty if the search succeeded.
+// Returns the reason why the search with one of the seeds failed; empty if the search succeeded.
 std::string failure(const SearchOfSeed& one) {
   if (!std::isfinite(one.cost)) return "no feasible waveform";
   if (!one.better_than_baseline && !one.goal_met) return "no better than the plain step";

@@ -30,9 +30,9 @@ struct SeedsRecord {
 
 namespace internal {
 
-/// Summarises the results of all searches in sentences.
+/// Summarises in sentences the results of the searches with all seeds.
 [[nodiscard]] std::string seeds_caption(const SeedsFindings& seeds);
-/// Returns a section with the caption and a table.
+/// Returns a section that compares the searches with different seeds: sentences and a table.
 [[nodiscard]] ReportSection seeds_section(const SeedsFindings& seeds);
 
 }  // namespace internal

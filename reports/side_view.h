@@ -16,13 +16,15 @@ namespace softland::internal {
 /// Returns begin and end of a span as shares of the length; 0 and 1 if no span is given.
 [[nodiscard]] std::array<double, 2> shares_of(const DrawnScene::Span& span, double length);
 
-/// Coordinates of the parts in a view of a switch from the side [px].
+/// Coordinates of the parts of a switch in a drawing from the side [px].
 struct SideView {
   static constexpr double left = 60, thick = 14, electrode = 10, layer = 7;
   bool plate, both_ends;
   double length, top, right = 440, gap = 60, bottom = top + thick, floor = bottom + gap;
-  double far = 0.75 * gap;  ///< distance from the upper face to the far side
-  double per_metre = 0;     ///< scale of heights [px/m]; 0: heights are not to scale, and the far side is at `far`
+  double far = 0.75 * gap;  ///< distance from the upper face of the beam to the parts above it [px]
+  /// Scale of heights in the drawing [px/m]; 0: heights are not to scale, and the parts above the beam are at the distance
+  /// `far`.
+  double per_metre = 0;
 
   [[nodiscard]] double x_at(double share) const { return left + share * (right - left); }
 };

@@ -13,7 +13,7 @@
 
 namespace softland {
 
-/// Lists status and figures of a run, except figures of the drives.
+/// Lists status and figures of a run as members of a record, except figures of the drives.
 template <class A>
 void members(A& a, Metrics& metrics) {
   FigureValues values(metrics);

@@ -1,4 +1,4 @@
-// The belief about a tuned device as JSON.
+// The belief about a tuned device (estimated parameters with standard deviations) as JSON.
 #include <utility>
 
 #include "base/require.h"

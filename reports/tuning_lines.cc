@@ -20,12 +20,12 @@ using nlohmann::json;
 
 std::string shown(const json& value) { return shortened(value.dump(-1, ' ', false, json::error_handler_t::replace)); }
 
-// Throws InvalidInput about a key, with its value, unless the rule holds.
+// Throws InvalidInput about a key of a JSON line, with its value, unless the rule holds.
 void require_value(bool holds, std::string_view key, const json& value, std::string_view rule) {
   require(holds, [&] { return fmt::format("{} = {}: {}", key, shown(value), rule); });
 }
 
-// Refuses unknown keys: a record with a misspelt key would otherwise mean a contact that stayed open.
+// Throws InvalidInput for an unknown key: a record with a misspelt key would otherwise mean a contact that stayed open.
 void require_known(const json& object, const std::string& path, std::initializer_list<std::string_view> known) {
   for (const auto& [key, value] : object.items()) {
     require(std::find(known.begin(), known.end(), key) != known.end(), [&key = key, &path, &known] {
@@ -110,7 +110,7 @@ std::vector<Waveform> CommandedShot::waveforms(const PreparedScene& nominal) con
 }
 
 CommandedShot commanded_shot(int number, double hold_time, const SentSignals& sent) {
-  constexpr double tolerance = 1e-4;  // error as a share of the peak
+  constexpr double tolerance = 1e-4;  // largest error of a waveform given as rows, as a share of its peak voltage
   CommandedShot shot{.number = number, .hold_time = hold_time, .drives = {}, .amplifiers = sent.amplifiers};
   for (const auto& [name, signal] : sent.signals) {
     Table& table = shot.drives[name];

@@ -28,12 +28,12 @@ namespace softland {
 
 /// A shot, the voltages for one closing, as it is sent to a device.
 struct CommandedShot {
-  int number = 0;                                 ///< number, counted from 1
+  int number = 0;                                 ///< number of the shot, counted from 1
   double hold_time = 0;                           ///< time for which the last levels are held and the contact recorded [s]
-  std::map<std::string, Table> drives;            ///< waveforms by drive, in volts at the switch
-  std::map<std::string, double> amplifiers = {};  ///< volts at the switch per volt of the source, for drives with an amplifier
+  std::map<std::string, Table> drives;            ///< waveforms of the shot by drive, in volts at the switch
+  std::map<std::string, double> amplifiers = {};  ///< volts at the switch per volt of the source, by drive with an amplifier
 
-  /// Returns the time of the last row of any drive [s].
+  /// Returns the time of the last row of any drive's waveform [s].
   [[nodiscard]] double last_row() const;
   /// Returns the time from t = 0 for which the contact is recorded [s].
   [[nodiscard]] double duration() const { return last_row() + hold_time; }
@@ -42,28 +42,32 @@ struct CommandedShot {
   [[nodiscard]] std::vector<Waveform> waveforms(const PreparedScene& nominal) const;
 };
 
-/// Returns the signals as rows of time and voltage: exact for straight pieces, within 1e-4 of the peak for curves.
+/// Returns the commanded voltages of a shot as rows of time and voltage: exact for straight pieces, within 1e-4 of the peak for
+/// curves.
 [[nodiscard]] CommandedShot commanded_shot(int number, double hold_time, const SentSignals& sent);
 
-/// The longest line that is read [byte].
+/// The longest line of text that is read from a device [byte].
 inline constexpr std::size_t longest_line = std::size_t{16} << 20;
 
-/// Reads one line as a JSON object. All functions below throw InvalidInput with the rule: "must be a JSON object: ...".
+/// Reads one line of text as a JSON object. This function and the others that read lines throw InvalidInput with the rule:
+/// "must be a JSON object: ...".
 [[nodiscard]] nlohmann::json read_line(std::string_view line);
-/// Returns true if this line says that no more shots follow.
+/// Returns true if this line of text says that no more shots follow.
 [[nodiscard]] bool is_end(const nlohmann::json& line);
-/// Returns the number of a shot, a whole number from 1 on.
+/// Returns the number of the shot in a line of text, a whole number from 1 on.
 [[nodiscard]] int shot_number(const nlohmann::json& line);
-/// Reads a shot. Messages begin with the invalid key: "drives.main.V: must be a list of numbers".
+/// Reads a shot (voltages for one closing) from its JSON. Messages begin with the invalid key: "drives.main.V: must be a list
+/// of numbers".
 [[nodiscard]] CommandedShot read_shot(const nlohmann::json& line);
-/// Reads the record of shot number `shot`, whose recording lasts `duration` [s].
+/// Reads the contact record of shot number `shot`, whose recording lasts `duration` [s].
 [[nodiscard]] ContactRecord read_record(const nlohmann::json& line, int shot,
                                         double duration = std::numeric_limits<double>::infinity());
 
 [[nodiscard]] nlohmann::json shot_json(const CommandedShot& shot);
 [[nodiscard]] nlohmann::json record_json(int shot, const ContactRecord& record);
 [[nodiscard]] nlohmann::json end_json();
-/// Returns candidate waveforms for the log of a tuning, with all bits: {"recipes":[{"x":[...],"volts":1,"time":1,"cost":0.8}]}.
+/// Returns candidate waveforms for the log of a tuning as JSON, whose numbers keep all bits:
+/// {"recipes":[{"x":[...],"volts":1,"time":1,"cost":0.8}]}.
 [[nodiscard]] nlohmann::json recipes_json(const std::vector<CandidateWaveform>& recipes);
 [[nodiscard]] std::vector<CandidateWaveform> read_recipes(const nlohmann::json& line);
 /// Returns the JSON as a line with line feed; bytes that are not UTF-8 become U+FFFD.

@@ -60,10 +60,11 @@ TuningLog::TuningLog(fs::path file, const json& origin, bool resume) : file_(std
 
 TuningLog::~TuningLog() { ::close(descriptor_); }
 
-// Reads all complete lines and returns their number of bytes. An incomplete last line, as after a power cut, is ignored.
+// Reads all complete lines of the log and returns their number of bytes. An incomplete last line, as after a power cut, is
+// ignored.
 std::size_t TuningLog::read(const json& origin) {
   const std::string content = read_file(file_);
-  const std::size_t size = content.rfind('\n') + 1;  // npos + 1 is 0
+  const std::size_t size = content.rfind('\n') + 1;  // without a line feed, rfind() returns npos, and npos + 1 is 0
   std::size_t number = 0;
   for (std::size_t begin = 0; begin < size; begin = content.find('\n', begin) + 1) {
     const std::string_view text = std::string_view(content).substr(begin, content.find('\n', begin) - begin);

@@ -10,7 +10,7 @@
 
 namespace softland {
 
-/// Key of the log file; its values distinguish tunings that cannot continue each other.
+/// Key of the first line of the log file of a tuning; its values distinguish tunings that cannot continue each other.
 inline constexpr const char* origin_key = "tuning";
 
 /// The log file closings.jsonl: a line on the tuned device, a line with the candidate waveforms from which the tuning begins,
@@ -18,29 +18,29 @@ inline constexpr const char* origin_key = "tuning";
 class TuningLog {
  public:
   struct Closing {
-    nlohmann::json shot;  ///< shot as it was sent to the device
+    nlohmann::json shot;  ///< voltages of the shot as they were sent to the device
     ContactRecord record;
-    std::size_t line = 0;  ///< line in the file, counted from 1
+    std::size_t line = 0;  ///< number of the closing's line in the log file, counted from 1
   };
 
-  /// Continues the file, or begins a new one and renames the existing file to closings-1.jsonl. The keys and values of `origin`
-  /// distinguish tunings that cannot continue each other. Throws InvalidInput with file, line and rule if the file is no such
-  /// log or has another origin, and OutputLost if the file cannot be written.
+  /// Continues the log file of a tuning, or begins a new one and renames the existing file to closings-1.jsonl. The keys and
+  /// values of `origin` distinguish tunings that cannot continue each other. Throws InvalidInput with file, line and rule if
+  /// the file is no such log or has another origin, and OutputLost if the file cannot be written.
   TuningLog(std::filesystem::path file, const nlohmann::json& origin, bool resume);
   ~TuningLog();
   TuningLog(const TuningLog&) = delete;
   TuningLog& operator=(const TuningLog&) = delete;
 
-  /// Returns the closings that the file had when it was opened.
+  /// Returns the closings that the log file had when it was opened.
   [[nodiscard]] const std::vector<Closing>& closings() const { return closings_; }
-  /// Returns the candidate waveforms in the file; empty if the file has only the line on the device.
+  /// Returns the candidate waveforms in the log file; empty if the file has only the line on the device.
   [[nodiscard]] const std::vector<CandidateWaveform>& recipes() const { return recipes_; }
-  /// Returns the new name of an earlier file that was not continued; empty if there was no earlier file.
+  /// Returns the new name of an earlier log file that was not continued; empty if there was no earlier file.
   [[nodiscard]] const std::filesystem::path& moved_to() const { return kept_aside_; }
-  /// The functions append() throw OutputLost if the line could not be written to the disk.
+  /// The functions append() add a line to the log file. They throw OutputLost if the line could not be written to the disk.
   void append(const std::vector<CandidateWaveform>& recipes);
   void append(const CommandedShot& shot, const ContactRecord& record);
-  /// Returns the file and line of a closing: "OUT/closings.jsonl:4".
+  /// Returns the log file and line of a closing: "OUT/closings.jsonl:4".
   [[nodiscard]] std::string place(const Closing& closing) const;
 
  private:

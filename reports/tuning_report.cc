@@ -37,7 +37,7 @@ std::string record_prose(const ContactRecord& record) {
   return fmt::format("touched at {}{}", quantity(*touch, "s", 4), count ? " " + bounces_prose(*count) : "");
 }
 
-// Returns a range of times: "41.0 to 41.4 µs".
+// Returns a range of times as text: "41.0 to 41.4 µs".
 std::string range_prose(double low, double high) {
   if (!std::isfinite(low) || !std::isfinite(high)) return "—";
   const std::string from = quantity(low, "s", 4), to = quantity(high, "s", 4);
@@ -87,13 +87,13 @@ std::pair<std::string, std::string> headline_of(const TuningReport& report) {
   return {fmt::format("After {} none was bounce-free.", after), ""};
 }
 
-// ---- web page
+// The functions from here on are for the web page.
 
-// Width of the canvas of the bars; a page scales the canvas.
+// Width of the drawing of a contact's closed times as bars; a page scales the drawing.
 constexpr double strip_width = 1000;
 
 std::string bar(double from, double to, double top, double height, const char* what) {
-  constexpr double least = 2;  // least visible width
+  constexpr double least = 2;  // least width at which a bar is visible
   const double begin = std::clamp(from, 0.0, strip_width), end = std::clamp(std::max(to, from + least), 0.0, strip_width);
   if (!(end > begin)) return {};
   return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" class=\"{}\"/>", begin, top, end - begin,
@@ -106,8 +106,8 @@ std::string strip(const std::string& bars, const std::string& words) {
       strip_width, escaped(words), bars);
 }
 
-// Draws the belief about a quantity as a bar from -2 to +2 standard deviations, on an axis from -3 to +3 prior standard
-// deviations.
+// Draws the estimate (belief) of a quantity of the tuned device as a bar from -2 to +2 standard deviations, on an axis from -3
+// to +3 standard deviations before the tuning.
 std::string belief_bar(const BelievedQuantity& q) {
   constexpr double shown = 3, drawn = 2;
   const auto place = [&](double value) { return strip_width * (0.5 + (value - q.prior_mean) / (2 * shown * q.prior_deviation)); };
@@ -117,7 +117,7 @@ std::string belief_bar(const BelievedQuantity& q) {
       fmt::format("{}: now {}, before {}", q.name, q.mean, q.prior_mean));
 }
 
-// Formats the belief about a quantity; a factor as the change of the value in the scene.
+// Formats the estimate (belief) of a quantity of the tuned device; a factor as the change of the value in the scene.
 std::string believed_text(double mean, double deviation, const BelievedQuantity& q) {
   if (!q.unit.empty()) return fmt::format("{} ± {}", quantity(mean, q.unit), quantity(deviation, q.unit, 2));
   return fmt::format("{} ± {}\u00a0%", internal::relative_change(mean - 1), internal::plain_number(100 * deviation, 2));
@@ -145,7 +145,7 @@ ReportSection belief_section(const BeliefSummary& belief) {
   return section;
 }
 
-// The time range of all pictures of records [s].
+// The time range of all pictures of a tuning's contact records [s].
 struct Shown {
   double from = std::numeric_limits<double>::infinity(), to = 0;
   void take(double time) {
@@ -159,10 +159,11 @@ void take(Shown& shown, const PredictedRecord& p) {
   for (const double time : {p.touch_low, p.touch_high}) shown.take(time);
 }
 
-// Returns a time range that covers the touches and some time after them; the record predicted for an early shot may be much
-// longer.
+// Returns a time range that covers the touches of the contact and some time after them, from closing number `first` on; the
+// record predicted for an early shot may be much longer.
 Shown shown_times(const TuningReport& report, std::size_t first) {
-  constexpr double before = 0.8, after = 1.6;  // factors for the first and the last time of touch
+  // Ratio of the begin of the shown time to the first touch, and of its end to the last touch.
+  constexpr double before = 0.8, after = 1.6;
   Shown touches;
   take(touches, report.next.predicted);
   for (std::size_t i = first; i < report.closings.size(); ++i) {
@@ -177,7 +178,7 @@ std::string expected_bar(const PredictedRecord& p, const Shown& shown) {
   return bar(shown.place(p.touch_low), shown.place(p.touch_high), 1, 22, "expected");
 }
 
-// Draws the record of a closing: a thick bar while the contact is closed.
+// Draws the contact record of a closing: a thick bar while the contact is closed.
 std::string record_bars(const ContactRecord& record, const Shown& shown) {
   std::string bars;
   double closed_since = std::numeric_limits<double>::quiet_NaN();
@@ -190,7 +191,7 @@ std::string record_bars(const ContactRecord& record, const Shown& shown) {
     }
   }
   if (std::isfinite(closed_since)) bars += bar(shown.place(closed_since), strip_width, 7, 10, "seen");
-  // A closing time without edges gives no information about the time after the closing.
+  // A measured closing time without further times gives no information about the contact after the closing.
   if (record.edges.empty() && record.closing_time) bars += bar(shown.place(*record.closing_time), 0, 3, 18, "seen");
   return bars;
 }
@@ -211,9 +212,9 @@ TableRow record_row(const TuningReport::Closing& one, const Shown& shown) {
                      "picture")};
 }
 
-// Describes the delay between drives and records; empty if the delay may be 0.
+// Describes the delay between the drive voltages and the contact records; empty if the delay may be 0.
 std::string delay_prose(const BeliefSummary& belief) {
-  constexpr double certain = 2;  // least delay that is described, in standard errors
+  constexpr double certain = 2;  // least delay that is described, in its standard errors
   const auto delay = std::find_if(belief.quantities.begin(), belief.quantities.end(),
                                   [](const BelievedQuantity& one) { return one.name == trigger_delay_name; });
   if (delay == belief.quantities.end() || !(std::abs(delay->mean) > certain * delay->deviation)) return {};
@@ -249,7 +250,7 @@ internal::Picture picture_of(const TuningReport& report) {
   internal::Picture drawn;
   const auto &kept = report.kept.waveforms, &next = report.next.waveforms;
   const bool differ = kept != next;
-  const double hold = 0.25;  // length of the hold level that is drawn, as a share of the time before
+  const double hold = 0.25;  // drawn length of the hold level, as a share of the time before it
   for (const auto& [name, rows] : kept) {
     internal::Chart chart{.id = "drive-" + std::to_string(drawn.charts.size()),
                           .title = kept.size() == 1 ? "Voltage" : "Voltage of " + name,
@@ -317,7 +318,7 @@ bool TuningReport::ever_bounce_free() const {
 
 namespace {
 
-// Returns the last closing with a record; null if no closing has a record.
+// Returns the last closing of a tuning with a contact record; null if no closing has a record.
 template <class Closing>
 const Closing* last_record(const std::vector<Closing>& closings) {
   const auto last = std::find_if(closings.rbegin(), closings.rend(), [](const auto& one) { return one.record.error.empty(); });

@@ -14,7 +14,7 @@
 
 namespace softland {
 
-/// The state or the end of a tuning.
+/// The state of a tuning while it runs, or the way in which it ended.
 enum class TuningEnd { under_way, done, closings_used, stopped, interrupted, failed };
 inline constexpr auto tuning_ends = std::to_array<Named<TuningEnd>>({{TuningEnd::under_way, "under_way"},
                                                                      {TuningEnd::done, "done"},
@@ -24,7 +24,7 @@ inline constexpr auto tuning_ends = std::to_array<Named<TuningEnd>>({{TuningEnd:
                                                                      {TuningEnd::failed, "failed"}});
 static_assert(is_complete<tuning_ends>());
 
-/// A recorded closing.
+/// A closing of the real device whose contact was recorded in a tuning.
 struct TunedClosing {
   TunerShot shot;
   ContactRecord record;
@@ -32,11 +32,12 @@ struct TunedClosing {
 
 /// The record of a tuning at its current state.
 struct TuningReport {
-  /// The voltages of a shot, by drive; the factor of the dispersion force is not a voltage.
+  /// The voltages of a shot (one closing of the real device), by drive; the factor of the dispersion force is not a voltage.
   struct Shot {
     int number = 0;
-    std::map<std::string, Points> waveforms = {};  ///< commanded voltages by drive: time [s] and voltage [V]
-    double hold_time = 0, expected_cost = 0;       ///< hold time [s] and expected cost, see TunerShot
+    std::map<std::string, Points> waveforms = {};  ///< commanded voltages of the shot by drive: time [s] and voltage [V]
+    /// Time for which the last levels of the shot are held [s]; cost that the tuner expects of the shot.
+    double hold_time = 0, expected_cost = 0;
     PredictedRecord predicted = {};
   };
   struct Closing {
@@ -44,7 +45,7 @@ struct TuningReport {
     ContactRecord record;
   };
   Origin origin;
-  std::vector<Closing> closings = {};  ///< all closings in their order, also those without a record
+  std::vector<Closing> closings = {};  ///< all closings of the tuning in their order, also those without a contact record
   Shot next, kept;
   BeliefSummary belief = {};
   std::optional<std::string> broken_assumption = {};
@@ -55,15 +56,15 @@ struct TuningReport {
   int bounce_free_in_a_row = 0;
   bool spread_assumed = false;
   std::uint64_t seed = 1;
-  double tolerance = Metrics::unset;  ///< tolerance of the integrator
+  double tolerance = Metrics::unset;  ///< relative tolerance of the integrator in simulations of the tuning
   TuningEnd end = TuningEnd::under_way;
-  nlohmann::json setting = {};  ///< values that distinguish tunings which cannot continue each other
+  nlohmann::json setting = {};  ///< values of scene and options that distinguish tunings which cannot continue each other
 
-  /// Returns true if the shot with this number was recorded without a bounce.
+  /// Returns true if the closing of the shot with this number was recorded without a bounce.
   [[nodiscard]] bool was_bounce_free(int shot) const;
-  /// Returns true if any shot was recorded without a bounce.
+  /// Returns true if the closing of any shot was recorded without a bounce.
   [[nodiscard]] bool ever_bounce_free() const;
-  /// Returns true if the last closing used the waveform `kept` and had no bounce.
+  /// Returns true if the last closing of the real device used the waveform `kept` and had no bounce.
   [[nodiscard]] bool lands() const;
 };
 /// Returns the waveform that a tuning keeps as its best. After the end of the tuning, this is the waveform of the last closing
@@ -76,15 +77,15 @@ struct TuningReport {
 [[nodiscard]] nlohmann::json json_of(const TuningReport& report);
 [[nodiscard]] TuningReport read_tuning(const nlohmann::json& from);
 [[nodiscard]] nlohmann::json belief_json(const TunedBelief& belief);
-/// Reads what belief_json() wrote; throws InvalidInput for other JSON.
+/// Reads the belief about a device that belief_json() wrote; throws InvalidInput for other JSON.
 [[nodiscard]] TunedBelief read_belief(const nlohmann::json& coordinates);
 /// Reads the estimate of the device, means and deviations of its quantities, from the JSON of a tuning. Throws InvalidInput
 /// with the rule: "holds no belief ...".
 [[nodiscard]] TunedBelief tuned_belief(const nlohmann::json& written);
-/// Returns one line on the last closing and the prediction for the next closing.
+/// Returns one line on the last closing of a tuning and the prediction for the next closing.
 [[nodiscard]] std::string closing_prose(const TuningReport& report);
-/// Returns a document with the estimate of the device, the measured and the predicted record of every closing, and the voltages
-/// of the kept and the proposed waveform.
+/// Returns the report on a tuning, with the estimate of the device, the measured and the predicted record of every closing, and
+/// the voltages of the kept and the proposed waveform.
 [[nodiscard]] Document tuning_document(const TuningReport& report);
 
 }  // namespace softland

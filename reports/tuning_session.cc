@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Returns the values that all closings of a log have in common.
+// Returns the values that all closings of a tuning's log have in common: those of the scene and of the options.
 Json origin_of(const SceneFile& file, const TunerOptions& options) {
   return {{"scene", content_key(canonical(file, "scene").text()).hexadecimal()},
           {"actuator", name_of(actuators, options.actuator)},
@@ -38,7 +38,7 @@ Json origin_of(const SceneFile& file, const TunerOptions& options) {
           {"constrain", options.touch ? Json(options.touch->text) : Json()}};
 }
 
-// Reads the belief about a device from the result folder of a completed tuning.
+// Reads the belief about a device (its estimated parameters) from the result folder of a completed tuning.
 TunedBelief tuned_in(const std::string& folder, const Json& origin) {
   const std::string path = (std::filesystem::path(folder) / "tune.json").string();
   try {
@@ -62,8 +62,8 @@ struct TuningSession::State {
   Json origin = {};
   std::filesystem::path log_file = {};
   std::unique_ptr<TuningLog> log = {};
-  std::size_t behind = 0;     // number of closings of the log that were learned
-  bool is_on_record = false;  // true while the log has the record of the next shot, but the tuner has not learned it yet
+  std::size_t behind = 0;     // number of closings of the log from which the tuner has learned
+  bool is_on_record = false;  // true while the log has the record of the next shot, but the tuner has not yet learned from it
   std::optional<Tuner> tuner = {};
   std::vector<TunedClosing> closings = {};
 
@@ -109,8 +109,8 @@ void TuningSession::begin(const Progress& progress) {
   if (s.log && s.log->recipes().empty()) s.log->append(s.tuner->recipes());
 }
 
-// Check that the tuning proposes the logged shot again, or that the logged shot repeats the best waveform; otherwise the log
-// belongs to another tuning.
+// Check that the tuning proposes the logged shot (voltages of one closing) again, or that the logged shot repeats the best
+// waveform. Otherwise the log belongs to another tuning.
 bool TuningSession::learn_kept(const Progress& progress) {
   State& s = *state_;
   if (!s.log || s.behind == s.log->closings().size()) return false;
@@ -151,7 +151,7 @@ std::optional<TuningEnd> TuningSession::ends(int most) {
 }
 
 void TuningSession::throw_if_failing() const {
-  constexpr std::ptrdiff_t most_failures = 3;  // largest number of failures in a row
+  constexpr std::ptrdiff_t most_failures = 3;  // number of shots in a row without a contact record at which the tuning fails
   const std::vector<TunedClosing>& all = closings();
   const auto of_log = all.rend() - static_cast<std::ptrdiff_t>(state_->behind);
   const auto failures =

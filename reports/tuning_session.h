@@ -24,40 +24,42 @@ inline constexpr int usual_closings = 30;
 
 class TuningSession {
  public:
-  /// `wafer` names folders of completed tunings of other devices on the same wafer. Throws InvalidInput for a folder without a
-  /// tuning of this scene, and for options out of range.
+  /// `wafer` names folders of completed tunings of other devices on the same wafer. Throws InvalidInput for a folder that has
+  /// no tuning of this scene, and for options out of range.
   TuningSession(SceneFile file, TunerOptions options, std::span<const std::string> wafer = {});
   ~TuningSession();
   TuningSession(TuningSession&&) noexcept;
   TuningSession& operator=(TuningSession&&) noexcept;
 
-  /// Stores the closings in the file `log`: with `resume`, the session continues the closings in the file, otherwise it begins
-  /// a new file. Returns the new name of an earlier file; empty if there was none. Throws as TuningLog. Call it before begin().
+  /// Stores the closings of the tuning in the file `log`: with `resume`, the session continues the closings in the file,
+  /// otherwise it begins a new file. Returns the new name of an earlier file; empty if there was none. Throws as TuningLog.
+  /// Call it before begin().
   std::filesystem::path keep(const std::filesystem::path& log, bool resume);
-  /// Searches the candidate waveforms of the tuning, or reads them from the log. Throws as Tuner.
+  /// Searches the candidate waveforms of the tuning, or reads them from the log. Throws the exceptions of the constructor of
+  /// Tuner.
   void begin(const Progress& progress = {});
-  /// Learns from the next closing in the log as it was when opened; returns false after the last one. Throws InvalidInput if
-  /// the tuning would have proposed another shot.
+  /// Learns from the next closing that the log had when it was opened; returns false after the last of these closings. Throws
+  /// InvalidInput if the tuning would have proposed another shot.
   bool learn_kept(const Progress& progress = {});
 
   [[nodiscard]] const Tuner& tuner() const;
   [[nodiscard]] const std::vector<TunedClosing>& closings() const;
-  /// Returns the next shot as it is sent to a device.
+  /// Returns the voltages of the next shot as they are sent to a device.
   [[nodiscard]] CommandedShot commanded() const;
-  /// Writes the record of the next shot to the disk, and learns from the record. Throws InvalidInput for an impossible record,
-  /// and OutputLost. Throws Interrupted after the record is on the disk but before it is learned: then call learn() with the
-  /// record again.
+  /// Writes the contact record of the next shot to the disk, and updates the estimate of the device by it. Throws InvalidInput
+  /// for an impossible record, and OutputLost. Throws Interrupted after the record is on the disk but before it is learned:
+  /// then call learn() with the record again.
   void learn(const ContactRecord& record, const Progress& progress = {});
-  /// Returns how the tuning ends at this shot, with success or because `most` closings are used; none if the tuning continues.
-  /// The best waveform becomes the next shot if that is the last shot, or if other waveforms have closed the switch bounce-free
-  /// often enough.
+  /// Returns how the tuning ends before its next shot, with success or because `most` closings are used; none if the tuning
+  /// continues. The best waveform becomes the next shot if that is the last shot, or if other waveforms have closed the switch
+  /// bounce-free often enough.
   [[nodiscard]] std::optional<TuningEnd> ends(int most);
-  /// Throws InvalidInput if the last three shots gave no record.
+  /// Throws InvalidInput if the last three shots gave no contact record.
   void throw_if_failing() const;
 
-  /// Returns the record that tune.json holds; `command` is the command line.
+  /// Returns the record of the tuning that tune.json holds; `command` is the command line.
   [[nodiscard]] TuningReport report(TuningEnd end, const std::string& command = {}) const;
-  /// Returns best.toml, best.csv, tune.json and tune.html for the current state.
+  /// Returns the texts of best.toml, best.csv, tune.json and tune.html for the current state of the tuning, by file name.
   [[nodiscard]] std::map<std::string, std::string> files(TuningEnd end, const std::string& command) const;
 
  private:

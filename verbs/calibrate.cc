@@ -23,7 +23,7 @@
 namespace softland::verbs {
 namespace {
 
-// Reads the errors of --error, such as "Vdp:1 %,time:0.5 %".
+// Reads the measurement errors of the option --error, such as "Vdp:1 %,time:0.5 %".
 void read_errors(const std::string& option, const std::string& list, IdentificationOptions& options) {
   const std::array<std::pair<std::string_view, double*>, 6> errors{{{"Vdp", &options.pull_in_error},
                                                                     {"Vsp", &options.static_pull_in_error},

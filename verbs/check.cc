@@ -89,7 +89,7 @@ std::string capacitance_prose(const PreparedScene& p) {
          (ladder.exists() ? "; more modes shift it by " + shift_prose(found, "F") : "");
 }
 
-// Returns a message about a key with its file and line.
+// Returns a message about a key of the scene with its file and line.
 std::string scene_note(const SceneFile& file, const std::string& key, std::string_view words) {
   try {
     file.refuse(key, words);
@@ -106,7 +106,7 @@ double precision_of(const Switch& model) { return model.film_states() > 0 ? film
 
 ElectrodePullIn quick_pull_in(const Switch& model, std::size_t electrode, Bias bias, const Progress& progress) {
   if (model.film_states() == 0) return electrode_pull_in(model, electrode, bias, progress);
-  constexpr double tolerance = 1e-4;  // tolerance of the integrator
+  constexpr double tolerance = 1e-4;  // relative tolerance of the integrator
   ElectrodePullIn found{.statically = static_pull_in(model, electrode, bias)};
   found.dynamically = dynamic_pull_in(model, electrode, found.statically, bias, progress, tolerance, film_precision);
   return found;
@@ -121,7 +121,7 @@ std::string end_prose(const Anchor& anchor) {
   return fmt::format("rotation {}, translation {}", stiffness(anchor.rotation, "N m/rad"), stiffness(anchor.translation, "N/m"));
 }
 
-// Lists the sections, layers and anchors of a beam.
+// Lists the sections, layers and anchors of a beam as lines of the report.
 void add_parts(CheckRecord& record, const Device& device) {
   const Structure& s = device.structure;
   const Beam* const beam = s.find<Beam>();

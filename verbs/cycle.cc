@@ -46,8 +46,8 @@ struct CycleRequest : Usual {
   static Outcome shown_again(const nlohmann::json& json) { return shown(read_cycles(json)); }
 
   CyclingOptions options{.jobs = one_per_core()};
-  std::vector<std::string> results;  ///< further scenes or results with the closing or the opening waveform
-  bool searches = false;             ///< true: both waveforms are searched for the rate
+  std::vector<std::string> results;  ///< further scenes or results that have the closing or the opening waveform
+  bool searches = false;             ///< true: closing and opening waveform are searched for the cycle rate
   std::string target = "bounce", waveform = {};
   Actuator actuator = Actuator::electrostatic;
   long budget = CycleSearchOptions{}.max_evaluations;
@@ -80,8 +80,8 @@ void options(Archive& a, CycleRequest& r) {
   jobs_option(a, o.jobs);
 }
 
-// Reads waveforms from a scene: the opening waveform if the scene begins closed, both waveforms if it opens on command, else
-// the closing waveform.
+// Reads waveforms of a cycle from a scene: the opening waveform if the scene begins closed, both waveforms if it opens on
+// command, else the closing waveform.
 void take(CycleWaveforms& waveforms, const PreparedScene& scene) {
   std::vector<Signal> commanded = scene.commanded(scene.waveforms());
   if (scene.start() == StartState::closed) {
@@ -121,7 +121,7 @@ Outcome searched(const Setting& setting, const CycleRequest& request) {
   return outcome;
 }
 
-// Returns true if an option is given that applies only to a search.
+// Returns true if the request has an option that applies only to a search.
 bool is_about_search(const CycleRequest& r) {
   const CycleRequest usual;
   return r.target != usual.target || r.actuator != usual.actuator || !r.waveform.empty() || r.budget != usual.budget;

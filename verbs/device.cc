@@ -30,7 +30,7 @@ double signed_quantity(const std::string& option, const std::string& text, const
   return is_negative ? -size : size;
 }
 
-// Reads "1 %/1000", a change of all voltages by 1 % in 1000 shots; "1 %" is the change in one shot.
+// Reads the drift of all voltages: "1 %/1000" is a change by 1 % in 1000 shots, "1 %" the change in one shot.
 void read_drift(const std::string& option, const std::string& text, double& drift) {
   const std::size_t stroke = text.find('/');
   const int shots =
@@ -38,7 +38,7 @@ void read_drift(const std::string& option, const std::string& text, double& drif
   drift = signed_quantity(option, text.substr(0, stroke), dimension::none) / shots;
 }
 
-// Reads a delay, which may be negative: "1 us" or "-1 us".
+// Reads the delay of contact records, which may be negative: "1 us" or "-1 us".
 void read_delay(const std::string& option, const std::string& text, double& delay) {
   delay = signed_quantity(option, text, dimension::time);
 }

@@ -13,7 +13,7 @@ struct DeviceRequest {
 
   [[nodiscard]] PracticeOptions options(const SceneFile& file) const;
 };
-/// Reads the request. Throws InvalidRequest.
+/// Reads the options of the verb `device` from the arguments. Throws InvalidRequest.
 [[nodiscard]] DeviceRequest device_request(const Arguments& arguments);
 
 }  // namespace softland::verbs

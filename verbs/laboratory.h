@@ -9,15 +9,17 @@
 
 namespace softland::verbs {
 
-/// Errors of the instruments; an error that the user does not give has a default, which depends on the scene.
+/// Errors of laboratory instruments; an error that the user does not give has a default, which depends on the scene.
 struct ToldErrors {
   std::optional<double> edge_error = {}, unseen = {}, gain_error = {}, shot_error = {};
   std::optional<double> trigger_delay =
-      {};  ///< standard deviation of the delay between drives and records; an option of `tune` only
-  std::optional<double> capacitance = {};  ///< threshold of the capacitance, for an instrument that measures the capacitance
-                                           ///< [F]
+      {};  ///< standard deviation of the delay between drives and contact records; an option of `tune` only
+  /// Threshold of the capacitance from which on the contact counts as closed, for an instrument that measures the capacitance
+  /// [F].
+  std::optional<double> capacitance = {};
 
-  /// Returns the given errors, and the defaults of all other errors. Throws InvalidInput for a scene that cannot be read.
+  /// Returns the given errors of the instruments, and the defaults of all other errors. Throws InvalidInput for a scene that
+  /// cannot be read.
   [[nodiscard]] LaboratoryErrors errors(const SceneFile& file) const;
 };
 

@@ -46,7 +46,7 @@ struct OptimizeVerb : Usual, OptimizeRequest {
   static constexpr Takes takes{.scene = false};
   static Outcome shown_again(const nlohmann::json& json) {
     if (json.contains("baseline") || !json.contains("seeds")) return closing_shown_again(json);
-    const SeedsRecord record = read_seeds(json);  // the JSON of an interrupted study of several seeds
+    const SeedsRecord record = read_seeds(json);  // read the JSON of an interrupted study of several seeds
     return {.json = json_of(record), .text = text_of(record)};
   }
   static std::string remarks() {

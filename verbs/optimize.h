@@ -13,17 +13,18 @@ namespace softland::verbs {
 /// takes a second or two.
 inline constexpr long evaluations_worth_a_limit = 1000;
 
-/// The options of `optimize`; an option that is not given is empty.
+/// The options of the verb `optimize`; an option that is not given is empty.
 struct OptimizeRequest : SearchRequest {
-  std::vector<std::string> starts;  ///< results and scenes whose waveforms the search begins with
+  std::vector<std::string> starts;  ///< results and scenes with waveforms at which the search begins
   int jobs = one_per_core();
-  std::string cycle = {};  ///< rate for which closing and opening waveforms are searched, "2 kHz"; see the verb `cycle`
-  std::string duty = {};   ///< duty of the cycle, the commanded share of closed time
+  std::string cycle = {};  ///< cycle rate for which closing and opening waveforms are searched, "2 kHz"; see the verb `cycle`
+  std::string duty = {};   ///< share of the cycle in which the switch is commanded closed
   bool resume = false;
   bool limit = false;  ///< true: compare the best waveform with the least closing time of any waveform, even if that takes
                        ///< minutes
 };
-/// Reads the request. Throws InvalidRequest for invalid options; options of SearchRequest are checked later (search_request.h).
+/// Reads the options of `optimize` from the arguments. Throws InvalidRequest for invalid options; options of SearchRequest are
+/// checked later (search_request.h).
 [[nodiscard]] OptimizeRequest optimize_request(const Arguments& arguments);
 
 }  // namespace softland::verbs

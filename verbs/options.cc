@@ -28,7 +28,8 @@ std::string spelled(std::string_view marked, const Spelling& spelling) {
 }
 
 std::string spelled(const InvalidRequest& error, const Spelling& spelling) {
-  return spelled(error.with_fields("\x02"), spelling);  // with_fields() puts this mark before a name, and none after the name
+  // with_fields() puts this mark before each option name, and none after it.
+  return spelled(error.with_fields("\x02"), spelling);
 }
 
 double OptionReader::quantity_of(const char* name, const std::string& text, const Wanted& wanted) const {

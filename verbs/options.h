@@ -31,8 +31,8 @@ namespace softland::verbs {
 /// The texts that the user gave, by name of the option, in the order given. A flag has one empty text.
 using Arguments = std::map<std::string, std::vector<std::string>, std::less<>>;
 
-/// The quantity that an option accepts. `rule` completes the sentence "must be ...". Without a range and a rule the quantity
-/// must be at least 0.
+/// The quantity that an option accepts. The member `rule` completes the sentence "must be ...". Without a range and a rule the
+/// quantity must be at least 0.
 struct Wanted {
   Dimension dimension;
   Range range = {};
@@ -47,20 +47,23 @@ struct OptionRow {
     repeated,
     further,
     object
-  };  ///< further: arguments after the scene; object: a Python object without a text form
+  };  ///< kinds of options; further: arguments after the scene; object: a Python object without a text form
   enum class Door { both, program, python };
 
-  std::string name, word, about;  ///< such as "impact-velocity" and "SPEED"; `about` is the help, which begins in lower case
+  /// Name such as "impact-velocity", word such as "SPEED" for the value; `about` is the help, which begins in lower case.
+  std::string name, word, about;
   Kind kind = Kind::text;
-  Door door = Door::both;     ///< interfaces that have the option; an object is for Python only
-  bool may_be_empty = false;  ///< false: an empty text is refused before the option is read
+  Door door = Door::both;  ///< interfaces (command line, Python) that have the option; a Python object is for Python only
+  /// True: the option may have an empty text; false: an empty text is refused before the option is read.
+  bool may_be_empty = false;
 
-  // The members from here on are for Python.
-  std::string keyword = {};  ///< name in Python, "impact_velocity"
-  std::string type = {};     ///< type in Python, "float | str | None"
-  std::string value = {};    ///< default value in Python, "None"
-  std::string note = {};     ///< text in front of `about`, such as the unit of a number
-  std::string told = {};  ///< Python expression that returns the texts of Arguments, such as "_quantity(impact_velocity, 'm/s')"
+  // The members from `keyword` on describe the option in Python.
+  std::string keyword = {};  ///< name of the option in Python, "impact_velocity"
+  std::string type = {};     ///< type of the option in Python, "float | str | None"
+  std::string value = {};    ///< default value of the option in Python, "None"
+  std::string note = {};     ///< text in front of the help `about` in Python, such as the unit of a number
+  /// Python expression that returns the option's texts for Arguments, such as "_quantity(impact_velocity, 'm/s')".
+  std::string told = {};
   bool is_positional = false;
 };
 
@@ -91,7 +94,7 @@ struct Held<std::optional<T>> {
 /// An archive (the argument of the function template options()) that lists the options of a verb.
 class OptionList {
  public:
-  /// Makes the next option an option of the program only.
+  /// Makes the next option an option of the command line only.
   OptionList& program() { return next_.door = OptionRow::Door::program, *this; }
   /// Makes the next option an option of Python only.
   OptionList& python() { return next_.door = OptionRow::Door::python, *this; }
@@ -154,7 +157,7 @@ class OptionList {
          .is_positional = is_positional},
         "Sequence[str]", "()", "list({})");
   }
-  /// Adds further results as arguments after the scene; Python takes waveforms by name.
+  /// Adds an option for further results as arguments after the scene; Python takes waveforms by name.
   void results(const char* name, std::vector<std::string>&, const std::string& about) {
     add({.name = name,
          .word = "",
@@ -164,7 +167,7 @@ class OptionList {
          .is_positional = true},
         "Mapping[str, Mapping[str, Waveform]] | None", "None", "list({} or ())");
   }
-  /// Adds the file of measurements; Python also takes the measurements themselves.
+  /// Adds an option for the file of measurements; Python also takes the measurements themselves.
   void measurements(const char* name, std::string&, const std::string& about) {
     add({.name = name, .word = "FILE", .about = about, .is_positional = true},
         "str | os.PathLike[str] | Sequence[Mapping[str, Any]]", "", "[{}]");
@@ -172,11 +175,11 @@ class OptionList {
   void flag(const char* name, bool&, const std::string& about) {
     add({.name = name, .word = "", .about = about, .kind = OptionRow::Kind::flag}, "bool", "False", "_flag({})");
   }
-  /// Adds a Python function or object, which is passed on unchanged.
+  /// Adds an option for a Python function or object, which is passed on unchanged.
   void object(const char* keyword, const char* type, const char* value, const std::string& about) {
     python().add({.name = keyword, .word = "", .about = about, .kind = OptionRow::Kind::object}, type, value, "");
   }
-  /// Adds a member that is true unless the flag "no-NAME" is given.
+  /// Adds an option for a member that is true unless the flag "no-NAME" is given.
   void unless(const char* name, bool&, const std::string& about) {
     constexpr std::string_view no = "no-";
     add({.name = name,
@@ -224,8 +227,8 @@ template <class Number>
   return value;
 }
 
-/// An archive that reads the texts given by the user into the members of a request; all other members keep their values. Throws
-/// InvalidRequest with option, value and rule.
+/// An archive (argument of the function template options()) that reads the user's texts into the members of a request; all
+/// other members keep their values. Throws InvalidRequest with option, value and rule.
 class OptionReader {
  public:
   explicit OptionReader(const Arguments& arguments) : arguments_(arguments) {}
@@ -295,11 +298,11 @@ class OptionReader {
   const Arguments& arguments_;
 };
 
-// Options that several verbs have.
+// Names the options that several verbs have, for an archive.
 template <class Archive, class Seed>
 void seed_option(Archive& a, Seed& seed, const std::string& same) {
   const std::string about = "random seed, a whole number from 0 on (default: 1); the same seed gives " + same;
-  if constexpr (std::is_same_v<Seed, std::optional<std::string>>)  // the request holds the seed as text
+  if constexpr (std::is_same_v<Seed, std::optional<std::string>>)  // the request holds the seed as text, empty if not given
     a.text("seed", seed, "N", about);
   else
     a.whole("seed", seed, {.least = 0}, about);
@@ -313,7 +316,7 @@ template <class Archive>
 void samples_option(Archive& a, std::uint64_t& samples, Range range, const std::string& about) {
   a.whole("samples", samples, range, about);
 }
-/// Returns the default number of threads.
+/// Returns the default number of threads, one per processor core.
 [[nodiscard]] int one_per_core();
 
 }  // namespace softland::verbs

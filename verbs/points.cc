@@ -16,8 +16,8 @@ namespace {
 
 using nlohmann::json;
 
-// Members of a JSON that are not stored as results of a point: scene and drives, program and settings, computing times, and
-// tables by number of modes.
+// Members of a verb's JSON that an exploration does not store for a point: scene and drives, program and settings, computing
+// times, and tables by number of modes.
 constexpr std::array<std::string_view, 12> left_out{
     "scene",      "made_with",         "waveforms", "by_modes",  "pulled_through_by_modes_V", "seed", "tolerance",
     "duration_s", "dynamic_precision", "rhs_s",     "has_start", "band_of_contact_gap"};
@@ -38,7 +38,8 @@ void add_numbers(Numbers& numbers, const std::string& key, const json& value) {
   if (!value.is_array() || value.size() > longest_list) return;
   for (std::size_t i = 0; i < value.size(); ++i) {
     const json& one = value[i];
-    const bool is_choice = one.is_object() && one.contains("section") && one.contains("choice");  // true for an effect
+    // True for the description of an omitted or chosen physical effect.
+    const bool is_choice = one.is_object() && one.contains("section") && one.contains("choice");
     if (one.is_number() || is_choice)
       add_numbers(numbers, key + "." + (is_choice ? text(one["section"]) + "." + text(one["choice"]) : std::to_string(i + 1)),
                   one);

@@ -5,7 +5,8 @@
 
 namespace softland::verbs {
 
-/// Returns the verbs limit, release, effects and check. Long lists, files and computing times are not stored.
+/// Returns the verbs limit, release, effects and check as studies of explorations. Long lists, files and computing times are
+/// not stored.
 [[nodiscard]] const OtherStudies& studies_of_points();
 
 }  // namespace softland::verbs

@@ -27,9 +27,9 @@
 namespace softland::verbs {
 namespace {
 
-constexpr double most_bias = 1e6;  // [V]
+constexpr double most_bias = 1e6;  // largest voltage of --bias [V]
 
-// Returns the rule that a message states about a voltage on the command line.
+// Returns the rule that a message states about a voltage given on the command line.
 std::string voltage_rule() {
   return fmt::format("must be {} from {} to {}, such as \"{}\"", describe(dimension::voltage), engineering(-most_bias, "V"),
                      engineering(most_bias, "V"), example(dimension::voltage));
@@ -128,7 +128,7 @@ void options(Archive& a, PullInRequest& r) {
            "sweep", "str | None");
 }
 
-// Sweeps the voltage of the electrode that closes the switch.
+// Sweeps the voltage of the electrode that closes the switch, up and down.
 void add_sweep(PullInsRecord& record, const PreparedScene& p, const SweepRange& range, const Progress& progress) {
   require_request(has_pulling_electrode(p.scene.device),
                   [] { return requested("sweep") + ": requires an electrode that pulls towards the contact"; });
@@ -137,7 +137,8 @@ void add_sweep(PullInsRecord& record, const PreparedScene& p, const SweepRange& 
   record.sweep = static_sweep(p.model, drive, bias_of(p.scene, drive), range, progress);
 }
 
-// Returns `done`, or the status of the first pulling electrode without a voltage. A single electrode gives its own status.
+// Returns `done`, or the status of the first pulling electrode for which no pull-in voltage was found. A single electrode gives
+// its own status.
 Status status_of(const PreparedScene& p, const PullInsRecord& record) {
   if (record.electrodes.size() == 1) return record.electrodes.begin()->second.status;
   const auto& electrodes = p.scene.device.electrodes;
@@ -178,8 +179,8 @@ Outcome run(const Setting& setting, const PullInRequest& request) {
   const Progress& progress = setting.progress;
   PullInMemory remembered;
   const PullInFinder find_pull_in = remembered.finder(file);
-  // Find the pull-in voltages first, since a waveform in units of Vdp needs them; if the rest is interrupted, they are not
-  // lost.
+  // Find the pull-in voltages before all other results, since a waveform in units of Vdp needs them; an interruption then does
+  // not lose them.
   const Scene scene = read_scene(file);
   const bool leaves_choices = scene.auto_modes || scene.simulate.automatic_effects;
   PreparedScene prepared = leaves_choices ? prepare_and_choose(file, false, progress) : prepare_statics(file);
@@ -191,7 +192,8 @@ Outcome run(const Setting& setting, const PullInRequest& request) {
   try {
     progress.throw_if_stopped();
     if (!leaves_choices) {
-      const std::vector<double> standing = prepared.scene.standing;  // voltages of all drives, including the values of --bias
+      // Voltages of all drives in the scene, including the values of --bias.
+      const std::vector<double> standing = prepared.scene.standing;
       prepared = prepare(file, false, progress, find_pull_in);
       prepared.scene.standing = standing;
     }
@@ -209,7 +211,8 @@ Outcome run(const Setting& setting, const PullInRequest& request) {
     record.left_out.push_back(record.sweep.empty() ? "the sweep"
                                                    : fmt::format("the sweep beyond its first {} points", record.sweep.size()));
   record.origin = origin_of("pull-in", setting.command);
-  record.origin.scene = interrupted ? file.json() : prepared.resolved().json();  // the scene in volts may not be known yet
+  // After an interruption the scene in volts may not be known yet.
+  record.origin.scene = interrupted ? file.json() : prepared.resolved().json();
   record.status = to_string(interrupted ? Status::interrupted : status_of(prepared, record));
   Outcome outcome = shown(record);
   outcome.ending = interrupted ? Ending::interrupted : worst_ending(prepared, record);

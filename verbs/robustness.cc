@@ -54,13 +54,14 @@ struct RobustnessRequest : Usual {
     return all;
   }
 
-  // The diagrams need the figures of all devices, which only devices.csv has.
+  // Shows the outcome again without its diagrams, which need the figures of all devices from devices.csv.
   static Outcome shown_again(const nlohmann::json& json) { return shown(read_robustness(json)); }
 
   RobustnessOptions options{.jobs = one_per_core(), .worth_of_measuring = true, .opens_on_command = true};
-  std::vector<std::string> results;  ///< further results whose waveforms are evaluated
-  std::string calibration;           ///< measurements of every device; empty: the measurements in the scene
-  bool box_and_chaos = false;        ///< true: extremes over a box and polynomial chaos are computed too
+  std::vector<std::string> results;  ///< further results whose waveforms are evaluated on the devices
+  std::string calibration;           ///< measurements that are made on every device; empty: those of the scene's [calibration]
+  /// True: the range of figures over a box of varied quantities, and polynomial chaos, are computed too.
+  bool box_and_chaos = false;
 };
 
 template <class Archive>
@@ -81,7 +82,7 @@ void options(Archive& a, RobustnessRequest& r) {
   jobs_option(a, r.options.jobs);
 }
 
-// The findings and their report; the report keeps references to `nominal` and `found`.
+// The findings on devices and their report; the report keeps references to `nominal` and `found`.
 struct Judged {
   std::shared_ptr<const PreparedScene> nominal;
   Robustness found = {};

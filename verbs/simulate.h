@@ -11,12 +11,12 @@ namespace softland::verbs {
 struct SimulateRequest {
   bool errors = true;
   bool certified = false;
-  int jobs = one_per_core();  ///< threads of a certified run
+  int jobs = one_per_core();  ///< number of threads for the perturbed runs of a certified closing
 };
-/// Reads the request. Throws InvalidRequest.
+/// Reads the options of `simulate` from the arguments. Throws InvalidRequest.
 [[nodiscard]] SimulateRequest simulate_request(const Arguments& arguments);
 
-/// A closing, and the scene that was simulated.
+/// A simulated closing, and the scene that describes it.
 struct Simulated {
   std::shared_ptr<const PreparedScene> prepared;
   Closing closing;

@@ -1,6 +1,6 @@
 // A study is a verb that computes something from one scene. Options, computation and files of a study are described once, for
 // the command line and for Python. Some verbs, such as the tuning on instruments, run differently on the command line and in
-// Python: their description has name, options and help, but no computation.
+// Python: the description of such a verb has name, options and help, but no computation.
 #pragma once
 
 #include <functional>
@@ -19,9 +19,9 @@
 
 namespace softland::verbs {
 
-/// The outcome of a verb; the program has an exit status for each.
+/// The way in which a verb ended; the program has an exit status for each.
 enum class Ending { done, no_success, numerical_failure, interrupted };
-/// Returns the outcome of a verb whose closing ended with this status.
+/// Returns the way in which a verb ended whose closing has this status.
 [[nodiscard]] Ending ending_of(Status status);
 
 /// The results of a verb, for the command line and for Python.
@@ -29,14 +29,14 @@ struct Outcome {
   struct File {
     std::string name;
     std::function<std::string()> text;
-    std::string listed = {};  ///< entry in the printed list of files; empty: not listed
+    std::string listed = {};  ///< entry of the file in the printed list of files; empty: not listed
   };
   nlohmann::json json;
-  std::string text;  ///< text for a terminal
+  std::string text;  ///< text of the outcome for a terminal
   std::vector<File> files = {};
-  std::string next = {};   ///< text below the list of files; "{}" stands for the path of the scene, for a command line of the
-                           ///< verb `export`
-  std::string last = {};   ///< text at the end of the output
+  /// Text below the list of files, a command line of the verb `export`; "{}" stands for the path of the scene.
+  std::string next = {};
+  std::string last = {};   ///< text at the end of the terminal output
   std::string fault = {};  ///< reason why the verb did not succeed, printed to standard error even with --quiet
   Ending ending = Ending::done;
 };
@@ -45,52 +45,52 @@ struct Outcome {
 struct Setting {
   SceneFile scene;
   std::string name;     ///< name of the scene as the user gave it
-  std::string command;  ///< command line, recorded in results
+  std::string command;  ///< command line or Python call, recorded in results
   const Progress& progress;
-  /// Prepares the scene. With `default_limits`, drives without [driver] get the voltage limits of a search.
+  /// Function that returns the scene prepared for simulation. With `default_limits`, drives without [driver] get the voltage
+  /// limits of a search.
   std::function<std::shared_ptr<const PreparedScene>(bool default_limits)> prepared;
-  /// Loads the scene from a scene file or from a result.
+  /// Function that loads a scene from a scene file or from a result.
   std::function<SceneFile(const std::string&)> load;
-  /// Returns the waveforms of a result for the switch of `nominal`. Throws InvalidInput if the waveforms do not fit the drives
-  /// of the switch.
+  /// Function that returns the waveforms of a result for the switch of `nominal`. Throws InvalidInput if the waveforms do not
+  /// fit the drives of the switch.
   std::function<DriveWaveforms(const std::string& result, const PreparedScene& nominal)> waveforms_of;
-  /// Returns the text of the scene file, with comments.
+  /// Function that returns the text of the scene file, with comments.
   std::function<std::string()> text;
-  /// Receives a line about the scene or the result while the verb runs; may be empty. The names of options in the line are
-  /// marked by requested().
+  /// Function that receives a line about the scene or the result while the verb runs; may be empty. The names of options in the
+  /// line are marked by requested().
   std::function<void(const std::string&)> note = {};
 };
 
-/// The general options of a verb.
+/// The general options that a verb takes, and their descriptions.
 struct Takes {
-  bool scene = true;                           ///< true if a scene is required
-  bool set = true, quiet = true, json = true;  ///< true for the options of the program --set, --quiet and --json that the verb
-                                               ///< has
+  bool scene = true;                           ///< true if the verb requires a scene
+  bool set = true, quiet = true, json = true;  ///< true if the verb has the options --set, --quiet and --json of the program
 };
 
 struct Study {
   const char *name, *about;
   const char *python, *returns,
-      *progress;          ///< name of the method of a scene in Python, type of its result, default of its argument `progress`
-  const char* in_python;  ///< further text of the docstring of this method
+      *progress;  ///< name of the verb's method of a scene in Python, type of its result, default of its argument `progress`
+  const char* in_python;        ///< further text of the docstring of the verb's method in Python
   const char *subject, *scene;  ///< word for the scene in --help, and description of the scene
   Takes takes;
   bool is_explorable;   ///< true if an exploration may run the verb at its points
-  const char* leaves;   ///< description of the files in --out; null: no files
-  const char* place;    ///< default folder of the files; null: without --out no files are written
+  const char* leaves;   ///< description of the files that the verb writes to --out; null: no files
+  const char* place;    ///< default folder of the verb's files; null: without --out no files are written
   const char* leaving;  ///< option that the user must give together with --out; null: none
-  const char* changes;  ///< example of --set
+  const char* changes;  ///< example of --set in the help of the verb
   std::string remarks;
-  std::vector<std::string> files;  ///< names of files that --out may hold
+  std::vector<std::string> files;  ///< names of files that the verb may write to --out
   std::vector<OptionRow> options;
-  /// Reads the given options and returns a function that runs the verb. Throws InvalidRequest. Empty if the command line and
-  /// Python run the verb differently.
+  /// A function that reads the given options and returns a function that runs the verb. Throws InvalidRequest. Empty if the
+  /// command line and Python run the verb differently.
   std::function<std::function<Outcome(const Setting&)>(const Arguments&)> ask = {};
-  /// Makes the text and the files of an outcome again from its JSON, as far as possible. Throws InvalidInput for other JSON.
-  /// Empty if the verb writes no JSON that can be read again.
+  /// A function that makes the text and the files of an outcome again from its JSON, as far as possible. Throws InvalidInput
+  /// for other JSON. Empty if the verb writes no JSON that can be read again.
   std::function<Outcome(const nlohmann::json&)> shown_again = {};
 
-  /// Returns the name in Python of an option.
+  /// Returns the name that an option has in Python.
   [[nodiscard]] std::string keyword(std::string_view option) const;
 };
 
@@ -99,7 +99,7 @@ inline constexpr auto varied_scene = "scene file with [spread], result folder (t
 inline constexpr auto scene_alone = "scene file (TOML)";
 inline constexpr auto usual_change = "change one key of the scene, such as --set gap.contact=\"1.8 um\"";
 
-/// Defaults for members of a request type that describe its verb.
+/// Defaults for the members of a request type that describe its verb.
 struct Usual {
   static constexpr const char *returns = "Outcome", *progress = "None", *in_python = "", *subject = "SCENE",
                               *scene = scene_or_result, *leaves = nullptr, *place = nullptr, *leaving = nullptr,
@@ -109,7 +109,7 @@ struct Usual {
   static std::vector<std::string> files() { return {}; }
 };
 
-/// Reads a request from the given options. Throws InvalidRequest.
+/// Reads the request of a verb from the given options. Throws InvalidRequest.
 template <class Request>
 [[nodiscard]] Request read_options(const Arguments& arguments) {
   Request request;
@@ -162,7 +162,7 @@ template <class Request>
   return study;
 }
 
-// Each study is defined in a separate file.
+// The functions from here on each return the description of one verb.
 [[nodiscard]] Study accuracy_study();
 [[nodiscard]] Study calibrate_study();
 [[nodiscard]] Study check_study();
@@ -180,10 +180,10 @@ template <class Request>
 [[nodiscard]] Study simulate_study();
 [[nodiscard]] Study tune_study();
 
-/// Returns the studies that need only a scene, or all studies, in the order of --help.
+/// Returns the verbs that need only a scene, or all verbs described as studies, in the order of --help.
 [[nodiscard]] const std::vector<Study>& scene_studies();
 [[nodiscard]] const std::vector<Study>& all_studies();
-/// Returns the study with this name. Throws InvalidInput for an unknown name.
+/// Returns the study (verb) with this name. Throws InvalidInput for an unknown name.
 [[nodiscard]] const Study& study_named(std::string_view name);
 
 }  // namespace softland::verbs

@@ -47,7 +47,8 @@ int status_of(const Overview& found, bool interrupted) {
   return found.has_figures ? exit_done : exit_no_success;
 }
 
-// Returns the plan of an exploration: from a scene and options, from a plan file, or from the database file of an earlier run.
+// Returns the plan of an exploration, which lists its points: from a scene and options, from a plan file, or from the database
+// file of an earlier run.
 PlanRequest plan_request(const Common& c, const ExploreRequest& r) {
   const bool of_store = is_store(c.scene);
   if (!of_store && !is_plan(SceneFile::load(c.scene)))
@@ -65,7 +66,7 @@ PlanRequest completed_request(const Common& c, const ExploreRequest& r) {
   return request;
 }
 
-// Prints the scene of one point as a scene file for the verb `simulate`.
+// Prints the scene of one point of an exploration as a scene file for the verb `simulate`.
 int print_point(const Common& c, const ExploreRequest& r) {
   const std::uint64_t k = r.point.value();
   const Plan plan(completed_request(c, r));
@@ -159,7 +160,7 @@ StudyStore opened(const std::string& out, const Exploration& exploration, const 
           resume ? StudyStore::Opening::resume : StudyStore::Opening::fresh};
 }
 
-// Searches a Pareto front; the search chooses the points one after another.
+// Searches the Pareto front of an exploration; the search chooses the points one after another.
 int search_the_front(const Common& c, const ExploreRequest& r, Exploration& exploration, const std::string& out) {
   const Plan& plan = exploration.plan();
   const std::vector<ExploredAim> aims = aims_of(exploration);

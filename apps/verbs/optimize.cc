@@ -93,8 +93,8 @@ struct Asked {
   StoredSearch& search;
   const std::optional<KnownSearch>& known;
   const SearchOutput& output;
-  SearchPlaces* places = nullptr;           // folders that the searches of all seeds share
-  std::optional<SeedsFindings> seeds = {};  // completed searches, if there are several seeds
+  SearchPlaces* places = nullptr;           // folders that the searches of all seeds share; null for a single search
+  std::optional<SeedsFindings> seeds = {};  // completed searches of all seeds; none if the user requested a single seed
   bool limit = false;                       // true: compute the least closing time of any waveform, even if that takes minutes
 };
 
@@ -102,7 +102,8 @@ struct Asked {
 // computation is much longer with a slew limit, and with more than four modes of a cantilever, whose frequency ratio exceeds
 // 34.
 bool takes_little(const Asked& asked, const OptimizeResult& result) {
-  constexpr double widest_band = 40;  // largest ratio of the highest natural frequency to the lowest
+  // Largest ratio of the highest natural frequency of the modes to the lowest at which computing the limit is quick.
+  constexpr double widest_band = 40;
   const Eigen::VectorXd& omega = result.best_scene->model.basis().angular_frequencies();
   return asked.search.options.max_evaluations >= verbs::evaluations_worth_a_limit &&
          omega.maxCoeff() <= widest_band * omega.minCoeff() &&
@@ -184,7 +185,7 @@ int run_search(const Asked& asked) {
   return status_of(report.found);
 }
 
-// Returns the completed searches, the best one first.
+// Returns the completed searches of all seeds and ranks them; rebounds below `significant` [m] do not count.
 SeedsFindings ranked(const SeedStudy& study, const StoredSearch& search, double significant) {
   SeedsFindings seeds{.planned = search.seeds, .searches = study.searches()};
   if (!seeds.searches.empty()) rank(seeds, search.options.target, significant, search.robust.has_value());

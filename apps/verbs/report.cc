@@ -34,8 +34,8 @@ namespace {
 
 struct ReportRequest {
   std::string result;
-  std::string pareto;  ///< figures of the Pareto front of an exploration
-  std::string map;     ///< figure of the map of an exploration, and the two variables on the axes of the map
+  std::string pareto;  ///< value of the option --pareto: figures of the Pareto front of an exploration
+  std::string map;     ///< value of the option --map: figure, and the two variables on the axes of the map
 };
 
 // Returns the column with this name, a variable or a figure.

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t most_tasks = 100'000;  // larger than the limit of any cluster for one array of jobs
+constexpr std::uint64_t most_tasks = 100'000;  // largest number of jobs in one array of jobs; exceeds the limit of any cluster
 
 struct SlurmRequest {
   std::string plan;
@@ -42,7 +42,7 @@ Plan plan_of(const std::string& file) {
   return Plan(request);
 }
 
-// Returns the first part of the job script; only this part depends on the study.
+// Returns the first part of the job script; only this part depends on the study that the jobs run.
 std::string head(const Common& c, const Plan& plan, std::uint64_t tasks, std::uint64_t processors, const fs::path& out) {
   const std::string digest = content_key(plan.text()).hexadecimal();
   const fs::path parts = out.parent_path() / (out.stem().string() + "-parts");

@@ -29,7 +29,7 @@ struct StatusRequest {
   std::vector<std::string> more;
 };
 
-/// The state of a study, read from its database file.
+/// The state of a study (exploration or search), read from its database file.
 struct State {
   std::string file;
   StoredPlan plan;
@@ -39,7 +39,7 @@ struct State {
   std::optional<std::string> writer;
 
   [[nodiscard]] std::string part() const { return fmt::format("{}/{}", plan.shard.index, plan.shard.count); }
-  /// Returns the rows per second of the last session [1/s]; NaN if unknown.
+  /// Returns the number of rows of the database file that the last run of the study stored per second [1/s]; NaN if unknown.
   [[nodiscard]] double rate() const {
     const StoredSession& last = sessions.back();
     return last.rows > 0 && last.seconds > 0 ? static_cast<double>(last.rows) / last.seconds

@@ -32,7 +32,7 @@ struct TableRequest {
   bool csv = false;
 };
 
-/// A column of the printed table, with the key by which --select names the column and the function that writes a cell.
+/// A column of the printed table: the key by which --select names the column, and the function that writes a cell.
 struct Column {
   std::string key, unit;
   std::function<std::string(const StoredRow&)> csv, shown;

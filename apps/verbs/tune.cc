@@ -1,4 +1,4 @@
-// Verb `tune`: tunes a waveform on a real device, one closing after another.
+// Verb `tune`: tunes a waveform on a real device by repeated closings and measurements of the device.
 #include "verbs/tune.h"
 
 #include <fmt/format.h>
@@ -60,15 +60,15 @@ void set_sources(SceneFile& file, const TuneRequest& request, Actuator actuator)
   require_shots(request.format.value_or("csv"), prepare_and_choose(file, true), shaped);
 }
 
-/// A tuning and the files that it writes.
+/// The tuning of a waveform on a real device, and the files that the tuning writes.
 class Tuning {
  public:
   Tuning(const Common& common, const SceneFile& file, const TuneRequest& request);
 
-  /// Reads the closings in the log of an earlier run of this tuning.
+  /// Reads the closings of the device in the log of an earlier run of this tuning.
   void learn_log();
-  /// Fires shots until enough closings in a row are bounce-free, the largest number of closings is reached, or the laboratory
-  /// stops.
+  /// Closes the device until enough closings in a row are bounce-free, the largest number of closings is reached, or the
+  /// laboratory stops.
   TuningEnd run(TuningLab& lab, int closings);
   /// Writes the result files for the current state of the tuning.
   void write(TuningEnd end);

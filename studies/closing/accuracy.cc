@@ -12,12 +12,14 @@
 namespace softland {
 namespace {
 
-constexpr double enough_seconds = 0.03;     // least total time of the timed runs of one setting
-constexpr double reference_tighter = 1e-4;  // tolerance of the reference over the tightest tolerance of the study
+constexpr double enough_seconds = 0.03;     // least total time of the timed runs of one setting [s]
+constexpr double reference_tighter = 1e-4;  // ratio of the reference run's tolerance to the tightest tolerance of the study
 constexpr double reference_looser =
-    100;  // ratio of the tolerances of the second reference and the first, and of successive references
-constexpr double reference_growth = 2.5;  // ratio of the computing times of successive references, for a fifth-order method
-constexpr double told_apart = 9.9;        // smallest resolved error over the tolerance of the reference: 10, less rounding
+    100;  // ratio of the tolerances of the second reference run to the first, and of successive reference runs
+// Ratio of the computing times of successive reference runs, for an integrator of fifth order.
+constexpr double reference_growth = 2.5;
+// Ratio of the smallest error that the reference run resolves to the run's tolerance: 10, less rounding.
+constexpr double told_apart = 9.9;
 constexpr CloudOptions cloud_options{.runs = 8};
 
 bool touched(const Metrics& m) { return std::isfinite(m.initial_contact_time); }
@@ -38,7 +40,7 @@ class Study {
       }
     }
     const std::size_t tolerances = options.tolerances.size();
-    // Each of the two references and the cloud counts as one step of the progress.
+    // Each of the two reference runs, and the cloud of perturbed runs, counts as one step of the progress.
     all_ = 3 + (all_integrators.size() + other_points_.size()) * tolerances + other_modes_.size();
     found_.why_always_restarted = prepared.model.has_contact() ? why_always_restarted(prepared.model) : "there is no contact";
     if (found_.why_always_restarted.empty()) all_ += all_integrators.size() * tolerances;
@@ -92,14 +94,14 @@ class Study {
             .stop = options_.stop};
   }
 
-  // Repeats a setting until its computing time is well known; stops a run after `most_seconds`.
+  // Repeats the closing with one setting until its computing time is well known; stops a run after `most_seconds`.
   void measure(const Switch& model, AccuracyRow& row, int runs, double most_seconds) {
     if (stopped()) {
       row.missing = "interrupted";
       return;
     }
     ClosingOptions closing_options = closing(row);
-    constexpr int steps_per_look = 64;  // integrator steps between two readings of the clock
+    constexpr int steps_per_look = 64;  // number of integrator steps between two readings of the clock
     int steps = 0;
     bool cut = false;
     double start = 0;
@@ -130,14 +132,14 @@ class Study {
     row.errors = relative_errors(row.figures, found_.reference.figures, prepared_.scene.metrics);
   }
 
-  // Returns the figures of a run. A run without a contact law ends at first contact.
+  // Returns the figures of a run. A run of a switch without a contact law ends at first contact.
   [[nodiscard]] Metrics figures(const Trajectory& t) const {
     Metrics m = metrics(t, prepared_.scene.metrics);
     if (!prepared_.model.has_contact()) m.major_bounce_height = m.peak_contact_force = Metrics::unset;
     return m;
   }
 
-  // Measures a setting if the time limit of the study permits.
+  // Measures error and computing time of a setting if the time limit of the study permits.
   void try_out(const Switch& model, AccuracyRow& row) {
     if (seconds_since(start_) < options_.all_seconds) {
       measure(model, row, options_.runs, options_.most_seconds);
@@ -147,7 +149,7 @@ class Study {
     progress();
   }
 
-  // Measures a setting at every tolerance of the study.
+  // Measures error and computing time of a setting at every tolerance of the study.
   void sweep(const Switch& model, const AccuracyRow& given, std::vector<AccuracyRow>& rows) {
     bool cut = false;
     for (const double tolerance : options_.tolerances) {
@@ -168,7 +170,7 @@ class Study {
     }
   }
 
-  // Measures an integrator at every tolerance without restarts at make and break of contact.
+  // Measures error and computing time of an integrator that is not restarted at make and break of contact, at every tolerance.
   void go_through(const Switch& model, Integrator integrator) {
     if (!found_.why_always_restarted.empty()) return;
     AccuracyRow row = setting(integrator, own_points_);
@@ -192,8 +194,9 @@ class Study {
       if (found && (!touched(best.figures) || growth * best_seconds > seconds_left)) return;
       AccuracyRow next = setting(own_integrator_, points, planned * std::pow(reference_looser, steps));
       const double start = options_.clock();
-      constexpr double first_share =
-          1.0 / 3;  // share of the time for the first reference; the rest is for a reference with fewer quadrature points
+      // Share of the reference runs' time limit for the first reference; the rest is for a reference with fewer quadrature
+      // points.
+      constexpr double first_share = 1.0 / 3;
       measure(fine, next, 1, found ? seconds_left : first_share * seconds_left);
       const double seconds = seconds_since(start);
       seconds_left = std::max(0.0, seconds_left - seconds);
@@ -278,8 +281,8 @@ class Study {
     }
   }
 
-  // True if the errors of a row, and those of the following rows with the same setting and tighter tolerances, are within an
-  // accuracy.
+  // True if the errors of a row of the study, and those of the following rows with the same setting and tighter tolerances, are
+  // at most `accuracy`.
   [[nodiscard]] bool within(std::size_t index, double accuracy) const {
     const AccuracyRow& first = found_.rows[index];
     if (!first.missing.empty()) return false;
@@ -294,9 +297,9 @@ class Study {
   const PreparedScene& prepared_;
   const AccuracyOptions& options_;
   std::vector<Signal> signals_;
-  std::optional<double> own_points_;  // quadrature points per length that simulate() uses; none for a rigid plate
+  std::optional<double> own_points_;  // quadrature points per length of the beam that simulate() uses; none for a rigid plate
   std::vector<double> other_points_;
-  double tightest_ = 0;  // tightest tolerance whose errors the reference can resolve
+  double tightest_ = 0;  // tightest tolerance whose errors the reference run can resolve
   int own_modes_ = 0;
   Integrator own_integrator_ = Integrator::automatic;
   std::vector<int> other_modes_;

@@ -35,60 +35,67 @@ using FigureErrors = std::array<double, studied_figures.size()>;
 [[nodiscard]] FigureErrors relative_errors(const Metrics& value, const Metrics& reference, const MetricsOptions& options);
 
 struct AccuracyOptions {
-  std::vector<double> tolerances{1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9};  ///< tolerances from loose to tight
-  std::vector<double> points{6, 8, 12, 16, 24, 48};          ///< numbers of quadrature points per length, ascending
-  std::vector<double> wanted{1e-2, 1e-3, 1e-4, 1e-5, 1e-6};  ///< accuracies for which a setting is recommended
-  int runs = 7;                   ///< number of timed runs, whose median is reported; fewer if the runs take long
-  double most_seconds = 2;        ///< limit for one closing [s]; a longer closing is stopped, and tighter tolerances skipped
-  double reference_seconds = 10;  ///< limit for the reference runs [s], in order from loose to tight; later runs are skipped
-  double all_seconds = 15;        ///< limit for all other runs [s]; later settings are skipped
+  /// Relative tolerances of the integrator, from loose to tight.
+  std::vector<double> tolerances{1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9};
+  std::vector<double> points{6, 8, 12, 16, 24, 48};          ///< numbers of quadrature points per length of the beam, ascending
+  std::vector<double> wanted{1e-2, 1e-3, 1e-4, 1e-5, 1e-6};  ///< relative errors of figures for which a setting is recommended
+  int runs = 7;             ///< number of timed runs of a setting, whose median is reported; fewer if the runs take long
+  double most_seconds = 2;  ///< time limit for one closing [s]; a longer closing is stopped, and tighter tolerances are skipped
+  /// Time limit for the reference runs [s], in order from loose to tight; later runs are skipped.
+  double reference_seconds = 10;
+  double all_seconds = 15;  ///< time limit for all runs other than references [s]; later settings are skipped
   std::function<void(std::size_t done, std::size_t of)> on_progress = {};
   const std::atomic<bool>* stop = nullptr;
-  std::function<double()> clock = wall_clock;  ///< clock for the time limits [s]; read once in 64 steps of the integrator
+  /// Clock that measures the time limits [s]; it is read once in 64 steps of the integrator.
+  std::function<double()> clock = wall_clock;
 };
 
 /// One setting of the integrator and the discretisation, with its results.
 struct AccuracyRow {
   Integrator integrator = Integrator::automatic;
   double tolerance = 0;
-  std::optional<double> points_per_length = {};  ///< quadrature points per length; none for a rigid plate
+  std::optional<double> points_per_length = {};  ///< quadrature points per length of the beam; none for a rigid plate
   int modes = 0;
   bool restart = true;       ///< true if the integrator is restarted at make and break of contact
-  std::string missing = {};  ///< reason for missing figures; empty if the figures exist
+  std::string missing = {};  ///< reason why the run has no figures; empty if the figures exist
   Metrics figures = {};
-  FigureErrors errors = {};  ///< relative errors of the figures against the reference
+  FigureErrors errors = {};  ///< relative errors of the figures against the reference run
   Work work = {};
-  double seconds = Metrics::unset;  ///< median processor time of one closing
-  int runs = 0;                     ///< number of timed runs
+  double seconds = Metrics::unset;  ///< median processor time of one closing [s]
+  int runs = 0;                     ///< number of timed runs of this setting
 };
 
 /// The fastest setting whose errors are within an accuracy. Its errors at tighter tolerances must be within this accuracy as
 /// well, which excludes settings that are accurate by chance.
 struct Recommendation {
   double accuracy = 0;
-  std::optional<std::size_t> row;  ///< index of AccuracyStudy::rows; none if no simulated setting is accurate enough
+  /// Index in AccuracyStudy::rows of the recommended setting; none if no simulated setting is accurate enough.
+  std::optional<std::size_t> row;
 };
 
 struct AccuracyStudy {
   Status status = Status::not_run;  ///< status of the reference run; a scene without contact cannot be studied
-  std::string message = {};         ///< reason for a missing reference, or for a reference that is looser than planned
+  std::string message = {};         ///< reason for a missing reference run, or for one that is looser than planned
   AccuracyRow reference;
-  /// Relative difference of the figures between the reference and a second reference, with a hundred times the tolerance and
-  /// half the quadrature points. Errors below this difference are not resolved.
+  /// Relative difference of the figures between the reference run and a second reference run, with a hundred times the
+  /// tolerance and half the quadrature points. Errors below this difference are not resolved.
   FigureErrors resolution = {};
   /// Runs with the integrator that simulate() uses, for every tolerance and number of quadrature points, beginning with the
   /// number that simulate() uses. Other integrators run with this number of quadrature points only, for every tolerance.
   std::vector<AccuracyRow> rows;
-  std::vector<AccuracyRow> modes;    ///< runs with other numbers of modes, at the tightest tolerance
-  std::vector<AccuracyRow> through;  ///< runs without restart at make and break of contact, for every integrator and tolerance
-  std::string why_always_restarted;  ///< reason for missing runs without restart of the integrator
-  std::array<Spread, studied_figures.size()> cloud;      ///< spreads of the figures in studied_figures over perturbed runs
-  Spread permanent_contact_time, bounce_count;           ///< spreads of the named figures over the same runs as `cloud`
+  std::vector<AccuracyRow> modes;  ///< runs with other numbers of modes than the scene, at the tightest tolerance
+  /// Runs without restart of the integrator at make and break of contact, for every integrator and tolerance.
+  std::vector<AccuracyRow> through;
+  std::string why_always_restarted;  ///< reason why there are no runs without restart of the integrator
+  /// Ranges of the figures in studied_figures over runs with imperceptibly perturbed drives.
+  std::array<Spread, studied_figures.size()> cloud;
+  Spread permanent_contact_time, bounce_count;  ///< ranges of the two named figures over the same perturbed runs as `cloud`
   std::array<bool, studied_figures.size()> conditioned;  ///< for each of studied_figures, true if it is well-conditioned, so
                                                          ///< that its error is meaningful
   std::vector<Recommendation> recommendations;
 
-  /// Returns the largest error of the well-conditioned figures; NaN if the row lacks one of these figures.
+  /// Returns the largest error of the well-conditioned figures in a row of the study; NaN if the row lacks one of these
+  /// figures.
   [[nodiscard]] double worst_error(const AccuracyRow& row) const;
 };
 

@@ -22,8 +22,8 @@ static_assert(is_complete<actuators>());
 [[nodiscard]] std::string searched_electrode(const Device& device);
 /// Returns the index of searched_electrode() in Switch::drives().
 [[nodiscard]] std::size_t searched_drive(const Device& device);
-/// Returns the electrodes on the far side whose driver has limits: a search uses these electrodes as brakes. Other electrodes
-/// on the far side keep the scene's waveform.
+/// Returns the electrodes on the far side (away from the contact) whose voltage source has limits: a search uses these
+/// electrodes as brakes. Other electrodes on the far side keep the scene's waveform.
 [[nodiscard]] std::vector<std::string> braking_electrodes(const PreparedScene& prepared);
 
 }  // namespace softland

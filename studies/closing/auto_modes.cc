@@ -20,8 +20,8 @@
 namespace softland {
 namespace {
 
-constexpr double run_tolerance = 1e-6;  // tolerance of the integrator: errors far below auto_modes_tolerance
-constexpr double least_share = 0.01;    // share of the scale of a closing below which a figure counts as zero
+constexpr double run_tolerance = 1e-6;  // relative tolerance of the integrator, whose errors are far below auto_modes_tolerance
+constexpr double least_share = 0.01;    // share of a figure's scale in a closing below which the figure counts as zero
 
 struct Judged {
   double value, scale;
@@ -45,8 +45,8 @@ ElectrodePullIn pull_in_to_be_judged(const Switch& model, std::size_t electrode,
 Judgement judged(const SceneFile& file, int modes, const Progress& progress) {
   SceneFile with = file;
   with.assign("structure.modes", modes);
-  with.assign("simulate.effects",
-              std::string("all"));  // every number of modes is compared with all effects; effects are left out later
+  // Numbers of modes are compared with all physical effects of the scene; effects are left out later.
+  with.assign("simulate.effects", std::string("all"));
   const PreparedScene p = prepare(with, false, progress, pull_in_to_be_judged);
   const double omega = p.model.basis().angular_frequencies()[0], gap = p.scene.device.contact_gap();
   const Trajectory t =
@@ -75,7 +75,8 @@ Judgement judged(const SceneFile& file, int modes, const Progress& progress) {
   return {.figures = std::move(list), .scene = p};
 }
 
-// Returns the largest relative change of any figure; 1 for a figure that exists in one of the two closings only.
+// Returns the largest relative change of any figure between two closings; 1 for a figure that exists in one of the two closings
+// only.
 double change(const std::vector<Judged>& from, const std::vector<Judged>& to) {
   double most = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {
@@ -85,7 +86,8 @@ double change(const std::vector<Judged>& from, const std::vector<Judged>& to) {
   return most;
 }
 
-// Returns the largest relative change of the static voltages of the electrodes with twice and four times as many modes.
+// Returns the largest relative change of the electrodes' static voltages (pull-in, release, collapse) with twice and four times
+// as many modes.
 double statics_moved(const Scene& scene, int modes) {
   const Switch own = resolved_switch(scene.device, scene.simulate.accuracy, modes).model;
   const ModeLadder ladder(scene, own);
@@ -131,8 +133,8 @@ AutoModes choose_modes(const SceneFile& file, const Progress& progress) {
   };
   AutoModes found;
   for (int modes = 1; modes + further <= most_modes; ++modes) {
-    // Statics are cheap: skip the closings with a number of modes for which static voltages still change, except for the last
-    // number of modes.
+    // Static voltages take little time to compute: skip the closings with a number of modes for which the static voltages still
+    // change, except for the last number of modes.
     found = {.modes = modes, .moved = statics_moved(scene, modes)};
     if (!found.settled() && modes + further < most_modes) continue;
     const Judgement& own = with(modes);

@@ -24,15 +24,15 @@ inline constexpr double auto_modes_tolerance = 0.03;
 
 struct AutoModes {
   int modes = 0;
-  bool touches = true;  ///< true if the closing reaches contact in its window
-  double moved = 0;     ///< largest relative change of a figure with further modes
+  bool touches = true;  ///< true if the switch reaches its contact in the simulated time
+  double moved = 0;     ///< largest relative change of a figure when the model has further modes
   [[nodiscard]] bool settled() const { return moved <= auto_modes_tolerance; }
-  /// Returns a sentence about the chosen number, for results.
+  /// Returns a sentence about the chosen number of modes, for results.
   [[nodiscard]] std::string note() const;
 };
 
-/// Returns the smallest number of modes that suffices. If more modes change the figures at every number, returns the largest
-/// number that can be compared with more modes. Throws the exceptions of prepare().
+/// Returns the smallest number of modes that suffices for the closing of a scene. If more modes change the figures at every
+/// number, returns the largest number that can be compared with more modes. Throws the exceptions of prepare().
 [[nodiscard]] AutoModes choose_modes(const SceneFile& file, const Progress& progress = {});
 
 }  // namespace softland

@@ -13,14 +13,14 @@
 namespace softland {
 namespace {
 
-constexpr double found_to = 1e-5;  // relative precision of a voltage with more modes
+constexpr double found_to = 1e-5;  // relative precision to which a static voltage of a switch with more modes is searched
 
-// Returns the limit of values as the number of modes grows. Values at three successively doubled numbers of modes are
-// extrapolated as a geometric series (Aitken). The last value is the limit if it hardly differs from the previous value, or if
-// it belongs to the largest number of modes and changed little.
+// Returns the limit of a voltage or eigenvalue as the number of modes grows. Values at three successively doubled numbers of
+// modes are extrapolated as a geometric series (Aitken). The last value is the limit if it hardly differs from the previous
+// value, or if it belongs to the largest number of modes and changed little.
 double extrapolated(const std::map<int, double>& values) {
-  constexpr double rounding = 3 * found_to, fastest = 0.5,
-                   left = 0.02;  // upper limits of the relative changes of the last value, and of the ratio of changes
+  // Largest relative changes of the last value, and largest ratio of successive changes, at which values converge.
+  constexpr double rounding = 3 * found_to, fastest = 0.5, left = 0.02;
   if (values.size() < 2) return std::nan("");
   const auto last = std::prev(values.end()), before = std::prev(last);
   const double change = last->second - before->second, size = std::abs(last->second);
@@ -35,11 +35,12 @@ double extrapolated(const std::map<int, double>& values) {
 // Rounds to ten digits: with many modes further digits are rounding errors, which depend on how a program is linked.
 double to_ten_digits(double value) { return std::isfinite(value) ? std::stod(fmt::format("{:.9e}", value)) : value; }
 
-// Computes a value by the number of modes: calls find(switch) for each switch of the ladder, and for the switch with the most
-// modes if the last value still changes much.
+// Computes a value by the number of modes: calls find(switch) for each switch of the ladder (the scene's switch with rising
+// numbers of modes), and for the switch with the most modes if the last value still changes much.
 template <class Find>
 ByModes value_by_modes(const ModeLadder& ladder, Find&& find) {
-  constexpr double much = 5e-3;  // relative change of the last value from which on the finest switch is used
+  // Relative change of the last value from which on the switch with the most modes is computed too.
+  constexpr double much = 5e-3;
   std::map<int, double> values;
   double change = 0, last = std::nan("");
   const auto add = [&](const Switch& model) {
@@ -52,7 +53,7 @@ ByModes value_by_modes(const ModeLadder& ladder, Find&& find) {
   return by_modes(std::move(values));
 }
 
-// Extends an equilibrium of fewer modes by zeros, as the starting point for a switch with more modes.
+// Extends an equilibrium of a switch with fewer modes by zeros, as the starting point for a switch with more modes.
 ClosedEquilibrium with_modes_of(ClosedEquilibrium closed, const Switch& model) {
   closed.q.conservativeResizeLike(Eigen::VectorXd::Zero(model.modes()));
   return closed;
@@ -173,7 +174,7 @@ ByModes static_pull_in_by_modes(const ModeLadder& ladder, const Scene& scene, st
 }
 
 ByModes pulled_through_by_modes(const ModeLadder& ladder, std::size_t electrode, std::vector<double> volts, double own) {
-  constexpr double below = 0.95;  // first voltage to try, over the collapse voltage with fewer modes
+  constexpr double below = 0.95;  // ratio of the first tried voltage to the collapse voltage with fewer modes
   std::optional<ClosedEquilibrium> near;
   double found = own;
   return value_by_modes(ladder, [&](const Switch& model) {

@@ -19,12 +19,12 @@
 
 namespace softland {
 
-/// Smallest relative change of a voltage by more modes that is reported, together with the converged voltage.
+/// Smallest relative change of a static voltage by more modes that is reported, together with the converged voltage.
 inline constexpr double mode_shift_worth_telling = 0.01;
 
 /// A number, such as a voltage or an eigenvalue, computed with several numbers of modes.
 struct ByModes {
-  std::map<int, double> values = {};  ///< values by number of modes; NaN: no value
+  std::map<int, double> values = {};  ///< values of the voltage or eigenvalue, by number of modes; NaN: no value
   /// Limit of the values for further modes: by Aitken's extrapolation of a geometric series, or for statics the value with the
   /// most modes. NaN if the values do not converge.
   double converged = std::numeric_limits<double>::quiet_NaN();
@@ -33,7 +33,7 @@ struct ByModes {
   [[nodiscard]] double moved() const;
   [[nodiscard]] bool is_worth_telling() const;
 };
-/// Returns the values with their limit, extrapolated by the number of modes.
+/// Returns values by number of modes together with their extrapolated limit.
 [[nodiscard]] ByModes by_modes(std::map<int, double> values);
 
 /// The switches of a scene with the scene's own modes and with more modes. A plate and a table of modes have no further modes.
@@ -42,14 +42,14 @@ class ModeLadder {
   /// `own` is the switch of the scene, with the scene's modes.
   ModeLadder(const Scene& scene, const Switch& own);
   explicit ModeLadder(const PreparedScene& prepared) : ModeLadder(prepared.scene, prepared.model) {}
-  /// True if more modes than the scene's are possible.
+  /// True if the structure has more modes than the scene uses.
   [[nodiscard]] bool exists() const { return !richer_.empty(); }
   /// Returns the switches in rising number of modes, that of the scene first. The pointers are valid as long as `this`, the
   /// scene and its switch exist.
   [[nodiscard]] std::vector<const Switch*> switches() const;
   /// Returns the switch with most_static_modes, built at the first call.
   [[nodiscard]] const Switch& finest() const;
-  /// Returns the switch with this number of modes, at most most_static_modes.
+  /// Returns the switch of the scene with this number of modes, at most most_static_modes.
   [[nodiscard]] Switch with(int modes) const;
 
  private:
@@ -67,9 +67,11 @@ class ModeLadder {
 /// Stability of equilibria with several numbers of modes, by the smallest eigenvalues. A missing equilibrium (NaN) is not
 /// stable.
 struct StabilityByModes {
-  ByModes eigenvalues;         ///< smallest eigenvalue of each equilibrium [rad^2/s^2]
-  std::optional<bool> stable;  ///< true if stable with every number of modes that is large enough to decide, and in the limit
-  bool flips = false;          ///< true if stable with some of the computed numbers of modes and unstable with others
+  ByModes eigenvalues;  ///< smallest eigenvalue of the equilibrium, by number of modes [rad^2/s^2]
+  /// True if the equilibrium is stable with every number of modes that is large enough to decide, and in the limit.
+  std::optional<bool> stable;
+  /// True if the equilibrium is stable with some of the computed numbers of modes and unstable with others.
+  bool flips = false;
 };
 [[nodiscard]] StabilityByModes stability(const ModeLadder& ladder, std::span<const std::optional<ClosedEquilibrium>> closed);
 /// Returns the stability of the open equilibrium under constant voltages.
@@ -77,26 +79,29 @@ struct StabilityByModes {
 
 /// Static voltages of an electrode with several numbers of modes, under the bias of the other drives (bias_of()) [V].
 struct VoltagesByModes {
-  ByModes static_pull_in, release, pulled_through;  ///< without values if there is no contact
+  /// Voltages by number of modes; `pulled_through` is the collapse voltage; without values if the switch has no contact.
+  ByModes static_pull_in, release, pulled_through;
 };
 /// Returns the pull-in, release and collapse voltages of an electrode. `pulled_through` is the collapse voltage of the scene's
 /// own switch, above its release voltage.
 [[nodiscard]] VoltagesByModes voltages_by_modes(const ModeLadder& ladder, const Scene& scene, std::size_t electrode,
                                                 double pulled_through);
 [[nodiscard]] ByModes static_pull_in_by_modes(const ModeLadder& ladder, const Scene& scene, std::size_t electrode);
-/// Returns pull_through_voltage() with several numbers of modes; `own` is the value of the scene's switch, NaN without one [V].
+/// Returns the collapse voltage pull_through_voltage() with several numbers of modes [V]; `own` is the voltage of the scene's
+/// switch, NaN without one.
 [[nodiscard]] ByModes pulled_through_by_modes(const ModeLadder& ladder, std::size_t electrode, std::vector<double> volts,
                                               double own);
 
-/// Returns the capacitance of the electrode that closes the switch, in the closed state under these voltages [F], for a switch
-/// that closes onto a dielectric. Adds a value with the most modes that a closing uses, if more modes change the capacitance by
-/// at least mode_shift_worth_telling.
+/// Returns the capacitance of the electrode that closes the switch, in the closed state under these drive voltages [F], for a
+/// switch that closes onto a dielectric. Adds a value with the most modes that a closing uses, if more modes change the
+/// capacitance by at least mode_shift_worth_telling.
 [[nodiscard]] ByModes closed_capacitance_by_modes(const ModeLadder& ladder, std::span<const double> volts);
 /// Returns the smallest computed number of modes from which on values stay within mode_shift_worth_telling of the limit. None
 /// if the value with the most modes differs by more, or if the values do not converge.
 [[nodiscard]] std::optional<int> modes_needed(const ByModes& found);
 
-/// Returns the change of a value by more modes as text, with the limit if the change is reported: "−6.1 %, to 142.7 V".
+/// Returns the change of a voltage or other value by more modes as text, with the limit if the change is reported: "−6.1 %, to
+/// 142.7 V".
 [[nodiscard]] std::string shift_prose(const ByModes& value, std::string_view unit = "V");
 
 /// Returns warnings about changes by more modes in the static pull-in voltages and in the capacitance of the closed state.

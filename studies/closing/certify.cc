@@ -14,16 +14,18 @@
 namespace softland {
 namespace {
 
-constexpr double shared = 0.01;  // error that both runs share, relative to the figure, over the tolerance
-constexpr double parted = 0.1;   // relative difference of a rebound's height above which two runs have diverged
+// Error that a run and its more accurate judge share, as a share of the figure, divided by the tolerance.
+constexpr double shared = 0.01;
+constexpr double parted = 0.1;  // relative difference of a rebound's height above which two runs have diverged
 
-// True if the last digits of the drives change a figure visibly, or decide its existence, in the closing or in the better run.
+// True if changes in the last digits of the drive voltages change a figure visibly, or decide its existence, in the closing or
+// in the more accurate run `better`.
 bool ill_conditioned(const Figure& figure, const std::vector<Metrics>& cloud, const Metrics& own, const Metrics& better,
                      const MetricsOptions& options) {
   std::vector<double> values;
   for (const Metrics& m : cloud) values.push_back(figure.counted(m, options));
-  // A loose tolerance changes the values of `own` and `better` by its error, which is no sign of ill-conditioning: only their
-  // existence counts.
+  // A loose tolerance changes the values of a figure in the runs `own` and `better` by its error, which is no sign of
+  // ill-conditioning: only the existence of the figure in both runs counts.
   const bool own_has = std::isfinite(figure.value(own)), better_has = std::isfinite(figure.value(better));
   const auto have = std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); }) + own_has + better_has;
   if (have == 0 || cloud.empty()) return false;
@@ -41,7 +43,7 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
     const auto at = std::find_if(electrodes.begin(), electrodes.end(), [&](const Electrode& e) { return e.name == name; });
     const auto k = static_cast<std::size_t>(at - electrodes.begin());
     const auto known = prepared.pull_in.find(name);
-    if (known == prepared.pull_in.end()) continue;  // a pull-in voltage without an entry is a unit of limits only
+    if (known == prepared.pull_in.end()) continue;  // a pull-in voltage without an entry is a unit of voltage limits only
     const Switch model(written.device, quadrature);
     const std::vector<double> bias = bias_of(written, k);
     const StaticPullIn statically = static_pull_in(model, k, bias);
@@ -57,9 +59,10 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
       PreparedScene moved = prepared;
       try {
         moved.drives = written.drives(units).of(prepared.drive_names());
-        for (std::size_t i = 0; i < moved.drives.size(); ++i)  // the capacitance that loads a source stays as in `prepared`
-          moved.drives[i].source.load = prepared.drives[i].source.load;
-      } catch (const InvalidInput&) {  // no figures: a drive is at a limit of its driver, or no better pull-in voltage exists
+        // The capacitance that loads a voltage source stays as in `prepared`.
+        for (std::size_t i = 0; i < moved.drives.size(); ++i) moved.drives[i].source.load = prepared.drives[i].source.load;
+        // No figures: a drive is at a limit of its voltage source, or no better pull-in voltage exists.
+      } catch (const InvalidInput&) {
         found.emplace_back();
         continue;
       }
@@ -82,7 +85,7 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
 // The rebounds of one run, with the impact velocity before each rebound.
 struct ReboundSequence {
   std::vector<Rebound> rebounds;
-  std::vector<double> impacts;  // impact velocity of the touch before each rebound [m/s]
+  std::vector<double> impacts;  // impact velocity of the touch of the contact before each rebound [m/s]
 };
 
 ReboundSequence rebound_sequence(const Trajectory& run) {
@@ -110,7 +113,7 @@ std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, 
                           .impact_velocity = first.impacts[k],
                           .at_threshold = at_threshold};
   };
-  // The touch with the smallest impact velocity is assumed to be the touch that tiny changes add or remove.
+  // The touch of the contact with the smallest impact velocity is assumed to be the one that tiny changes add or remove.
   const auto gentlest = [&](std::size_t count) {
     const auto found = std::min_element(first.impacts.begin(), first.impacts.begin() + static_cast<std::ptrdiff_t>(count));
     return named(static_cast<std::size_t>(found - first.impacts.begin()), false);
@@ -142,7 +145,7 @@ Closing certify(const PreparedScene& prepared, const Progress& progress, int job
     return c;
   }
   const std::vector<Signal> signals = prepared.signals();
-  // The more accurate of the run and its judge has the tighter tolerance.
+  // The judge is a second run of the closing. The more accurate of the two runs has the tighter tolerance.
   const bool judge_is_better = c.judge->tolerance < c.tolerance;
   const SwitchOptions& quadrature = judge_is_better ? c.judge->quadrature : c.quadrature;
   const Switch fine(prepared.scene.device, quadrature);
@@ -165,7 +168,7 @@ Closing certify(const PreparedScene& prepared, const Progress& progress, int job
   std::erase_if(cloud, [](const Trajectory& t) { return !came_to_its_end(t); });
   std::vector<Metrics> runs;
   for (Trajectory& t : cloud) {
-    // The perturbations are too small to change the closed equilibrium.
+    // The perturbations of the drive voltages are too small to change the closed equilibrium.
     t.hold_force = c.trajectory.hold_force;
     t.is_held = c.trajectory.is_held;
     t.hold_capacitance = c.trajectory.hold_capacitance;
@@ -179,7 +182,8 @@ Closing certify(const PreparedScene& prepared, const Progress& progress, int job
     const double own = figure.value(c.metrics), other = figure.value(better);
     double error = error_safety * std::abs(own - other) + shared * c.tolerance * std::abs(own);
     const double unmoved = judge_is_better ? other : own;
-    for (std::size_t i = 0; i + 1 < moved.size(); i += 2) {  // figures with a pull-in voltage increased, then decreased
+    // Pairs of runs: the figures with a pull-in voltage increased, then decreased.
+    for (std::size_t i = 0; i + 1 < moved.size(); i += 2) {
       error += std::fmax(std::abs(figure.value(moved[i]) - unmoved), std::abs(figure.value(moved[i + 1]) - unmoved));
     }
     if (ill_conditioned(figure, runs, c.metrics, better, prepared.scene.metrics)) {

@@ -18,11 +18,12 @@
 
 namespace softland {
 
-/// The first rebound at which perturbed runs diverge. Before this rebound all runs have the same rebounds.
+/// The first rebound at which runs with imperceptibly perturbed drives diverge. Before this rebound all runs have the same
+/// rebounds.
 struct GrazingRebound {
-  int number = 0;              ///< number of the rebound among all rebounds of the first run, counted from 1
-  double time = 0;             ///< beginning of the rebound [s]
-  double height = 0;           ///< height of the rebound in the first run [m]
+  int number = 0;              ///< number of the rebound among all rebounds of the unperturbed run, counted from 1
+  double time = 0;             ///< time at which the rebound begins [s]
+  double height = 0;           ///< height of the rebound in the unperturbed run [m]
   double impact_velocity = 0;  ///< impact velocity of the touch before the rebound [m/s]
   bool at_threshold = false;   ///< true if the rebound is significant in some runs only; false if the touch before the rebound
                                ///< has the smallest impact velocity so far
@@ -35,14 +36,15 @@ struct IllConditioned {
 
 struct Certificate {
   std::vector<IllConditioned> ill_conditioned;
-  std::optional<GrazingRebound> grazing;  ///< rebound at which the runs diverge; none if they do not diverge at a rebound
+  /// Rebound at which the perturbed runs diverge; none if they do not diverge at a rebound.
+  std::optional<GrazingRebound> grazing;
   int runs = 0;
 };
 
-/// Ratio of the stated error of a figure to the difference between a run and its more accurate judge.
+/// Ratio of the stated error of a figure to the difference between a run and its judge, a more accurate run.
 inline constexpr double error_safety = 3;
 
-/// Returns the first rebound in which the runs differ, with the cause of the difference; none if the runs do not differ.
+/// Returns the first rebound in which the perturbed runs differ, with the cause of the difference; none if they do not differ.
 [[nodiscard]] std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, const MetricsOptions& options);
 
 /// Runs the scene's own waveforms with simulate() and certifies the figures, if the run and its more accurate judge are

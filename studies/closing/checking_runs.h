@@ -9,22 +9,22 @@
 
 namespace softland {
 
-/// Tolerance of the integrator in a run that confirms another run.
+/// Relative tolerance of the integrator in a run that confirms another run.
 inline constexpr double tight_tolerance = 1e-9;
 
-/// The property that differs in a run that confirms a closing: the integrator, the number of modes or the gas law.
+/// The property that differs in a repeated run that confirms a closing: the integrator, the number of modes or the gas law.
 enum class Varied { integrator, modes, gas };
 
-/// A switch and a tolerance with which a closing is simulated again.
+/// A switch and a relative tolerance of the integrator with which a closing is simulated again.
 struct OtherWay {
-  std::string name;  ///< name of the setting: "tolerance 1e-9", "modes 6", "gas veijola"
+  std::string name;  ///< name of the changed setting: "tolerance 1e-9", "modes 6", "gas veijola"
   Varied varied = Varied::integrator;
   Device device;
   double tolerance = 0;
 };
 
 struct CheckingRun {
-  std::string name;  ///< name of the setting: OtherWay::name
+  std::string name;  ///< name of the changed setting: OtherWay::name
   Varied varied = Varied::integrator;
   Metrics metrics;
 };
@@ -41,9 +41,10 @@ struct CheckingRun {
 /// that are impossible for the scene. None if the gas is a linear damper, or if there is no gas.
 [[nodiscard]] std::vector<OtherWay> other_gas_laws(const PreparedScene& closing);
 
-/// Simulates the closing with the switch and the tolerance of `way`.
+/// Simulates the closing again with the switch and the tolerance of `way`.
 [[nodiscard]] CheckingRun simulated(const PreparedScene& closing, const OtherWay& way);
-/// Simulates the closing with every other setting. A run is left out if it leaves the limits of its gas law.
+/// Simulates the closing with every other numerical setting and gas law. A run is left out if it leaves the limits of its gas
+/// law.
 [[nodiscard]] std::vector<CheckingRun> run_checks(const PreparedScene& closing);
 
 }  // namespace softland

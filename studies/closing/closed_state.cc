@@ -46,7 +46,8 @@ ClosedRange closed_range(const Switch& model, std::size_t electrode, std::vector
 namespace {
 
 bool is_equilibrium(const Switch& model, const Eigen::VectorXd& q, const std::vector<double>& levels) {
-  constexpr double rounding = 1e-9;  // force that counts as zero, over the force that bends the beam by the contact gap
+  // Ratio of a contact force that counts as zero to the force that bends the beam by the contact gap.
+  constexpr double rounding = 1e-9;
   const double left = static_force(model, q, levels).cwiseQuotient(model.basis().angular_frequencies()).squaredNorm();
   return left <= rounding * rounding * model.bending_energy();
 }
@@ -74,7 +75,7 @@ std::string unstable_rest(const Switch& model, const std::vector<Signal>& signal
 
 namespace {
 
-// Returns values by number of modes as text: "9.97e10 rad^2/s^2 with 5 modes, -6.9e10 with 10, none with 20".
+// Returns an eigenvalue or voltage by number of modes as text: "9.97e10 rad^2/s^2 with 5 modes, -6.9e10 with 10, none with 20".
 std::string by_modes_prose(const ByModes& found, std::string_view unit, int digits) {
   std::string words;
   for (const auto& [modes, value] : found.values)

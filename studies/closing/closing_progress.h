@@ -1,4 +1,4 @@
-// Closings that report their progress.
+// Observers of closings that report the progress to a listener.
 #pragma once
 
 #include <algorithm>

@@ -16,28 +16,31 @@ namespace softland {
 
 struct CloudOptions {
   int runs = 16;
-  double smallest = 1e-9, largest = 1e-7;  ///< relative changes of the drives' levels, of either sign, in steps of a decade
+  /// Smallest and largest relative change of the drives' levels, of either sign, in steps of a decade.
+  double smallest = 1e-9, largest = 1e-7;
   std::uint64_t seed = 1;
-  int jobs = 1;  ///< number of threads; does not change the runs
+  int jobs = 1;  ///< number of threads for the perturbed runs; does not change the runs
 };
 
-/// Returns the runs in order; they depend on the arguments alone. If `closing.stop` ends a run, that run and all later runs are
-/// left out. If jobs > 1, several threads call the observer of `closing` at once, but only one thread at a time calls
-/// `progress`.
+/// Returns the perturbed runs in order; they depend on the arguments alone. If `closing.stop` ends a run, that run and all
+/// later runs are left out. If jobs > 1, several threads call the observer of `closing` at once, but only one thread at a time
+/// calls `progress`.
 [[nodiscard]] std::vector<Trajectory> perturbed_closings(const Switch& model, std::span<const Signal> drives,
                                                          const ClosingOptions& closing, const CloudOptions& options = {},
                                                          const Progress& progress = {});
 
-/// Range of a figure over the runs in which the figure exists; NaN if it exists in no run.
+/// Range of a figure over the perturbed runs (a cloud) in which the figure exists; NaN if it exists in no run.
 struct Spread {
   double low = Metrics::unset, median = Metrics::unset, high = Metrics::unset;
   int runs = 0;
 };
 [[nodiscard]] Spread spread(std::vector<double> values);
 
-/// Relative range over a cloud above which a figure is ill-conditioned: a thousand times the largest perturbation.
+/// Relative range of a figure over perturbed runs above which the figure is ill-conditioned: a thousand times the largest
+/// perturbation.
 inline constexpr double ill_conditioned_range = 1e-4;
-/// True if the last digits of the drives change a figure visibly; `values` are values by Figure::counted().
+/// True if changes in the last digits of the drive voltages change a figure visibly; `values` is the range of the values by
+/// Figure::counted().
 [[nodiscard]] bool ill_conditioned(const Spread& values);
 
 }  // namespace softland

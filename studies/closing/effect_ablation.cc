@@ -16,7 +16,7 @@
 namespace softland {
 namespace {
 
-// Returns the force on the first mode of the beam at rest, with 1 V on one electrode.
+// Returns the force on the first mode of the beam at rest, with 1 V on one electrode [N].
 double force_at_rest(const Device& described, std::size_t electrode) {
   const Switch model(described);
   Switch::Workspace work = model.workspace();
@@ -36,7 +36,8 @@ BoundedClosing closing(const PreparedScene& p, const Progress& progress, const C
   return bounded_closing(p, p.model, bound, progress, "closings without each effect", done, share);
 }
 
-// Returns the effect whose magnitude is the shift of the contact point's rest position between these two devices.
+// Returns an effect of the model whose magnitude is the shift of the contact point's rest position between the device with and
+// without the effect.
 OmissibleEffect rest_effect(const std::string& effect, const Device& d, const Device& without,
                             std::optional<SceneValue> instead) {
   const double rise = d.contact_gap() - without.contact_gap();
@@ -65,7 +66,7 @@ void add_omissible_rest_shape(const Device& d, std::vector<OmissibleEffect>& lis
   }
 }
 
-// Adds the parts of the structure that can be omitted: compliant anchors become clamps, sections with holes become solid.
+// Adds the parts of the structure that a model can omit: compliant anchors become clamps, sections with holes become solid.
 void add_omissible_parts(const Device& d, std::vector<OmissibleEffect>& list) {
   const Beam& beam = part_of<Beam>(d.structure);
   const auto add_anchor = [&](const char* key, std::optional<Anchor> Beam::*end) {
@@ -163,8 +164,8 @@ void add_omissible_fringing(const PreparedScene& prepared, std::vector<Omissible
   }
 }
 
-// Adds the dielectrics that can be omitted. A dielectric on which the beam closes stays; only the roughness of its face can be
-// omitted.
+// Adds the dielectrics that a model can omit. A dielectric on which the beam closes stays; only the roughness of its face can
+// be omitted.
 void add_omissible_dielectrics(const PreparedScene& prepared, std::vector<OmissibleEffect>& list) {
   const Device& d = prepared.scene.device;
   for (const Electrode& e : d.electrodes) {
@@ -222,8 +223,8 @@ void add_omissible_contact(const PreparedScene& prepared, std::vector<OmissibleE
   const Contact& contact = d.contacts.front();
   const auto section = [](const Contact& c) { return c.name.empty() ? std::string("contact") : "contact." + c.name; };
   if (contact.distribution == ContactDistribution::pad) {
-    const double rise =
-        1.5 * d.contact_gap() / d.structure.length * contact.pad_length;  // for a uniform beam bent by a force at its end
+    // The slope at the contact, times the pad length, for a uniform beam bent by a force at its end.
+    const double rise = 1.5 * d.contact_gap() / d.structure.length * contact.pad_length;
     list.push_back({.effect = section(contact) + ".distribution",
                     .magnitude = {.name = "tilt of the pad", .unit = "m", .value = rise},
                     .group = {.name = "over the interference", .value = rise / prepared.model.penetration_scale()},
@@ -279,7 +280,7 @@ PreparedScene copy_without(const PreparedScene& prepared, const std::vector<Omis
     const bool inside = std::any_of(effects.begin(), effects.end(),
                                     [&](const OmissibleEffect& other) { return e.effect.starts_with(other.effect + "."); });
     if (inside) continue;
-    file.erase(fmt::format("spread.\"{}\"", e.effect));  // the [spread] of a removed key has nothing to vary
+    file.erase(fmt::format("spread.\"{}\"", e.effect));  // [spread] has nothing to vary under a removed key
     if (e.instead) {
       file.assign(e.effect, *e.instead);
     } else {
@@ -289,14 +290,14 @@ PreparedScene copy_without(const PreparedScene& prepared, const std::vector<Omis
   const auto drops_contact = [&](const OmissibleEffect& e) {
     return std::ranges::any_of(prepared.scene.device.contacts, [&](const Contact& c) { return e.effect == "contact." + c.name; });
   };
-  // If one contact remains, it makes the connection.
+  // If one contact remains after the others are left out, it makes the connection alone.
   const auto left =
       prepared.scene.device.contacts.size() - static_cast<std::size_t>(std::ranges::count_if(effects, drops_contact));
   if (left < 2) file.erase("metrics.closed");
   PreparedScene p = prepare(file);
   p.scene.warnings = prepared.scene.warnings;
   p.pull_in = prepared.pull_in;
-  p.drives = prepared.drives.of(p.drive_names());  // the loads of the sources stay as in `prepared`
+  p.drives = prepared.drives.of(p.drive_names());  // the capacitive loads of the voltage sources stay as in `prepared`
   p.duration = prepared.duration;
   p.held_from = prepared.held_from;
   p.tolerance = prepared.tolerance;
@@ -313,7 +314,7 @@ double influence(const Metrics& own, const Metrics& other, const MetricsOptions&
 
 BoundedClosing bounded_closing(const PreparedScene& prepared, const Switch& model, const ClosingBound& bound,
                                const Progress& progress, const std::string& what, double done, double share) {
-  constexpr long steps_per_look = 64;  // integrator steps between two readings of the clock
+  constexpr long steps_per_look = 64;  // number of integrator steps between two readings of the clock
   BoundedClosing found;
   const auto tell = observer(progress, what, prepared.duration, done, share);
   const double start = processor_seconds();

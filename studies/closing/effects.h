@@ -1,5 +1,5 @@
 // Compares the effect and the cost of laws in a scene. The closing of the scene is repeated without each effect in turn, and
-// with each other gas law. The voltages stay the same, so that only the law differs.
+// with each other gas law. The voltages stay the same, so that only the law of the omitted or replaced effect differs.
 #pragma once
 
 #include <optional>
@@ -13,18 +13,19 @@
 
 namespace softland {
 
-/// The results of the scene with one law in place of the scene's own.
+/// The results of a scene's closing with one law in place of the scene's own law.
 struct Effect {
   std::string section;    ///< section of the scene that describes the law: "gas"
-  std::string choice;     ///< name of the law; "none" if the effect is left out
+  std::string choice;     ///< name of the law; "none" if the physical effect is left out
   bool in_scene = false;  ///< true for the law of the scene itself
   NamedNumber magnitude;
-  NamedNumber group;                  ///< the dimensionless group that decides whether the law is valid
-  Metrics metrics;                    ///< figures of this closing
-  double rhs_seconds = 0;             ///< time per evaluation of the right-hand side along this closing [s]
-  std::vector<std::string> warnings;  ///< warnings of this closing
+  NamedNumber group;  ///< the dimensionless group that decides whether the law is valid
+  Metrics metrics;    ///< figures of the closing with this law
+  /// Computing time per evaluation of the right-hand side of the equations of motion along this closing [s].
+  double rhs_seconds = 0;
+  std::vector<std::string> warnings;  ///< warnings of the closing with this law
   std::optional<double> end =
-      {};  ///< time at which the bound ended the closing [s] (BoundedClosing); none for the scene's own closing
+      {};  ///< time at which the bound on the cost ended the closing [s] (BoundedClosing); none for the scene's own closing
 };
 
 /// A law that cannot replace the law of the scene in the comparison.
@@ -35,12 +36,13 @@ struct NotCompared {
 
 struct Effects {
   std::vector<Effect> list;               ///< results of the closing with each gas law
-  std::vector<NotCompared> not_compared;  ///< laws that are impossible for the scene
+  std::vector<NotCompared> not_compared;  ///< gas laws that are impossible for the scene
   std::vector<EffectAblation> ablations;
-  double window = 0;         ///< window of every closing [s]
-  bool interrupted = false;  ///< true if interrupted: both lists then have complete closings only, at least the scene's own
+  double window = 0;  ///< simulated time of every closing [s]
+  /// True if interrupted: `list` and `not_compared` then hold complete closings only, at least the scene's own.
+  bool interrupted = false;
 
-  /// Returns the results of the scene's own law in this section.
+  /// Returns the results of the scene's own law in a section of the scene, such as "gas".
   [[nodiscard]] const Effect& own(const std::string& section) const;
   /// Returns the largest less the smallest value of a figure over the laws of a section, except "none", divided by the figure
   /// of the scene's own closing. NaN if the figure is missing in any of the compared closings.

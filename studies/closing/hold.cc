@@ -22,7 +22,7 @@ std::string hold_warning(const Switch& model, const std::vector<Signal>& signals
 
 namespace {
 
-// Returns the device with contact `c` in the first place.
+// Returns the device with contact number `c` moved to the first place.
 Device with_first_contact(Device device, std::size_t c) {
   device.contacts.front().gap = device.gap.contact;
   std::swap(device.contacts.front(), device.contacts[c]);
@@ -30,19 +30,20 @@ Device with_first_contact(Device device, std::size_t c) {
   return device;
 }
 
-// Returns the conductance of a contact at rest under a contact force [S]; NaN if the conductance is not known.
+// Returns the conductance of a contact at rest under a contact force [S]; NaN if the conductance is unknown.
 double conductance_at(const Switch& model, const Eigen::VectorXd& q, double force, std::size_t c = 0) {
   const ContactResistance contact = contact_resistance(model.device(), c);
   if (!contact.is_known()) return Metrics::unset;
   return contact.conductance(model.contact_deflection(q.data(), c) - model.contact_gap(c), force);
 }
 
-// Computes the forces of several contacts of a switch at rest under these levels, and the resistance of their connection.
+// Computes the forces of several contacts of a switch at rest under these levels of its drives, and the resistance of their
+// connection.
 Hold hold_of_connection(const Switch& model, const std::vector<double>& levels, Hold hold) {
   const bool needs_all = model.device().connection == Connection::all;
   std::optional<Eigen::VectorXd> rest;
   if (keeps_closed(model, hold.closed)) rest = hold.closed->q;
-  // Search an equilibrium on a contact other than the first contact.
+  // Search an equilibrium of the closed switch on a contact other than the first contact.
   for (std::size_t c = 1; c < model.contacts() && !rest && !needs_all; ++c) {
     if (!model.device().contacts[c].connects) continue;
     const Switch other(with_first_contact(model.device(), c));

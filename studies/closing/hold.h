@@ -1,4 +1,4 @@
-// The hold: whether the hold levels of the drives keep a closed switch closed, and with which contact force.
+// The hold: whether the hold levels (last levels) of the drives keep a closed switch closed, and with which contact force.
 #pragma once
 
 #include <optional>
@@ -26,24 +26,27 @@ inline constexpr std::string_view not_held =
 
 /// The effect of the hold levels of drives on a closed switch.
 struct Hold {
-  std::optional<ClosedEquilibrium> closed;  ///< closed equilibrium; none if the switch has no closed equilibrium
-  double force = Metrics::unset;    ///< contact force of a stable closed equilibrium [N]; of several contacts, that of the
-                                    ///< connection
-  std::vector<double> forces = {};  ///< force of each of several contacts [N]; empty if the switch is not held
+  std::optional<ClosedEquilibrium> closed;  ///< equilibrium of the closed switch; none if the switch has no closed equilibrium
+  /// Contact force in a stable closed equilibrium [N]; for several contacts, that of the connection.
+  double force = Metrics::unset;
+  /// Contact force of each of several contacts [N]; empty if the hold levels do not keep the switch closed.
+  std::vector<double> forces = {};
   double resistance =
-      Metrics::unset;  ///< contact resistance [Ohm]; of several contacts, that of the connection; NaN if open or unknown
-  std::vector<double> resistances = {};  ///< resistance of each of several contacts [Ohm]; empty if the switch is not held
+      Metrics::unset;  ///< contact resistance [Ohm]; for several contacts, that of the connection; NaN if open or unknown
+  /// Resistance of each of several contacts [Ohm]; empty if the hold levels do not keep the switch closed.
+  std::vector<double> resistances = {};
   /// True if the hold levels keep the switch closed; false if the closed equilibrium of a switch with a contact is unstable. A
   /// switch without a closed equilibrium can stay closed only by adhesion.
   bool is_held = true;
-  /// Returns the contact force from which on a contact counts as steady [N]; NaN if the switch is not held.
+  /// Returns the contact force above which a contact counts as steady [N]; NaN if the hold levels do not keep the switch
+  /// closed.
   [[nodiscard]] double steady_force(const MetricsOptions& options) const { return options.steady_force * force; }
 };
-/// Computes the effect of these levels, one per drive of the switch [V], on the closed switch. `near` is a closed equilibrium
-/// of a similar switch under similar levels, at which the search for the equilibrium starts.
+/// Computes the hold (equilibrium, contact force, resistance) of the closed switch under these levels, one per drive [V].
+/// `near` is a closed equilibrium of a similar switch under similar levels, at which the search for the equilibrium starts.
 [[nodiscard]] Hold hold_under(const Switch& model, const std::vector<double>& levels,
                               const std::optional<ClosedEquilibrium>& near = {});
-/// Computes the effect of the hold levels of these drives on the closed switch.
+/// Computes the hold (equilibrium, contact force, resistance) of the closed switch under the hold levels of these drives.
 [[nodiscard]] inline Hold hold_of(const Switch& model, const std::vector<Signal>& signals,
                                   const std::optional<ClosedEquilibrium>& near = {}) {
   return hold_under(model, hold_levels(signals), near);
@@ -52,8 +55,8 @@ struct Hold {
 void set_hold(Trajectory& trajectory, const Hold& hold);
 /// Sets the members that set_hold() sets, and the capacitance of the switch at rest under the hold levels, in `trajectory`.
 void set_rest(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals, const Hold& hold);
-/// Returns the options with the load circuit of the switch. The run begins in the state `start`; `held` has the drives until
-/// the command to open.
+/// Returns the options of metrics() with the load circuit of the switch. The run begins in the state `start`; `held` has the
+/// drive signals until the command to open.
 [[nodiscard]] MetricsOptions with_load(MetricsOptions options, const Switch& model, StartState start,
                                        const std::vector<Signal>& held);
 /// True if a run that began closed is open at the end and does not close again.

@@ -7,11 +7,11 @@
 
 namespace softland {
 
-/// Repeats the statics of a run that began closed, with more modes. The run fails if the closed state in which it began, or the
-/// open state in which it ends, is not stable with more modes.
+/// Repeats the static equilibria of a run that began closed, with more modes. The run fails if the closed state in which it
+/// began, or the open state in which it ends, is not stable with more modes.
 void judge_opening_with_more_modes(Closing& closing, const PreparedScene& prepared, const std::vector<Signal>& signals);
-/// Repeats the statics of a closing with more modes. A switch that stays closed with the scene's modes has not settled if it
-/// opens with twice or four times as many modes.
+/// Repeats the static equilibria of a closing with more modes. A switch that stays closed with the scene's modes has not
+/// settled if it opens with twice or four times as many modes.
 void judge_with_more_modes(Closing& closing, const PreparedScene& prepared, const std::vector<Signal>& signals);
 
 }  // namespace softland

@@ -10,14 +10,14 @@
 namespace softland {
 namespace {
 
-constexpr int most_samples = 4000;  // largest number of samples of a curved piece
+constexpr int most_samples = 4000;  // largest number of samples of a curved piece (sine, decay) of a drive's signal
 constexpr int halvings = 40;
-constexpr double tail = 40;  // number of time constants after which a decay has ended
+constexpr double tail = 40;  // number of time constants after which an exponential decay of a signal has ended
 
-enum class OfJump { before, after };  // side of a jump of a signal
+enum class OfJump { before, after };  // side of a jump of a drive's signal
 
 struct Instant {
-  double time;  // [s]
+  double time;  // time at which the levels of the drives are checked [s]
   OfJump side;
 };
 
@@ -34,8 +34,8 @@ int parts_of(const Signal& signal, double begin, double end) {
   return std::isfinite(step) ? std::clamp(static_cast<int>(std::ceil((end - begin) / step)), 1, most_samples) : 1;
 }
 
-// Returns the instants to check, in order of time: both sides of every breakpoint, and samples between the breakpoints of
-// curved pieces.
+// Returns the instants at which the levels of the drives are checked, in order of time: both sides of every breakpoint, and
+// samples between the breakpoints of curved pieces.
 std::vector<Instant> instants(const std::vector<Signal>& signals) {
   std::vector<double> stops;
   double end = 0;
@@ -65,7 +65,7 @@ bool pulls(const Switch& model, std::size_t drive) {
   return model.drive_kind(drive) == DriveKind::electrode && pulls_in(model.device(), drive);
 }
 
-// Decides whether the levels of the drives keep a closed switch closed.
+// Decides whether given levels of the drives keep a closed switch closed.
 class Holding {
  public:
   Holding(const Switch& model, const std::vector<Signal>& signals)
@@ -75,8 +75,8 @@ class Holding {
     std::vector<double> levels = levels_at(signals_, instant);
     if (is_weaker(levels, last_) || is_weaker(levels, lost_)) return false;
     if (hold_under(model_, levels).is_held) return true;
-    lost_ = std::move(levels);  // levels under which the closed state was lost; those of the next instants are probably no
-                                // higher
+    // Levels under which the switch lost its closed state; the levels at the next instants are probably no higher.
+    lost_ = std::move(levels);
     return false;
   }
 
@@ -96,8 +96,8 @@ class Holding {
   std::vector<double> last_, lost_;
 };
 
-// Returns the beginning of the fall that brings an electrode to its level just before `time`. Returns `time` if the signal
-// jumps at this time or does not fall.
+// Returns the beginning of the fall of a voltage that brings an electrode to its level just before `time` [s]. Returns `time`
+// if the signal jumps at this time or does not fall.
 double begin_of_fall(const Switch& model, std::size_t electrode, const Signal& signal, double time) {
   if (signal.voltage_before(time) != signal.voltage(time)) return time;
   const std::vector<SignalPiece>& pieces = signal.pieces();
@@ -125,7 +125,7 @@ std::optional<double> loses_hold(const Switch& model, const std::vector<Signal>&
   if (start == StartState::closed) {
     for (std::size_t i = 0; i < all.size() && holding.at(all[i]); ++i) held = i;
   } else {
-    for (std::size_t i = all.size(); i-- > 1 && !held;) {  // the levels before t = 0 have not closed the switch
+    for (std::size_t i = all.size(); i-- > 1 && !held;) {  // the levels of the drives before t = 0 have not closed the switch
       if (holding.at(all[i])) held = i;
     }
   }

@@ -11,9 +11,9 @@
 namespace softland {
 
 struct OpenCommand {
-  double time = 0;           ///< time of the command to open [s]
-  std::vector<Signal> held;  ///< drives unchanged until the command; from then on constant at their levels just before the
-                             ///< command
+  double time = 0;  ///< time of the command to open [s]
+  /// Drive signals unchanged until the command; from then on constant at their levels just before the command.
+  std::vector<Signal> held;
 };
 
 /// Finds the command to open that these drives give, one per drive of the switch. The command is the beginning of the last fall
@@ -23,24 +23,24 @@ struct OpenCommand {
 /// switch closed or collapse it, and if the drives never kept it closed.
 [[nodiscard]] std::optional<OpenCommand> open_command(const Switch& model, const std::vector<Signal>& signals, StartState start);
 
-/// Finds the command to open of these drives: simulate.open_at if the scene has this key. The command may come after the
-/// window.
+/// Finds the command to open that these drive signals give; its time is simulate.open_at if the scene has this key. The command
+/// may come after the simulated time.
 [[nodiscard]] std::optional<OpenCommand> open_command(const PreparedScene& prepared, const std::vector<Signal>& signals);
 
-/// Returns the drives unchanged until their command to open, and constant at their levels just before the command from then on.
-/// Returns all drives unchanged if there is no command.
+/// Returns the drive signals unchanged until their command to open, and constant at their levels just before the command from
+/// then on. Returns all signals unchanged if there is no command.
 [[nodiscard]] std::vector<Signal> until_command(const PreparedScene& prepared, std::vector<Signal> signals);
 
-/// Returns the scene without its opening: the window ends at the command to open at the latest, and the drives stay at their
-/// levels just before the command. Returns the scene unchanged if there is no command, and if the scene starts closed.
+/// Returns the scene without its opening: the simulated time ends at the command to open at the latest, and the drives stay at
+/// their levels just before the command. Returns the scene unchanged if there is no command, and if the scene starts closed.
 [[nodiscard]] PreparedScene closing_of(const PreparedScene& prepared);
 
-/// Returns the deflection of the connection in a state of the beam, as observers of a closing receive it
-/// (model/closing/connection.h) [m].
+/// Returns the deflection of the contacts that make the electrical connection, in a state of the beam as observers of a closing
+/// receive it (model/closing/connection.h) [m].
 [[nodiscard]] double connection_deflection(const Switch& model, const Eigen::VectorXd& q);
 
-/// Returns the options for a run that opens on command under these drives. The options contain the deflection at which the
-/// connection comes to rest.
+/// Returns the options of metrics() for a run that opens on command under these drive signals. The options contain the
+/// deflection at which the connection comes to rest.
 [[nodiscard]] MetricsOptions with_opening(MetricsOptions options, const Switch& model, const std::vector<Signal>& signals,
                                           const std::optional<OpenCommand>& command);
 

@@ -12,8 +12,8 @@
 
 namespace softland {
 
-/// The contact point has settled when its distance from the static deflection stays below this share of the largest distance in
-/// the run.
+/// In a run that stays open, the contact point has settled when its distance from the static deflection stays below this share
+/// of the largest distance in the run.
 inline constexpr double settled_share = 0.02;
 
 /// Sets static_deflection, overshoot and open_settling_time of a run that ended without contact, or that began closed and has
@@ -23,9 +23,9 @@ inline constexpr double settled_share = 0.02;
 void set_open_figures(Metrics& metrics, const Trajectory& run, const Switch& model, const std::vector<Signal>& signals);
 
 /// True if these drives are not meant to close the switch: a stable open equilibrium exists under the hold levels, and under
-/// the least and the largest value of each drive in the window [s], with the others at their hold levels. Moreover, no step of
-/// an electrode, or of the dispersion force, to its largest value may reach the contact plane, since it would be at its dynamic
-/// pull-in voltage.
+/// the least and the largest value of each drive within `duration` [s], with the others at their hold levels. Moreover, no step
+/// of an electrode, or of the dispersion force, to its largest value may reach the contact plane, since its largest value would
+/// be at or above the dynamic pull-in voltage.
 [[nodiscard]] bool stays_open(const Switch& model, const std::vector<Signal>& signals, double duration,
                               const Progress& progress = {});
 

@@ -13,7 +13,8 @@ Step step_to(const PreparedScene& given, const std::string& drive, double level)
   return step_from(own, own.value_before(), level);
 }
 
-// Returns a step to the hold level, or to the level just before the command to open if the drives give such a command.
+// Returns a voltage step of a drive to its hold level, or to the level just before the command to open if the drives give such
+// a command.
 Step step_of(const PreparedScene& given, const std::string& drive) {
   const Drive& own = given.drives.at(drive);
   const bool opens = std::isfinite(given.held_from) && own.waveform;

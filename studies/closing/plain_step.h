@@ -11,15 +11,15 @@
 namespace softland {
 
 /// Returns the waveforms [V] of the plain step, which replace those of the scene. An actuator with electrodes steps to the hold
-/// levels of the scene, as steep as the driver permits; electrodes that brake stay at 0 V. The piezo stays at 0 V unless it is
-/// the only drive of the actuator, and then steps to its own hold level. Throws InvalidInput if no electrode pulls in and one
-/// is needed.
+/// levels of the scene, as steep as the voltage source permits; electrodes that brake stay at 0 V. The piezo stays at 0 V
+/// unless it is the only drive of the actuator, and then steps to its own hold level. Throws InvalidInput if no electrode pulls
+/// in and one is needed.
 [[nodiscard]] DriveWaveforms plain_step(const PreparedScene& prepared, Actuator actuator);
 
-/// Returns the step of a drive from one level to another [V], as steep as its driver permits.
+/// Returns the step of a drive from one level to another [V], as steep as its voltage source permits.
 [[nodiscard]] Step step_from(const Drive& drive, double from, double level);
 
-/// True if both lists have the same signals in the same order.
+/// True if both lists have the same drive signals in the same order.
 [[nodiscard]] bool same_drives(const std::vector<Signal>& a, const std::vector<Signal>& b);
 
 }  // namespace softland

@@ -144,14 +144,15 @@ std::string before_state_path(const PreparedScene& scene) {
   return fmt::format("waveform.{}.before_state", named != nullptr ? named->name : "NAME");
 }
 
-// Returns the loosest tolerance that delivers the accuracy on random scenes (results/accuracy.md).
+// Returns the loosest tolerance of the integrator that delivers a relative accuracy of figures on random scenes
+// (results/accuracy.md).
 double tolerance_for(double accuracy, bool stiff) { return std::clamp(accuracy / 10, 1e-12, stiff ? 1e-4 : 1e-3); }
 
 namespace {
 
-constexpr double longest_window = 1e3;  // [s], equal to the longest simulate.duration
+constexpr double longest_window = 1e3;  // longest simulated time [s], equal to the upper limit of simulate.duration
 
-/// Returns the number of periods of a waveform's sine in the window.
+/// Returns the number of periods of a waveform's sine within the simulated time `window` [s].
 double periods_of(const Waveform& waveform, double window) {
   const auto lasts = [&](const auto& sine) { return std::min(sine.end, window) - sine.start; };
   if (const auto* sine = std::get_if<Harmonic>(&waveform))
@@ -162,9 +163,9 @@ double periods_of(const Waveform& waveform, double window) {
   return 0;
 }
 
-/// Returns the default window [s] of a scene that closes. The window contains the closing under steps to the hold levels, which
-/// gas may slow down, and some time after contact. A damped switch moves slowly just above pull-in, so the search for first
-/// contact ends after ten such windows, or a thousand if no open equilibrium exists under the levels.
+/// Returns the default simulated time (window) of a scene that closes [s]. This time contains the closing under steps to the
+/// hold levels, which gas may slow down, and some time after contact. A damped switch moves slowly just above pull-in, so the
+/// search for first contact ends after ten times this time, or a thousand if no open equilibrium exists under the levels.
 double default_window(const Switch& model, const std::vector<Signal>& signals) {
   constexpr double periods = 6, closings = 4, loose = 1e-4;
   constexpr long most_steps = 100'000;
@@ -178,8 +179,8 @@ double default_window(const Switch& model, const std::vector<Signal>& signals) {
   return closing.touches.empty() ? usual : std::max(usual, closings * closing.touches.front().begin);
 }
 
-/// Returns the default window [s] of a scene that opens a closed switch from `begin` on. The window contains the time until the
-/// switch is at rest in its open state, at most ten times six periods of the first mode.
+/// Returns the default simulated time (window) of a scene that opens a closed switch from `begin` on [s]. This time contains
+/// the time until the switch is at rest in its open state, at most ten times six periods of the first mode.
 double default_window_of_opening(const Switch& model, const std::vector<Signal>& signals, StartState start, double begin) {
   constexpr double periods = 6, longest = 10, loose = 1e-4, settled = 0.02, margin = 2;
   constexpr long most_steps = 100'000;
@@ -198,7 +199,7 @@ double default_window_of_opening(const Switch& model, const std::vector<Signal>&
   return std::clamp(since + margin * period, begin + usual, begin + longest * usual);
 }
 
-/// Returns the drive signals without the effects of sampling and filters.
+/// Returns the drive signals of the scene without the effects of sampling and filters in the voltage sources.
 std::vector<Signal> without_sources(const PreparedScene& p) {
   std::vector<Signal> signals = p.commanded(p.waveforms());
   for (std::size_t k = 0; k < signals.size(); ++k) {
@@ -207,7 +208,7 @@ std::vector<Signal> without_sources(const PreparedScene& p) {
   return signals;
 }
 
-/// Returns the default window of a scene [s].
+/// Returns the default simulated time (window) of a scene [s].
 double default_window(const PreparedScene& p) {
   const std::vector<Signal> signals = without_sources(p);
   if (p.start() == StartState::closed) return default_window_of_opening(p.model, signals, StartState::closed, 0);
@@ -227,7 +228,7 @@ void check_open_at(const PreparedScene& p) {
     file.refuse("simulate.open_at", fmt::format("must lie in the window, which ends at {}", engineering(p.duration, "s")));
 }
 
-/// Throws InvalidInput for a window that is too long, and for waveforms with too many periods.
+/// Throws InvalidInput for a simulated time that is too long, and for waveforms with too many periods in it.
 void check_window(const PreparedScene& p) {
   const SceneFile& file = p.scene.file;
   if (!(p.duration <= longest_window)) {
@@ -248,7 +249,7 @@ void check_window(const PreparedScene& p) {
   }
 }
 
-/// Sets the load of every source: the capacitance of the source's electrode on the open switch.
+/// Sets the load of every voltage source: the capacitance of its electrode in the open switch.
 void load_sources(PreparedScene& p) {
   const Switch& model = p.model;
   std::vector<double> open(static_cast<std::size_t>(model.modes()), 0.0);
@@ -277,7 +278,8 @@ void check_landing(const PreparedScene& p) {
       const UniformAsperityContact per_area = uniform_contact(rough->summits, rough->height, {.width = 1, .length = 1});
       key = "asperity_density", unit = "1/m^2";
       own = rough->summits.density;
-      least = own * std::pow(most / most_face_voltage(per_area, depth), 2);  // the contact pressure is proportional to this key
+      // Least value of the key that sets the contact pressure, which is proportional to it.
+      least = own * std::pow(most / most_face_voltage(per_area, depth), 2);
     }
     if (own > least) continue;
     p.scene.file.refuse(
@@ -294,7 +296,7 @@ std::string rounded_down(double value, std::string_view unit) {
   return engineering(std::floor(value / digit * (1 + rounding)) * digit, unit, 3);
 }
 
-/// Throws InvalidInput for sources that take more samples than a run may have.
+/// Throws InvalidInput for voltage sources that take more samples than a run may have.
 void check_sources(const PreparedScene& p) {
   constexpr double most_samples = 1e5;
   for (const Drive& drive : p.drives) {
@@ -320,7 +322,7 @@ std::vector<double> bias_of(const Scene& scene, std::size_t drive) {
 
 namespace {
 
-// Returns the levels of the other drives that are not at 0 V, as text: ", under piezo at 0.3 V".
+// Returns, for a message on an electrode, the levels of the other drives that are not at 0 V: ", under piezo at 0.3 V".
 std::string under_bias(const PreparedScene& p, std::size_t electrode) {
   const std::vector<double> bias = bias_of(p.scene, electrode);
   const std::vector<std::string> names = p.drive_names();
@@ -346,9 +348,9 @@ ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, Bi
 
 namespace {
 
-// Computes the pull-in voltages of limits with the other drives at 0 V, if the switch has no open state under the levels of the
-// other drives. A limit belongs to the source, at any level of the other drives. A waveform in units of these pull-in voltages
-// is not defined in this case.
+// Computes the pull-in voltages in which voltage limits are given with the other drives at 0 V, if the switch has no open state
+// under the levels of the other drives. A limit belongs to the source, at any level of the other drives. A waveform in units of
+// these pull-in voltages is not defined in this case.
 bool take_limits_at_rest(PreparedScene& p, std::size_t electrode, const PullInFinder& find_pull_in, const Progress& progress) {
   const std::vector<std::string> names = p.drive_names();
   if (std::ranges::find(p.scene.limits_in_pull_in, names[electrode]) == p.scene.limits_in_pull_in.end()) return false;

@@ -38,17 +38,18 @@ struct DescribedEffects;
 struct PreparedScene {
   Scene scene;
   Switch model;
-  std::map<std::string, ElectrodePullIn> pull_in;  ///< pull-in voltages of the electrodes that need them
-  /// Pull-in voltages with the other drives at 0 V. An electrode has an entry if only its limits are in Vsp or Vdp, and if it
-  /// has no pull-in voltages under the levels of the other drives.
+  std::map<std::string, ElectrodePullIn> pull_in;  ///< pull-in voltages by electrode, for the electrodes that need them
+  /// Pull-in voltages with the other drives at 0 V, for voltage limits. An electrode has an entry if only its limits are in Vsp
+  /// or Vdp, and if it has no pull-in voltages under the levels of the other drives.
   std::map<std::string, PullInVoltages> pull_in_of_limits = {};
-  Drives drives;         ///< drives in volts; a source with a resistance charges the open switch
-  double duration = 0;   ///< time to simulate [s]
-  double tolerance = 0;  ///< relative tolerance of the integrator
-  /// Time from which on the drives stay constant at their levels just before this time [s]: see closing_of().
+  Drives drives;         ///< voltage sources by drive; a source with a resistance charges the capacitance of the open switch
+  double duration = 0;   ///< simulated time of the scene [s]
+  double tolerance = 0;  ///< relative tolerance of the integrator for the scene
+  /// Time from which on the drives stay constant at their levels just before this time [s]; set by closing_of() for a scene
+  /// with an opening.
   double held_from = std::numeric_limits<double>::infinity();
   SwitchOptions quadrature = {};
-  double quadrature_accuracy = 0;  ///< accuracy for which the quadrature was chosen
+  double quadrature_accuracy = 0;  ///< relative accuracy of the loads for which the quadrature was chosen
   /// The scene with all described effects, and the effects that effects = "auto" left out; null without effects = "auto". The
   /// member `scene` lacks the effects that were left out.
   std::shared_ptr<const DescribedEffects> effects = {};
@@ -85,7 +86,7 @@ struct PreparedScene {
   [[nodiscard]] Signal applied(std::size_t k, const Signal& commanded, const SourceErrors& errors) const;
   /// Returns the commanded signal as the samples of drive k's converter; unchanged if the source of the drive does not sample.
   [[nodiscard]] Signal commanded_samples(std::size_t k, const Signal& commanded) const;
-  /// Returns the limits of the driver of drive k; no limits if the scene has none.
+  /// Returns the limits of the voltage source of drive k; no limits if the scene has none.
   [[nodiscard]] DriverLimits limits(std::size_t k) const { return drives[k].limits.value_or(DriverLimits{}); }
   /// Returns the pull-in voltages of the electrodes, which are the units Vsp and Vdp [V].
   [[nodiscard]] std::map<std::string, PullInVoltages> voltage_units() const;
@@ -119,14 +120,14 @@ void require_open_start(const Scene& scene, std::string_view study);
 [[nodiscard]] double tolerance_for(double accuracy, bool stiff = false);  ///< `stiff`: the scene has a compressible gas film
 
 /// Finds the pull-in voltages of an electrode of a switch, by its number, under a bias of the other drives. The function is
-/// electrode_pull_in(), or one that remembers its results.
+/// electrode_pull_in(), or a function that remembers earlier results of electrode_pull_in().
 using PullInFinder =
     std::function<ElectrodePullIn(const Switch& model, std::size_t electrode, Bias bias, const Progress& progress)>;
 [[nodiscard]] ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, Bias bias,
                                                 const Progress& progress = {});
 
-/// Prepares a scene for statics: reads the scene and composes its switch. Pull-in voltages, drives, window and tolerance are
-/// not computed, and there are no warnings about the quadrature. Throws the exceptions of read_scene().
+/// Prepares a scene for statics: reads the scene and composes its switch. Pull-in voltages, drives, simulated time and
+/// tolerance are not computed, and there are no warnings about the quadrature. Throws the exceptions of read_scene().
 [[nodiscard]] PreparedScene prepare_statics(const SceneFile& file);
 
 /// Reads, composes and resolves a scene. Pull-in voltages are computed for the electrodes that need them, and with

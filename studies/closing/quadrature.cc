@@ -45,7 +45,8 @@ std::vector<Eigen::VectorXd> at_touch(const Switch& model) {
 }  // namespace
 
 SwitchOptions quadrature_for(double accuracy, int modes) {
-  constexpr double points_per_digit = 4, fewest = 8;  // two points more for each mode, which adds half a wave
+  // Quadrature points per decimal digit of accuracy; fewest points, to which each mode (half a wave) adds two.
+  constexpr double points_per_digit = 4, fewest = 8;
   return {.points_per_length = std::max({fewest, points_per_digit * -std::log10(accuracy), 2.0 * modes + 4})};
 }
 
@@ -63,8 +64,10 @@ double load_difference(const Switch& one, const Switch& other, const Eigen::Vect
 
 ResolvedSwitch resolved_switch(const Device& device, double accuracy, std::optional<int> modes) {
   constexpr double growth = 1.25, most_growth = 16;
-  constexpr double helps = 0.5;    // error after a refinement over the error before; below this ratio the refinement helped
-  constexpr int most_in_vain = 4;  // number of refinements in a row without help after which the loads count as not smooth
+  // Ratio of the loads' error after a refinement to that before; below this ratio the refinement helped.
+  constexpr double helps = 0.5;
+  // Number of refinements of the quadrature in a row without help after which the loads count as not smooth.
+  constexpr int most_in_vain = 4;
   const auto with_modes = [&](SwitchOptions q) {
     q.modes = modes;
     return q;
@@ -86,7 +89,7 @@ ResolvedSwitch resolved_switch(const Device& device, double accuracy, std::optio
     ResolvedSwitch next = best;
     for (int vain = 0; next.error > accuracy && vain < most_in_vain && next.quadrature.points_per_length < most_points;) {
       SwitchOptions q = next.quadrature;
-      ++q.points_per_panel;  // a short panel needs few further points
+      ++q.points_per_panel;  // a short panel (interval of the quadrature) needs few further points
       ResolvedSwitch more = switch_with(q);
       if (more.model.quadrature().points() > next.model.quadrature().points()) set_error(more);
       if (!(more.error < helps * next.error) || more.model.quadrature().points() == next.model.quadrature().points()) {
@@ -104,7 +107,8 @@ ResolvedSwitch resolved_switch(const Device& device, double accuracy, std::optio
 }
 
 Switch switch_like(const Device& device, const Switch& nominal, const SwitchOptions& quadrature, double accuracy) {
-  constexpr double nearer = 0.95;  // gap at contact over that of the nominal switch, below which the points are checked again
+  // Ratio of the gap at contact to that of the nominal switch below which the number of points is checked again.
+  constexpr double nearer = 0.95;
   const auto gap_at_touch = [](const Device& d) { return 1 - d.gap.contact / d.gap.electrode; };
   Switch own(device, quadrature, &nominal);
   if (gap_at_touch(own.device()) >= nearer * gap_at_touch(nominal.device())) return own;

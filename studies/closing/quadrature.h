@@ -13,7 +13,7 @@ namespace softland {
 
 /// Returns the quadrature with which smooth loads have the relative `accuracy`.
 [[nodiscard]] SwitchOptions quadrature_for(double accuracy, int modes);
-/// Returns a quadrature with twice as many points.
+/// Returns a quadrature along the beam with twice as many points as `quadrature`.
 [[nodiscard]] SwitchOptions finer_than(const SwitchOptions& quadrature);
 
 /// Returns the relative difference of the modal loads in a state q between two quadratures of one switch, in the norm of the
@@ -24,7 +24,7 @@ namespace softland {
 struct ResolvedSwitch {
   Switch model;
   SwitchOptions quadrature;
-  double error = 0;  ///< relative error of the loads at contact
+  double error = 0;  ///< relative error of the electrostatic and gas loads at contact
 };
 /// Returns a switch with a small number of points that delivers the accuracy, beginning with quadrature_for(accuracy, modes).
 /// If more points do not help, because the loads are not smooth, ResolvedSwitch::error is above `accuracy`. `modes` replaces

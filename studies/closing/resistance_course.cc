@@ -29,7 +29,7 @@ class ContactCourse {
 
  private:
   ContactResistance resistance_;
-  double gap_;  // rest distance to the contact plane [m]
+  double gap_;  // rest distance of the contact to its contact plane [m]
   const std::vector<TrajectoryPoint>& points_;
   std::size_t next_ = 0;
 };

@@ -14,10 +14,11 @@ namespace softland {
 namespace {
 
 constexpr int places_along = 60;
-constexpr std::size_t most_told = 200;   // largest number of touches, and of rebounds, whose instants are recorded
-constexpr double line_tolerance = 2e-5;  // permitted error of linear interpolation for each mode, over the contact gap
+constexpr std::size_t most_told = 200;  // largest number of touches, and of rebounds, whose instants are recorded
+// Permitted error of linear interpolation of each mode's amplitude, as a share of the contact gap.
+constexpr double line_tolerance = 2e-5;
 
-// Records the modal coordinates at increasing times.
+// Records the modal coordinates of a closing at increasing times.
 class MotionSampler final : public ClosingObserver {
  public:
   MotionSampler(const Switch& model, double tolerance, const std::vector<double>& times)
@@ -29,8 +30,8 @@ class MotionSampler final : public ClosingObserver {
       keep(times_[next_] <= begin.time ? begin.state : times_[next_] == end.time ? end.state : between(begin, end));
     last_ = end.state;
   }
-  /// Returns the modal coordinates, ordered by time, then by mode [m kg^(1/2)]. Times after the last step get the state at its
-  /// end.
+  /// Returns the recorded modal coordinates, ordered by time, then by mode [m kg^(1/2)]. Times after the last step get the
+  /// state at the end of this step.
   [[nodiscard]] std::vector<double> take() {
     for (; next_ < times_.size() && !last_.empty(); ++next_) keep(last_);
     return std::move(all_);
@@ -87,7 +88,7 @@ std::vector<double> sorted(std::vector<double> times) {
   return times;
 }
 
-// The errors of linear interpolation between two rows of a table, by column.
+// The errors of linear interpolation between two rows of a table of motion, by column.
 class LineError {
  public:
   LineError(const std::vector<double>& times, const std::vector<double>& table, std::size_t columns)
@@ -118,8 +119,8 @@ class LineError {
   std::size_t columns_;
 };
 
-// Adds rows to the retained rows (at least two), each time the row where linear interpolation has the largest error, until
-// there are `most` rows.
+// Adds rows of a table to the retained rows (at least two), each time the row where linear interpolation has the largest error,
+// until there are `most` rows.
 std::vector<std::size_t> with_worst(std::vector<std::size_t> kept, const LineError& lines, double tolerance, std::size_t most) {
   std::priority_queue<LineError::Stretch> stretches;
   for (std::size_t k = 1; k < kept.size(); ++k) stretches.push(lines.between(kept[k - 1], kept[k]));

@@ -14,27 +14,27 @@ namespace softland {
 /// Heights are measured from the lower face of a straight structure at rest. Deflection towards the near side is positive.
 struct ShownMotion {
   struct Contact {
-    std::string name;  ///< may be empty if there is one contact
-    double at = 0;     ///< position along the structure [m]
-    double gap = 0;    ///< rest distance of the contact to its plane [m]
+    std::string name;  ///< name of the contact; may be empty if there is one contact
+    double at = 0;     ///< position of the contact along the structure [m]
+    double gap = 0;    ///< rest distance of the contact to its contact plane [m]
     bool far_side = false;
   };
   struct Pad {
     std::string electrode;
-    double begin = 0, end = 0;  ///< range along the structure [m]
+    double begin = 0, end = 0;  ///< begin and end of the electrode along the structure [m]
     double gap = 0;             ///< rest distance of the electrode's face to a straight structure [m]
     bool far_side = false;
   };
-  std::vector<double> time;                     ///< increasing times [s]
-  std::vector<std::vector<double>> amplitudes;  ///< largest deflection of each mode at these times [m]
-  std::vector<double> places;                   ///< positions x along the structure, contacts included [m]
-  std::vector<double> rest;                     ///< height of the lower face at rest at each position [m]
-  std::vector<std::vector<double>> shapes;      ///< shape of each mode at these positions, scaled to a largest size of 1
+  std::vector<double> time;                     ///< increasing times of the recorded motion [s]
+  std::vector<std::vector<double>> amplitudes;  ///< largest deflection of each mode at each time [m]: its amplitude
+  std::vector<double> places;               ///< positions x along the structure at which shapes are given, contacts included [m]
+  std::vector<double> rest;                 ///< height of the beam's lower face at rest at each position [m]
+  std::vector<std::vector<double>> shapes;  ///< shape of each mode at the positions `places`, scaled to a largest size of 1
   std::vector<Contact> contacts;
   std::vector<Pad> electrodes;
 };
 
-/// Largest number of instants, and largest product of the numbers of modes and instants, of a ShownMotion.
+/// Largest number of instants, and largest product of the numbers of modes and instants, in a recorded ShownMotion.
 inline constexpr std::size_t most_instants = 2000, most_amplitudes = 24'000;
 
 /// Simulates the closing once more to record its modes. The recorded instants are the first and the last instant, the

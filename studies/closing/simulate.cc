@@ -22,15 +22,16 @@ namespace {
 // Returns the difference of two runs of one closing, plus rounding that both share. For permanent contact time, bounce time and
 // bounce count, certify() estimates the errors instead.
 FigureValues difference(const Metrics& a, const Metrics& b, double tolerance, double contact_gap) {
-  constexpr double shared = 0.01;              // error that both runs share, over the tolerance, relative to a figure
-  constexpr double lowest_separation = 1e-12;  // over the contact gap; metrics() ignores rebounds below this separation
+  constexpr double shared = 0.01;  // error that two runs of one closing share, as a share of a figure, divided by the tolerance
+  // Separation in a rebound below which metrics() ignores the rebound, as a share of the contact gap.
+  constexpr double lowest_separation = 1e-12;
   FigureValues d;
   for (const Figure& figure : all_figures) {
     if (!figure.is_told_by_two_runs()) continue;
     const double own = figure.value(a);
     d[figure] = std::max(std::abs(own - figure.value(b)), shared * tolerance * std::abs(own));
   }
-  // A duration that is 0 because neither run has a rebound has no error.
+  // The time of the first rebound is 0 because neither run has a rebound: it has no error.
   if (a.first_rebound_time == 0 && b.first_rebound_time == 0) d[&Metrics::first_rebound_time] = Metrics::unset;
   double& height = d[&Metrics::major_bounce_height];
   height = std::max(height, lowest_separation * contact_gap);
@@ -64,8 +65,8 @@ double parting_time(const EvaluatedRun& a, const EvaluatedRun& b, double lowest)
   return std::numeric_limits<double>::infinity();
 }
 
-// True if chance decides which part (touch, rebound) is the largest: a part after the runs diverge might be larger in another
-// run. Two runs are only two samples of a chaotic closing.
+// True if chance decides which touch or rebound of a run is the largest: after the runs diverge, another touch or rebound might
+// be the largest in another run. Two runs are only two samples of a chaotic closing.
 template <class Part, class Size>
 bool chance_decides(const std::vector<Part>& parts, double parting, Size&& size) {
   constexpr double margin = 2;
@@ -83,9 +84,9 @@ double energy_after(const std::vector<Touch>& touches, double parting) {
   return sum;
 }
 
-// Removes the errors of chaotic figures. After the time at which two runs diverge the figures are random, and only a cloud of
-// runs gives their errors. Figures that depend on every touch count as chaotic if the runs differ by a thousand times the
-// tolerance.
+// Removes the errors of chaotic figures. After the time at which two runs diverge the figures are random, and only many
+// perturbed runs (a cloud) give their errors. Figures that depend on every touch count as chaotic if the runs differ by a
+// thousand times the tolerance.
 void forget_what_is_chaotic(FigureValues& errors, const EvaluatedRun& best, const EvaluatedRun& other,
                             const MetricsOptions& options) {
   constexpr double magnified = 1000;
@@ -94,7 +95,8 @@ void forget_what_is_chaotic(FigureValues& errors, const EvaluatedRun& best, cons
     if (figure.conditioning != Conditioning::every_touch) continue;
     if (errors[figure] > visible * std::abs(figure.value(best.metrics))) errors[figure] = Metrics::unset;
   }
-  // Runs may diverge in insignificant rebounds as well; the energy of the later impacts is an upper bound of the difference.
+  // Runs may also diverge in insignificant rebounds; the energy of the impacts after that is an upper bound of the difference
+  // between the runs.
   for (const EvaluatedRun* run : {&best, &other}) {
     double& energy = errors[&Metrics::impact_energy];
     energy = std::max(energy, energy_after(run->trajectory.touches, parting_time(best, other, 0)));
@@ -125,13 +127,15 @@ double error(const EvaluatedRun& run, const EvaluatedRun& other, const PreparedS
 }
 
 constexpr double tighter_by = 100;
-constexpr double loosest_tolerance = 0.1;     // largest tolerance of simulate_closing
-constexpr double least_tolerance = 0.99e-13;  // smaller errors are rounding; below 1e-13, since quotients are rounded
-// A fifth-order method needs 2.5 times the steps for a hundredth of the tolerance. A run that needs `most_growth` times the
-// steps is stopped.
+constexpr double loosest_tolerance = 0.1;  // largest relative tolerance that simulate_closing() accepts
+// Smallest relative tolerance: smaller errors are rounding; just below 1e-13, since quotients are rounded.
+constexpr double least_tolerance = 0.99e-13;
+// An integrator of fifth order needs 2.5 times the steps for a hundredth of the tolerance. A run that needs `most_growth` times
+// the steps is stopped.
 constexpr long most_growth = 10, least_steps = 100;
-constexpr double helps = 1.0 / 3;  // error of a tighter run over the previous error; below this ratio tightening helped
-constexpr int most_in_vain = 2;    // number of tighter runs in a row without help after which tightening ends
+// Ratio of the error of a run with tighter tolerance to the previous error; below this ratio tightening helped.
+constexpr double helps = 1.0 / 3;
+constexpr int most_in_vain = 2;  // number of runs in a row that tightening did not improve after which tightening ends
 
 bool can_tighten(const EvaluatedRun& r) { return r.tolerance / tighter_by >= least_tolerance; }
 
@@ -152,18 +156,18 @@ void set_commanded_opening(Metrics& m, const Trajectory& run, const Switch& mode
   if (m.status == Status::done && !rests && !run.began_closed) m.status = Status::not_settled;
 }
 
-// Simulates the closing of a scene at different tolerances and reports the progress of each run.
+// Simulates the closing of a scene at different integrator tolerances and reports the progress of each run.
 class ClosingRuns {
  public:
   ClosingRuns(const PreparedScene& prepared, const Progress& progress)
       : prepared_(prepared), progress_(progress), signals_(prepared.signals()), command_(open_command(prepared, signals_)) {}
 
   [[nodiscard]] const std::vector<Signal>& signals() const { return signals_; }
-  /// Returns the command to open, if its time is in the window.
+  /// Returns the command to open, if its time is within the simulated time.
   [[nodiscard]] std::optional<OpenCommand> command() const {
     return command_ && command_->time < prepared_.duration ? command_ : std::nullopt;
   }
-  /// Returns the signals of the closing, which are constant from the command to open on.
+  /// Returns the drive signals of the closing, which are constant from the command to open on.
   [[nodiscard]] const std::vector<Signal>& held() const {
     return command_ && prepared_.start() == StartState::open ? command_->held : signals_;
   }
@@ -224,14 +228,14 @@ class ClosingRuns {
     return r;
   }
 
-  // The command to open counts only after first contact.
+  // True if the command to open comes before first contact, so that it does not count.
   [[nodiscard]] bool is_before_touch(const EvaluatedRun& r, const OpenCommand& command) const {
     return prepared_.start() == StartState::open && came_to_its_end(r.trajectory) &&
            !(r.metrics.initial_contact_time < command.time);
   }
 
-  // Returns a recorder of the connection, and of each contact if there are several. Contacts on a back stop are recorded to the
-  // end.
+  // Returns a recorder of the contacts that make the connection, and of each contact if there are several. Contacts on a back
+  // stop are recorded to the end.
   [[nodiscard]] CourseRecorder recorder_of(const Switch& model, const std::optional<OpenCommand>& command) const {
     const MetricsOptions& plain = prepared_.scene.metrics;
     const MetricsOptions options = with_load(with_opening(plain, model, signals_, command), model, prepared_.start(), held());
@@ -260,12 +264,13 @@ class ClosingRuns {
 struct JudgedRun {
   EvaluatedRun own, judge;
   double error;
-  const char* why;  // reason why the error cannot be reduced further
+  const char* why;  // reason why the integration error cannot be reduced further
 };
 
-// Returns a run with its judge. If runs may be tightened, the judge replaces the run and gets its own judge, until the error is
-// within the requested accuracy or tightening no longer helps. In the latter case the tightest run is returned, and a looser
-// run is its judge. If rounding forbids a tighter integrator, only the quadrature is refined.
+// Returns a run with its judge, a more accurate run from whose difference errors follow. If runs may be tightened, the judge
+// replaces the run and gets its own judge, until the error is within the requested accuracy or tightening no longer helps. In
+// the latter case the tightest run is returned, and a looser run is its judge. If rounding forbids a tighter integrator, only
+// the quadrature is refined.
 JudgedRun with_judge(EvaluatedRun own, ClosingRuns& runs, const PreparedScene& prepared, bool may_tighten) {
   const double accuracy = prepared.scene.simulate.accuracy;
   EvaluatedRun judge = runs.judge_of(own);
@@ -283,10 +288,11 @@ JudgedRun with_judge(EvaluatedRun own, ClosingRuns& runs, const PreparedScene& p
     own = std::move(judge);
     judge = std::move(next);
   }
-  constexpr double enough = 0.2;  // ratio of the tolerances; above it two runs show no integration error
+  constexpr double enough = 0.2;  // ratio of two runs' tolerances above which their difference shows no integration error
   if (judge_is_tighter() && e > accuracy && may_tighten) std::swap(own, judge);
   const double ratio = judge.tolerance / own.tolerance;
-  if (came_to_its_end(judge.trajectory) && ratio > enough && ratio < 1 / enough) {  // only the quadrature of the judge differs
+  // Only the quadrature of the judge (the second run) differs from that of the run.
+  if (came_to_its_end(judge.trajectory) && ratio > enough && ratio < 1 / enough) {
     if (ratio <= 1) own = std::move(judge);
     judge = runs.looser_than(own);
     e = error(own, judge, prepared);
@@ -295,7 +301,7 @@ JudgedRun with_judge(EvaluatedRun own, ClosingRuns& runs, const PreparedScene& p
   return {.own = std::move(own), .judge = std::move(judge), .error = e, .why = why};
 }
 
-// Returns `above` as text with as many digits as distinguish it from the smaller `bound`.
+// Returns the number `above` as text with as many digits as distinguish it from the smaller number `bound`.
 std::string in_telling_digits(double above, double bound) {
   constexpr int most_digits = 12;
   const std::string other = engineering(bound, "");
@@ -304,7 +310,7 @@ std::string in_telling_digits(double above, double bound) {
   return text;
 }
 
-// Adds the errors and warnings that follow from the comparison with the judge.
+// Adds to a closing the errors and warnings that follow from the comparison of the run with its judge, a more accurate run.
 void add_errors(Closing& c, const JudgedRun& run, const PreparedScene& prepared, bool may_tighten) {
   const EvaluatedRun &own = run.own, &judge = run.judge;
   const bool is_tighter = judge.tolerance < own.tolerance;
@@ -333,7 +339,7 @@ void add_errors(Closing& c, const JudgedRun& run, const PreparedScene& prepared,
   }
 }
 
-// Adds warnings about a run that began closed, or whose start state does not exist.
+// Adds warnings about a run that began with a closed switch, or whose start state does not exist.
 void warn_of_start(Closing& c, const PreparedScene& prepared) {
   const Trajectory& t = c.trajectory;
   if (c.metrics.status == Status::collapsed_at_rest) {

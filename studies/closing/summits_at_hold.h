@@ -13,14 +13,15 @@
 namespace softland {
 
 struct SummitsAtHold {
-  double touching = 0;  ///< mean number of summits in contact
-  double all = 0;       ///< number of summits under the contact pad
+  double touching = 0;  ///< mean number of summits of the rough surface in contact
+  double all = 0;       ///< number of summits of the rough surface under the contact pad
 };
 
 /// Counts the summits in this closed equilibrium. Empty for a contact along the pad, and for a law without summit heights.
 [[nodiscard]] std::optional<SummitsAtHold> summits_at_hold(const Switch& model, const ClosedEquilibrium& closed);
 
-/// Returns "0.22 of 10 summits touch under the hold levels", with the consequence if fewer than one summit touches.
+/// Describes the number of touching summits: "0.22 of 10 summits touch under the hold levels", with the consequence if fewer
+/// than one summit touches.
 [[nodiscard]] std::string summits_prose(const SummitsAtHold& summits);
 
 /// Returns summits_prose() as a warning if the hold levels keep the switch closed on fewer than one summit; empty otherwise.

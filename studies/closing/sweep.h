@@ -14,24 +14,24 @@ namespace softland {
 
 enum class SweepState {
   open,
-  closed,  ///< the beam rests on the contact
+  closed,  ///< the switch is closed: the beam rests on the contact
   none     ///< no stable equilibrium: the beam has collapsed onto the electrode, or the switch has no contact
 };
 
-/// Returns "open", "closed" or "collapsed_onto_electrode".
+/// Returns the state of the switch in a sweep as text: "open", "closed" or "collapsed_onto_electrode".
 [[nodiscard]] std::string_view to_string(SweepState state);
 
 struct SweepPoint {
-  double voltage = 0;                                             ///< voltage of the swept electrode [V]
+  double voltage = 0;                                             ///< voltage of the electrode that is swept [V]
   double deflection = std::numeric_limits<double>::quiet_NaN();   ///< deflection of the contact point, towards the contact [m]
   double capacitance = std::numeric_limits<double>::quiet_NaN();  ///< capacitance of the swept electrode [F]
-  bool is_up = true;                                              ///< true while the voltage rises
+  bool is_up = true;                                              ///< true while the swept voltage rises
   SweepState state = SweepState::none;
 };
 
 struct SweepRange {
-  double first = 0, last = 0;  ///< first and last voltage of the rising half [V]
-  int points = 0;              ///< number of evenly spaced voltages, ends included; at least 2
+  double first = 0, last = 0;  ///< first and last voltage of the rising half of the sweep [V]
+  int points = 0;              ///< number of evenly spaced voltages in the rising half, ends included; at least 2
 };
 
 /// Returns the points of the sweep in order: `range.points` up to the last voltage and as many down, so that the last voltage

@@ -1,4 +1,4 @@
-// The time that an evaluation of the right-hand side of the equations of motion takes on this machine.
+// The time that one evaluation of the right-hand side of the equations of motion takes on this machine.
 #pragma once
 
 #include <vector>

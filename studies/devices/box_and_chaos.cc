@@ -18,9 +18,9 @@ namespace {
 
 constexpr double no_bound = std::numeric_limits<double>::infinity();
 constexpr double not_closed =
-    std::numeric_limits<double>::lowest();  // value of the minimised function for a device that does not close
+    std::numeric_limits<double>::lowest();  // value of the function to minimise for a device that does not close
 
-/// Points of the box of varied quantities: standard normal numbers, one per quantity.
+/// Devices in the box of varied quantities, described as points: standard normal numbers, one per quantity.
 class Box {
  public:
   Box(const Ensemble& ensemble, const EnsembleDrive& drive, const EnsembleRun& run, const std::atomic<bool>* stop)
@@ -43,11 +43,11 @@ class Box {
   }
 
   const Ensemble* ensemble_;
-  std::vector<EnsembleDrive> drives_;  // drives of the closings; `closer_` keeps a reference to this member
+  std::vector<EnsembleDrive> drives_;  // drive signals of the closings; `closer_` keeps a reference to this member
   DeviceCloser closer_;
 };
 
-/// The sampled devices in the box of varied quantities.
+/// The devices of a sample that are in the box of varied quantities.
 struct SampledInside {
   std::vector<std::size_t> devices;
   std::vector<std::vector<double>> z;
@@ -85,7 +85,7 @@ Interval range_of(const std::vector<double>& figures) {
   return {.low = *least, .high = *most};
 }
 
-/// Returns the share of the variance that the polynomials predict, 1 - sum (y - prediction)^2 / sum (y - mean)^2.
+/// Returns the share of a figure's variance that its polynomials predict, 1 - sum (y - prediction)^2 / sum (y - mean)^2.
 double predicted_share(const PolynomialChaos& chaos, const Eigen::MatrixXd& points, const std::vector<double>& figures) {
   const double mean = sample_mean(figures);
   double missed = 0, all = 0;
@@ -97,7 +97,7 @@ double predicted_share(const PolynomialChaos& chaos, const Eigen::MatrixXd& poin
   return all > 0 ? 1 - missed / all : Metrics::unset;
 }
 
-/// Points and figures of the devices [first, last) that have the figure.
+/// Varied quantities, and values of a figure, of those of the devices [first, last) that have the figure.
 struct TrainingSet {
   Eigen::MatrixXd points;
   std::vector<double> figures;
@@ -127,7 +127,8 @@ FigureChaos chaos_of(const Ensemble& ensemble, const DriveRobustness& drive, std
   const std::size_t fitted_devices = std::min(most_fitted, drive.outcomes.size());
   const TrainingSet training = training_set(ensemble, drive, figure, 0, fitted_devices);
   FigureChaos found{.key = key, .fitted = training.figures.size()};
-  constexpr std::size_t least_fitted = 20;  // least number of fitted devices: two for each part of the cross-validation
+  // Least number of devices to which polynomials are fitted: two for each part of the cross-validation.
+  constexpr std::size_t least_fitted = 20;
   if (found.fitted < least_fitted) return found;
   std::vector<Germ> germs_of_variables;
   for (const SpreadVariable& variable : spread.variables) {
@@ -183,7 +184,7 @@ BoxAndChaos box_and_chaos(const PreparedScene& nominal, const DriveRobustness& d
     FigureRange range{.key = key, .least = {}, .most = {}, .of_sample = range_of(sampled)};
     for (const double sign : {1.0, -1.0}) {
       problem.starts = middle_and_corners;
-      if (!sampled.empty()) {  // the best device of the sample is a start; ties are broken arbitrarily
+      if (!sampled.empty()) {  // the best device of the sample is a start of the search; ties are broken arbitrarily
         const auto best =
             std::min_element(sampled.begin(), sampled.end(), [&](double a, double b) { return sign * a < sign * b; });
         problem.starts.push_back(inside.z[static_cast<std::size_t>(best - sampled.begin())]);
@@ -194,7 +195,7 @@ BoxAndChaos box_and_chaos(const PreparedScene& nominal, const DriveRobustness& d
       };
       OptimizerOptions search{
           .max_evaluations = static_cast<long>(effort.closings_per_search), .jobs = options.jobs, .stop = progress.stop};
-      search.target = not_closed;  // the search ends with a device that does not close, which is the worst
+      search.target = not_closed;  // the search ends at a device that does not close, since no device is worse
       const OptimizerResult result = minimize(problem, search);
       if (progress.stopped()) return {.why_none = "interrupted"};
       found.closings += result.evaluations;

@@ -41,45 +41,46 @@ inline constexpr double box_share = 0.95;
 
 /// A device at an end of the range of a figure over the box of varied quantities.
 struct BoxDevice {
-  std::vector<double> values;  ///< values of the device's varied quantities [SI unit, or factor]
+  std::vector<double> values;  ///< values of the varied quantities of the device [SI unit, or factor]
   double figure = Metrics::unset;
   DeviceOutcome outcome = {};
 };
 struct FigureRange {
   std::string_view key;     ///< key of the figure, one of device_figures
   BoxDevice least, most;    ///< devices with the least and the largest figure; `least` is empty if none closes
-  Interval of_sample = {};  ///< range of the figure over the sampled devices in the box
+  Interval of_sample = {};  ///< range of the figure over the sampled devices inside the box
 };
 
 struct FigureChaos {
-  std::string_view key;               ///< key of the figure, one of device_figures
-  std::size_t fitted = 0;             ///< number of devices to which the polynomials are fitted
-  std::size_t unseen = 0;             ///< number of devices on which the polynomials are tested
-  int degree = 0;                     ///< degree of the polynomials
-  std::size_t terms = 0;              ///< number of terms, the constant included
-  double q2 = Metrics::unset;         ///< predicted share of the figure's variance, by cross-validation
-  double q2_unseen = Metrics::unset;  ///< predicted share of the variance of the devices that were not fitted
+  std::string_view key;        ///< key of the figure, one of device_figures
+  std::size_t fitted = 0;      ///< number of devices to which the polynomials of the figure are fitted
+  std::size_t unseen = 0;      ///< number of other devices on which the polynomials are tested
+  int degree = 0;              ///< degree of the polynomials in the varied quantities
+  std::size_t terms = 0;       ///< number of terms of the polynomials, the constant included
+  double q2 = Metrics::unset;  ///< share of the figure's variance that the polynomials predict, by cross-validation
+  /// Share of the figure's variance that the polynomials predict on the devices to which they were not fitted.
+  double q2_unseen = Metrics::unset;
   double mean = Metrics::unset, standard_deviation = Metrics::unset;
   double quantile_95 = Metrics::unset;
 };
 
 struct BoxAndChaosOptions {
-  std::size_t closings_per_search = 300;  ///< closings of each of the two searches per figure
-  std::size_t most_fitted = 256;          ///< largest number of fitted devices
+  std::size_t closings_per_search = 300;  ///< closings that each search for an end of a figure's range may simulate
+  std::size_t most_fitted = 256;          ///< largest number of devices to which polynomials are fitted
 };
 
 struct BoxAndChaos {
   double half_width = Metrics::unset;  ///< half width b of the box of varied quantities, in standard deviations
   std::size_t sampled_inside = 0;      ///< number of sampled devices in the box of varied quantities
-  long closings = 0;                   ///< number of closings of all searches
+  long closings = 0;                   ///< number of simulated closings in the searches for the ends of the ranges
   std::vector<FigureRange> ranges = {};
   std::vector<FigureChaos> chaos = {};
-  std::size_t left_out = 0;   ///< number of devices of the fit that do not close; they are left out of the fit
-  std::string why_none = {};  ///< reason for missing ranges; empty if there are ranges
+  std::size_t left_out = 0;   ///< number of devices that do not close and are therefore left out of the fit of polynomials
+  std::string why_none = {};  ///< reason why the box has no ranges; empty if there are ranges
 };
 
-/// Finds the box ranges and the polynomial chaos of explained_figures under the waveforms of `drive`, which were simulated on
-/// the devices of `options`. The results depend on nothing but the arguments.
+/// Finds the ranges over the box of varied quantities, and the polynomial chaos, of explained_figures under the waveforms of
+/// `drive`, which were simulated on the devices of `options`. The results depend on nothing but the arguments.
 [[nodiscard]] BoxAndChaos box_and_chaos(const PreparedScene& nominal, const DriveRobustness& drive,
                                         const RobustnessOptions& options, const BoxAndChaosOptions& effort = {},
                                         const Progress& progress = {});

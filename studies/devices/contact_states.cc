@@ -21,7 +21,8 @@
 namespace softland {
 namespace {
 
-// Records the contact states of a run, and the knots of its motion if the resistance is known.
+// Records when a contact is closed in a run, and the knots (points between integrator steps) of the motion if the contact
+// resistance is known.
 class StatesObserver final : public ClosingObserver {
  public:
   explicit StatesObserver(const Switch& model)
@@ -44,7 +45,7 @@ class StatesObserver final : public ClosingObserver {
   [[nodiscard]] ClosingObserver* contact(std::size_t number) override { return conducts_ ? course_.contact(number) : nullptr; }
   void hand_over(Trajectory& run) { course_.hand_over(run); }
 
-  /// Returns the closed spans of the connection, then of each of several contacts.
+  /// Returns the time spans in which the connection is closed, then those of each of several contacts.
   [[nodiscard]] std::vector<std::vector<ClosedSpan>>& spans() { return spans_; }
 
  private:
@@ -53,7 +54,7 @@ class StatesObserver final : public ClosingObserver {
   CourseRecorder course_;
 };
 
-// Joins closed spans that are separated by an opening of at most `shortest_opening`.
+// Joins time spans with a closed contact that are separated by an opening of at most `shortest_opening` [s].
 void join(std::vector<ClosedSpan>& spans, double shortest_opening) {
   constexpr double rounding = 1e-12;  // relative difference below which two times are equal
   std::vector<ClosedSpan> joined;
@@ -66,12 +67,13 @@ void join(std::vector<ClosedSpan>& spans, double shortest_opening) {
   spans = std::move(joined);
 }
 
-// Leaves out the points that linear interpolation between the remaining points reproduces.
+// Leaves out the points of a resistance over time that linear interpolation between the remaining points reproduces.
 ResistanceLine on_lines(const ResistanceLine& points) {
-  constexpr double near = 1e-3;  // permitted relative error of the resistance
+  constexpr double near = 1e-3;  // permitted relative error of the interpolated resistance
   constexpr double any = std::numeric_limits<double>::infinity();
   ResistanceLine kept;
-  double least = -any, most = any;  // range of slopes from the last retained point that reproduce the points after it
+  // Range of slopes from the last retained point that reproduce the points after it within the permitted error.
+  double least = -any, most = any;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto slope_to = [&](std::size_t k, double factor) {
       return (factor * points[k].second - kept.back().second) / (points[k].first - kept.back().first);
@@ -92,19 +94,21 @@ ResistanceLine on_lines(const ResistanceLine& points) {
 }
 
 struct ResistanceSample {
-  double time = 0, resistance = 0;  // [s], [Ohm]; the resistance is NaN if it is not reported
-  bool ends = false;                // true at the end of a span
-  bool is_on_line = false;          // true if linear interpolation to the next sample is accurate enough
+  // Time [s], and contact resistance at this time [Ohm]; NaN if the resistance is not reported.
+  double time = 0, resistance = 0;
+  bool ends = false;        // true if the sample is the end of a span in which the contact is closed
+  bool is_on_line = false;  // true if linear interpolation from this sample to the next one is accurate enough
 };
 
-/// Returns the resistances at increasing times [Ohm]; NaN where they are not reported.
+/// Returns the contact resistances at increasing times [Ohm]; NaN where they are not reported.
 using ResistanceCourse = std::function<std::vector<double>(const std::vector<double>&)>;
 
-// Returns the resistance over the closed spans at the knots of the run, and at points between the knots until linear
-// interpolation is accurate.
+// Returns samples of the contact resistance while the contact is closed: at the knots of the run (points between integrator
+// steps), and between knots until linear interpolation is accurate.
 std::vector<ResistanceSample> resistance_samples(const std::vector<ClosedSpan>& spans, const ResistanceCourse& course,
                                                  const std::vector<double>& knots, double end) {
-  constexpr double near = 1e-2, shortest = 2e-12;  // relative error of the resistance, and shortest interval [s]
+  // Permitted relative error of the interpolated resistance, and shortest interval between samples [s].
+  constexpr double near = 1e-2, shortest = 2e-12;
   std::vector<ResistanceSample> samples;
   for (const ClosedSpan& span : spans) {
     const double last = std::min(span.end, end);
@@ -141,8 +145,8 @@ std::vector<ResistanceSample> resistance_samples(const std::vector<ClosedSpan>& 
   return samples;
 }
 
-// Adds the resistance to the closed spans. If the resistance at an edge of a span is not reported, the edge gets the resistance
-// at the nearest time with a reported value.
+// Adds the contact resistance to the spans in which the contact is closed. If the resistance at the begin or end of a span is
+// not reported, it is set to the resistance at the nearest time with a reported value.
 void add_resistance(std::vector<ClosedSpan>& spans, const ResistanceCourse& course, const std::vector<double>& knots,
                     double end) {
   auto span = spans.begin();
@@ -220,7 +224,7 @@ StateRecord contact_states(const PreparedScene& prepared, const Progress& progre
   require_contact(prepared);
   const Closing closing = simulate(prepared, true, progress);
   progress.throw_if_stopped();
-  // Repeat the run that gave the figures, with an observer of the contact states.
+  // Repeat the run that gave the figures of the closing, with an observer of the contact states.
   const bool is_tighter = closing.tolerance != prepared.tolerance;
   const Switch tighter = is_tighter ? Switch(prepared.scene.device, closing.quadrature) : prepared.model;
   constexpr double never = std::numeric_limits<double>::infinity();

@@ -20,9 +20,10 @@
 namespace softland {
 namespace {
 
-constexpr double slower = 1.5;             // factor by which the first rate of a scan is lowered if it is not steady
-constexpr int most_slower = 6;             // largest number of reductions of the first rate
-constexpr double periods_of_opening = 60;  // periods of the first mode within which the switch must come to rest after opening
+constexpr double slower = 1.5;  // factor by which the first cycle rate of a scan is lowered if the cycles at this rate differ
+constexpr int most_slower = 6;  // largest number of reductions of the first cycle rate
+// Number of periods of the first mode within which the switch must come to rest after opening.
+constexpr double periods_of_opening = 60;
 
 // Appends the pieces of a signal that begin before `until`, shifted in time by `later`.
 void append(std::vector<SignalPiece>& pieces, const Signal& signal, double until, double later) {
@@ -34,7 +35,7 @@ void append(std::vector<SignalPiece>& pieces, const Signal& signal, double until
   }
 }
 
-// Records the figures of the cycles, and the motion of the contact point.
+// Records the figures of the cycles of closing and opening, and the motion of the contact point.
 class KeptCourse final : public ClosingObserver {
  public:
   explicit KeptCourse(CycleRecorder& recorder, double contact_gap) : recorder_(recorder), contact_gap_(contact_gap) {}
@@ -122,8 +123,8 @@ Cycles CycledSwitch::run(const CycleTimes& times, bool is_told, const Progress& 
   return found;
 }
 
-// Returns true if all cycles are steady. A touch is reported only at the beginning of the next touch, so a cycle is checked
-// when the next cycle has ended.
+// Returns true if all cycles close and open as the first one does. A touch is reported only at the beginning of the next touch,
+// so a cycle is checked when the next cycle has ended.
 bool CycledSwitch::is_steady(const CycleTimes& times, const CycleTolerances& tolerances, const Progress& progress) const {
   CycleRecorder recorder(model_.contact_gap(), options_, times);
   Trajectory so_far;
@@ -172,9 +173,9 @@ RateScan scan_rates(const CycledSwitch& cycled, const ScanOptions& options, cons
   double lowest = rate_of(times.rest_on, times.rest_off);
   const double highest = rate_of(times.least_on, times.least_off);
   if (!(lowest > 0)) return scan;
-  // At the lowest rate a remaining vibration may still affect the next closing.
+  // At the lowest rate a remaining vibration may still affect the next closing: lower the rate until the cycles are alike.
   for (int k = 0; k < most_slower && !progress.stopped() && !is_steady_at(lowest); ++k) lowest /= slower;
-  bool is_below = true;  // true for rates below the first rate that is not steady
+  bool is_below = true;  // true for rates below the first rate at which cycles differ from the first one
   for (double rate = lowest; rate <= highest && !progress.stopped(); rate *= 1 + options.step) {
     const bool is_steady = is_steady_at(rate);
     progress.tell("rates", std::log(rate / lowest) / std::log(highest / lowest));

@@ -25,22 +25,23 @@ struct CycleWaveforms {
   std::vector<Signal> closing, opening;
 };
 
-/// Returns the waveforms of a cycle repeated at `times`. The switch is at rest before the first cycle.
+/// Returns the drive signals of many cycles: the waveforms of one cycle repeated with the period of `times`. The switch is at
+/// rest before the first cycle.
 [[nodiscard]] std::vector<Signal> cycled(const CycleWaveforms& waveforms, const CycleTimes& times);
 
 struct Cycles {
   CycleTimes times;
-  Status status = Status::not_run;   ///< done if the run reached the end of its last cycle
-  std::string message = {};          ///< reason if the run ended early
-  std::vector<CycleFigures> cycles;  ///< completed cycles
+  Status status = Status::not_run;   ///< `done` if the run reached the end of its last cycle
+  std::string message = {};          ///< reason why the run ended early; empty if it did not
+  std::vector<CycleFigures> cycles;  ///< figures of the completed cycles
   /// Distance of the contact point to the contact plane [m] over time [s]; only if requested.
   std::vector<std::pair<double, double>> gap = {};
-  std::vector<Touch> touches = {};  ///< touches in the run; only if requested
+  std::vector<Touch> touches = {};  ///< touches of the contact in the run; only if requested
 };
 
-/// Permitted differences of a cycle from the first cycle of the run.
+/// Differences from the first cycle of a run at which a cycle still counts as alike.
 struct CycleTolerances {
-  double share = 0.05;    ///< relative difference of the largest impact velocity and the highest rebound
+  double share = 0.05;    ///< relative difference of the largest impact velocity and of the highest rebound
   double rebound = 1e-9;  ///< absolute difference of the highest rebound that is always permitted [m]
 };
 
@@ -50,17 +51,17 @@ struct CycleTolerances {
 /// The cycles of one switch: the nominal design of a scene, or one of the devices of its [spread].
 class CycledSwitch {
  public:
-  /// Keeps references. `driven` is the scene whose sources apply the waveforms to `model`.
+  /// Keeps references to its arguments. `driven` is the scene whose voltage sources apply the waveforms to `model`.
   CycledSwitch(const PreparedScene& driven, const Switch& model, const CycleWaveforms& waveforms);
 
-  /// Runs cycles. With `is_told` the result also has the gap over time and the touches, and the figures include those of a load
-  /// and of the electrical state.
+  /// Simulates cycles. With `is_told` the result also has the gap over time and the touches, and the figures include those of a
+  /// load and of the electrical state.
   [[nodiscard]] Cycles run(const CycleTimes& times, bool is_told, const Progress& progress = {}) const;
-  /// True if the switch closes in every cycle as in the first cycle. The run ends at the first cycle that differs.
+  /// True if the switch closes and opens in every cycle as in the first cycle. The run ends at the first cycle that differs.
   [[nodiscard]] bool is_steady(const CycleTimes& times, const CycleTolerances& tolerances, const Progress& progress = {}) const;
-  /// Times that a cycle needs for its closing (`on`) and for its opening (`off`) [s]: `rest` until the switch is at rest,
-  /// simulated in windows that are long enough; `least` until the first contact or the end of the waveform. A time is infinite
-  /// if the switch does not reach that state.
+  /// Times that a cycle needs for its closing (`on`) and for its opening (`off`) [s]: `rest` until the switch is at rest, in a
+  /// simulation that is long enough; `least` until the first contact or the end of the waveform. A time is infinite if the
+  /// switch does not reach that state.
   struct PartTimes {
     double rest_on = std::numeric_limits<double>::infinity(), rest_off = std::numeric_limits<double>::infinity();
     double least_on = std::numeric_limits<double>::infinity(), least_off = std::numeric_limits<double>::infinity();
@@ -68,7 +69,7 @@ class CycledSwitch {
   [[nodiscard]] PartTimes part_times(const Progress& progress = {}) const;
 
  private:
-  // Ends the run when `is_enough` returns true; `is_enough` may be null.
+  // Runs cycles with an observer and ends the run when `is_enough` returns true; `is_enough` may be null.
   [[nodiscard]] Trajectory observe(const CycleTimes& times, ClosingObserver& observer, const Progress& progress,
                                    const std::function<bool()>& is_enough) const;
 
@@ -80,63 +81,62 @@ class CycledSwitch {
 
 struct RateScan {
   struct Rate {
-    double rate = 0;  ///< number of cycles per second [Hz]
+    double rate = 0;  ///< cycle rate, number of cycles per second [Hz]
     bool is_steady = false;
   };
-  std::vector<Rate> rates;  ///< simulated rates, in increasing order
-  /// Largest rate up to which the cycles at every simulated rate are steady [Hz]; NaN if there is no such rate.
+  std::vector<Rate> rates;  ///< simulated cycle rates, in increasing order
+  /// Largest rate up to which the cycles at every simulated rate are alike (steady) [Hz]; NaN if there is no such rate.
   double largest = std::numeric_limits<double>::quiet_NaN();
-  /// Ranges of steady rates above `largest` [Hz].
+  /// Ranges of rates above `largest` at which the cycles are steady again [Hz].
   std::vector<std::pair<double, double>> windows = {};
 };
 
 struct ScanOptions {
-  double duty = 0.5;         ///< share of a cycle that lies before its command to open
-  double step = 0.05;        ///< relative step from one rate to the next
-  std::size_t cycles = 10;   ///< number of cycles of a run; the first is the reference for the others
-  bool beyond_first = true;  ///< true to continue above the first rate at which the cycles are not steady
+  double duty = 0.5;         ///< share of a cycle that lies before its command to open the switch
+  double step = 0.05;        ///< relative step from one cycle rate of the scan to the next
+  std::size_t cycles = 10;   ///< number of cycles of a run; the first is the reference for the other cycles
+  bool beyond_first = true;  ///< true to continue the scan above the first rate at which the cycles are not alike
   CycleTolerances tolerances = {};
 };
 
-/// Scans rates. At the first rate every cycle begins and ends at rest; the first rate is lowered until its cycles are steady.
-/// At the last rate the closing or the opening is too short for its waveform.
+/// Simulates cycles at increasing rates. At the first rate every cycle begins and ends at rest; the first rate is lowered until
+/// its cycles are steady. At the last rate the closing or the opening is too short for its waveform.
 [[nodiscard]] RateScan scan_rates(const CycledSwitch& cycled, const ScanOptions& options, const Progress& progress = {});
 
 struct CyclingOptions {
-  std::optional<double> rate = {};  ///< rate of the reported cycles [Hz]; none: largest steady rate of the last waveforms
-  bool scans = true;                ///< false to run only the cycles at `rate`
+  std::optional<double> rate = {};  ///< rate of the cycles to report [Hz]; none: the largest steady rate of the last waveforms
+  bool scans = true;                ///< false to simulate only the cycles at `rate`, without a scan of rates
   double duty = ScanOptions{}.duty;
   std::size_t cycles = ScanOptions{}.cycles;
-  std::uint64_t devices = 50;  ///< number of devices of [spread] whose rates are scanned as well; 0 for none
+  std::uint64_t devices = 50;  ///< number of devices of [spread] whose cycle rates are scanned as well; 0 for none
   std::uint64_t seed = 1;
   int jobs = 1;
 };
 
-/// The results of a switch that is cycled by one pair of waveforms, for closing and opening.
+/// The results of a switch that is closed and opened periodically by one pair of waveforms, for closing and opening.
 struct CycledDrive {
   CycleWaveforms waveforms;
-  RateScan scan;                        ///< rates of the nominal design
-  std::vector<double> of_devices = {};  ///< RateScan::largest of each device [Hz]; 0 if no rate is steady
-  std::optional<Cycles> cycles = {};    ///< cycles of the nominal design at the reported rate
+  RateScan scan;                        ///< cycle rates of the nominal design, with the rates at which its cycles are steady
+  std::vector<double> of_devices = {};  ///< largest steady cycle rate of each device [Hz]; 0 if no rate is steady
+  std::optional<Cycles> cycles = {};    ///< cycles of the nominal design at the rate `rate`
 };
 
 struct Cycling {
   CyclingOptions options;
-  double rate = std::numeric_limits<double>::quiet_NaN();  ///< rate of the reported cycles [Hz]; NaN without reported cycles
-  std::vector<CycledDrive> drives;                         ///< results under the plain waveforms, then under the given
-                                                           ///< waveforms
+  double rate = std::numeric_limits<double>::quiet_NaN();  ///< rate of the cycles in `cycles` [Hz]; NaN without cycles
+  std::vector<CycledDrive> drives;                         ///< results with plain steps, then with the given waveforms
   bool interrupted = false;
 };
 
 /// Completes the waveforms of a cycle: a missing closing steps to the start of the opening, a missing opening to 0 V.
 void complete(CycleWaveforms& waveforms, const PreparedScene& given);
-/// Returns a cycle of plain steps. Every drive goes at once, as fast as its driver permits, to the last level of its closing
-/// waveform, and on the command to open to the last level of its opening waveform.
+/// Returns a cycle of plain steps. Every drive goes at once, as fast as its voltage source permits, to the last level of its
+/// closing waveform, and on the command to open to the last level of its opening waveform.
 [[nodiscard]] CycleWaveforms plain_cycle(const PreparedScene& given, const CycleWaveforms& waveforms);
 
-/// Scans the rates of the plain waveforms and of the given waveforms, and runs the cycles at one rate. Devices have the drives
-/// of the nominal design, without errors of the sources. Throws InvalidInput for a scene without contact, and for waveforms
-/// that are longer than the closing or opening part of a cycle at the requested rate.
+/// Searches the steady cycle rates of plain steps and of the given waveforms, and runs the cycles at one rate. Devices have the
+/// drives of the nominal design, without errors of the sources. Throws InvalidInput for a scene without contact, and for
+/// waveforms that are longer than the closing or opening part of a cycle at the requested rate.
 [[nodiscard]] Cycling cycling(const PreparedScene& given, const CycleWaveforms& waveforms, const CyclingOptions& options,
                               const Progress& progress = {});
 

@@ -17,9 +17,10 @@ namespace {
 
 constexpr double no_derivative = Metrics::unset;
 constexpr double usual_tolerance = 1e-8;
-constexpr double largest_disagreement = 0.05;  // permitted relative change of derivatives with the tolerance
-constexpr double no_change =
-    1e-5;  // a derivative counts as 0 if its error, times the standard deviation, is below this share of the figure
+// Permitted relative change of a figure's derivatives with the tolerance of the integrator.
+constexpr double largest_disagreement = 0.05;
+// A derivative counts as 0 if its error, times the standard deviation of the quantity, is below this share of the figure.
+constexpr double no_change = 1e-5;
 
 // Returns the scene without jitter. Jitter is random for every edge and so has no derivatives.
 PreparedScene without_jitter(const PreparedScene& scene) {
@@ -40,7 +41,7 @@ DeviceChanges changes_near(NearbyDevices& near, const Switch& model, std::vector
   return changes;
 }
 
-// Returns the change of a figure by a standard deviation of each quantity; 0 without a derivative by that quantity.
+// Returns the change of a figure by a standard deviation of each varied quantity; 0 without a derivative by that quantity.
 Eigen::VectorXd changes_of(const std::vector<double>& by_variable, const std::vector<Derivatives::Variable>& variables) {
   Eigen::VectorXd changes(static_cast<Eigen::Index>(variables.size()));
   for (std::size_t k = 0; k < variables.size(); ++k)
@@ -58,12 +59,14 @@ std::string why_no_derivative(const Figure& figure, double value, const CostSlop
 struct NominalClosing {
   DeviceOutcome outcome;
   CostSlopes slopes;
-  Eigen::MatrixXd gradient = {};  // derivatives, one row for each of derived_figures; empty if the device does not close
+  // Derivatives of the figures, one row for each of derived_figures; empty if the device does not close.
+  Eigen::MatrixXd gradient = {};
 };
 
-// Changes of the switch and of its signals by the variables, from which derivatives of figures follow.
+// Changes of the switch and of its drive signals by the varied quantities or waveform parameters, from which derivatives of
+// figures follow.
 struct Changes {
-  SwitchSlopes* of_switch = nullptr;  // null if the switch does not change
+  SwitchSlopes* of_switch = nullptr;  // changes of the switch; null if the switch does not change
   const SignalSlopes& of_signals;
 };
 
@@ -111,8 +114,8 @@ std::vector<Derivatives::Variable> variables_of(const DeviceSpread& spread) {
   return all;
 }
 
-// Computes the derivatives of the figures under these signals. `places` are the indices of the changes `by` among the
-// variables.
+// Computes the derivatives of the figures under these drive signals. `places` are the indices of the changes `by` among the
+// varied quantities.
 void derive(Derivatives& found, const PreparedScene& nominal, const std::vector<Signal>& signals, const Changes& by,
             const std::vector<std::size_t>& places, const Eigen::MatrixXd& correlation, const DerivativeOptions& options,
             const Progress& progress) {
@@ -157,7 +160,7 @@ Derivatives derivatives(const PreparedScene& scene, const EnsembleDrive& drive, 
   require_open_start(scene.scene, "derivatives are those of a closing that begins");
   const DeviceSpread& spread = scene.scene.spread;
   Derivatives found{.variables = variables_of(spread), .figures = {}};
-  std::vector<std::size_t> places;  // indices of the variables with one value per device, not one per edge
+  std::vector<std::size_t> places;  // indices of the varied quantities with one value per device, not one per edge (jitter)
   std::vector<Derivatives::Variable*> variables;
   for (std::size_t i = 0; i < found.variables.size(); ++i) {
     if (spread.variables[i].is_drawn_per_edge) continue;

@@ -29,28 +29,32 @@
 namespace softland {
 
 struct FigureDerivatives {
-  std::string_view key;               ///< key of device_figures
-  double value = Metrics::unset;      ///< value of the figure for the nominal device
-  std::vector<double> by_variable;    ///< derivative by each variable [unit of figure over unit of variable]; NaN if it does
-                                      ///< not exist
-  double deviation = Metrics::unset;  ///< sigma_f, standard deviation of the figure, from the variables with derivatives
-  double error = Metrics::unset;      ///< largest change of derivatives with a looser tolerance, over the largest derivative
-  std::string why_none = {};          ///< reason for missing derivatives of the figure; empty if they exist
+  std::string_view key;           ///< key of the figure, one of device_figures
+  double value = Metrics::unset;  ///< value of the figure for the nominal device
+  /// Derivative of the figure by each varied quantity [unit of figure over unit of quantity]; NaN if it does not exist.
+  std::vector<double> by_variable;
+  /// Sigma_f, standard deviation of the figure, from the varied quantities with derivatives.
+  double deviation = Metrics::unset;
+  /// Largest change of the figure's derivatives with a looser integrator tolerance, divided by the largest derivative.
+  double error = Metrics::unset;
+  std::string why_none = {};  ///< reason why the figure has no derivatives; empty if they exist
 
   [[nodiscard]] bool is_known() const { return !by_variable.empty(); }
 };
 
 struct Derivatives {
   struct Variable {
-    std::string name;           ///< name of the variable in [spread]
-    double nominal = 0;         ///< value for the nominal device; 1 for a factor
-    double deviation = 0;       ///< sigma_i, standard deviation of the variable
-    std::string why_none = {};  ///< reason for missing derivatives by this variable; empty if they exist
+    std::string name;           ///< name of the varied quantity in [spread]
+    double nominal = 0;         ///< value of the quantity for the nominal device; 1 for a factor
+    double deviation = 0;       ///< sigma_i, standard deviation of the quantity over the devices
+    std::string why_none = {};  ///< reason for missing derivatives by this quantity; empty if they exist
   };
-  std::vector<Variable> variables;         ///< variables in the order of [spread]
+  std::vector<Variable> variables;         ///< varied quantities in the order of [spread]
   std::vector<FigureDerivatives> figures;  ///< figures among device_figures that have derivatives
-  double grazing = 1;                      ///< CostSlopes::grazing of the nominal closing
-  std::string why_none = {};               ///< reason for missing derivatives of all figures; empty if they exist
+  /// Smallest speed at which the contact point crosses the contact plane in the nominal closing, as a share of that at first
+  /// contact.
+  double grazing = 1;
+  std::string why_none = {};  ///< reason why no figure has derivatives; empty if some exist
 
   [[nodiscard]] bool grazes() const;
 };
@@ -60,20 +64,20 @@ struct DerivativeOptions {
   int refinement = 4;    ///< number of parts into which an integrator step is divided (LinearizedClosing)
 };
 
-/// Returns derivatives under the waveforms of this drive, with each device's scale factors as exact. None for a compressible
-/// film, for devices that are sorted into classes, if the nominal device does not close, and if interrupted.
+/// Returns derivatives of the figures under the waveforms of `drive`, with each device's scale factors as exact. None for a
+/// compressible film, for devices that are sorted into classes, if the nominal device does not close, and if interrupted.
 [[nodiscard]] Derivatives derivatives(const PreparedScene& scene, const EnsembleDrive& drive,
                                       const DerivativeOptions& options = {}, const Progress& progress = {});
 
-/// A parameter of the waveforms by which derivatives are taken.
+/// A parameter of the drive waveforms by which derivatives of figures are taken.
 struct WaveformParameter {
   std::string name;
   double value = 0;
-  double size = 0;  ///< scale of the parameter, for example the width of its range; must be above 0
+  double size = 0;  ///< scale of the waveform parameter, for example the width of its range; must be above 0
 };
-/// Returns derivatives by these parameters, for the nominal device under the signals that the parameters determine. Each
-/// parameter is a variable whose standard deviation is a hundredth of its `size`. A parameter has no derivatives if the signals
-/// consist of other pieces at slightly smaller and larger values of the parameter.
+/// Returns derivatives of the figures by these waveform parameters, for the nominal device under the drive signals that the
+/// parameters determine. Each parameter is a variable whose standard deviation is a hundredth of its `size`. A parameter has no
+/// derivatives if the signals consist of other pieces at slightly smaller and larger values of the parameter.
 [[nodiscard]] Derivatives derivatives_by_waveforms(const PreparedScene& scene, const std::vector<WaveformParameter>& parameters,
                                                    const SignalSlopes::SignalsOf& signals, const DerivativeOptions& options = {},
                                                    const Progress& progress = {});

@@ -9,13 +9,14 @@
 namespace softland {
 namespace {
 
-// Returns a number for an edge of a drive that is unique over all drives.
+// Returns a number for an edge (jump or ramp) of a drive's waveform that is unique over all drives.
 std::uint64_t number_of_edge(std::size_t drive, std::size_t edge) {
-  constexpr std::uint64_t most_edges = std::uint64_t{1} << 32;  // largest number of edges of one drive
+  // Largest number of edges (jumps or ramps) in the waveform of one drive.
+  constexpr std::uint64_t most_edges = std::uint64_t{1} << 32;
   return drive * most_edges + edge;
 }
 
-// Returns the signal as a table of voltages over time; straight pieces are exact.
+// Returns the signal of a drive as a table of voltages over time up to `window` [s]; straight pieces are exact.
 Waveform as_table(const Signal& signal, double window) {
   const bool ends_on_sine = signal.pieces().back().oscillates();
   const double last = signal.pieces().back().begin;
@@ -27,7 +28,7 @@ Waveform as_table(const Signal& signal, double window) {
   return table;
 }
 
-// Returns the member of `errors` for this error; null for jitter, which is not a single number.
+// Returns the member of `errors` for this error of a voltage source; null for jitter, which is not a single number.
 double* member_of(SourceErrors& errors, DriveError error) {
   switch (error) {
     case DriveError::gain:
@@ -54,22 +55,22 @@ std::vector<Waveform> in_units(const std::vector<Waveform>& waveforms, const Dev
   return own;
 }
 
-// The commanded waveforms of a device, and the errors of its sources. In a source that takes samples, jitter shifts the edges
-// before they are sampled, and the other errors act on the samples. Other sources apply all errors together. A varied gain
-// scales the waveform, which is possible for every waveform family.
+// The commanded waveforms of a device, and the errors of its voltage sources. In a source that takes samples, jitter shifts the
+// edges before they are sampled, and the other errors act on the samples. Other sources apply all errors together. A varied
+// gain scales the waveform, which is possible for every waveform family.
 struct DeviceDrives::Driven {
   std::vector<Waveform> waveforms;
-  std::vector<Signal> signals;  // commanded voltages
+  std::vector<Signal> signals;  // commanded voltages of the drives
   std::vector<SourceErrors> errors;
-  double origin = 0;  // start of the device's time axis, at the first edge [s]
+  double origin = 0;  // start of the device's time axis at its first edge, on the time axis of the waveforms [s]
 
-  // Returns the commanded signal with jitter, and the start of the signal on the time axis of the waveform [s].
+  // Returns the commanded signal of drive k with jitter, and the start of the signal on the time axis of the waveform [s].
   [[nodiscard]] std::pair<Signal, double> jittered(std::size_t k) const {
     const SourceErrors jitter{.edges = errors[k].edges};
     const double begin = std::min(0.0, first_edge(signals[k], jitter));
     return {jitter.are_none() ? signals[k] : with_errors(signals[k], jitter, begin), begin};
   }
-  // Returns the errors that act after the samples, for a source that takes samples.
+  // Returns the errors of the source of drive k that act after sampling, for a source that takes samples.
   [[nodiscard]] SourceErrors after_samples(std::size_t k) const {
     return {.gain = errors[k].gain, .offset = errors[k].offset, .delay = errors[k].delay - origin + jittered(k).second};
   }
@@ -103,7 +104,7 @@ std::vector<double> DeviceDrives::shown(std::vector<double> values) const {
   return values;
 }
 
-// Returns the value of an error of a source, other than jitter [SI unit].
+// Returns the value of an error of a voltage source, other than jitter [SI unit].
 double DeviceDrives::value(const Source& source, const std::vector<double>& values) const {
   const SpreadVariable& variable = nominal_->scene.spread.variables[source.variable];
   return DeviceSpread::value(variable, variable.keys[source.key], values[source.variable]);
@@ -182,10 +183,11 @@ std::optional<std::vector<double>> DeviceDrives::gains(const DeviceUnits& units,
   for (std::size_t k = 0; k < sources_.size(); ++k) {
     const SourceErrors own = errors(k, values);
     all.push_back(own.gain);
-    if (own.delay < 0) return std::nullopt;  // a delay below 0 shifts the start of the time axis of all drives
+    if (own.delay < 0) return std::nullopt;  // a delay of the source below 0 shifts the start of the time axis of all drives
     if (sources_[k].empty() && own.gain == 1) continue;
     const bool is_gain = std::ranges::all_of(sources_[k], [](const Source& one) { return one.error == DriveError::gain; });
-    // A gain scales neither the voltage before t = 0 nor an offset: the signals then differ by more than a factor.
+    // A gain of a voltage source scales neither the voltage before t = 0 nor an offset: the signals then differ by more than a
+    // factor.
     if (!is_gain || own.offset != 0 || nominal_->values_before()[k] != 0) return std::nullopt;
   }
   return all;

@@ -33,10 +33,10 @@ struct DeviceUnits {
 
 class DeviceDrives {
  public:
-  /// Keeps a reference to `nominal`, whose [spread] lists the errors of the sources.
+  /// Keeps a reference to `nominal`, whose [spread] lists the varied errors of the voltage sources.
   explicit DeviceDrives(const PreparedScene& nominal);
 
-  /// True if a device with these scale factors has drives that differ from those of the nominal device.
+  /// True if a device with these scale factors has drive signals that differ from those of the nominal device.
   [[nodiscard]] bool differ(const DeviceUnits& units) const {
     return has_errors_ || units.volts != 1 || units.piezo != 1 || units.time != 1;
   }
@@ -50,7 +50,7 @@ class DeviceDrives {
   /// Returns the drives of a device as for the nominal device (unscaled), with sources whose gain is 1; `nominal` as in
   /// signals().
   [[nodiscard]] std::vector<Signal> without_gains(const std::vector<Waveform>& nominal) const;
-  /// Returns the errors of the source of drive k for these values of the varied quantities, except its jitter.
+  /// Returns the errors of the voltage source of drive k for these values of the varied quantities, except its jitter.
   [[nodiscard]] SourceErrors errors(std::size_t k, const std::vector<double>& values) const;
   /// Returns the derivatives of errors() by varied quantity i: the derivatives of gain, offset [V] and delay [s].
   [[nodiscard]] SourceErrors errors_by(std::size_t k, std::size_t i) const;
@@ -60,20 +60,21 @@ class DeviceDrives {
     SourceErrors errors = {};
   };
   /// Returns signals() as waveforms: of the same kind as the nominal waveform if possible, else as tables. A table is exact,
-  /// except for a sine, which it approximates within 1e-4 of the peak up to the end of the window. Varied errors of a source
-  /// are part of the waveform. If the source samples the waveform, these errors act after the samples and are returned in
-  /// `errors`, except a delay below 0, which is left out.
+  /// except for a sine, which it approximates within 1e-4 of the peak up to the end of the simulated time. Varied errors of a
+  /// source are part of the waveform. If the source samples the waveform, these errors act after the samples and are returned
+  /// in `errors`, except a delay below 0, which is left out.
   [[nodiscard]] std::vector<Written> written(const std::vector<Waveform>& nominal, const DeviceUnits& units,
                                              const std::vector<double>& values) const;
   /// True if the errors of a drive's source vary. `drive` is its index in Switch::drives().
   [[nodiscard]] bool has_errors(std::size_t drive) const { return !sources_[drive].empty(); }
-  /// Returns the values of the varied quantities for display. The value of jitter is the random time of the first edge [s].
+  /// Returns the values of a device's varied quantities for display. The value of jitter is the random time of the first edge
+  /// [s].
   [[nodiscard]] std::vector<double> shown(std::vector<double> values) const;
 
  private:
   /// A varied quantity of [spread] that is an error of the source of a drive.
   struct Source {
-    std::size_t variable, key;  // indices of the variable in [spread], and of the key in the variable
+    std::size_t variable, key;  // indices of the varied quantity in [spread], and of the key among its keys
     DriveError error;
   };
   struct Driven;
@@ -83,7 +84,7 @@ class DeviceDrives {
                               const std::vector<double>& values) const;
 
   const PreparedScene* nominal_;
-  std::vector<std::vector<Source>> sources_;  // varied errors of each drive
+  std::vector<std::vector<Source>> sources_;  // varied errors of each drive's voltage source
   bool has_errors_ = false;
 };
 

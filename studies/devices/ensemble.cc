@@ -20,9 +20,10 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t chunk = 128;  // devices of one task: enough to fill a lane, few enough to check the Progress often
+// Number of devices of one task: enough to fill a SIMD lane, few enough to check the Progress often.
+constexpr std::size_t chunk = 128;
 
-// Records the figures of the closings in a SIMD lane.
+// Records the figures of the closings of several devices that are simulated together in SIMD lanes.
 class LaneFigures final : public LandingObserver {
  public:
   explicit LaneFigures(const MetricsOptions& options) : figures_(options) {}
@@ -59,7 +60,8 @@ Ensemble::Ensemble(const PreparedScene& nominal, std::uint64_t size, std::functi
   require(!nominal.scene.spread.empty(), [&] {
     return fmt::format("{}: a [spread] section must say how devices differ (softland new writes one)", nominal.scene.file.name());
   });
-  reads_anew_ = nominal.scene.device.structure.is_rigid();  // the length of a plate depends on its area and width
+  // A varied key of a rigid plate changes another member: the plate's length depends on its area and width.
+  reads_anew_ = nominal.scene.device.structure.is_rigid();
   for (const SpreadVariable& variable : nominal.scene.spread.variables) {
     for (const VariedKey& key : variable.keys) reads_anew_ = reads_anew_ || (!key.member && !key.drive);
   }
@@ -194,7 +196,7 @@ std::vector<DeviceOutcome> close_devices(std::span<const DeviceClosing> closings
 
 namespace {
 
-// Marks a device at rest at the end of the window as not settled if its hold levels do not keep it closed.
+// Marks a device that is at rest at the end of the simulated time as not settled if its hold levels do not keep it closed.
 void judge_hold(DeviceOutcome& outcome, const Hold& hold) {
   Metrics& m = outcome.metrics;
   if (outcome.closed()) m.resistance = hold.resistance;
@@ -308,7 +310,7 @@ std::vector<std::vector<DeviceOutcome>> close_all(const Ensemble& ensemble, cons
   };
   const std::size_t chunks = (ensemble.size() + chunk - 1) / chunk;
   std::size_t complete = std::min<std::size_t>(ensemble.size(), chunk * run_tasks(chunks, run.jobs, task, progress.stop));
-  // After an interruption, some chunks contain devices whose closing has not begun or has not ended.
+  // After an interruption, some tasks contain devices whose closing has not begun or has not ended.
   const auto missing = [](const DeviceOutcome& o) {
     return o.failure.empty() && (o.metrics.status == Status::not_run || o.metrics.status == Status::interrupted);
   };

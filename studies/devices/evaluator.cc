@@ -23,14 +23,15 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t rows_of_task = 64;  // rows of one task: enough to fill a lane, few enough to check the Progress often
+// Number of rows of one task: enough to fill a SIMD lane, few enough to check the Progress often.
+constexpr std::size_t rows_of_task = 64;
 
 }  // namespace
 
 struct Evaluator::Row {
-  SampledDevice own;                      // device of the row, unless it is the nominal device
-  const SampledDevice* device = nullptr;  // device to close: `own` or the nominal device
-  std::vector<Signal> signals;            // signals of the row, if they differ from those of the scene
+  SampledDevice own;                      // device that the row of the input describes, unless it is the nominal device
+  const SampledDevice* device = nullptr;  // device to close for the row: `own` or the nominal device
+  std::vector<Signal> signals;            // drive signals of the row, if they differ from those of the scene
   std::string refusal = {};
   double duration = 0;
   bool has_signals = false;
@@ -70,7 +71,7 @@ Evaluator::Evaluator(const SceneFile& file, std::vector<std::string> keys, std::
   drives_ = std::make_unique<DeviceDrives>(*nominal_);
 }
 
-// Finds the columns that vary the device, and prepares the scene with these columns in [spread].
+// Finds the columns of the input that vary the device, and prepares the scene with these columns in [spread].
 void Evaluator::vary_device(const SceneFile& file, const Progress& progress) {
   if (options_.volts == VoltsOf::each) {
     SceneFile scene = file;
@@ -141,7 +142,7 @@ std::vector<Waveform> Evaluator::waveforms_of(std::span<const double> values) co
   return all;
 }
 
-// Returns the reason why a driver cannot apply the waveforms of a row; empty if it can.
+// Returns the reason why a voltage source cannot apply the waveforms of a row; empty if it can.
 std::string Evaluator::violation_of(const std::vector<Waveform>& own) const {
   for (const WaveformKey& key : of_waveforms_) {
     const std::optional<DriverLimits>& limits = nominal_->drives[key.drive].limits;
@@ -309,7 +310,7 @@ WrittenVolts written_volts(const SceneFile& file, const PreparedScene& there) {
   return found;
 }
 
-// Returns the derivatives of a figure by the variables; throws InvalidInput if the figure has none.
+// Returns the derivatives of a figure by the varied quantities; throws InvalidInput if the figure has none.
 const FigureDerivatives& derived(const Derivatives& found, const Figure& figure) {
   require(found.why_none.empty(), [&] { return "jacobian: no derivatives here: " + found.why_none; });
   const auto of = std::find_if(found.figures.begin(), found.figures.end(),
@@ -327,12 +328,12 @@ void require_derived(const Derivatives::Variable& variable) {
 
 }  // namespace
 
-// The scene of a row, in volts, with the data that its derivatives by the columns need.
+// The scene that a row of the input describes, in volts, with the data that its derivatives by the columns need.
 struct Evaluator::Place {
-  PreparedScene scene;                 ///< scene whose [spread] has the columns that vary the device
-  std::vector<std::size_t> of_device;  ///< index of the column for each variable of the [spread] of `scene`
+  PreparedScene scene;                 ///< scene whose [spread] has the input columns that vary the device
+  std::vector<std::size_t> of_device;  ///< index of the input column for each varied quantity of the [spread] of `scene`
   std::vector<WaveformKey> of_waveforms;
-  MeasuredUnits known;  ///< scale factors of the voltages on the device
+  MeasuredUnits known;  ///< factors by which the voltages of the waveforms are scaled on the device
 };
 
 Evaluator::Place Evaluator::place_of(std::span<const double> row, const Progress& progress) const {
@@ -378,7 +379,7 @@ Evaluator::Place Evaluator::place_of(std::span<const double> row, const Progress
   return with_columns(std::move(there), keys_of_row(in_volts, row), std::move(known));
 }
 
-// Returns the columns that are parameters of waveforms, with the factors that convert from the units of these columns.
+// Returns the input columns that are parameters of waveforms, with the factors that convert from the units of these columns.
 std::vector<Evaluator::WaveformKey> Evaluator::keys_of_row(const PreparedScene& in_volts, std::span<const double> row) const {
   std::vector<WaveformKey> all;
   std::vector<Waveform> waveforms = in_volts.waveforms();
@@ -405,7 +406,7 @@ std::vector<Evaluator::WaveformKey> Evaluator::keys_of_row(const PreparedScene& 
   return all;
 }
 
-// Computes the derivatives of figures by the parameters of waveforms among the columns.
+// Computes the derivatives of figures by the input columns that are parameters of waveforms.
 void Evaluator::derive_by_waveforms(const Place& place, std::span<const double> row, Eigen::MatrixXd& all,
                                     const Progress& progress) const {
   const std::vector<Waveform> here = place.scene.waveforms();

@@ -33,13 +33,14 @@ enum class VoltsOf {
 
 struct EvaluatorOptions {
   VoltsOf volts = VoltsOf::nominal;
-  double tolerance = EnsembleRun{}.tolerance;  ///< tolerance of the integrator
+  double tolerance = EnsembleRun{}.tolerance;  ///< relative tolerance of the integrator
 };
 
-/// The status of an evaluated row.
+/// The status of a row of the input after its evaluation.
 struct RowEnd {
-  std::string status;  ///< "done" or another status of a closing, or "infeasible" if the device or the waveform is impossible
-  std::string reason = {};  ///< reason for missing figures of the row
+  /// "done" or another status of the row's closing, or "infeasible" if the device or the waveform is impossible.
+  std::string status;
+  std::string reason = {};  ///< reason why the row lacks figures
 };
 
 class Evaluator {
@@ -55,8 +56,9 @@ class Evaluator {
   [[nodiscard]] static bool measured(const Figure& figure);
 
   [[nodiscard]] const std::vector<std::string>& keys() const { return keys_; }
-  [[nodiscard]] const std::vector<std::string>& units() const { return units_; }  ///< SI units of the columns
-  [[nodiscard]] const std::vector<double>& nominal() const { return values_; }    ///< values of the scene itself [SI unit]
+  [[nodiscard]] const std::vector<std::string>& units() const { return units_; }  ///< SI units of the input columns
+  /// Values of the scene itself at the keys of the columns [SI unit].
+  [[nodiscard]] const std::vector<double>& nominal() const { return values_; }
   [[nodiscard]] const std::vector<Figure>& figures() const { return figures_; }
   [[nodiscard]] const PreparedScene& scene() const { return *nominal_; }
 
@@ -73,12 +75,12 @@ class Evaluator {
   [[nodiscard]] Eigen::MatrixXd jacobian(std::span<const double> row, const Progress& progress = {}) const;
 
  private:
-  /// A parameter of a waveform that a column of the rows sets.
+  /// A parameter of a waveform that a column of the input sets.
   struct WaveformKey {
     std::size_t column, drive;
     std::string parameter;
-    std::size_t element = 0;  ///< element of a list, counted from 1; 0 for a parameter that is not a list
-    double factor = 1;        ///< factor from the column's unit to the parameter's
+    std::size_t element = 0;  ///< element of the parameter's list, counted from 1; 0 for a parameter that is not a list
+    double factor = 1;        ///< factor from the unit of the column to the unit of the parameter
   };
   struct Row;
   struct Place;
@@ -101,16 +103,17 @@ class Evaluator {
   std::vector<Figure> figures_;
   EvaluatorOptions options_;
   std::vector<WaveformKey> of_waveforms_;
-  std::vector<std::size_t> of_device_;      ///< indices of the columns that vary the device, in the order of the variables of
-                                            ///< [spread]
-  std::unique_ptr<PreparedScene> nominal_;  ///< prepared scene, whose [spread] has the columns that vary the device
-  std::unique_ptr<Ensemble> ensemble_;      ///< devices of the rows; none if no column varies the device
+  /// Indices of the columns that vary the device, in the order of the varied quantities of [spread].
+  std::vector<std::size_t> of_device_;
+  std::unique_ptr<PreparedScene> nominal_;  ///< prepared scene, whose [spread] has the input columns that vary the device
+  std::unique_ptr<Ensemble> ensemble_;      ///< devices that the rows describe; none if no column varies the device
   std::unique_ptr<DeviceDrives> drives_;
   std::vector<Waveform> waveforms_;  ///< waveforms of the scene, in the order of the drives
   std::vector<Signal> signals_;      ///< applied voltages of the scene's waveforms
   std::optional<ClosedEquilibrium> closed_;
   mutable std::mutex builders_lock_;
-  mutable std::vector<std::unique_ptr<DeviceBuilder>> builders_;  ///< builders that no thread uses at present, for later rows
+  /// Device builders that no thread uses at present, for later rows.
+  mutable std::vector<std::unique_ptr<DeviceBuilder>> builders_;
 };
 
 }  // namespace softland

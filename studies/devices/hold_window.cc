@@ -18,8 +18,8 @@ bool is_held(const ClosedRange& device, double level) { return device.release <=
 
 // Starting point for the collapse voltage of a device: a level a little below the collapse voltage of the nominal device.
 struct Nominal {
-  double level = std::numeric_limits<double>::quiet_NaN();  // level of the electrode [V]
-  std::optional<ClosedEquilibrium> closed;                  // closed equilibrium at this level
+  double level = std::numeric_limits<double>::quiet_NaN();  // level of the electrode a little below the collapse voltage [V]
+  std::optional<ClosedEquilibrium> closed;                  // closed equilibrium of the nominal device at this level
 };
 
 Nominal nominal_of(const Switch& model, std::size_t electrode, std::vector<double> volts) {
@@ -33,7 +33,8 @@ Nominal nominal_of(const Switch& model, std::size_t electrode, std::vector<doubl
 }
 
 ClosedRange range_of_device(const Switch& model, std::size_t electrode, std::vector<double> volts, const Nominal& nominal) {
-  constexpr double precision = 1e-4;  // relative precision, which suffices for the digits of reports
+  // Relative precision of release and collapse voltages, which suffices for the digits of reports.
+  constexpr double precision = 1e-4;
   ClosedRange range{.release = release_voltage(model, electrode, volts)};
   if (!std::isfinite(range.release)) return range;
   volts[electrode] = nominal.closed ? std::max(nominal.level, range.release) : range.release;
@@ -65,7 +66,7 @@ HoldWindow hold_window(std::span<const ClosedRange> devices) {
 }
 
 HoldWindows hold_windows(const PreparedScene& nominal, const RobustnessOptions& options, const Progress& progress) {
-  constexpr std::size_t together = 8;  // number of devices of one task
+  constexpr std::size_t together = 8;  // number of devices whose hold windows one task computes
   HoldWindows found;
   const std::vector<Electrode>& electrodes = nominal.scene.device.electrodes;
   if (!nominal.model.has_contact()) return found;

@@ -26,12 +26,12 @@ struct HoldWindow {
 };
 
 struct HoldWindows {
-  std::map<std::string, HoldWindow> of_electrodes;  ///< windows of the electrodes that pull towards the contact
+  std::map<std::string, HoldWindow> of_electrodes;  ///< windows of hold levels by electrode that pulls towards the contact
   std::size_t devices = 0;                          ///< number of devices from which the windows are computed
 };
 
-/// Returns the window of hold levels for devices with these closed ranges. No level keeps a device without a release voltage
-/// closed. A device without a collapse voltage has no upper limit.
+/// Returns the window of hold levels for devices with these ranges between release and collapse voltage. No level keeps a
+/// device without a release voltage closed. A device without a collapse voltage has no upper limit.
 [[nodiscard]] HoldWindow hold_window(std::span<const ClosedRange> devices);
 
 /// Returns the windows of hold levels [V] for the first devices of robustness() under the same options; calibrations are

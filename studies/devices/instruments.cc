@@ -20,11 +20,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double tolerance_of_readings = 1e-9;  // tolerance of the integrator in closings for finite differences
+// Relative tolerance of the integrator in closings from which finite differences are computed.
+constexpr double tolerance_of_readings = 1e-9;
 
 VectorXd single(double value) { return VectorXd::Constant(1, value); }
 
-// Records the edges of the contact's state, in order of time.
+// Records the times at which the contact of a device closes and opens, in order.
 class EdgeRecorder final : public ClosingObserver {
  public:
   explicit EdgeRecorder(double gap) : finder_(gap) {}
@@ -46,7 +47,7 @@ class EdgeRecorder final : public ClosingObserver {
   std::vector<double> edges_;
 };
 
-// Records the motion of the contact point at given times.
+// Records the motion of a device's contact point at given times.
 class PointRecorder final : public ClosingObserver {
  public:
   PointRecorder(std::span<const double> times, bool velocity)
@@ -135,7 +136,8 @@ DeviceReader::Reading DeviceReader::read(const Instrument& instrument, bool with
   }
 }
 
-// Reads a static voltage, with V = gain * commanded + offset.
+// Reads a static voltage (pull-in or release) as the commanded voltage; the voltage at the switch is V = gain * commanded +
+// offset.
 DeviceReader::Reading DeviceReader::static_voltage(const Instrument& instrument, bool with_slopes) {
   const std::size_t k = instrument.drive;
   const std::vector<double> bias = bias_of(nominal_.scene, k);

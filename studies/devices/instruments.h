@@ -53,12 +53,12 @@ static_assert(is_complete<measurables>());
 
 struct Instrument {
   Measurable what = Measurable::pull_in;
-  std::size_t drive = 0;                 ///< index of the measured drive in Switch::drives()
-  double level = 0;                      ///< commanded level [V]
-  std::size_t mode = 0;                  ///< mode of a frequency, from 0
-  std::vector<Waveform> waveforms = {};  ///< commanded waveforms of every drive; empty for a step of `drive` to the level
-  std::vector<double> times = {};        ///< times of a position or velocity [s]
-  std::size_t edges = 1;                 ///< number of edges of the contact's state to read: contact, opening, next contact
+  std::size_t drive = 0;                 ///< index in Switch::drives() of the drive whose voltage or capacitance is measured
+  double level = 0;                      ///< commanded level of the drive [V]
+  std::size_t mode = 0;                  ///< index of the mode whose frequency is read, from 0
+  std::vector<Waveform> waveforms = {};  ///< commanded waveforms of every drive; empty for a step of `drive` to `level`
+  std::vector<double> times = {};        ///< times at which a position or velocity is read [s]
+  std::size_t edges = 1;                 ///< number of changes of the contact's state to read: contact, opening, next contact
 
   /// Returns the number of values that the instrument reads.
   [[nodiscard]] std::size_t size() const;
@@ -75,12 +75,14 @@ class DeviceReader {
   /// The scene's [spread] must have no jitter. Keeps a reference to `nominal`.
   explicit DeviceReader(const PreparedScene& nominal) : nominal_(nominal), near_(nominal) {}
 
-  /// Selects the device with these values (DeviceSpread::to_values). Returns false if that device is impossible.
+  /// Selects the device with these values of the varied quantities (DeviceSpread::to_values). Returns false if that device is
+  /// impossible.
   [[nodiscard]] bool move_to(const std::vector<double>& values);
 
   struct Reading {
-    Eigen::VectorXd values;  ///< one number per value of the instrument; NaN if the device does not have the figure
-    Eigen::MatrixXd slopes;  ///< a row for each value, a column for each varied quantity; empty if not requested
+    Eigen::VectorXd values;  ///< readings, one number per value of the instrument; NaN if the device does not have the figure
+    /// Derivatives of the readings: a row for each value, a column for each varied quantity; empty if not requested.
+    Eigen::MatrixXd slopes;
   };
   [[nodiscard]] Reading read(const Instrument& instrument, bool with_slopes);
 

@@ -27,7 +27,7 @@ std::size_t reference_size(const Calibration& calibration) {
   return calibration.classes ? std::max(fewest, of_a_class * static_cast<std::size_t>(*calibration.classes)) : 0;
 }
 
-// Returns the scale factors of each reference device, without measurement error.
+// Returns the scale factors of each reference device (from which classes are made), without measurement error.
 std::vector<DeviceUnits> reference_units(const PreparedScene& nominal, const MeasuredQuantities& quantities, std::size_t size,
                                          int jobs, const Progress& progress) {
   const PullInMeter meter(nominal, quantities);
@@ -51,7 +51,8 @@ std::vector<DeviceUnits> reference_units(const PreparedScene& nominal, const Mea
   return units;
 }
 
-// Returns coordinates in which equal relative errors of voltages and of time are equal distances.
+// Returns the logarithms of a device's scale factors, in which equal relative errors of voltages and of time are equal
+// distances.
 SpacePoint logarithms(const DeviceUnits& units) { return {std::log(units.volts), std::log(units.time), std::log(units.piezo)}; }
 DeviceUnits units_at(const SpacePoint& point) {
   return {.volts = std::exp(point[0]), .time = std::exp(point[1]), .piezo = std::exp(point[2])};
@@ -124,7 +125,8 @@ double PullInMeter::piezo_unit(const Switch& model) { return std::abs(model.basi
 double PullInMeter::frequency() const { return nominal_->model.basis().angular_frequencies()[0] / (2 * pi); }
 
 double PullInMeter::pull_in(const Switch& model, double precision) const {
-  constexpr double looser = 10;  // tolerance of the integrator over `precision_`; measurements are less precise
+  // Ratio of the integrator's tolerance to the requested precision of the pull-in voltage, since measurements are less precise.
+  constexpr double looser = 10;
   const std::vector<double> bias = bias_of(nominal_->scene, electrode_);
   const StaticPullIn statically = static_pull_in(model, electrode_, bias);
   return dynamic_pull_in(model, electrode_, statically, bias, {}, looser * precision, precision).voltage;
@@ -194,7 +196,7 @@ MeasuredUnits MeasuredUnits::without_errors() const {
 std::vector<MeasuredUnits> measured_units(const PreparedScene& nominal, std::span<const Calibration> calibrations, int jobs,
                                           const Progress& progress) {
   // Voltage factors from a measured closing time differ from those from a measured Vdp.
-  std::map<bool, std::vector<DeviceUnits>> references;  // key: true if a closing time gives the voltages
+  std::map<bool, std::vector<DeviceUnits>> references;  // scale factors; key: true if a closing time gives the voltage
   for (const bool by_time : {false, true}) {
     std::size_t size = 0;
     MeasuredQuantities quantities;
@@ -211,7 +213,8 @@ std::vector<MeasuredUnits> measured_units(const PreparedScene& nominal, std::spa
 }
 
 DeviceUnits deviation_of_units(const PreparedScene& nominal, bool need_pull_in, int jobs, const Progress& progress) {
-  constexpr std::size_t devices = 128;  // number of devices; gives the standard deviations within 6 %
+  // Number of simulated devices, which gives the standard deviations of the scale factors within 6 %.
+  constexpr std::size_t devices = 128;
   DeviceUnits squares{.volts = 0, .time = 0, .piezo = 0};
   double known = 0;
   for (const DeviceUnits& one : reference_units(nominal, {.pull_in = need_pull_in}, devices, jobs, progress)) {

@@ -12,7 +12,7 @@
 namespace softland {
 namespace {
 
-// Returns the scale of a variable, from which the step of differences follows [SI unit, or factor].
+// Returns the scale of a varied quantity, from which the step of finite differences follows [SI unit, or factor].
 double size_of(const SpreadVariable& variable, double value) {
   double size = variable.is_added ? std::numeric_limits<double>::infinity() : std::abs(value);
   for (const VariedKey& key : variable.keys) {
@@ -70,7 +70,7 @@ SwitchSlopes::Neighbours NearbyDevices::neighbours(std::size_t i) {
           .acts_in_flight = !std::all_of(keys.begin(), keys.end(), is_of_contact)};
 }
 
-// Returns the signals of the device with these values.
+// Returns the drive signals of the device with these values of the varied quantities.
 std::vector<Signal> NearbyDevices::signals_of(std::span<const double> values) {
   const std::vector<double> own(values.begin(), values.end());
   DeviceUnits units;
@@ -89,8 +89,8 @@ bool NearbyDevices::changes_signals(std::size_t i) const {
   return meter_ || std::any_of(keys.begin(), keys.end(), [](const VariedKey& key) { return key.drive.has_value(); });
 }
 
-// True if the signals at a smaller and at a larger value have the same pieces. It is not a small change if a step of a waveform
-// appears, disappears or becomes the first edge of the time axis.
+// True if the drive signals at a smaller and at a larger value of varied quantity i have the same pieces. It is not a small
+// change if a step of a waveform appears, disappears or becomes the first edge of the time axis.
 bool NearbyDevices::keeps_pieces(std::size_t i) {
   const auto pieces = [&](double side) {
     std::vector<std::size_t> counts;

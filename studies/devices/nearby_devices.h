@@ -24,36 +24,39 @@ class NearbyDevices {
  public:
   static constexpr const char* other_pieces = "the waveforms have other pieces on either side of its nominal value";
 
-  /// Starts at the nominal device of a scene under this drive. The scene's [spread] must not vary jitter. Keeps references.
+  /// Starts at the nominal device of a scene under the set of waveforms `drive`. The scene's [spread] must not vary jitter.
+  /// Keeps references to its arguments.
   NearbyDevices(const PreparedScene& nominal, const EnsembleDrive& drive);
 
-  /// Starts at the nominal device without a drive: call drive_by() before a function that returns signals.
+  /// Starts at the nominal device without a set of waveforms: call drive_by() before a function that returns drive signals.
   explicit NearbyDevices(const PreparedScene& nominal);
   NearbyDevices(const NearbyDevices&) = delete;
   NearbyDevices& operator=(const NearbyDevices&) = delete;
-  /// Replaces the drive by another drive with the same calibration. Keeps a reference to `drive`.
+  /// Replaces the set of waveforms by another one with the same calibration. Keeps a reference to `drive`.
   void drive_by(const EnsembleDrive& drive) { drive_ = &drive; }
 
-  /// Selects the device with these values (DeviceSpread::to_values).
+  /// Selects the device with these values of the varied quantities (DeviceSpread::to_values) as the current device.
   void move_to(const std::vector<double>& values);
   [[nodiscard]] const std::vector<double>& values() const { return values_; }
   /// Returns the current device. Throws InvalidInput if the device cannot be described.
   [[nodiscard]] Switch device() { return device_at(values_); }
-  /// Returns the size of the step in quantity i [unit of the quantity].
+  /// Returns the size of the finite-difference step in varied quantity i [unit of the quantity].
   [[nodiscard]] double step(std::size_t i) const { return steps_[i]; }
-  /// Returns the device one step above the current device in quantity i (`side` 1) or below it (-1). Throws as device() does.
+  /// Returns the device one step above the current device in quantity i (`side` 1) or below it (-1). Throws the exceptions of
+  /// device().
   [[nodiscard]] Switch device_beside(std::size_t i, double side) { return device_at(beside(i, side)); }
-  /// Return the signals of the current device, and of the device that differs by one step in quantity i.
+  /// Return the drive signals of the current device, and of the device that differs by one step in varied quantity i.
   [[nodiscard]] std::vector<Signal> signals() { return signals_of(values_); }
   [[nodiscard]] std::vector<Signal> signals_beside(std::size_t i, double side) { return signals_of(beside(i, side)); }
 
-  /// Returns the derivatives of device(), which is `model`, and of its signals. Writes the reason into `why_none` of each
-  /// quantity that has no derivatives, unless that string already has a reason.
+  /// Returns the derivatives of device(), which is `model`, and of its drive signals by the varied quantities. Writes the
+  /// reason into `why_none` of each quantity that has no derivatives, unless that string already has a reason.
   [[nodiscard]] DeviceChanges changes(const Switch& model, std::vector<std::string>& why_none, const Progress& progress = {});
-  /// Return the derivatives of the switch alone, and of the signals alone. Both functions throw as device() does.
+  /// Return the derivatives by the varied quantities of the switch alone, and of the drive signals alone. Both functions throw
+  /// the exceptions of device().
   [[nodiscard]] SwitchSlopes changes_of_switch(const Switch& model);
   [[nodiscard]] SignalSlopes changes_of_signals();
-  /// Returns the errors of the source of drive k on the current device, except its jitter.
+  /// Returns the errors of the voltage source of drive k on the current device, except its jitter.
   [[nodiscard]] SourceErrors source_errors(std::size_t k) const { return drives_.errors(k, values_); }
   [[nodiscard]] SourceErrors source_errors_by(std::size_t k, std::size_t i) const { return drives_.errors_by(k, i); }
 

@@ -69,7 +69,7 @@ std::vector<double> sampled_gap(const Trajectory& closing, std::size_t instants,
   const std::vector<TrajectoryPoint>& knots = closing.points;
   if (knots.empty()) return {};
   std::vector<double> gap;
-  std::size_t next = 0;  // index of the knot before the instant
+  std::size_t next = 0;  // index of the knot (point between integrator steps) before the instant
   for (std::size_t i = 0; i < instants; ++i) {
     const double t = end * static_cast<double>(i) / static_cast<double>(instants - 1);
     while (next < knots.size() && knots[next].time <= t) ++next;
@@ -100,8 +100,8 @@ std::vector<Waveform> waveforms_of(const PreparedScene& nominal, const NamedDriv
   return nominal.in_drive_order(drive.waveforms);
 }
 
-// Widens the limits of a driver for the signal of a device whose scale factors or errors are larger than nominal, so that the
-// limits permit the signal.
+// Widens the limits of a voltage source for the signal of a device whose scale factors or errors are larger than nominal, so
+// that the limits permit the signal.
 void allow(SceneFile& file, const std::string& driver, const Signal& signal, const DriverLimits& limits) {
   if (violation(signal, limits).empty()) return;
   if (signal.maximum() > limits.max_voltage) file.assign(driver + ".max_voltage", signal.maximum());
@@ -110,7 +110,7 @@ void allow(SceneFile& file, const std::string& driver, const Signal& signal, con
   if (std::isfinite(signal.peak_slew())) {
     file.assign(driver + ".max_slew", signal.peak_slew());
   } else {
-    file.erase(driver + ".max_slew");  // an offset of the source is applied at once, with an infinite slew rate
+    file.erase(driver + ".max_slew");  // an offset of the voltage source is applied at once, with an infinite slew rate
   }
 }
 
@@ -132,8 +132,8 @@ constexpr std::array all_measurements{
     Measurement{measured_pull_in, &Calibration::pull_in_error}, Measurement{"closing time", &Calibration::time_error},
     Measurement{measured_frequency, &Calibration::frequency_error}, Measurement{measured_piezo, &Calibration::piezo_error}};
 
-// Returns the drive with each calibration to compare: no measurements, each measurement alone, and all measurements, without
-// error. With all measurements devices are first sorted into classes, then have their own scale factors.
+// Returns a set of drive waveforms with each calibration to compare: no measurements, each measurement alone, and all
+// measurements, without error. With all measurements devices are first sorted into classes, then have their own scale factors.
 std::vector<NamedDrive> by_knowledge(const NamedDrive& drive) {
   std::vector<NamedDrive> all;
   const auto add = [&](const std::string& name, const Calibration& calibration) {
@@ -156,7 +156,7 @@ std::vector<NamedDrive> by_knowledge(const NamedDrive& drive) {
   };
   for (std::size_t i = 0; i < measured.size() && measured.size() > 1; ++i)
     add(std::string(measured[i].name), exactly(std::span(measured).subspan(i, 1)));
-  if (measured.size() > 2 && drive.calibration.piezo_error) {  // all measurements but that of the piezo
+  if (measured.size() > 2 && drive.calibration.piezo_error) {  // all measurements except that of the piezo
     const auto others = std::span(measured).first(measured.size() - 1);
     add(named(others), exactly(others));
   }
@@ -196,9 +196,9 @@ Robustness robustness(const PreparedScene& nominal, const std::vector<NamedDrive
   Robustness result{.duration = run.duration, .tolerance = run.tolerance};
   const Actuator driven = has_pulling_electrode(nominal.scene.device) ? Actuator::both : Actuator::pzt;
   NamedDrive plain{.name = "plain step", .waveforms = plain_step(nominal, driven)};
-  plain.waveforms.merge(nominal.drives.waveforms());  // add the drives that the plain step does not name
+  plain.waveforms.merge(nominal.drives.waveforms());  // add the waveforms of drives that the plain step does not name
   std::vector<NamedDrive> all;
-  const auto is_judged = [&](const NamedDrive& drive) {  // true if `drive` repeats one of `all`
+  const auto is_judged = [&](const NamedDrive& drive) {  // true if the set of waveforms `drive` repeats one of `all`
     const std::vector<Signal> own = nominal.commanded(waveforms_of(nominal, drive));
     return drive.calibration.is_empty() && std::any_of(all.begin(), all.end(), [&](const NamedDrive& other) {
              return other.calibration.is_empty() && same_drives(own, nominal.commanded(waveforms_of(nominal, other)));
@@ -272,7 +272,7 @@ std::vector<DeviceCourse> device_courses(const PreparedScene& nominal, const Dri
            .device = k,
            .trajectory = simulate_closing(own.model, own.signals(), {.duration = found.duration, .tolerance = found.tolerance})});
     } catch (const InvalidInput&) {
-      continue;  // a device that cannot be described has no course
+      continue;  // a device that cannot be described has no gap over time
     }
   }
   return courses;
@@ -290,7 +290,7 @@ GapCourses gap_courses(const PreparedScene& nominal, const DriveRobustness& driv
           const Trajectory closing = simulate_closing(
               own.model, own.signals(), {.duration = end, .tolerance = std::max(own.tolerance, EnsembleRun{}.tolerance)});
           all[k] = sampled_gap(closing, instants, end);
-        } catch (const InvalidInput&) {  // a device that cannot be described has no course
+        } catch (const InvalidInput&) {  // a device that cannot be described has no motion
         }
       },
       progress.stop);
@@ -344,7 +344,7 @@ SceneFile scene_of_values(const Ensemble& ensemble, const DriveRobustness& drive
       units = drive.known.of(meter.exact(*sampled.model), seed, device);
       if (!units.are_known()) units = {};
     }
-    file.erase("calibration");  // the waveforms in the file are already scaled by the calibration
+    file.erase("calibration");  // the waveforms in the scene file are already scaled by the calibration
   }
   const DeviceDrives drives(nominal);
   const std::vector<DeviceDrives::Written> own =

@@ -15,20 +15,21 @@
 
 namespace softland {
 
-/// Probabilities of the reported quantiles.
+/// Probabilities of the reported quantiles of figures over the devices.
 inline constexpr std::array robustness_quantiles{0.05, 0.5, 0.95, 0.99};
 
 struct EstimatedQuantile {
   double value = Metrics::unset;
-  Interval interval = {};  ///< 95 % confidence interval, from order statistics; an end is infinite if there are too few devices
+  /// 95 % confidence interval of the quantile, from order statistics; an end is infinite if there are too few devices.
+  Interval interval = {};
 };
 
-/// Estimates a quantile; a device that does not close counts as +infinity.
+/// Estimates a quantile of a figure from its values on devices; a device that does not close counts as +infinity.
 [[nodiscard]] EstimatedQuantile estimated_quantile(const std::vector<double>& sample, double probability);
 
 struct FigureStatistics {
-  double mean = Metrics::unset, standard_deviation = Metrics::unset,
-         skewness = Metrics::unset;                                           ///< moments over the devices that have the figure
+  /// Mean, standard deviation and skewness of the figure over the devices that have the figure.
+  double mean = Metrics::unset, standard_deviation = Metrics::unset, skewness = Metrics::unset;
   std::size_t devices = 0;                                                    ///< number of devices that have the figure
   std::array<EstimatedQuantile, robustness_quantiles.size()> quantiles = {};  ///< quantiles of the figure over all devices
 };
@@ -37,7 +38,7 @@ struct FigureStatistics {
 struct Yield {
   std::size_t devices = 0;
   double value = Metrics::unset;
-  Interval interval = {};  ///< 95 % confidence interval (Wilson)
+  Interval interval = {};  ///< 95 % confidence interval of the share (Wilson)
 };
 
 /// True if a device closes, and settles without a significant rebound.
@@ -46,14 +47,14 @@ struct Yield {
 
 struct DriveRobustness {
   std::string name;
-  DriveWaveforms waveforms;             ///< waveforms of the nominal device, in volts
-  MeasuredUnits known = {};             ///< scale factors that the calibration assigns to the devices
+  DriveWaveforms waveforms;             ///< waveforms for the nominal device, in volts
+  MeasuredUnits known = {};             ///< scale factors of the waveforms that the calibration assigns to the devices
   std::vector<DeviceOutcome> outcomes;  ///< outcomes of the closings, by device
   PerFigure<FigureStatistics> figures;  ///< statistics of the figures in device_figures
-  Yield closing;                        ///< share of devices that touch and are simulated to the end of the window
-  Yield collapsed;                      ///< share of devices whose beam collapses onto the electrode
-  Yield bounce_free;                    ///< share of devices that close and settle without a significant rebound
-  std::vector<std::size_t> worst;       ///< devices in order of decreasing rebound height, after those that do not close
+  Yield closing;      ///< share of devices that touch their contact and are simulated to the end of the simulated time
+  Yield collapsed;    ///< share of devices whose beam collapses onto the electrode
+  Yield bounce_free;  ///< share of devices that close and settle without a significant rebound
+  std::vector<std::size_t> worst;  ///< devices in order of decreasing rebound height, after those that do not close
 };
 
 struct RobustnessOptions {
@@ -62,22 +63,22 @@ struct RobustnessOptions {
   PointSet points = PointSet::sobol;
   int jobs = 1;  ///< number of threads; does not change the result
   Vectors vectors = vectors_in_use();
-  bool measures_drive_energy = false;  ///< true to measure the drive energy on every device
-  /// True to repeat the last drive, if it has a calibration, with other calibrations: with no measurement, with each
-  /// measurement alone, and with all measurements without error. The last is simulated with the devices sorted into classes,
-  /// and with each device's own scale factors.
+  bool measures_drive_energy = false;  ///< true to measure the drive energy (delivered by the voltage sources) on every device
+  /// True to repeat the closings under the last set of waveforms, if it has a calibration, with other calibrations: with no
+  /// measurement, with each measurement alone, and with all measurements without error. The last is simulated with the devices
+  /// sorted into classes, and with each device's own scale factors.
   bool worth_of_measuring = false;
-  bool opens_on_command = false;  ///< true if drives may command devices to open, EnsembleRun::opens_on_command
+  bool opens_on_command = false;  ///< true if the waveforms may command devices to open, EnsembleRun::opens_on_command
 };
 
 struct Robustness {
-  std::vector<DriveRobustness> drives;  ///< results of the drives, the plain step first
+  std::vector<DriveRobustness> drives;  ///< results of the sets of waveforms, the plain step first
   std::vector<DriveRobustness> by_knowledge =
-      {};                   ///< results of the last drive with other calibrations: the value of its measurements
-  std::size_t devices = 0;  ///< number of devices; fewer than requested if interrupted
+      {};                   ///< results of the last set of waveforms with other calibrations: the value of its measurements
+  std::size_t devices = 0;  ///< number of simulated devices; fewer than requested if interrupted
   bool interrupted = false;
-  double duration = 0;   ///< simulated time [s]
-  double tolerance = 0;  ///< tolerance of the integrator
+  double duration = 0;   ///< simulated time of the closings [s]
+  double tolerance = 0;  ///< relative tolerance of the integrator in the closings
 };
 
 /// Keys of the figures that sensitivity() and box_and_chaos() explain.
@@ -86,13 +87,13 @@ inline constexpr std::array explained_figures{key_of(&Metrics::initial_contact_t
 
 /// The sensitivity of a figure to the varied quantities.
 struct FigureSensitivity {
-  std::string_view key;  ///< key of device_figures
+  std::string_view key;  ///< key of the figure, one of device_figures
   SobolEstimate estimate;
 };
 struct Sensitivity {
-  std::vector<std::string> variables;      ///< names of the variables of [spread]
+  std::vector<std::string> variables;      ///< names of the varied quantities of [spread]
   std::vector<FigureSensitivity> figures;  ///< sensitivities of the figures in explained_figures
-  std::string why_none;                    ///< reason for missing Sobol' indices; empty if the indices exist
+  std::string why_none;                    ///< reason why there are no Sobol' indices; empty if the indices exist
 };
 
 /// The simulated motion of the device at a quantile (`probability`) of the highest rebound.
@@ -104,15 +105,17 @@ struct DeviceCourse {
 
 /// The gaps of the contacts of several devices at common instants, evenly spaced from 0 to `end`.
 struct GapCourses {
-  double end = 0;                              ///< last instant [s]
-  std::vector<std::vector<double>> gaps = {};  ///< gaps by device, then by instant [m]; below 0 in contact
+  double end = 0;                              ///< last instant of the gaps over time [s]
+  std::vector<std::vector<double>> gaps = {};  ///< contact gaps by device, then by instant [m]; below 0 in contact
 };
 
 /// A set of waveforms whose performance robustness() computes.
 struct NamedDrive {
   std::string name;
-  DriveWaveforms waveforms;      ///< waveforms in volts
-  Calibration calibration = {};  ///< calibration; empty if every device has the voltages of the nominal device
+  DriveWaveforms waveforms;  ///< waveforms for the nominal device, in volts
+  /// Measurements by which the waveforms are scaled to each device; empty if every device has the voltages of the nominal
+  /// device.
+  Calibration calibration = {};
 };
 
 /// Closes the devices of the [spread] of `nominal` under the plain step to the same hold levels, then under each set of
@@ -121,8 +124,9 @@ struct NamedDrive {
 [[nodiscard]] Robustness robustness(const PreparedScene& nominal, const std::vector<NamedDrive>& drives,
                                     const RobustnessOptions& options, const Progress& progress = {});
 
-/// Computes Sobol' indices of the figures under this drive, from `rows` rows of a Sobol' design. None for correlated variables,
-/// whose shares of the variance cannot be separated, and for a single variable. Measurements count as exact.
+/// Computes Sobol' indices of the figures under the waveforms of `drive`, from `rows` rows of a Sobol' design. None for
+/// correlated variables, whose shares of the variance cannot be separated, and for a single variable. Measurements count as
+/// exact.
 [[nodiscard]] Sensitivity sensitivity(const PreparedScene& nominal, const DriveRobustness& drive, std::uint64_t rows,
                                       const RobustnessOptions& options, const Progress& progress = {});
 
@@ -130,25 +134,25 @@ struct NamedDrive {
 [[nodiscard]] std::vector<DeviceCourse> device_courses(const PreparedScene& nominal, const DriveRobustness& drive,
                                                        const Robustness& found, const RobustnessOptions& options);
 
-/// Returns the gaps of the first `devices` devices until `end` [s], at `instants` instants. Devices that cannot be described
-/// are left out. Throws Interrupted if `progress` asks to stop.
+/// Returns the contact gaps of the first `devices` devices until `end` [s], at `instants` instants. Devices that cannot be
+/// described are left out. Throws Interrupted if `progress` asks to stop.
 [[nodiscard]] GapCourses gap_courses(const PreparedScene& nominal, const DriveRobustness& drive, std::size_t devices,
                                      std::size_t instants, double end, const RobustnessOptions& options,
                                      const Progress& progress = {});
 
-/// Returns the scene of a device of the ensemble under one of its drives, with the errors of the device's sources written out.
-/// `simulate` runs this scene to the same closing, within the limits of Ensemble::scene(). An exception is a sine with errors
-/// of times or voltages, which becomes a table (DeviceDrives::written).
+/// Returns the scene of a device of the ensemble under one of the sets of waveforms, with the errors of the device's sources
+/// written out. `simulate` runs this scene to the same closing, within the limits of Ensemble::scene(). An exception is a sine
+/// with errors of times or voltages, which becomes a table (DeviceDrives::written).
 [[nodiscard]] SceneFile scene_of_device(const PreparedScene& nominal, const DriveRobustness& drive, std::size_t device,
                                         const RobustnessOptions& options);
 
 namespace internal {
 
-/// Returns the statistics of a drive from the outcomes of the devices, which are ordered by device.
+/// Returns the statistics of a set of waveforms from the outcomes of the devices, which are ordered by device.
 [[nodiscard]] DriveRobustness summarised(NamedDrive drive, MeasuredUnits known, std::vector<DeviceOutcome> outcomes);
-/// Returns the options for further closings of a drive that robustness() has simulated.
+/// Returns the options for further closings under a set of waveforms that robustness() has simulated.
 [[nodiscard]] EnsembleRun run_of(const PreparedScene& nominal, const RobustnessOptions& options);
-/// Returns the drive with its calibration as if measured without error.
+/// Returns the set of waveforms with its calibration as if measured without error.
 [[nodiscard]] EnsembleDrive exactly_measured(const PreparedScene& nominal, const DriveRobustness& drive);
 /// Returns the scene of the device with these values of the varied quantities. `device` is the number that determines the
 /// errors of the device's measurements.

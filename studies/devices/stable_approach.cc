@@ -14,9 +14,10 @@
 namespace softland {
 namespace {
 
-// Levels of the electrode that holds the closed switch, before contact, over its hold level, in increasing order.
+// Levels, before contact, of the electrode that holds the closed switch, as shares of its hold level, in increasing order.
 constexpr std::array low_levels{0.0, 0.12, 0.24, 0.36};
-// Sufficient distance from the touching voltage to the limit of the driver, in standard deviations of the touching voltage.
+// Sufficient distance from the voltage at which the switch touches its contact to the limit of the voltage source, in standard
+// deviations of that voltage over devices.
 constexpr double enough_deviations = 2.5;
 // Coordinates of the unit cube that are one standard deviation of a normal number below and above the median.
 constexpr double one_below = 0.15865525393145707, one_above = 1 - one_below;
@@ -49,8 +50,8 @@ class Finder {
     if (!nominal.scene.spread.empty()) ensemble_.emplace(nominal, 1);
   }
 
-  // Returns the stable approach by this drive; none if the nominal design has no stable path to contact within the limits of
-  // the driver.
+  // Returns the stable approach to the contact by this drive; none if the nominal design has no stable path to contact within
+  // the limits of the voltage source.
   [[nodiscard]] std::optional<StableApproach> along(const std::string& drive, const std::string& holder, double low) const {
     const Drive& carries = nominal_.drives.at(drive);
     if (!carries.limits) return std::nullopt;
@@ -68,7 +69,8 @@ class Finder {
   }
 
  private:
-  // Returns the standard deviation of the touching voltage, by differences over one standard deviation of each varied quantity.
+  // Returns the standard deviation over devices of the voltage at which the switch touches its contact, by differences over one
+  // standard deviation of each varied quantity.
   [[nodiscard]] double deviation(const StableApproach& found) const {
     if (!ensemble_) return 0;
     const DeviceSpread& spread = nominal_.scene.spread;
@@ -83,7 +85,7 @@ class Finder {
       };
       const std::optional<double> above = at(one_above), below = at(one_below);
       // If the device on one side has no stable path to contact, use the difference to the device on the other side, or else to
-      // the driver's limit.
+      // the limit of the voltage source.
       const double slope = above && below ? (*above - *below) / 2
                            : above        ? *above - found.reaches
                            : below        ? found.reaches - *below
@@ -97,18 +99,22 @@ class Finder {
   std::optional<Ensemble> ensemble_;
 };
 
-// Returns the distance from the touching voltage to the limit of the driver, in standard deviations.
+// Returns the distance from the voltage at which the switch touches its contact to the limit of the voltage source, in standard
+// deviations of that voltage over devices.
 double room(const StableApproach& found) { return std::abs(found.limit - found.reaches) / std::max(found.deviation, 1e-300); }
 
 }  // namespace
 
 double StableApproach::touch_places() const {
-  constexpr double of_a_normal = 2 * 1.6448536269514722;  // standard deviations between the 5th and the 95th percentile
+  // Number of standard deviations of a normal distribution between its 5th and 95th percentile.
+  constexpr double of_a_normal = 2 * 1.6448536269514722;
   return of_a_normal * deviation * std::abs(slope);
 }
 
 double shortest_rise(const PreparedScene& nominal) {
-  constexpr double periods = 1.5;  // duration in periods: a ramp of one period, and half a period between the two impulses
+  // Duration of the shortest rise in periods of the first mode: a ramp of one period, and half a period between the two
+  // impulses.
+  constexpr double periods = 1.5;
   return periods * 2 * pi / nominal.model.basis().angular_frequencies()[0];
 }
 
@@ -152,7 +158,7 @@ double touching_voltage(const PreparedScene& nominal, const StableApproach& appr
 
 double share_with_path(const PreparedScene& nominal, const StableApproach& approach, std::uint64_t devices, std::uint64_t seed,
                        int jobs, const Progress& progress) {
-  constexpr std::size_t together = 16;  // number of devices of one task
+  constexpr std::size_t together = 16;  // number of devices that one task examines
   const Ensemble ensemble(nominal, devices, seed);
   std::vector<char> has(devices, 0);
   run_tasks((devices + together - 1) / together, jobs,

@@ -10,11 +10,11 @@
 
 namespace softland {
 
-/// A variable or a figure of an exploration.
+/// A variable or a figure of an exploration: a column of its table.
 struct ExploredColumn {
-  std::string key;   ///< key in options and files, such as "impact_velocity_m_s"
-  std::string name;  ///< displayed name, such as "Impact speed", or the key of the scene
-  std::string unit;  ///< SI unit; empty for a dimensionless number
+  std::string key;   ///< key of the column in options and files, such as "impact_velocity_m_s"
+  std::string name;  ///< displayed name of the column, such as "Impact speed", or the key of the scene
+  std::string unit;  ///< SI unit of the column; empty for a dimensionless number
   bool is_variable = false;
 };
 [[nodiscard]] std::vector<ExploredColumn> explored_columns(const StoredPlan& plan);
@@ -24,17 +24,18 @@ struct ExploredAim {
   std::size_t column = 0;
   bool is_largest = false;
 };
-/// Prefix of a figure that is maximised.
+/// Prefix of the name of a figure that is maximised, in a list of figures.
 inline constexpr std::string_view largest_mark = "max:";
 
-/// True if `name` identifies the column: its key, its key without the unit, or its displayed name.
+/// True if `name` identifies the column: it is the column's key, the key without the unit, or the displayed name.
 [[nodiscard]] bool goes_by(const ExploredColumn& column, const std::string& name);
 
-/// Returns the aims in a list such as "impact_velocity,max:bounce_free". Throws InvalidRequest about the field `pareto` for a
-/// name that is not a figure or occurs twice, and for fewer than two aims.
+/// Returns the figures to minimise or maximise (aims) in a list such as "impact_velocity,max:bounce_free". Throws
+/// InvalidRequest about the field `pareto` for a name that is not a figure or occurs twice, and for fewer than two aims.
 [[nodiscard]] std::vector<ExploredAim> explored_aims(const std::vector<ExploredColumn>& columns, const std::string& list);
 
-/// True if a point with this status may be on a Pareto front. A closing that still bounces at the end of its window may not.
+/// True if a point with this status may be on a Pareto front. A closing that still bounces at the end of its simulated time may
+/// not.
 [[nodiscard]] bool may_lead(std::string_view status);
 
 }  // namespace softland

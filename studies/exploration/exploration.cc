@@ -34,7 +34,7 @@ constexpr std::array step_figures{figure_of(&Metrics::permanent_contact_time), f
 
 struct OptionRow {
   std::string_view name;
-  PointStudy study;  // study to which the option belongs
+  PointStudy study;  // study (verb run at every point) to which the option belongs
 };
 constexpr std::array options{OptionRow{"certify", PointStudy::simulate},  OptionRow{"samples", PointStudy::robustness},
                              OptionRow{"target", PointStudy::optimize},   OptionRow{"actuator", PointStudy::optimize},
@@ -60,7 +60,7 @@ SearchRequest request_of(const std::map<std::string, std::string>& given) {
   return request;
 }
 
-/// Adds the defaults of the options of a search.
+/// Adds the defaults of the options that a search at a point of an exploration takes.
 void complete_search(std::map<std::string, std::string>& given, const SceneFile& scene, const auto& checked) {
   const SearchRequest request = completed(request_of(given), scene);
   given.try_emplace("target", request.target);
@@ -97,8 +97,8 @@ std::vector<std::size_t> pulling_drives(const Device& device) {
   return drives;
 }
 
-/// Returns the drive voltages as straight lines: exact for steps and pulses, within a thousandth of the voltage range for
-/// sines.
+/// Returns the drive voltages of a scene as straight lines: exact for steps and pulses, within a thousandth of the voltage
+/// range for sines.
 std::map<std::string, std::vector<std::pair<double, double>>> lines_of(const PreparedScene& p) {
   std::map<std::string, std::vector<std::pair<double, double>>> all;
   const std::vector<std::string> names = p.drive_names();
@@ -155,7 +155,7 @@ std::vector<PointFigure> robustness_figures(const AskedFigures& asked) {
 
 namespace {
 
-// Splits "touch.least_time_s" into the figure "touch.least_time" and its unit s.
+// Splits the key of a figure into name and unit: "touch.least_time_s" into "touch.least_time" and "s".
 PointFigure figure_of_key(const std::string& key) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 13> suffixes{{{"_rad_s", "rad/s"},
                                                                                     {"_m_s", "m/s"},
@@ -170,7 +170,8 @@ PointFigure figure_of_key(const std::string& key) {
                                                                                     {"_J", "J"},
                                                                                     {"_F", "F"},
                                                                                     {"_W", "W"}}};
-  // The unit may be before an index of a list, or before the name of an electrode: "natural_frequencies_rad_s.1".
+  // In the key of a figure, the unit may be before an index of a list, or before the name of an electrode:
+  // "natural_frequencies_rad_s.1".
   for (std::size_t end = key.size(); end != std::string::npos && end > 0; end = key.rfind('.', end - 1)) {
     const std::string_view head = std::string_view(key).substr(0, end);
     for (const auto& [suffix, unit] : suffixes) {
@@ -341,7 +342,7 @@ PointRow Exploration::row(const SceneFile& scene, int jobs, const Progress& prog
   } catch (const std::exception& error) {
     row = {.status = std::string(internal_fault), .reason = error.what(), .figures = {}};
   }
-  progress.throw_if_stopped();  // an interrupted point gives no row
+  progress.throw_if_stopped();  // an interrupted point of the exploration gives no row
   row.figures.resize(figures_.size(), Metrics::unset);
   return row;
 }
@@ -400,7 +401,8 @@ PointRow Exploration::pulled_in(const SceneFile& scene, const Progress& progress
   return row;
 }
 
-// Returns the numbers of a record as a row. A number that only the record of the plan's own scene has stays unset.
+// Returns the numbers of a verb's record as the row of a point. A number that only the record of the exploration's own scene
+// has stays unset.
 PointRow Exploration::recorded(const SceneFile& scene, int jobs, const Progress& progress) {
   const OtherStudy::Record record = other_->record(scene, plan_.options(), plan_.seed(), jobs, progress);
   PointRow row{.status = record.status, .reason = {}, .figures = std::vector<double>(figures_.size(), Metrics::unset)};
@@ -431,7 +433,8 @@ PointRow Exploration::on_devices(const SceneFile& scene, int jobs, const Progres
 
 PointRow Exploration::optimized(const SceneFile& scene, int jobs, const Progress& progress) {
   OptimizeOptions search = planned(request_of(plan_.options()), scene, {}).options;
-  search.begins_with_half = false;  // all rows of a plan have the same budget, so a search does not begin with half of it
+  // All points of an exploration have the same budget, so a search does not begin with half of it.
+  search.begins_with_half = false;
   search.seed = plan_.seed();
   search.jobs = jobs;
   search.stop = progress.stop;

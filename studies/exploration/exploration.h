@@ -1,5 +1,6 @@
-// The computation of an exploration at one point of its plan: a row of figures, and a status. The row depends only on the scene
-// of the point and on the options of the study. It is bit for bit the result of the verb of the same name for that scene.
+// The computation of an exploration at one point of its plan, the stored list of points: a row of figures, and a status. The
+// row depends only on the scene of the point and on the options of the study. It is bit for bit the result of the verb of the
+// same name for that scene.
 //
 //   simulate    every figure of merit of the closing under the scene's waveforms, with `certify` also the errors of the
 //               figures. Closings run one at a time: in SIMD lanes (model/ensemble/ensemble_closings.h) their last digits would
@@ -42,20 +43,20 @@ inline constexpr auto point_studies = std::to_array<Named<PointStudy>>({{PointSt
                                                                         {PointStudy::optimize, "optimize"}});
 static_assert(is_complete<point_studies>());
 
-/// A study that is registered from outside of this file: a verb that takes one scene.
+/// A verb that takes one scene and is registered from outside of this file as a study of explorations.
 struct OtherStudy {
   using Options = std::map<std::string, std::string>;
-  /// The numbers of a record, such as "touch.least_time_s", and the status. Flags are 1 for true and 0 for false.
+  /// The numbers of a verb's record, such as "touch.least_time_s", and its status. Flags are 1 for true and 0 for false.
   struct Record {
     std::string status;
     std::vector<std::pair<std::string, double>> numbers;
   };
 
   std::string name;
-  /// Throws InvalidInput for an option that the study lacks, and for a value that violates the option's rule.
+  /// A function that throws InvalidInput for an option that the study lacks, and for a value that violates the option's rule.
   std::function<void(const Options&)> check;
-  /// Returns the record of a scene. Throws InvalidInput for a scene without a record, and Interrupted if `progress` asks to
-  /// stop.
+  /// A function that returns the record of the verb for a scene. Throws InvalidInput for a scene without a record, and
+  /// Interrupted if `progress` asks to stop.
   std::function<Record(const SceneFile&, const Options&, std::uint64_t seed, int jobs, const Progress&)> record;
 };
 using OtherStudies = std::vector<OtherStudy>;
@@ -63,21 +64,22 @@ using OtherStudies = std::vector<OtherStudy>;
 struct PointRow {
   std::string status;
   std::string reason = {};
-  std::vector<double> figures;  ///< figures in the order of Exploration::figures(); NaN if not available
-  std::string scene = {};       ///< only for a search: scene with the found waveform; `simulate` gives it the same figures
-  /// Only for a search: waveforms by drive for plots, as the ends of straight lines [s, V].
+  std::vector<double> figures;  ///< figures of the point in the order of Exploration::figures(); NaN if not available
+  /// Only for points that run a search: scene with the found waveform; `simulate` gives it the same figures.
+  std::string scene = {};
+  /// Only for points that run a search: waveforms by drive for plots, as the ends of straight lines [s, V].
   std::map<std::string, std::vector<std::pair<double, double>>> waveforms = {};
 };
 
-/// Checks the study of a request and its options, and adds the options that are not given, so that the plan does not depend on
-/// defaults. Throws InvalidInput; the message begins with the place of the entry.
+/// Checks the study of a request and its options, and adds the options that are not given, so that the plan (stored request)
+/// does not depend on defaults. Throws InvalidInput; the message begins with the place of the entry.
 void complete(PlanRequest& request, const OtherStudies& others = {});
 
 class Exploration {
  public:
-  /// The plan's study must be complete: see complete(). `columns` are the columns of the record of a registered study, if
-  /// known; otherwise the record of the plan's own scene is computed to find them. Throws InvalidInput if the scene of the plan
-  /// lacks something that the study needs.
+  /// `plan` is the stored request of the exploration; its study must be complete: see complete(). `columns` are the columns of
+  /// the record of a registered study, if known; otherwise the record of the plan's own scene is computed to find them. Throws
+  /// InvalidInput if the scene of the plan lacks something that the study needs.
   explicit Exploration(Plan plan, const Progress& progress = {}, const OtherStudies& others = {},
                        std::vector<PointFigure> columns = {});
 
@@ -85,11 +87,11 @@ class Exploration {
   [[nodiscard]] const std::vector<PointFigure>& figures() const { return figures_; }
   /// Returns a text that contains everything on which the row of a scene depends: equal texts have equal rows.
   [[nodiscard]] std::string content(const SceneFile& scene) const;
-  /// Returns the drives of a scene of the plan as the ends of straight lines [s, V]; none for an impossible scene.
+  /// Returns the drive waveforms of a scene of the plan as the ends of straight lines [s, V]; none for an impossible scene.
   [[nodiscard]] std::map<std::string, std::vector<std::pair<double, double>>> waveforms(const SceneFile& scene,
                                                                                         const Progress& progress = {});
-  /// Returns the row of a scene of the plan. May be called on any thread; the number `jobs` of threads for one point does not
-  /// change the row. Throws Interrupted if `progress` asks to stop.
+  /// Returns the row (status and figures) of a scene of the plan. May be called on any thread; the number `jobs` of threads for
+  /// one point does not change the row. Throws Interrupted if `progress` asks to stop.
   [[nodiscard]] PointRow row(const SceneFile& scene, int jobs = 1, const Progress& progress = {});
 
  private:
@@ -103,12 +105,12 @@ class Exploration {
   [[nodiscard]] PreparedScene prepared(const SceneFile& scene, bool default_limits, const Progress& progress);
 
   Plan plan_;
-  std::optional<PointStudy> study_;  // study of the plan; none if the study is `other_`
+  std::optional<PointStudy> study_;  // study that the exploration runs at every point; none if the study is `other_`
   std::optional<OtherStudy> other_;
   std::vector<PointFigure> figures_;
-  AskedFigures asked_ = {};              // figures that the scene of the plan requests
-  std::vector<std::string> parameters_;  // parameters that a search varies
-  bool shares_switches_ = false;         // true if several points of the plan may have the same switch
+  AskedFigures asked_ = {};              // figures that the scene of the exploration requests
+  std::vector<std::string> parameters_;  // names of the waveform parameters that a search at a point varies
+  bool shares_switches_ = false;         // true if several points of the exploration may have the same switch
   PullInMemory pull_in_;
 };
 

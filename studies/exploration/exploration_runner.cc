@@ -78,7 +78,7 @@ void ExplorationRunner::take(std::int64_t k) {
     try {
       row = stored_row(k, content, std::move(values), exploration_.row(scene, inner_jobs_, progress_));
     } catch (const Interrupted&) {
-      return;  // the loop over the points ends by itself
+      return;  // a requested stop ends the loop over the points
     }
   }
   timed([&] { return store_.add(*std::move(row)), 0; });

@@ -1,4 +1,4 @@
-// Computes the points of a part of a plan and stores them in a database file.
+// Computes the points of a part of an exploration's plan (the stored list of points) and stores them in a database file.
 #pragma once
 
 #include <atomic>
@@ -16,13 +16,13 @@ namespace softland {
 
 /// The progress of an exploration.
 struct ExplorationProgress {
-  std::int64_t points = 0;  ///< number of points in this part of the plan
-  std::int64_t known = 0;   ///< number of points in the database file at the beginning
+  std::int64_t points = 0;  ///< number of points in this part of the exploration's plan
+  std::int64_t known = 0;   ///< number of points that the database file had at the beginning
   std::int64_t computed = 0;
-  std::int64_t reused = 0;     ///< number of rows copied from earlier plans
-  std::int64_t earlier = 0;    ///< number of rows of earlier plans: at most this number can be reused
-  double seconds = 0;          ///< time since the beginning [s]
-  double computing = 0;        ///< time since the computation of the first new point began [s]
+  std::int64_t reused = 0;     ///< number of rows copied from earlier explorations
+  std::int64_t earlier = 0;    ///< number of rows of earlier explorations: at most this number can be copied
+  double seconds = 0;          ///< time since the run began [s]
+  double computing = 0;        ///< time since the computation of the first new point was begun [s]
   double waited_on_store = 0;  ///< total time for which threads waited for the database file [s]
 
   [[nodiscard]] std::int64_t there() const { return known + computed + reused; }
@@ -32,13 +32,15 @@ struct ExplorationProgress {
 struct ExplorationRunnerOptions {
   Shard shard = {};
   int jobs = 1;
-  const std::atomic<bool>* stop = nullptr;  ///< ends the exploration early when true; finished points are stored
-  std::function<void(const ExplorationProgress&)> on_point = nullptr;  ///< called under a lock after every point
+  /// Ends the exploration early when true; finished points are then in the database file.
+  const std::atomic<bool>* stop = nullptr;
+  /// Function that is called under a lock after every point.
+  std::function<void(const ExplorationProgress&)> on_point = nullptr;
 };
 
 class ExplorationRunner {
  public:
-  /// Keeps references. `store` must belong to stored_plan(exploration, options.shard).
+  /// Keeps references to its arguments. `store` must belong to stored_plan(exploration, options.shard).
   ExplorationRunner(Exploration& exploration, StudyStore& store, const ExplorationRunnerOptions& options);
 
   /// Computes the points that the database file lacks. The rows do not depend on the number of threads. Throws the exceptions
@@ -63,7 +65,7 @@ class ExplorationRunner {
   bool reuses_;
   int inner_jobs_ = 1;
   Progress progress_;
-  mutable std::mutex mutex_;  // guards the progress, and the time at which the computation began
+  mutable std::mutex mutex_;  // guards the progress, and the time at which the computation was begun
   ExplorationProgress told_;
   std::atomic<double> store_seconds_ = 0;
   Clock::time_point begin_ = Clock::now();

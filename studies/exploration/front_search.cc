@@ -19,7 +19,8 @@ namespace {
 // one.
 constexpr std::size_t population = 60;
 
-// Constraint violations of points with an incomplete closing, and of impossible points. NSGA-II prefers the smaller violation.
+// Constraint violations of points with an incomplete closing, and of impossible points. The genetic algorithm NSGA-II prefers
+// the smaller violation.
 constexpr double not_done = 1, impossible = 2;
 
 class FrontSearch {
@@ -85,7 +86,7 @@ class FrontSearch {
     {
       const std::scoped_lock lock(mutex_);
       const auto found = fresh_.find(evaluation.x);
-      if (found == fresh_.end()) return;  // the search was stopped, or the point failed
+      if (found == fresh_.end()) return;  // no row: the search was stopped, or the point failed
       row = std::move(found->second);
       fresh_.erase(found);
       ++found_.asked;
@@ -103,8 +104,8 @@ class FrontSearch {
   const FrontOptions& options_;
   Progress progress_;
   std::mutex mutex_;
-  std::map<std::vector<double>, StoredRow> fresh_;  // rows by position in the search box, until the number of their point is
-                                                    // known
+  // Computed rows by position in the search box, until the number of their point is known.
+  std::map<std::vector<double>, StoredRow> fresh_;
   FrontFound found_;
 };
 

@@ -11,18 +11,19 @@
 
 namespace softland {
 
-/// Returns the part of the plan that a database file stores.
+/// Returns the description that a database file stores of its part of the exploration.
 [[nodiscard]] StoredPlan stored_plan(const Exploration& exploration, const Shard& shard);
-/// Returns the exploration of `plan` for the database file `store`. If the file already stores this exploration, the columns
-/// are those in the file.
+/// Returns the exploration that `plan` (its stored request) describes, for the database file `store`. If the file already
+/// stores this exploration, the columns are those in the file.
 [[nodiscard]] Exploration exploration_for(Plan plan, const std::filesystem::path& store, const Progress& progress = {},
                                           const OtherStudies& others = {});
 /// Throws InvalidRequest about the field `shard` if the exploration cannot have this part: a search for a Pareto front cannot
 /// be divided.
 void require_part(const Exploration& exploration, const Shard& shard);
-/// Returns the plan of the exploration in a database file. Throws InvalidInput if the file contains a search instead.
+/// Returns the plan (stored request) of the exploration in a database file. Throws InvalidInput if the file contains a search
+/// instead.
 [[nodiscard]] PlanRequest exploration_in(const StudyReader& store);
-/// Returns the row to store for a point with these values of the variables [SI unit].
+/// Returns the row to store for a point of an exploration with these values of the variables [SI unit].
 [[nodiscard]] StoredRow stored_row(std::int64_t point, const ContentKey& content, std::vector<double> values, PointRow row);
 
 /// The rows of a database file, by the values of their variables.

@@ -20,7 +20,8 @@ using Eigen::VectorXd;
 
 constexpr std::size_t sampled_devices = 160;
 
-// Returns the time in (touch, touch + span) for which the contact is open, from openings that last at least `least` [s].
+// Returns the part of the time span (touch, touch + span) in which the contact is open [s], from openings that last at least
+// `least` [s].
 double open_time(double touch, std::span<const ContactOpening> openings, double span, double least) {
   double sum = 0;
   for (const ContactOpening& o : openings) {
@@ -29,8 +30,8 @@ double open_time(double touch, std::span<const ContactOpening> openings, double 
   return sum;
 }
 
-// Returns a robust term of the log likelihood, as in Student's distribution: a record that the model cannot describe has little
-// weight.
+// Returns a robust term of the log likelihood of a residual q, as in Student's distribution: a record that the model cannot
+// describe has little weight.
 double gentle(double q) { return -1.2 * std::log1p(q * q / 3); }
 
 }  // namespace
@@ -134,7 +135,7 @@ std::vector<VectorXd> Belief::resampled(std::size_t count, Draws& draws) const {
 
 namespace {
 
-// Residuals of the first contact times, and their derivatives by z.
+// Residuals of the first contact times, and their derivatives by the device's coordinates z.
 struct LinearTouches {
   VectorXd residuals;
   MatrixXd slopes;
@@ -151,16 +152,17 @@ class BeliefUpdate {
   }
   /// Fixes the ratio of contact to electrode gap at that of the scene in all later searches.
   void pin_gap_ratio() { pins_ratio_ = true; }
-  /// Returns |z|^2 + sum of r^2 at the end of the search from `start`.
+  /// Returns the misfit |z|^2 + sum of r^2 (coordinates z of the device, residuals r of its records) at the end of the search
+  /// from `start`.
   [[nodiscard]] double misfit_from(const VectorXd& start) const {
     return misfits(std::vector<VectorXd>{fitted(start).first}).front();
   }
   [[nodiscard]] double misfit_of(const VectorXd& z) const { return misfits(std::vector<VectorXd>{z}).front(); }
-  /// Returns the least misfit of all searches. The searches end when the misfit is at most `enough`.
+  /// Returns the least misfit |z|^2 + sum of r^2 of all searches. The searches end when the misfit is at most `enough`.
   [[nodiscard]] double least_misfit(const Belief& belief, double enough);
 
  private:
-  // Returns the closings of every point in every shot, ordered by point.
+  // Returns the closings of every device, given by its point z, in every shot, ordered by device.
   [[nodiscard]] std::vector<PredictedClosing> close(std::span<const VectorXd> points) const {
     const std::vector<Particle> devices = scene_.devices(points, progress_);
     std::vector<PredictedShot> all;
@@ -169,7 +171,7 @@ class BeliefUpdate {
     }
     return scene_.close(all, progress_);
   }
-  // Returns the log posterior of every point. A point that occurs several times is simulated once.
+  // Returns the log posterior of every device, given by its point z. A point that occurs several times is simulated once.
   [[nodiscard]] std::vector<double> log_posteriors(std::span<const VectorXd> points) const {
     std::vector<VectorXd> distinct;
     std::vector<std::size_t> places;
@@ -215,8 +217,8 @@ class BeliefUpdate {
   double best_ = -std::numeric_limits<double>::infinity();
 };
 
-// Returns the residuals at z, those beyond 4 compressed, and their derivatives by finite differences. The closings of all
-// points are simulated together.
+// Returns the residuals of first contact times for the device z, those beyond 4 compressed, and their derivatives by finite
+// differences. The closings of all neighbouring devices are simulated together.
 LinearTouches BeliefUpdate::linear_touches(const VectorXd& z) const {
   constexpr double apart = 0.01, steepest = 3000;
   const auto touches = static_cast<Eigen::Index>(shots_.size()), m = touches + (pins_ratio_ ? 1 : 0), n = scene_.size();
@@ -227,7 +229,7 @@ LinearTouches BeliefUpdate::linear_touches(const VectorXd& z) const {
   std::vector<VectorXd> points{z};
   for (Eigen::Index k = 0; k < n; ++k) points.push_back(z + apart * VectorXd::Unit(n, k));
   const std::vector<PredictedClosing> closings = close(points);
-  MatrixXd residuals(m, n + 1);  // residuals, one column per point
+  MatrixXd residuals(m, n + 1);  // residuals, one column per device: z and its neighbours
   for (Eigen::Index k = 0; k <= n; ++k) {
     for (Eigen::Index i = 0; i < touches; ++i)
       residuals(i, k) = compressed(likelihood_.touch_residual(closings[static_cast<std::size_t>(k * touches + i)],
@@ -239,8 +241,8 @@ LinearTouches BeliefUpdate::linear_touches(const VectorXd& z) const {
   return {.residuals = own, .slopes = slopes.cwiseMax(-steepest).cwiseMin(steepest)};
 }
 
-// Minimises the squares of the residuals of first contact times and of z by Levenberg and Marquardt. Returns the minimum, and
-// the curvature at the minimum: the inverse covariance of a normal distribution.
+// Minimises the sum of squares of the residuals of first contact times and of the coordinates z by Levenberg and Marquardt.
+// Returns the minimum, and the curvature at the minimum: the inverse covariance of a normal distribution.
 std::pair<VectorXd, MatrixXd> BeliefUpdate::fitted(VectorXd z) const {
   constexpr double longest = 1.5, enough = 0.02, hopeless = 1e4;
   constexpr int most_rounds = 14;
@@ -270,7 +272,8 @@ std::pair<VectorXd, MatrixXd> BeliefUpdate::fitted(VectorXd z) const {
   return {best, curvature};
 }
 
-// Searches from the `most` likeliest of these starts, until the end of a search has at least the log posterior `enough`.
+// Searches the device of largest posterior from the `most` likeliest of these starts, until the end of a search has at least
+// the log posterior `enough`.
 void BeliefUpdate::climb_from(const std::vector<VectorXd>& starts, std::size_t most, double enough) {
   const std::vector<double> before = log_posteriors(starts);
   std::vector<std::size_t> order(starts.size());
@@ -278,7 +281,7 @@ void BeliefUpdate::climb_from(const std::vector<VectorXd>& starts, std::size_t m
   std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return before[a] > before[b]; });
   for (std::size_t q = 0; q < std::min(most, order.size()); ++q) {
     const VectorXd& start = starts[order[q]];
-    if (q > 0 && start == starts[order[q - 1]]) continue;  // equal starts have the same end
+    if (q > 0 && start == starts[order[q - 1]]) continue;  // equal starts lead to the same end of the search
     auto [z, curvature] = fitted(start);
     double value = log_posteriors(std::span(&z, 1)).front();
     if (value < before[order[q]]) z = start, value = before[order[q]];
@@ -298,7 +301,7 @@ void BeliefUpdate::find_mode(const Belief& last) {
   if (best_ < -12 - 4 * shots) climb_from(fresh(many, 1.6), 6, -12 - 4 * shots);
 }
 
-// Returns |z|^2 + sum of r^2 of every point z.
+// Returns the misfit |z|^2 + sum of r^2 (coordinates z, residuals r) of every device z.
 std::vector<double> BeliefUpdate::misfits(std::span<const VectorXd> points) const {
   const std::vector<PredictedClosing> closings = close(points);
   std::vector<double> all;
@@ -335,20 +338,20 @@ double BeliefUpdate::least_misfit(const Belief& belief, double enough) {
     starts = std::move(ranked);
   };
   rank();
-  // A contact that stays open has no derivative by z. The least misfit is then between a device with such a contact and the
-  // nominal device.
+  // A contact that stays open has no derivative by z. The least misfit is then searched between a device with such a contact
+  // and the nominal device.
   for (std::size_t q = 0, count = starts.size(); q < count; ++q) {
     for (const double share : nearer) starts.push_back(own(share * starts[q]));
   }
   rank();
   for (std::size_t q = 0; q < starts.size() && least > enough; ++q) {
-    if (q > 0 && starts[q] == starts[q - 1]) continue;  // equal starts have the same end
+    if (q > 0 && starts[q] == starts[q - 1]) continue;  // equal starts lead to the same end of the search
     least = std::min(least, misfit_from(starts[q]));
   }
   return least;
 }
 
-// Samples the posterior of all records by adaptive importance sampling from normal distributions.
+// Samples the posterior of all contact records by adaptive importance sampling from normal distributions.
 Belief BeliefUpdate::sampled() {
   constexpr int most_rounds = 4;
   constexpr double least_share = 0.2, cooler = 0.7, coldest = 1e-3;

@@ -26,9 +26,9 @@
 
 namespace softland {
 
-/// A shot (one commanded closing of the device), and its record.
+/// A shot (voltages for one closing of the device), and the contact record of its closing.
 struct LearnedShot {
-  std::vector<Waveform> waveforms;  ///< commanded waveforms, in the order of Switch::drives() [V]
+  std::vector<Waveform> waveforms;  ///< commanded waveforms of the shot, in the order of Switch::drives() [V]
   ContactRecord record;
 };
 
@@ -48,12 +48,12 @@ class Draws {
 /// The likelihood of the records of a device, by the terms at the top of belief.h.
 class Likelihood {
  public:
-  /// Keeps references to `scene` and `shots`.
+  /// Keeps references to `scene` and `shots`, which must outlive this object.
   Likelihood(const TuningModel& scene, std::span<const LearnedShot> shots) : scene_(scene), shots_(shots) {}
   /// Returns the residual r of the first contact in one shot: +-30 if only the record or only the closing has a contact, 0 if
   /// neither has.
   [[nodiscard]] double touch_residual(const PredictedClosing& closing, const ContactRecord& record) const;
-  /// Returns the log likelihood of all records. `closings` are the closings of one device in all shots, in order.
+  /// Returns the log likelihood of all contact records. `closings` are the closings of one device in all shots, in order.
   [[nodiscard]] double of(std::span<const PredictedClosing> closings) const;
   /// Returns the standard deviation of a recorded time of first contact with this impact velocity [s].
   [[nodiscard]] double touch_deviation(double speed) const;
@@ -67,22 +67,24 @@ class Likelihood {
 };
 
 struct Belief {
-  std::vector<Eigen::VectorXd> points;  ///< coordinates z of the devices
-  std::vector<double> weights;          ///< weights of the devices; their sum is 1
-  NormalBelief moments;                 ///< mean and covariance of z
-  Eigen::VectorXd mode;                 ///< z with the largest posterior
-  double effective_devices = 0;         ///< 1 / (sum of the squared weights), with weights from the likelihood
-  double log_posterior = 0;             ///< log posterior of the mode, without its constant
+  std::vector<Eigen::VectorXd> points;  ///< coordinates z of the devices that represent the belief
+  std::vector<double> weights;          ///< weights of the devices that represent the belief; their sum is 1
+  NormalBelief moments;                 ///< mean and covariance of the coordinates z
+  Eigen::VectorXd mode;                 ///< coordinates z of the device with the largest posterior
+  /// Effective number of devices: 1 / (sum of the squared weights), with weights from the likelihood.
+  double effective_devices = 0;
+  double log_posterior = 0;  ///< log posterior of the device `mode`, without its constant
 
-  /// Returns the prior (the belief before any record): samples of the standard normal distribution.
+  /// Returns the prior (the belief about a device before any record): samples of the standard normal distribution.
   [[nodiscard]] static Belief prior(Eigen::Index size, Draws& draws);
-  /// Returns `count` points, sampled in proportion to their weights (systematic resampling, Kitagawa 1996), in random order.
+  /// Returns `count` devices (coordinates z), sampled in proportion to their weights (systematic resampling, Kitagawa 1996), in
+  /// random order.
   [[nodiscard]] std::vector<Eigen::VectorXd> resampled(std::size_t count, Draws& draws) const;
 };
 
-/// Fits the times of first contact in these shots alone, starting from the belief and from devices all over [spread], until the
-/// misfit of a device is within the bound. If the contact stayed open in exactly one record, this record is left out: a loose
-/// wire says nothing about the device.
+/// Fits a device to the times of first contact in these shots alone, starting from the belief and from devices all over
+/// [spread], until the misfit of a device is within the bound. If the contact stayed open in exactly one record, this record is
+/// left out: a loose wire says nothing about the device.
 ///
 /// If closings are linear in z, the first contact times y are normal, with the covariance J J^T + I in units of their errors.
 /// The least |z|^2 + |r|^2 is then y^T (J J^T + I)^-1 y, which is chi-square distributed with as many degrees of freedom as

@@ -23,7 +23,8 @@ CapacitanceEdges::CapacitanceEdges(const Switch& model, std::size_t drive, doubl
 
 double CapacitanceEdges::above(const double* q) { return model_.capacitance(drive_, q, work_) - threshold_; }
 
-// Interpolates each mode by the cubic through positions and velocities at the two knots (Hermite).
+// Returns the capacitance less the threshold between two knots (points between integrator steps). Each mode is the cubic
+// through its positions and velocities at the knots (Hermite).
 double CapacitanceEdges::above(const Knot& begin, const Knot& end, double part) {
   const std::size_t n = between_.size();
   const double span = end.time - begin.time, s = part, r = 1 - part;
@@ -42,7 +43,8 @@ void CapacitanceEdges::step(const Knot& begin, const Knot& end, const ContactSta
   const double part = bracketed_zero([&](double at) { return above(begin, end, at); }, 0, 1);
   const double time = begin.time + part * (end.time - begin.time);
   if (last_ > 0) {
-    constexpr double apart = 1e-3;  // length of the last bracket of the crossing, over the step
+    // Length of the last bracket around a crossing of the threshold, as a share of the integrator step.
+    constexpr double apart = 1e-3;
     const double change = above(begin, end, part + apart) - above(begin, end, part - apart);
     const double rate = change / (2 * apart * (end.time - begin.time));
     rises_.push_back({.begin = time, .end = std::numeric_limits<double>::quiet_NaN(), .rate = rate});

@@ -13,8 +13,8 @@ namespace softland {
 
 /// A time span in which the capacitance is above a threshold.
 struct CapacitanceRise {
-  double begin = 0;  ///< start of the span [s]
-  double end = 0;    ///< end of the span [s]; NaN if the capacitance stays above the threshold until the run ends
+  double begin = 0;  ///< time at which the capacitance rises above the threshold [s]
+  double end = 0;    ///< time at which the capacitance falls below the threshold [s]; NaN if it stays above until the run ends
   double rate = 0;   ///< time derivative of the capacitance at `begin` [F/s]
 };
 
@@ -22,12 +22,12 @@ struct CapacitanceRise {
 /// one step are missed.
 class CapacitanceEdges final : public ClosingObserver {
  public:
-  /// `drive` is the index of the electrode, `threshold` is in F. Keeps a reference to the switch.
+  /// `drive` is the index of the electrode in Switch::drives(), `threshold` is in F. Keeps a reference to the switch.
   CapacitanceEdges(const Switch& model, std::size_t drive, double threshold);
 
   [[nodiscard]] bool follows_motion() const override { return true; }
   void step(const Knot& begin, const Knot& end, const ContactState& contact) override;
-  /// Returns the spans above the threshold in order of time.
+  /// Returns the time spans with the capacitance above the threshold, in order.
   [[nodiscard]] const std::vector<CapacitanceRise>& rises() const { return rises_; }
 
  private:
@@ -38,8 +38,8 @@ class CapacitanceEdges final : public ClosingObserver {
   std::size_t drive_;
   double threshold_;
   Switch::Workspace work_;
-  std::vector<double> between_;  // modal coordinates between two knots
-  double last_;                  // capacitance less the threshold after the last step [F]; NaN before the first step
+  std::vector<double> between_;  // modal coordinates at a time between two knots (points between integrator steps)
+  double last_;                  // capacitance less the threshold after the last integrator step [F]; NaN before the first step
   std::vector<CapacitanceRise> rises_;
 };
 

@@ -12,7 +12,7 @@
 namespace softland {
 namespace {
 
-// Evaluates all residuals at x at once. Ceres requests the residuals one by one, so that each may have its own loss.
+// Evaluates all residuals of a fit at x at once. Ceres requests the residuals one by one, so that each may have its own loss.
 class Evaluations final : public ceres::EvaluationCallback {
  public:
   Evaluations(const LeastSquares& problem, const std::vector<double>& x, const Progress& progress)

@@ -11,12 +11,12 @@
 namespace softland {
 
 /// Errors of the instruments of a laboratory. All but `unseen` are standard deviations. A simulated laboratory has these
-/// errors, except `trigger_delay`, and the belief about a device assumes them.
+/// errors, except `trigger_delay`, and the estimate of a device from its records assumes these errors.
 struct LaboratoryErrors {
-  double edge_error = 50e-9;  ///< error of the time of an edge [s]
-  double unseen = 100e-9;     ///< openings shorter than this time are not recorded [s]
-  double gain_error = 0.005;  ///< relative error of the gain of a source: constant but unknown
-  double shot_error = 2e-4;   ///< relative scatter of the gain from shot to shot
+  double edge_error = 50e-9;  ///< error of a recorded time at which the contact closes or opens [s]
+  double unseen = 100e-9;     ///< openings of the contact that are shorter than this time are not recorded [s]
+  double gain_error = 0.005;  ///< relative error of the gain of a voltage source: constant but unknown
+  double shot_error = 2e-4;   ///< relative scatter of a voltage source's gain from one closing to the next
   /// Standard deviation of the delay between drives and record, which is constant but unknown [s]; 0 if records begin with the
   /// drives. A simulated laboratory has PracticeOptions::trigger_delay instead.
   double trigger_delay = 2e-6;
@@ -34,23 +34,24 @@ class SceneFile;
 
 /// A change of the contact's state, from open to closed or back.
 struct ContactEdge {
-  double time = 0;      ///< time since t = 0, when the drives begin [s]
-  bool closed = false;  ///< true if the contact is closed after this edge
+  double time = 0;      ///< time since t = 0, when the drive waveforms begin [s]
+  bool closed = false;  ///< true if the contact is closed after this change
 };
 
-/// The record of one shot: edges, or closing time and number of openings, or an error. A record in which no member is set means
-/// that the contact stayed open.
+/// The record of one shot (closing): edges, which are the times at which the contact closes and opens, or closing time and
+/// number of openings, or an error. A record in which no member is set means that the contact stayed open.
 struct ContactRecord {
-  std::vector<ContactEdge> edges = {};      ///< edges in order of time; the first one closes the contact
-  std::optional<double> closing_time = {};  ///< time of first contact [s], if there are no edges
-  std::optional<int> bounce_count = {};     ///< number of openings after the first contact
-  std::optional<double> loudness = {};      ///< loudness of the impact in any unit, above 0
-  std::string error = {};                   ///< reason for a missing record; all other members are then ignored
+  std::vector<ContactEdge> edges = {};      ///< changes of the contact's state in order of time; the first one closes the contact
+  std::optional<double> closing_time = {};  ///< time of first contact [s], if the record has no `edges`
+  std::optional<int> bounce_count = {};     ///< number of openings of the contact after its first contact
+  std::optional<double> loudness = {};      ///< loudness of the impact at the contact in any unit, above 0
+  std::string error = {};                   ///< reason why the record is missing; all other members are then ignored
 };
 
 /// A time span after the first contact in which the contact is open.
 struct ContactOpening {
-  double begin = 0, end = 0;  ///< [s]; the end is infinite if the contact is open at the end of the record
+  /// Begin and end of the opening [s]; the end is infinite if the contact is open at the end of the record.
+  double begin = 0, end = 0;
 };
 
 /// Returns the rule that the record of a shot of `duration` [s] violates, with the invalid key; empty if the record is valid.
@@ -60,9 +61,9 @@ struct ContactOpening {
 
 /// Returns the time of first contact [s]; none if the contact stayed open.
 [[nodiscard]] std::optional<double> first_touch(const ContactRecord& record);
-/// Returns the openings between the edges, in order of time.
+/// Returns the time spans in which the contact of a record is open after first contact, in order.
 [[nodiscard]] std::vector<ContactOpening> openings(const ContactRecord& record);
-/// Returns the number of openings, from the edges or from bounce_count; none if the record has neither.
+/// Returns the number of openings of the contact, from `edges` or from `bounce_count`; none if the record has neither.
 [[nodiscard]] std::optional<int> bounce_count(const ContactRecord& record);
 /// True if the contact closed and the record shows that it stayed closed.
 [[nodiscard]] bool is_bounce_free(const ContactRecord& record);

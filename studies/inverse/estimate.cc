@@ -13,9 +13,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Inverts a symmetric matrix that is positive except for rounding. Directions without information get very large variances.
+// Returns the inverse of an information matrix, which is symmetric and positive except for rounding. Directions without
+// information get very large variances.
 MatrixXd inverse(const MatrixXd& matrix) {
-  constexpr double least = 1e-13;  // smallest eigenvalue that is used, over the largest eigenvalue
+  constexpr double least = 1e-13;  // smallest eigenvalue that is used in the inverse, as a share of the largest
   const SymmetricEigen eigen = symmetric_eigen(matrix);
   const double largest = eigen.values[eigen.values.size() - 1];
   const VectorXd inverses = eigen.values.unaryExpr([&](double v) { return 1 / std::max(v, std::max(least * largest, 1e-300)); });

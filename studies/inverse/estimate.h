@@ -1,8 +1,8 @@
 // The estimate of a least-squares fit, in coordinates z in which the scale of each unknown is 1. The scale is one standard
 // deviation of the prior, or a tenth of the value of an unknown without a prior.
 //
-//   H = J^T W J,  W the weights of the robust loss       information of the data
-//   C = (H + P)^-1,  P the information of the prior       covariance of the estimate
+//   H = J^T W J,  W the weights of the robust loss       Fisher information of the data
+//   C = (H + P)^-1,  P the Fisher information of the prior       covariance of the estimate
 //
 // A direction of z is weak if the data have less information about it than the prior, that is, if the eigenvalue of H is below
 // 1. The data cannot separate the unknowns along a weak direction.
@@ -17,17 +17,20 @@
 namespace softland {
 
 struct WeakDirection {
-  Eigen::VectorXd direction;          ///< direction in z, scaled to a largest component of 1
-  double information = 0;             ///< eigenvalue of H for this direction
-  std::vector<std::size_t> unknowns;  ///< indices of the unknowns whose component is at least a tenth of the largest
-  double seen = 0;  ///< root of the sum of squared changes of the data along `direction`, in units of their errors
+  Eigen::VectorXd direction;  ///< weak direction in the scaled unknowns z, with a largest component of 1
+  double information = 0;     ///< eigenvalue of the Fisher information H of the data for this direction
+  /// Indices of the unknowns whose component of `direction` is at least a tenth of the largest.
+  std::vector<std::size_t> unknowns;
+  /// Root of the sum of squared changes of the data when z moves along `direction`, in units of the errors of the data.
+  double seen = 0;
 };
 
 struct Estimate {
-  Eigen::MatrixXd data;        ///< H, information of the data
-  Eigen::MatrixXd covariance;  ///< C, covariance of z; infinite variances without information from data or prior
+  Eigen::MatrixXd data;  ///< H, Fisher information of the data
+  /// C, covariance of the scaled unknowns z; infinite variances without information from data or prior.
+  Eigen::MatrixXd covariance;
   Eigen::MatrixXd correlation;
-  std::vector<WeakDirection> weak;  ///< weak directions in order of increasing information
+  std::vector<WeakDirection> weak;  ///< weak directions, which the data hardly determine, in order of increasing information
 
   [[nodiscard]] double deviation(std::size_t i) const;
   /// Returns the relative decrease of the root mean square of all standard deviations if one more measurement is made. `slopes`
@@ -35,14 +38,15 @@ struct Estimate {
   [[nodiscard]] double reduction(const std::vector<Eigen::VectorXd>& slopes) const;
 };
 
-/// Returns the weak directions of the information `data`, in order of increasing eigenvalue.
+/// Returns the weak directions (which the data hardly determine) of the Fisher information `data`, in order of increasing
+/// eigenvalue.
 [[nodiscard]] std::vector<WeakDirection> weak_directions(const Eigen::MatrixXd& data);
 [[nodiscard]] Estimate estimate(const Eigen::MatrixXd& data, const Eigen::MatrixXd& prior);
 
-/// A device of a population, with the information H_k of its data about z.
+/// A device of a population, with the Fisher information H_k of its data about the scaled unknowns z.
 struct KnownDevice {
-  Eigen::MatrixXd data;    ///< H_k, information of the data of this device about z
-  Eigen::VectorXd target;  ///< H_k m_k, where m_k is the estimate from the data alone
+  Eigen::MatrixXd data;    ///< H_k, Fisher information of the device's data about z
+  Eigen::VectorXd target;  ///< product H_k m_k of information and estimate m_k from the device's data alone
 };
 /// Returns mean and covariance of z over a population with the largest likelihood, by expectation and maximisation (Dempster,
 /// Laird and Rubin 1977; Laird and Ware 1982). The iteration starts from `begin` and needs at least two devices.

@@ -49,7 +49,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Returns the starts of the searches: the nominal device, and points of low discrepancy over the prior.
+// Returns the starts of a fit's searches: the nominal device, and points of low discrepancy over the prior.
 std::vector<std::vector<double>> starts_of(const FitProblem& problem, const FitOptions& options) {
   const std::size_t n = problem.parameters.size();
   std::vector<std::vector<double>> all{std::vector<double>(n, 0.0)};
@@ -62,12 +62,14 @@ std::vector<std::vector<double>> starts_of(const FitProblem& problem, const FitO
   return all;
 }
 
-// Returns the reasons to doubt a fit.
+// Returns the reasons to doubt the result of a fit, in sentences.
 std::vector<std::string> doubts_of(const Fit& fit, const ManyEnds& all, const LeastSquaresEnd& best) {
-  constexpr double far = 4;              // permitted distance of an unknown from its prior [standard deviations of the prior]
-  constexpr double largest_rms = 3;      // permitted root mean square of the residuals [errors of the data]
-  constexpr double as_good = 2;          // largest excess of the cost of another minimum: two standard deviations
-  constexpr double standard_errors = 4;  // distance from which on another minimum differs, in standard errors
+  constexpr double far = 4;          // permitted distance of a fitted unknown from its prior [standard deviations of the prior]
+  constexpr double largest_rms = 3;  // permitted root mean square of a fit's residuals [errors of the data]
+  // Largest excess of another minimum's cost at which that minimum is as good as the best: two standard deviations.
+  constexpr double as_good = 2;
+  // Distance from which on another minimum of the fit differs from the best, in standard errors.
+  constexpr double standard_errors = 4;
   std::vector<std::string> doubts;
   for (const FittedUnknown& u : fit.unknowns) {
     const double off = std::abs(u.value - u.prior_mean) / u.prior_deviation;
@@ -94,9 +96,10 @@ struct Stage {
   ManyEnds all = {};
 };
 
-// True if two ends are the same minimum: the distance between them is far below the errors from data and prior.
+// True if two searches ended in the same minimum: the distance between their ends is far below the errors from data and prior.
 bool is_one_minimum(const LeastSquaresEnd& a, const LeastSquaresEnd& b) {
-  constexpr double apart = 0.1;  // permitted difference of each unknown in standard deviations, and of the cost
+  // Permitted difference between two ends of one minimum: of each unknown in standard deviations, and of the cost.
+  constexpr double apart = 0.1;
   double largest = 0;
   for (std::size_t i = 0; i < a.x.size(); ++i) largest = std::max(largest, std::abs(a.x[i] - b.x[i]));
   return largest <= apart && std::abs(a.cost - b.cost) <= apart;
@@ -109,7 +112,8 @@ Stage solved(FitProblem problem, const std::vector<std::vector<double>>& starts,
   return stage;
 }
 
-// Returns distinct ends, the best first. When more rows of the traces are fitted, another of these ends may become the best.
+// Returns the distinct ends of the searches of a fit, the best first. When more rows of the recorded curves (traces) are
+// fitted, another of these ends may become the best.
 std::vector<std::vector<double>> best_ends(const ManyEnds& all) {
   constexpr std::size_t most = 5;
   std::vector<const LeastSquaresEnd*> ranked;
@@ -128,7 +132,7 @@ std::vector<std::vector<double>> best_ends(const ManyEnds& all) {
   return starts;
 }
 
-// Returns the first contact time of the nominal design, by measurement; NaN for a measurement that is not a trace.
+// Returns the first contact time of the nominal design, by measurement; NaN for a measurement that is not a curve over time.
 std::vector<double> nominal_touches(const FitProblem& problem, std::size_t measurements) {
   std::vector<double> touches(measurements, Metrics::unset);
   for (const Datum& datum : problem.data) {
@@ -145,9 +149,10 @@ std::vector<double> nominal_touches(const FitProblem& problem, std::size_t measu
   return touches;
 }
 
-// The residuals of each trace in units of the errors, over all used rows or over the rows that were added last.
+// The residuals of each recorded curve (trace) in units of the errors, over all used rows or over the rows that were added
+// last.
 struct TraceMisfit {
-  std::vector<double> rms;  // root mean square for each measurement; infinite if the device cannot be read
+  std::vector<double> rms;  // root mean square of the residuals, by measurement; infinite if the device cannot be read
   std::vector<double> rows;
 };
 
@@ -167,7 +172,8 @@ TraceMisfit misfit(const Stage& stage, std::size_t measurements, const TraceWind
   return of;
 }
 
-// For each measurement, returns whether the model describes the rows added last as well as the earlier rows, within chance.
+// Returns, by measurement, whether the model describes the rows of a recorded curve added last as well as the earlier rows,
+// within chance.
 std::vector<bool> described(const TraceMisfit& newest, const TraceMisfit& before) {
   constexpr double least = 0.15, deviations = 3;
   std::vector<bool> all;
@@ -181,14 +187,14 @@ std::vector<bool> described(const TraceMisfit& newest, const TraceMisfit& before
 // True if the data are linear in the unknowns within the standard errors of the unknowns. After some bounces the data are not
 // linear: derivatives of a chaotic motion are valid for tiny steps only, and give standard errors that are far too small.
 bool is_linear(const Stage& stage) {
-  constexpr double largest = 0.5;  // permitted deviation from linear, in standard deviations
+  constexpr double largest = 0.5;  // permitted deviation of the data from linear, in standard deviations
   const FitProblem& problem = *stage.problem;
   const LeastSquaresEnd& end = stage.all.ends[stage.all.best];
   MeasurementModel model(problem);
   VectorXd values, moved;
   MatrixXd slopes;
   if (!model.predict(end.x, values, &slopes)) return false;
-  // Square roots of the weights of the residuals, over the errors of the data.
+  // Square roots of the weights of the residuals, divided by the errors of the data.
   const VectorXd weights = problem.weights(problem.residuals(values)).cwiseSqrt().cwiseQuotient(problem.errors);
   const MatrixXd weighted = weights.asDiagonal() * slopes;
   const MatrixXd covariance = estimate(weighted.transpose() * weighted, problem.prior).covariance;

@@ -30,85 +30,90 @@
 namespace softland {
 
 struct FitOptions {
-  std::vector<std::string> unknowns = {};  ///< entries of [spread], or keys; empty for all entries of [spread]
-  std::vector<std::string> shared = {};    ///< unknowns with one value for all devices
+  /// Unknowns of the fit: entries of [spread] or keys of the scene; empty for all entries of [spread].
+  std::vector<std::string> unknowns = {};
+  std::vector<std::string> shared = {};  ///< names of the unknowns that have one value for all devices
   Loss loss = Loss::huber;
   std::size_t starts = 20;
   std::uint64_t seed = 1;
   int jobs = 1;         ///< number of threads; does not change the result
-  bool suggest = true;  ///< true to search for the best next measurement
+  bool suggest = true;  ///< true to search for the measurement that would reduce the errors most
 };
 inline constexpr std::size_t most_starts = 10'000;
 
 struct FittedUnknown {
-  std::string name;                      ///< name of the entry in [spread], or the key
-  std::string device;                    ///< name of the device; empty if shared by all, or for the only device
-  std::string unit;                      ///< SI unit; empty for a factor of the scene's values
-  double nominal = 0;                    ///< value of the scene [unit]
-  double value = 0, standard_error = 0;  ///< value and standard error [unit]; NaN if the fit is in doubt
-  double low = 0, high = 0;              ///< ends of the 95 % interval [unit]; NaN if the fit is in doubt
-  double prior_mean = Metrics::unset, prior_deviation = Metrics::unset;  ///< mean and standard deviation of the prior [unit];
-                                                                         ///< NaN without a prior
-  double scale = 0;                                                      ///< change of the value when z changes by 1
+  std::string name;    ///< name of the unknown: its entry in [spread], or its key
+  std::string device;  ///< name of the device to which the unknown belongs; empty if shared by all, or for the only device
+  std::string unit;    ///< SI unit of the unknown; empty for a factor of the scene's values
+  double nominal = 0;  ///< value of the unknown in the given scene [unit]
+  double value = 0, standard_error = 0;  ///< fitted value and standard error [unit]; NaN if the fit is in doubt
+  double low = 0, high = 0;              ///< ends of the 95 % interval of the fitted value [unit]; NaN if the fit is in doubt
+  /// Mean and standard deviation of the unknown's prior [unit]; NaN without a prior.
+  double prior_mean = Metrics::unset, prior_deviation = Metrics::unset;
+  double scale = 0;  ///< change of the value when the scaled unknown z changes by 1
 };
 
 struct FitResidual {
-  std::size_t measurement = 0;  ///< number of the measurement in the bench file
+  std::size_t measurement = 0;  ///< number of the measurement in the bench file to which the residual belongs
   std::string device;
   Measurable what = Measurable::pull_in;
   std::string drive;
-  std::optional<double> level, time;                      ///< level of the measurement [V], and time of a row of a trace [s]
-  double measured = 0, error = 0, before = 0, after = 0;  ///< before: reading in the given scene; after: in the fitted scene
+  /// Level of the measurement [V]; time of the row if the measurement is a curve over time [s].
+  std::optional<double> level, time;
+  /// Measured value and its error; readings in the given scene (before) and in the fitted scene (after).
+  double measured = 0, error = 0, before = 0, after = 0;
   [[nodiscard]] double normalized() const { return (after - measured) / error; }
   [[nodiscard]] double normalized_before() const { return (before - measured) / error; }
 };
 
-/// The rows of a trace (position or velocity) that the fit uses: the rows that the model describes.
+/// The rows of a trace (recorded curve of position or velocity) that the fit uses: the rows that the model describes.
 struct FittedTrace {
-  std::size_t measurement = 0;  ///< number of the measurement in the bench file
+  std::size_t measurement = 0;  ///< number of the trace's measurement in the bench file
   Measurable what = Measurable::velocity;
-  double until = 0, recorded = 0;  ///< times of the last row that the fit uses, and of the last recorded row [s]
+  double until = 0, recorded = 0;  ///< times of the trace's last row that the fit uses, and of its last recorded row [s]
 };
 
 struct NextMeasurement {
-  std::string name;  ///< name, such as "closing time at 22 V"
+  std::string name;  ///< name of the further measurement, such as "closing time at 22 V"
   Measurable what = Measurable::pull_in;
-  std::optional<double> level;  ///< voltage of the measurement [V]
-  double error = 0;             ///< assumed standard deviation of the measurement error [SI unit]
-  double reduction = 0;         ///< relative decrease of the root mean square of all standard errors
+  std::optional<double> level;  ///< voltage at which the further measurement is made [V]
+  double error = 0;             ///< assumed standard deviation of the further measurement's error [SI unit]
+  double reduction = 0;         ///< relative decrease of the root mean square of all standard errors if this measurement is made
 };
 
-/// The fitted population of several devices.
+/// Means and deviations of the unknowns over several fitted devices (their population).
 struct FittedPopulation {
-  std::vector<std::size_t> variables;  ///< indices of the variables in the scene's [spread]
+  std::vector<std::size_t> variables;  ///< indices in the scene's [spread] of the variables that differ between the devices
   std::vector<std::string> names;
-  std::vector<double> mean, deviation;  ///< moments of each variable [unit of the variable]
+  /// Mean and standard deviation of each variable over the devices [unit of the variable].
+  std::vector<double> mean, deviation;
   Eigen::MatrixXd correlation;
 };
 
 struct Fit {
-  PreparedScene scene;  ///< given scene; its [spread] contains the unknowns
+  PreparedScene scene;  ///< scene that the user gave; its [spread] contains the unknowns
   bool spread_assumed = false;
   std::vector<std::string> devices;
   std::vector<FittedUnknown> unknowns;
-  Estimate estimate;  ///< its weak directions are those of the mean device, in the unknowns of the first device
+  /// Estimate of the unknowns; its weak directions are those of the mean device, in the unknowns of the first device.
+  Estimate estimate;
   std::vector<FitResidual> residuals;
   std::vector<FittedTrace> traces = {};
-  std::vector<NextMeasurement> next;  ///< possible further measurements, the most useful first
+  std::vector<NextMeasurement> next;  ///< possible further measurements, those that reduce the errors most first
   std::optional<FittedPopulation> population;
   std::size_t starts = 0, converged = 0, minima = 0;
-  std::vector<double> costs;  ///< cost at the end of each search, by start; NaN for a failed search
+  std::vector<double> costs;  ///< least-squares cost at the end of each search, by start; NaN for a failed search
   Loss loss = Loss::huber;
   std::uint64_t seed = 1;
   bool found = false;
-  /// Reasons to doubt the result, as sentences: an unknown is far from its prior, the model does not describe the data, or
-  /// another minimum describes the data as well. A result in doubt has no standard errors.
+  /// Reasons to doubt the result of the fit, as sentences: an unknown is far from its prior, the model does not describe the
+  /// data, or another minimum describes the data as well. A result in doubt has no standard errors.
   std::vector<std::string> doubts = {};
 
   /// Return the sum of the squared normalized residuals, without robust weights, after and before the fit.
   [[nodiscard]] double chi_squared() const;
   [[nodiscard]] double chi_squared_before() const;
-  /// A key and its fitted value, which replaces the value of the scene in the fitted scene of a device.
+  /// A key of the scene and its fitted value, which replaces the value of the given scene in the fitted scene of a device.
   struct FittedKey {
     std::string path;
     std::size_t element = 0;

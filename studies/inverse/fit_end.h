@@ -1,5 +1,5 @@
-// The results of a fit at the end of its best search: residuals, unknowns with their errors, the population of the devices, and
-// the measurements that would reduce the errors most (fit.h).
+// The results of a fit at the end of its best search: residuals, unknowns with their errors, the means and deviations over the
+// devices, and the measurements that would reduce the errors most (fit.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -12,16 +12,16 @@ namespace softland {
 
 class EndOfFit {
  public:
-  /// Computes residuals, estimate and unknowns and stores them in `fit`. Keeps references.
+  /// Computes residuals, estimate and unknowns of the fit and stores them in `fit`. Keeps references to its arguments.
   EndOfFit(const FitProblem& problem, const LeastSquaresEnd& end, Fit& fit);
 
-  /// Throws InvalidRequest for an unknown that has no prior and that changes no prediction: its fitted value would be the start
-  /// of its search.
+  /// Throws InvalidRequest for an unknown of the fit that has no prior and that changes no prediction: its fitted value would
+  /// be the start of its search.
   void require_all_seen(const std::string& bench) const;
-  /// Adds the population of the devices, over the unknowns that each device has for itself. Shared unknowns have their fitted
-  /// values.
+  /// Adds the means and deviations over the devices (their population) for the unknowns that each device has for itself. Shared
+  /// unknowns have their fitted values.
   void add_population();
-  /// Adds the possible further measurements, the most useful first.
+  /// Adds the possible further measurements to the fit, those that reduce the errors most first.
   void add_next(const Progress& progress);
 
  private:
@@ -33,7 +33,7 @@ class EndOfFit {
   Fit& fit_;
   MeasurementModel model_;
   Eigen::VectorXd z_, residuals_;
-  Eigen::MatrixXd slopes_;  // derivatives of the residuals by z
+  Eigen::MatrixXd slopes_;  // derivatives of the residuals by the scaled unknowns z
 };
 
 }  // namespace softland

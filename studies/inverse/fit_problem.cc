@@ -96,7 +96,7 @@ void add_parameters(FitProblem& problem, const std::vector<std::string>& shared,
   }
 }
 
-// Adds the prior, in which the unknowns of one device, or the shared unknowns, have the correlations of [spread].
+// Adds the prior of a fit, in which the unknowns of one device, or the shared unknowns, have the correlations of [spread].
 void add_prior(FitProblem& problem) {
   const auto n = static_cast<Index>(problem.parameters.size());
   problem.prior = problem.prior_root = MatrixXd::Zero(n, n);

@@ -12,13 +12,13 @@
 
 namespace softland {
 
-/// A measured value of the bench file.
+/// A measured value of the bench file, with its place in the reading of an instrument.
 struct Datum {
   std::size_t device = 0;
-  std::size_t instrument = 0;    ///< index among the instruments of the device
-  Eigen::Index row = 0;          ///< row of the value in the reading of the instrument
-  std::size_t measurement = 0;   ///< number of the measurement in the bench file
-  double time = Metrics::unset;  ///< time of the row if the value belongs to a trace [s]; NaN otherwise
+  std::size_t instrument = 0;    ///< index of the instrument among those of the device
+  Eigen::Index row = 0;          ///< row of the measured value in the reading of the instrument
+  std::size_t measurement = 0;   ///< number of the value's measurement in the bench file
+  double time = Metrics::unset;  ///< time of the row if the value belongs to a trace (curve over time) [s]; NaN otherwise
 };
 
 struct FitDevice {
@@ -27,37 +27,37 @@ struct FitDevice {
   std::vector<Instrument> instruments = {};
 };
 
-/// An unknown of a fit: a variable of [spread], of one device or shared by all.
+/// An unknown of a fit: a variable of [spread], for one device or shared by all.
 struct FitParameter {
   std::size_t variable = 0;
-  std::optional<std::size_t> device = {};  ///< index of the device; none: shared by all devices
-  double mean = 0, scale = 1;              ///< value = mean + scale z
+  std::optional<std::size_t> device = {};  ///< index of the device to which the unknown belongs; none: shared by all devices
+  double mean = 0, scale = 1;              ///< mean and scale of the unknown: its value is mean + scale z
   bool has_prior = true;
 };
 
 struct FitProblem {
   std::vector<FitDevice> devices;
   std::vector<Datum> data;
-  Eigen::VectorXd measured, errors;  ///< values and standard deviations of the data [SI unit]
+  Eigen::VectorXd measured, errors;  ///< measured values and their standard deviations [SI unit]
   std::vector<FitParameter> parameters;
-  std::vector<std::vector<std::size_t>> of_device;  ///< indices of the parameters by device and variable
-  Eigen::MatrixXd prior;                            ///< P, the information of the prior
-  Eigen::MatrixXd prior_root;                       ///< residuals of the prior are prior_root z
+  std::vector<std::vector<std::size_t>> of_device;  ///< indices of the unknowns by device and variable of [spread]
+  Eigen::MatrixXd prior;                            ///< P, the Fisher information of the prior on the scaled unknowns z
+  Eigen::MatrixXd prior_root;                       ///< square root of P: the residuals of the prior are prior_root z
   Loss loss = Loss::huber;
 
-  /// Returns the residuals of these predictions: prediction less measured value, in standard deviations of the data.
+  /// Returns the residuals of these predicted values: prediction less measured value, in standard deviations of the data.
   [[nodiscard]] Eigen::VectorXd residuals(const Eigen::VectorXd& predicted) const;
-  /// Returns the weights that the robust loss gives these residuals in the information of the data.
+  /// Returns the weights that the robust loss gives these residuals in the Fisher information of the data.
   [[nodiscard]] Eigen::VectorXd weights(const Eigen::VectorXd& residuals) const;
 };
 
-/// Share of the scene's value that is the scale of an unknown without a prior.
+/// Scale of an unknown without a prior, as a share of the scene's value.
 inline constexpr double scale_without_prior = 0.1;
 
-/// Returns the problem without measured values. Throws the exceptions of fit().
+/// Returns the problem of a fit without measured values. Throws the exceptions of fit().
 [[nodiscard]] FitProblem problem_without_data(const SceneFile& file, const Bench& bench, const FitOptions& options,
                                               const Progress& progress);
-/// Returns the problem with the data of the measurements in `bench`, in place of its former data.
+/// Returns the problem of a fit with the data of the measurements in `bench`, in place of its former data.
 [[nodiscard]] FitProblem with_data(FitProblem problem, const Bench& bench);
 
 }  // namespace softland

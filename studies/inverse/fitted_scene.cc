@@ -23,7 +23,7 @@ void set_spread(SceneFile& file, const Fit& fit) {
       keys.push_back('"' + key.name() + '"');
       weights.push_back(number_text(key.weight));
     }
-    // The width is a share of the mean, which is the scene's fitted value.
+    // The width of a distribution in [spread] is a share of the mean, which is the scene's fitted value.
     const std::string width =
         variable.is_factor
             ? fmt::format("cov=\"{:.4g} %\"", 100 * all.deviation[i] / all.mean[i])
@@ -32,7 +32,7 @@ void set_spread(SceneFile& file, const Fit& fit) {
     file.set(fmt::format("spread.\"{}\"={{keys=[{}],{}distribution=\"normal\",{}}}", all.names[i], fmt::join(keys, ","), added,
                          width));
     for (std::size_t j = 0; j < i; ++j) {
-      constexpr double most = 0.999;  // largest correlation; a higher one would make two variables equal
+      constexpr double most = 0.999;  // largest correlation that is written; a higher one would make two variables equal
       const double correlation = all.correlation(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
       pairs.push_back(fmt::format("[\"{}\",\"{}\",{:.4f}]", all.names[j], all.names[i], std::clamp(correlation, -most, most)));
     }
@@ -42,7 +42,7 @@ void set_spread(SceneFile& file, const Fit& fit) {
 
 namespace {
 
-// Returns the fit with the mean of the population in place of each device's own values.
+// Returns the fit with the mean over all devices (their population) in place of each device's own values.
 Fit of_population(Fit fit) {
   if (!fit.population) return fit;
   for (std::size_t i = 0; i < fit.population->names.size(); ++i) {

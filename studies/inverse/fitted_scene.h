@@ -8,12 +8,12 @@
 
 namespace softland {
 
-/// Sets the [spread] of the scene to the deviations and correlations of the fitted population: normal distributions about the
+/// Sets the [spread] of the scene to the deviations and correlations over the fitted devices: normal distributions about the
 /// scene's values.
 void set_spread(SceneFile& file, const Fit& fit);
 
-/// Returns `text`, the scene in the file `path`, with the fitted values of a device; for several devices, with the mean of
-/// their population and its spread. Comments, sources and units stay. Throws InvalidInput for a text that is not a scene.
+/// Returns `text`, the scene in the file `path`, with the fitted values of a device; for several devices, with the mean over
+/// the devices and their spread. Comments, sources and units stay. Throws InvalidInput for a text that is not a scene.
 [[nodiscard]] std::string fitted_text(const Fit& fit, std::string_view text, const std::string& path, const std::string& device);
 
 }  // namespace softland

@@ -31,15 +31,16 @@
 namespace softland {
 namespace {
 
-constexpr double widest_change = 0.25;  // largest change of the logarithm of a factor
-constexpr double first_step = 0.005;    // first step of the search for the best factors, in the logarithm of a factor
+constexpr double widest_change = 0.25;  // largest change of the logarithm of a factor (of voltages or times) in a search
+// First step of the search for the best factors (of voltages or times), in the logarithm of a factor.
+constexpr double first_step = 0.005;
 constexpr long closings_of_a_factor = 40;
-constexpr double periods_of_step = 5;  // window of a step that closes a switch, in periods of the first mode
+constexpr double periods_of_step = 5;  // simulated time of a step that closes a switch, in periods of the first mode
 constexpr double probability = 0.95;
 
 constexpr double unknown = Metrics::unset;
 
-// Runs a task for every device, and reports the progress.
+// Runs `task` for every device, and reports the progress.
 template <class Task>
 void over_devices(std::size_t devices, int jobs, const char* what, const Progress& progress, const Task& task) {
   std::atomic<std::size_t> done = 0;
@@ -83,7 +84,8 @@ std::vector<FigureMeter> instruments(const PreparedScene& nominal, const PullInM
   return all;
 }
 
-// False for a figure that is equal for all devices, or that does not exist on the nominal device.
+// False for a figure that is equal for all devices, or that does not exist on the nominal device: it tells nothing about a
+// device.
 bool tells(const MeasurableFigure& figure) {
   if (!(figure.nominal > 0)) return false;
   return std::any_of(figure.values.begin(), figure.values.end(),
@@ -113,12 +115,13 @@ std::vector<MeasurableFigure> measure(const std::vector<FigureMeter>& all, const
 // A factor of the waveform for a device: for voltages, times or the piezo's voltages.
 using Factor = double DeviceUnits::*;
 constexpr std::array all_factors{&DeviceUnits::volts, &DeviceUnits::time, &DeviceUnits::piezo};
-// Returns the factors of the waveform; the factor of a piezo is the last, and only if the piezo is driven.
+// Returns the list of the waveform's factors; the factor of a piezo is the last, and only if the piezo is driven.
 std::span<const Factor> factors_of(bool drives_piezo) { return std::span(all_factors).first(drives_piezo ? 3 : 2); }
 
 constexpr DeviceUnits no_factors{.volts = unknown, .time = unknown};
 
-// Searches the best factors of a device, starting from the device's own units.
+// Searches the factors of the waveform (of voltages and times) that are best for device k, starting from the device's own
+// units.
 DeviceUnits best_factors(const RobustCost& cost, const std::vector<Waveform>& recipe, std::size_t k, const DeviceUnits& own,
                          std::span<const Factor> factors) {
   const auto units_at = [&](std::span<const double> x) {
@@ -147,7 +150,7 @@ DeviceUnits best_factors(const RobustCost& cost, const std::vector<Waveform>& re
   return found.x.empty() || least >= RobustCost::not_closed ? no_factors : units_at(found.x);
 }
 
-// Returns the regressors 1, ln x_1, ... of each device, one row per device; NaN for a figure that is missing.
+// Returns the regressors 1, ln x_1, ... of the measured figures x_i, one row per device; NaN for a figure that is missing.
 Eigen::MatrixXd regressors(const std::vector<MeasurableFigure>& figures, const std::vector<std::size_t>& used,
                            std::uint64_t seed) {
   const auto devices = static_cast<Eigen::Index>(figures.empty() ? 0 : figures.front().values.size());
@@ -155,7 +158,7 @@ Eigen::MatrixXd regressors(const std::vector<MeasurableFigure>& figures, const s
   for (std::size_t i = 0; i < used.size(); ++i) {
     const MeasurableFigure& f = figures[used[i]];
     for (Eigen::Index k = 0; k < devices; ++k) {
-      constexpr std::uint64_t room = 64;  // number of random numbers reserved for the figures of a device
+      constexpr std::uint64_t room = 64;  // number of random numbers reserved for the measurement errors of a device
       const double error = f.error * random_normal(seed, Stream::measurement, static_cast<std::uint64_t>(k) * room + used[i]);
       x(k, static_cast<Eigen::Index>(i) + 1) = std::log(f.values[static_cast<std::size_t>(k)] / f.nominal * (1 + error));
     }
@@ -163,7 +166,8 @@ Eigen::MatrixXd regressors(const std::vector<MeasurableFigure>& figures, const s
   return x;
 }
 
-// Predicts the factors of every device. The prediction is fitted to the half of the devices that does not contain the device.
+// Predicts the factors of the waveform for every device. The prediction is fitted to the half of the devices that does not
+// contain the device.
 std::vector<DeviceUnits> predicted_factors(const Eigen::MatrixXd& x, const std::vector<DeviceUnits>& best,
                                            std::span<const Factor> factors) {
   const Eigen::Index devices = x.rows(), middle = devices / 2, count = static_cast<Eigen::Index>(factors.size());
@@ -175,7 +179,7 @@ std::vector<DeviceUnits> predicted_factors(const Eigen::MatrixXd& x, const std::
       const bool inside = k >= begin && k < end;
       if (!inside && x.row(k).allFinite() && std::isfinite(best[static_cast<std::size_t>(k)].volts)) fitted.push_back(k);
     }
-    if (static_cast<Eigen::Index>(fitted.size()) < x.cols() + 2) continue;  // too few devices for a fit
+    if (static_cast<Eigen::Index>(fitted.size()) < x.cols() + 2) continue;  // too few devices for fitting the prediction
     Eigen::MatrixXd logarithms(fitted.size(), count);
     for (std::size_t i = 0; i < fitted.size(); ++i) {
       const DeviceUnits& units = best[static_cast<std::size_t>(fitted[i])];
@@ -194,7 +198,7 @@ std::vector<DeviceUnits> predicted_factors(const Eigen::MatrixXd& x, const std::
   return units;
 }
 
-// Returns the root mean square error of the prediction, and its square over the variance.
+// Returns the root mean square error of the predicted factors, and its square divided by the variance of the best factors.
 std::pair<double, double> misses(const std::vector<DeviceUnits>& predicted, const std::vector<DeviceUnits>& best, Factor factor) {
   std::vector<double> wanted;
   double square = 0;
@@ -209,7 +213,7 @@ std::pair<double, double> misses(const std::vector<DeviceUnits>& predicted, cons
   return {std::sqrt(mean_square), deviation > 0 ? mean_square / (deviation * deviation) : unknown};
 }
 
-// A prediction, and the factors that it gives each device.
+// A prediction, and the factors of the waveform that it gives each device.
 struct GivenUnits {
   Prediction prediction;
   std::vector<DeviceUnits> units;
@@ -226,8 +230,7 @@ GivenUnits fitted(const IdentificationStudy& study, std::uint64_t seed, std::str
   return given_units;
 }
 
-// Returns the references for the predictions: no factors, the best factors, factors from all figures, and the device's own
-// units.
+// Returns predictions for comparison: no factors, the best factors, factors from all figures, and the device's own units.
 std::vector<GivenUnits> reference_predictions(const IdentificationStudy& study, std::uint64_t seed) {
   std::vector<GivenUnits> all;
   const auto given = [&](std::string name, std::vector<DeviceUnits> units) {
@@ -260,7 +263,7 @@ std::vector<GivenUnits> reference_predictions(const IdentificationStudy& study, 
   return all;
 }
 
-// Returns the predictions from every figure, and from every pair of figures.
+// Returns the predictions of the waveform's factors from every measurable figure, and from every pair of figures.
 std::vector<GivenUnits> predictions_by_figures(const IdentificationStudy& study, std::uint64_t seed) {
   std::vector<GivenUnits> all;
   const std::vector<MeasurableFigure>& figures = study.figures;

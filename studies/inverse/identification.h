@@ -30,56 +30,60 @@ namespace softland {
 
 /// A figure that can be measured on a device.
 struct MeasurableFigure {
-  std::string name;            ///< name, such as "Vdp" or "time at 1.25 Vdp"
-  std::string unit;            ///< SI unit of the figure
-  double nominal = 0;          ///< value of the nominal device [unit]
-  double error = 0;            ///< relative standard deviation of the measurement error
-  std::vector<double> values;  ///< values by device, without error [unit]; NaN if the device does not have the figure
+  std::string name;    ///< name of the figure, such as "Vdp" or "time at 1.25 Vdp"
+  std::string unit;    ///< SI unit of the figure
+  double nominal = 0;  ///< value of the figure on the nominal device [unit]
+  double error = 0;    ///< relative standard deviation of the error with which the figure is measured
+  /// Values of the figure by device, without error [unit]; NaN if the device does not have the figure.
+  std::vector<double> values;
 };
 
 /// Results of devices whose factors are predicted from one or several figures.
 struct Prediction {
   std::string name;
-  std::vector<std::size_t> figures;  ///< indices in IdentificationStudy::figures
+  /// Indices in IdentificationStudy::figures of the figures from which the factors are predicted.
+  std::vector<std::size_t> figures;
   /// Errors of the predicted logarithms of the best factors of volts, of time and of a piezo's volts: the root mean square over
   /// devices that were not fitted, and its square over the variance of the logarithm. NaN if nothing is fitted; for a piezo
   /// also if it is not driven.
   double volts_miss = Metrics::unset, time_miss = Metrics::unset, piezo_miss = Metrics::unset;
   double volts_unexplained = Metrics::unset, time_unexplained = Metrics::unset, piezo_unexplained = Metrics::unset;
-  bool is_judged = false;         ///< true if closings with the predicted factors were simulated; only then are the members
-                                  ///< below set
-  double score = Metrics::unset;  ///< 95th percentile of the score
+  /// True if closings with the predicted factors were simulated; only then are `score` and the members after it set.
+  bool is_judged = false;
+  double score = Metrics::unset;  ///< 95th percentile over the devices of the score for `bounce`
   Yield bounce_free;
-  EstimatedQuantile impact_speed;    ///< 95th percentile of the largest impact velocity of all touches [m/s]
-  EstimatedQuantile rebound_height;  ///< 95th percentile of the highest rebound [m]
+  EstimatedQuantile impact_speed;    ///< 95th percentile over the devices of the largest impact velocity of all touches [m/s]
+  EstimatedQuantile rebound_height;  ///< 95th percentile over the devices of the highest rebound [m]
 };
 
 struct IdentificationOptions {
   std::uint64_t samples = 256;
   std::uint64_t seed = 1;
-  int jobs = 1;                               ///< number of threads; does not change the result
-  std::vector<double> steps{1.1, 1.25, 1.5};  ///< levels of the steps whose closing times are measured, over the nominal Vdp
+  int jobs = 1;  ///< number of threads; does not change the result
+  /// Levels of the steps whose closing times are measured, as multiples of the nominal Vdp.
+  std::vector<double> steps{1.1, 1.25, 1.5};
   double pull_in_error = 0, static_pull_in_error = 0, release_error = 0, frequency_error = 0, piezo_error = 0, time_error = 0;
 };
 
 struct IdentificationStudy {
   std::vector<MeasurableFigure> figures;
-  std::vector<DeviceUnits> best;        ///< best factors by device; NaN if the device closes with no factors
-  std::vector<Prediction> references;   ///< results with no figures, with Vdp and period, with all figures, and with
-                                        ///< the best factors
-  std::vector<Prediction> predictions;  ///< results of single figures and pairs, the best first; predictions without closings
-                                        ///< last
+  std::vector<DeviceUnits> best;  ///< best factors of the waveform by device; NaN if no factors close the device
+  /// Results with factors from no figures, from Vdp and period, from all figures, and with the best factors.
+  std::vector<Prediction> references;
+  /// Results with factors from single figures and pairs, the best first; predictions without simulated closings last.
+  std::vector<Prediction> predictions;
   std::size_t devices = 0;
-  bool spread_assumed = false;  ///< true if the scene does not describe the process variation
-  bool drives_piezo = false;    ///< true if piezo voltages have a separate factor
+  bool spread_assumed = false;  ///< true if the scene does not describe the process variation and the usual one is assumed
+  bool drives_piezo = false;    ///< true if the waveform drives a piezo, whose voltages then have a separate factor
   bool interrupted = false;
 };
 
 inline constexpr std::uint64_t fewest_measured = 16, most_measured = 100'000;
 
-/// Assumes a spread if the scene has none. Throws InvalidInput for a scene without contact, or without an electrode that pulls
-/// in; for a plain step, which has no soft closing; for samples outside [fewest_measured, most_measured]. Throws Interrupted if
-/// `progress` asks to stop before the best factors of all devices are known.
+/// Finds the figures that determine a device's waveform. Assumes the usual process variation if the scene has none. Throws
+/// InvalidInput for a scene without contact, or without an electrode that pulls in; for a plain step, which has no soft
+/// closing; for samples outside [fewest_measured, most_measured]. Throws Interrupted if `progress` asks to stop before the best
+/// factors of all devices are known.
 [[nodiscard]] IdentificationStudy identify(SceneFile file, const IdentificationOptions& options, const Progress& progress = {});
 
 }  // namespace softland

@@ -28,16 +28,16 @@ inline constexpr std::array losses{Named<Loss>{Loss::huber, "huber"}, Named<Loss
                                    Named<Loss>{Loss::none, "none"}};
 static_assert(is_complete<losses>());
 
-/// The scale a: for larger residuals the loss deviates from the square.
+/// The scale a of the robust losses, in standard deviations: for larger residuals a loss deviates from the square.
 inline constexpr double loss_scale = 3;
-/// Returns rho'(r^2), the weight of a residual r in the information of the data.
+/// Returns rho'(r^2), the weight of a residual r in the Fisher information of the data.
 [[nodiscard]] double loss_weight(Loss loss, double residual);
-/// Returns rho(r^2), which deviates from the square for residuals above `scale`.
+/// Returns the robust loss rho(r^2), which deviates from the square for residuals above `scale`.
 [[nodiscard]] double loss_value(Loss loss, double residual, double scale = loss_scale);
 
 struct LeastSquares {
   std::size_t unknowns = 0, residuals = 0;
-  std::size_t robust = 0;  ///< number of residuals, from the first on, to which the robust loss applies
+  std::size_t robust = 0;  ///< number of residuals, from the first on, to which the robust loss is applied
   Loss loss = Loss::huber;
   /// Writes the residuals at x and, if `jacobian` is not null, their derivatives, row by row. Returns false if the residuals do
   /// not exist.
@@ -45,29 +45,30 @@ struct LeastSquares {
 };
 
 struct LeastSquaresEnd {
-  bool converged = false;      ///< true if the search ended at a minimum
+  bool converged = false;      ///< true if the search of the minimum converged
   std::vector<double> x = {};  ///< x at the end of the search; empty if the residuals do not exist at its start
-  double cost = 0;             ///< half of the minimised sum
+  double cost = 0;             ///< half of the minimised sum of losses and squares at the end of the search
   long evaluations = 0, with_jacobian = 0;
-  std::string message = {};  ///< message of Ceres about the end of the search
+  std::string message = {};  ///< message of the Ceres solver about the end of the search
 };
 
-/// True if Ceres is available.
+/// True if the shared library with the Ceres solver is available.
 [[nodiscard]] bool has_ceres();
 
-/// Minimises from the point `start`. The result does not depend on other solves that run at the same time. Throws the
-/// exceptions of `evaluate`, Interrupted if `progress` asks to stop, and InvalidInput if Ceres is not available.
+/// Minimises the sum of the problem from the point `start`. The result does not depend on other solves that run at the same
+/// time. Throws the exceptions of `evaluate`, Interrupted if `progress` asks to stop, and InvalidInput if Ceres is not
+/// available.
 [[nodiscard]] LeastSquaresEnd solve(const LeastSquares& problem, std::vector<double> start, const Progress& progress = {});
 
-/// The ends of least-squares searches from several starts. They do not depend on the number of threads.
+/// The ends of least-squares searches from several starts. The ends do not depend on the number of threads.
 struct ManyEnds {
-  std::vector<LeastSquaresEnd> ends;  ///< ends in the order of the starts
-  std::size_t best = 0;               ///< index of the end with the least cost, among the ends whose x is not empty
+  std::vector<LeastSquaresEnd> ends;  ///< ends of the searches, in the order of the starts
+  std::size_t best = 0;               ///< index of the end with the least sum, among the ends whose x is not empty
   std::size_t minima = 0;             ///< number of distinct minima among the converged ends
   [[nodiscard]] bool found() const { return !ends.empty() && !ends[best].x.empty(); }
 };
-/// Solves from all starts. `make` makes a separate problem for each search. `same` returns true if two ends are the same
-/// minimum.
+/// Solves a least-squares problem from all starts. `make` makes a separate problem for each search. `same` returns true if two
+/// ends are the same minimum.
 [[nodiscard]] ManyEnds solve_from(const std::function<LeastSquares()>& make, const std::vector<std::vector<double>>& starts,
                                   int jobs, const std::function<bool(const LeastSquaresEnd&, const LeastSquaresEnd&)>& same,
                                   const Progress& progress = {});

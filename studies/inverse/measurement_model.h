@@ -11,21 +11,21 @@
 
 namespace softland {
 
-/// Predicts measurements. Each search has its own model, since a DeviceReader represents one device at a time.
+/// Predicts the measurements of a fit. Each search has its own model, since a DeviceReader represents one device at a time.
 class MeasurementModel {
  public:
-  /// Keeps a reference to `problem`.
+  /// Keeps a reference to `problem`, which must outlive this object.
   explicit MeasurementModel(const FitProblem& problem);
 
-  /// Computes the predicted values of all data and, if `slopes` is not null, their derivatives by z, one row per datum. Returns
-  /// false if a device is impossible or cannot be read.
+  /// Computes the predicted values of all measurements and, if `slopes` is not null, their derivatives by z, one row per datum.
+  /// Returns false if a device is impossible or cannot be read.
   [[nodiscard]] bool predict(std::span<const double> z, Eigen::VectorXd& values, Eigen::MatrixXd* slopes);
 
   struct Prediction {
     double value = 0;
-    Eigen::VectorXd slopes;  ///< derivatives of the value by z
+    Eigen::VectorXd slopes;  ///< derivatives of the predicted value by the scaled unknowns z
   };
-  /// Predicts the reading of an instrument that is not among the data; none if it cannot read the device.
+  /// Predicts the reading of an instrument that is not among the data; none if the instrument cannot read the device.
   [[nodiscard]] std::optional<Prediction> predict(std::size_t device, std::span<const double> z, const Instrument& instrument);
 
  private:
@@ -36,7 +36,7 @@ class MeasurementModel {
   std::deque<DeviceReader> readers_;
 };
 
-/// Returns the problem as least squares: residuals of the data, then of the prior. Keeps a reference to `problem`.
+/// Returns the problem of a fit as least squares: residuals of the data, then of the prior. Keeps a reference to `problem`.
 [[nodiscard]] LeastSquares least_squares_of(const FitProblem& problem);
 
 }  // namespace softland

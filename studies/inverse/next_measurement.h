@@ -9,13 +9,13 @@
 namespace softland {
 
 struct PossibleMeasurement {
-  std::string name;  ///< name, such as "closing time at 22 V"
+  std::string name;  ///< name of the measurement, such as "closing time at 22 V"
   Instrument instrument;
-  double error = 0;           ///< standard deviation of the measurement error [SI unit], or
-  double relative_error = 0;  ///< standard deviation of the measurement error over the value
+  double error = 0;           ///< standard deviation of the measurement error [SI unit], for an absolute error
+  double relative_error = 0;  ///< standard deviation of the measurement error as a share of the value, for a relative error
 };
 
-/// Returns the possible measurements on devices of this scene.
+/// Returns the measurements that a laboratory could make on devices of this scene.
 [[nodiscard]] std::vector<PossibleMeasurement> possible_measurements(const PreparedScene& scene);
 
 }  // namespace softland

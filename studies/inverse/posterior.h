@@ -29,26 +29,26 @@ struct NormalBelief {
 
   [[nodiscard]] static NormalBelief standard(Eigen::Index size);
   [[nodiscard]] double deviation(Eigen::Index i) const { return std::sqrt(covariance(i, i)); }
-  /// Returns the distribution of origin + factor z.
+  /// Returns the normal distribution of origin + factor z if z has this distribution.
   [[nodiscard]] NormalBelief mapped(const Eigen::VectorXd& origin, const Eigen::MatrixXd& factor) const;
 };
 
-/// Returns the correlations that belong to this covariance.
+/// Returns the matrix of correlations that belongs to a covariance matrix.
 [[nodiscard]] Eigen::MatrixXd correlation_of(const Eigen::MatrixXd& covariance);
 /// Returns L^-1, where L L^T is the covariance: L^-1 (z - mean) is standard normal.
 [[nodiscard]] Eigen::MatrixXd whitening_of(const Eigen::MatrixXd& covariance);
 
-/// Weights of points or of distributions; the sum of the weights is 1.
+/// Weights of points or of distributions that represent the belief; their sum is 1.
 struct Weights {
   std::vector<double> values;
-  double effective = 0;  ///< effective number of points: (sum of weights)^2 over the sum of squared weights
+  double effective = 0;  ///< effective number of points: (sum of weights)^2 divided by the sum of squared weights
 };
 /// Returns weights in proportion to exp(power * logarithm), one for each of `logarithms`.
 [[nodiscard]] Weights weights_of(std::span<const double> logarithms, double power = 1);
 
-/// Returns mean and covariance of weighted points.
+/// Returns mean and covariance of weighted points z.
 [[nodiscard]] NormalBelief moments_of(std::span<const double> weights, std::span<const Eigen::VectorXd> points);
-/// Returns mean and covariance of a mixture of distributions.
+/// Returns mean and covariance of a weighted mixture of normal distributions.
 [[nodiscard]] NormalBelief moments_of(std::span<const double> weights, std::span<const NormalBelief> mixed);
 
 }  // namespace softland

@@ -64,7 +64,8 @@ void stiffen(SceneFile& file, const Scene& scene, double factor) {
           [&] { return fmt::format("stiffness={}: {}: its contact has no stiffness", number_text(factor), scene.file.name()); });
 }
 
-// Returns the scene with this model, in volts, so that waveforms stay the same if the model changes the pull-in voltage.
+// Returns the scene with the device's own model, in volts, so that waveforms stay the same if the model changes the pull-in
+// voltage.
 PreparedScene with_model(const PreparedScene& nominal, const PracticeModel& model) {
   SceneFile file = nominal.resolved();
   if (model.more_modes != 0) add_modes(file, nominal.scene, model.more_modes);
@@ -76,7 +77,7 @@ PreparedScene with_model(const PreparedScene& nominal, const PracticeModel& mode
   return own;
 }
 
-// Returns the first random device of this seed that can be described.
+// Returns the first random device of the seed that can be described.
 SampledDevice drawn(const PreparedScene& own, std::uint64_t seed) {
   constexpr std::uint64_t most = 100;
   const Ensemble ensemble(own, 1);
@@ -136,11 +137,11 @@ std::vector<ContactEdge> PracticeDevice::seen_edges(const std::vector<ContactClo
                  opens = touch.end + options_.laboratory.edge_error * random_normal(of_shot, Stream::practice_edges, drawn++);
     const bool stays_open = seen.empty() || closes - seen.back().time > std::max(0.0, options_.laboratory.unseen);
     if (!stays_open) {
-      seen.pop_back();  // removes the opening, which is too short to be recorded
+      seen.pop_back();  // removes the opening of the contact, which is too short to be recorded
     } else if (!(opens <= closes)) {
       seen.push_back({.time = closes, .closed = true});
     } else {
-      continue;  // omits a contact that is too short to be recorded
+      continue;  // omits a closed time of the contact that is too short to be recorded
     }
     if (std::isnan(opens)) break;
     seen.push_back({.time = std::max(opens, seen.back().time), .closed = false});

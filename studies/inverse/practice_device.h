@@ -30,30 +30,32 @@ namespace softland {
 
 /// Differences of the device's model from the model of its scene.
 struct PracticeModel {
-  int more_modes = 0;                 ///< number of modes in addition to those of the scene
-  std::string gas = {};               ///< law of the gas film in place of the scene's; empty for the scene's own law
-  double stiffness = 1;               ///< factor of the contact's stiffness or modulus
-  std::vector<std::string> set = {};  ///< further keys of the scene, with their values: "gap.contact=2.05 um"
+  int more_modes = 0;    ///< number of modes in addition to those of the scene
+  std::string gas = {};  ///< law of the gas film in the device, in place of the scene's law; empty for the scene's own law
+  double stiffness = 1;  ///< factor by which the contact's stiffness or modulus differs from the scene
+  /// Further keys of the scene that differ in the device, with their values: "gap.contact=2.05 um".
+  std::vector<std::string> set = {};
 };
 
 struct PracticeOptions {
-  std::uint64_t seed = 1;  ///< seed of the device and of its measurement errors
+  std::uint64_t seed = 1;  ///< seed of the simulated device and of its measurement errors
   LaboratoryErrors laboratory = {};
-  double drift = 0;          ///< relative drift of all voltages from one shot to the next
-  double trigger_delay = 0;  ///< delay of records behind the drives [s]; negative if records begin early
+  double drift = 0;          ///< relative drift of all drive voltages from one shot (closing) to the next
+  double trigger_delay = 0;  ///< delay of contact records behind the drive waveforms [s]; negative if records begin early
   PracticeModel model = {};
 };
 
-/// The record of a closing, and the true motion, which no laboratory records.
+/// The record of a closing of the simulated device, and the true motion, which no laboratory records.
 struct PracticeClosing {
   ContactRecord record;
-  Metrics motion;                                   ///< true motion of the contact point
-  double largest_impact_velocity = Metrics::unset;  ///< largest impact velocity of all touches [m/s]
+  Metrics motion;                                   ///< figures of the true motion of the contact point
+  double largest_impact_velocity = Metrics::unset;  ///< largest impact velocity of all touches of the contact [m/s]
 };
 
-/// A time span in which the contact is closed.
+/// A time span in which the contact of the simulated device is closed.
 struct ContactClosure {
-  double begin = 0, end = 0;  ///< [s]; the end is NaN if the contact is closed at the end of the record
+  /// Times at which the contact closes and opens [s]; the end is NaN if the contact is closed at the end of the record.
+  double begin = 0, end = 0;
 };
 
 class PracticeDevice {
@@ -61,14 +63,14 @@ class PracticeDevice {
   /// Throws InvalidInput for a scene that cannot be simulated or has no contact, and for a model that the scene cannot have.
   explicit PracticeDevice(SceneFile file, const PracticeOptions& options = {});
 
-  /// Returns the scene, with the limits of its drivers in volts. A user knows only this scene about the device.
+  /// Returns the scene, with the limits of its voltage sources in volts. A user knows only this scene about the device.
   [[nodiscard]] const PreparedScene& nominal() const { return nominal_; }
-  /// Returns the device with the values of its varied quantities. A user does not know these values.
+  /// Returns the simulated device with the values of its varied quantities. A user does not know these values.
   [[nodiscard]] const SampledDevice& device() const { return device_; }
 
   /// Simulates the closing in shot number `shot`, counted from 1, for `duration` [s]. `waveforms` are the commanded waveforms,
   /// in the order of Switch::drives() [V]. The shots are independent. Throws InvalidInput if a waveform exceeds the limits of
-  /// its driver, if `shot` is 0, and if `duration` is not positive.
+  /// its voltage source, if `shot` is 0, and if `duration` is not positive.
   [[nodiscard]] PracticeClosing close(std::uint64_t shot, const std::vector<Waveform>& waveforms, double duration) const;
 
  private:
@@ -76,7 +78,7 @@ class PracticeDevice {
   [[nodiscard]] std::vector<ContactEdge> seen_edges(const std::vector<ContactClosure>& closures, std::uint64_t shot) const;
 
   PracticeOptions options_;
-  PreparedScene nominal_, own_;  // the scene, and the scene with the device's own model
+  PreparedScene nominal_, own_;  // the scene as given, and the scene with the device's own model
   SampledDevice device_;
 };
 

@@ -180,7 +180,8 @@ LandingCost OutcomeForecast::expected(const std::vector<Waveform>& waveforms, st
 
 namespace {
 
-// Returns the root mean square distance from the middle, on one side of it: late contact times scatter more than early ones.
+// Returns the root mean square distance of the sample's values from `middle`, on one side of the middle: late contact times
+// scatter more than early ones.
 double scatter_of(const std::vector<double>& sample, double middle, double side) {
   double squares = 0, count = 0;
   for (const double one : sample) {
@@ -234,13 +235,13 @@ double OutcomeForecast::touch_slope(const std::vector<Waveform>& waveforms) cons
 
 namespace {
 
-// A search for the least expected cost over the first devices of a forecast.
+// A search for the waveform of least expected cost over the first devices of a forecast.
 struct ProposalSearch {
   const char* optimizer;
   std::size_t devices;
   long evaluations;
-  double step;  // first step, over the width of the box
-  bool fine;    // true to vary only the variables that affect the closing strongly
+  double step;  // first step of the search, as a share of the width of the box of variables
+  bool fine;    // true to vary only the waveform variables that affect the closing strongly
 };
 
 std::vector<double> found(const TuningSpace& space, const OutcomeForecast& forecast, const std::vector<double>& start,
@@ -272,8 +273,9 @@ namespace {
 
 std::vector<CandidateWaveform> searched_recipes(const TuningModel& scene, const TuningSpace& space, std::size_t count,
                                                 const Progress& progress) {
-  constexpr double narrow = 0.1, narrow_nuisances = 0.5;  // scatter of the devices, in standard deviations of the prior
-  constexpr double headroom = 0.92;                       // limit of levels, over the highest level that the driver permits
+  // Scatter of the devices for which recipes are searched, in standard deviations of the prior.
+  constexpr double narrow = 0.1, narrow_nuisances = 0.5;
+  constexpr double headroom = 0.92;  // limit of levels, as a share of the highest level that the voltage source permits
   constexpr double hopeless = 0.9;
   constexpr std::array deviations{0.0, -1.0, 1.0, -2.0, 2.0};
   const std::size_t devices = scene.is_in_lanes() ? 48 : 12;

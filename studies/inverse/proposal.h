@@ -20,39 +20,42 @@
 
 namespace softland {
 
-/// The cost of a closing, as the sum of a part for impact and rebounds, and a part for the time of first contact.
+/// The cost of a simulated closing, as the sum of a part for impact and rebounds, and a part for the time of first contact.
 struct LandingCost {
   double landing = 0, time = 0;
   [[nodiscard]] double total() const { return landing + time; }
 };
 [[nodiscard]] LandingCost landing_cost(const PredictedClosing& closing, const TuningScales& scales);
-/// Landing cost of a switch that does not close.
+/// Cost of a closing in which the switch does not close.
 inline constexpr double not_landed = 3;
 
-/// The waveforms that a search may propose, as functions of the variables of the search.
+/// The waveforms that a tuning may propose, as functions of the variables of its search.
 class TuningSpace {
  public:
-  /// Makes the waveform shapes of the scene's approach. Keeps a reference to the scene. Throws the exceptions of SearchSpace.
+  /// Makes the waveform shapes for the scene's approach, fast or quasi-static. Keeps a reference to the scene. Throws the
+  /// exceptions of SearchSpace.
   explicit TuningSpace(const TuningModel& scene);
   /// Returns the same space of waveforms with a limit `highest` [V] on the closing electrode's levels, within the limits of its
-  /// driver. The hold level is multiplied by `hold`, and limited as well.
+  /// voltage source. The hold level is multiplied by `hold`, and limited as well.
   [[nodiscard]] TuningSpace within(double highest, double hold) const;
 
   [[nodiscard]] const std::vector<Variable>& variables() const { return variables_; }
-  /// True for a variable that hardly affects the closing: level and duration of the last pull.
+  /// True for a waveform variable that hardly affects the closing: level and duration of the last pull.
   [[nodiscard]] bool is_coarse(std::size_t k) const { return coarse_[k]; }
   [[nodiscard]] std::vector<std::vector<double>> starts() const;
-  /// Returns waveforms in the order of Switch::drives() [V]. Variables beyond their bounds are replaced by the bounds.
+  /// Returns the waveforms for the variables x, in the order of Switch::drives() [V]. Variables beyond their bounds are
+  /// replaced by the bounds.
   [[nodiscard]] std::vector<Waveform> waveforms(std::vector<double> x) const;
-  /// Converts variables from the units `from` of a device to the units `to` of another device: scales levels of electrodes and
-  /// all times.
+  /// Converts waveform variables from the units `from` of a device to the units `to` of another device: scales levels of
+  /// electrodes and all times.
   [[nodiscard]] std::vector<double> in_units(std::vector<double> x, const TuningModel::Units& from,
                                              const TuningModel::Units& to) const;
-  /// True if the waveforms are within the limits of the drivers.
+  /// True if the waveforms are within the limits of their voltage sources.
   [[nodiscard]] bool is_allowed(const std::vector<Waveform>& waveforms) const;
-  /// Returns the highest level of the closing electrode that its driver permits [V]; infinite for a piezo.
+  /// Returns the highest level of the closing electrode that its voltage source permits [V]; infinite for a piezo.
   [[nodiscard]] double highest_level() const;
-  /// Returns the largest factor for all voltages that exceeds neither the limits of the drivers nor the highest level.
+  /// Returns the largest factor for all voltages of the waveforms that exceeds neither the limits of the voltage sources nor
+  /// the highest level.
   [[nodiscard]] double largest_factor(const std::vector<Waveform>& waveforms) const;
 
  private:
@@ -60,31 +63,33 @@ class TuningSpace {
 
   const TuningModel* scene_;
   std::vector<DriveSearch> drives_;
-  std::optional<QuasiStatic> joint_;  // waveforms that vary all drives together; only for the quasi-static approach
+  std::optional<QuasiStatic> joint_;  // quasi-static waveforms, which vary all drives together; none for the fast approach
   DriveWaveforms others_;
   std::vector<std::vector<double>> starts_;
   std::vector<Variable> variables_;
-  std::vector<bool> coarse_,
-      of_electrode_;  // variables that hardly affect the closing, and variables that scale with an electrode's voltage unit
+  // True for waveform variables that hardly affect the closing, and for those that scale with an electrode's voltage unit.
+  std::vector<bool> coarse_, of_electrode_;
   double highest_ = std::numeric_limits<double>::infinity();
 };
 
-/// Devices of a belief, each with a random gain of its sources, that forecast the outcome of the next shot.
+/// Devices that represent the belief, each with a random gain of its voltage sources, which forecast the outcome of the next
+/// shot.
 class OutcomeForecast {
  public:
-  /// Keeps a reference to `scene`.
+  /// Keeps a reference to `scene`, which must outlive this object.
   OutcomeForecast(const TuningModel& scene, const std::vector<Eigen::VectorXd>& points, Draws& draws, const Progress& progress);
   [[nodiscard]] std::size_t size() const { return devices_.size(); }
-  /// Returns the mean cost over the first `count` devices, or the mean over the first few of them if that is above `give_up`.
+  /// Returns the mean cost of closings over the first `count` devices, or the mean over the first few of these devices if that
+  /// mean is above `give_up`.
   [[nodiscard]] LandingCost expected(const std::vector<Waveform>& waveforms, std::size_t count,
                                      double give_up = std::numeric_limits<double>::infinity()) const;
   [[nodiscard]] PredictedRecord predicted(const std::vector<Waveform>& waveforms) const;
-  /// Returns the median over the devices of dt_i / d ln(voltage), t_i the first contact time [s]; NaN if no device has the
-  /// derivative.
+  /// Returns the median over the devices of dt_i / d ln(voltage), where t_i is the first contact time [s]; NaN if no device has
+  /// the derivative.
   [[nodiscard]] double touch_slope(const std::vector<Waveform>& waveforms) const;
 
  private:
-  // Simulates the closings of devices `begin` to `end` - 1.
+  // Simulates the closings of the forecast's devices `begin` to `end` - 1.
   [[nodiscard]] std::vector<PredictedClosing> close(const std::vector<Waveform>& waveforms, std::size_t begin, std::size_t end,
                                                     double gain = 1) const;
 
@@ -97,16 +102,17 @@ class OutcomeForecast {
 [[nodiscard]] inline TuningModel::Units units_of(const CandidateWaveform& recipe) {
   return {.volts = recipe.volts, .time = recipe.time};
 }
-/// Returns the recipes in the options. If the options have none, searches recipes for each approach of the scene, and chooses
-/// the approach whose recipe has the lower cost. The recipe of the nominal device comes first. Throws InvalidInput for recipes
-/// of other waveform shapes, and Interrupted if `progress` asks to stop.
+/// Returns the recipes (candidate waveforms) in the options. If the options have none, searches recipes for each approach of
+/// the scene, and chooses the approach whose recipe has the lower cost. The recipe of the nominal device comes first. Throws
+/// InvalidInput for recipes of other waveform shapes, and Interrupted if `progress` asks to stop.
 [[nodiscard]] std::vector<CandidateWaveform> recipes_of(TuningModel& scene, const Progress& progress);
 
 struct Proposal {
   std::vector<double> x;
   LandingCost cost;
 };
-/// Returns the best point of the searches that start from these candidates. Throws Interrupted if `progress` asks to stop.
+/// Returns the waveform of least expected cost that the searches from these candidates find. Throws Interrupted if `progress`
+/// asks to stop.
 [[nodiscard]] Proposal propose(const TuningModel& scene, const TuningSpace& space, const OutcomeForecast& forecast,
                                const std::vector<std::vector<double>>& candidates, std::uint64_t seed, const Progress& progress);
 

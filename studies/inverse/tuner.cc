@@ -37,9 +37,11 @@ void check(const TunerOptions& options) {
 namespace {
 
 constexpr std::size_t proposal_devices = 32;
-constexpr double enough_devices = 8;  // effective number of devices that a belief needs to predict
-constexpr double certain = 3.5;       // number of standard errors from which on the gaps have another ratio than in the scene
-constexpr std::size_t first_ones = 4, last_ones = 8;  // numbers of first and last records from which the belief is computed
+constexpr double enough_devices = 8;  // effective number of devices from which on a belief can predict a closing
+// Number of standard errors from which on the ratio of contact to electrode gap differs from the scene's.
+constexpr double certain = 3.5;
+// Numbers of first and last contact records from which the belief (estimate of the device) is computed.
+constexpr std::size_t first_ones = 4, last_ones = 8;
 
 std::optional<BelievedQuantity> believed_gap_ratio(const TuningModel& scene, const Belief& belief) {
   std::vector<Eigen::VectorXd> ratios;
@@ -77,16 +79,16 @@ struct Tuner::Setting {
 struct Tuner::State {
   struct Fired {
     LearnedShot shot;
-    std::vector<double> x;  // parameters of the waveform: the variables of TuningSpace
+    std::vector<double> x;  // parameters of the shot's waveform: the variables of TuningSpace
     TunerShot as_proposed;
-    int waveform = 0;  // number of the first shot that had this waveform
+    int waveform = 0;  // number of the first shot that had the waveform x
   };
-  // A controller that corrects the voltages of a repeated shot by its first contact time.
+  // A controller that corrects the voltages of a repeated shot (closing) by its first contact time.
   struct TouchController {
-    std::vector<Waveform> waveforms;  // waveforms for the voltage factor s = 1
-    int waveform = 0;                 // number of the first shot that had this waveform
+    std::vector<Waveform> waveforms;  // waveforms of the repeated shot for the voltage factor s = 1
+    int waveform = 0;                 // number of the first shot that had the repeated waveform
     double slope = Metrics::unset, most = 1, s = 1;
-    std::vector<double> touches;  // first contact times, whose mean is the reference [s]
+    std::vector<double> touches;  // first contact times of the repeated shot, whose mean is the reference [s]
     [[nodiscard]] std::vector<Waveform> controlled_waveforms() const {
       std::vector<Waveform> own = waveforms;
       for (Waveform& waveform : own) waveform = scaled(std::move(waveform), s, 1);
@@ -103,19 +105,19 @@ struct Tuner::State {
   struct Knowledge {
     std::vector<Fired> fired;
     int closings = 0, in_a_row = 0;
-    std::size_t forgotten = 0;  // number of first records that are no longer used
-    double hold = 1;            // factor on the nominal hold level
+    std::size_t forgotten = 0;  // number of contact records, from the first on, that the tuning no longer uses
+    double hold = 1;            // factor on the nominal hold level of the waveform
     Belief belief;
     std::optional<TouchController> controller;
-    std::vector<double> x;  // variables of the next shot
+    std::vector<double> x;  // waveform variables of the next shot
     TunerShot next, kept;
-    int next_waveform = 0;          // number of the first shot with the next waveform; 0 for a new waveform
-    std::vector<double> surprises;  // errors of predicted first contact times, in standard deviations
+    int next_waveform = 0;          // number of the first shot with the waveform of the next shot; 0 for a new waveform
+    std::vector<double> surprises;  // errors of predicted first contact times by closing, in standard deviations
     int unexpected_bounces = 0;     // number of closings that bounced although hardly any device of the belief did
-    int unexplained_bounces = 0;    // long bounces in the used records that the best device of the belief does not have
-    std::optional<BelievedQuantity> gap_ratio =
-        {};                   // last gap ratio from enough devices; none if the scene's ratio explains the records
-    TouchMisfit misfit = {};  // misfit of the records that were used last
+    int unexplained_bounces = 0;    // number of long bounces in the used records that the best device of the belief does not have
+    // Last ratio of contact to electrode gap estimated from enough devices; none if the scene's ratio explains the records.
+    std::optional<BelievedQuantity> gap_ratio = {};
+    TouchMisfit misfit = {};  // misfit of the contact records that were used last
   };
 
   State(std::shared_ptr<const Setting> of_scene, const Progress& progress)
@@ -165,7 +167,7 @@ struct Tuner::State {
 
 namespace {
 
-// Returns the difference between recorded and predicted time of first contact, in standard deviations.
+// Returns the difference between recorded and predicted time of first contact, in standard deviations; 0 without a prediction.
 double surprise(const PredictedRecord& predicted, const ContactRecord& record, double effective_devices) {
   constexpr double both_sides = 1.96;
   const std::optional<double> seen = first_touch(record);
@@ -177,13 +179,13 @@ double surprise(const PredictedRecord& predicted, const ContactRecord& record, d
 // True if the contact opened for so long that an error of the model cannot be the reason. A mode that the model lacks causes
 // short openings, of a nanometre.
 bool has_long_bounce(const TuningModel& scene, const ContactRecord& record) {
-  constexpr double share = 0.04;  // least duration of a long opening, over the closing time of the plain step
+  constexpr double share = 0.04;  // least duration of a long opening, as a share of the closing time of the plain step
   if (record.edges.empty()) return bounce_count(record).value_or(0) > 0;
   const double least = scene.options().laboratory.unseen + share * scene.scales().closing_time;
   return std::ranges::any_of(openings(record), [&](const ContactOpening& one) { return one.end - one.begin >= least; });
 }
 
-// Counts the records with a long bounce that the best device of the belief does not have.
+// Returns the number of contact records with a long bounce that the best device of the belief does not have.
 int unexplained_bounces(const TuningModel& scene, std::span<const LearnedShot> shots, const Belief& belief,
                         const Progress& progress) {
   const std::vector<Eigen::VectorXd> best{belief.mode};
@@ -201,8 +203,8 @@ int unexplained_bounces(const TuningModel& scene, std::span<const LearnedShot> s
   return count;
 }
 
-// True if the gap ratio differs from the scene's by several standard errors, and by at least one standard deviation of the
-// prior.
+// True if the ratio of contact to electrode gap differs from the scene's by several standard errors, and by at least one
+// standard deviation of the prior.
 bool is_off(const std::optional<BelievedQuantity>& ratio) {
   return ratio && std::abs(ratio->mean - 1) >= std::max(certain * ratio->deviation, ratio->prior_deviation);
 }
@@ -231,8 +233,8 @@ Tuner::State::Knowledge Tuner::State::updated(Knowledge known, const ContactReco
     known.next.number += 1;
     return known;
   }
-  if (known.controller)
-    known.forgotten = known.fired.size() - std::min(known.fired.size(), last_ones);  // drop records from before a drift
+  // Drop contact records from before a drift of the device.
+  if (known.controller) known.forgotten = known.fired.size() - std::min(known.fired.size(), last_ones);
   known.controller.reset();
   propose_next(known, progress);
   return known;
@@ -240,7 +242,7 @@ Tuner::State::Knowledge Tuner::State::updated(Knowledge known, const ContactReco
 
 void Tuner::State::propose_next(Knowledge& known, const Progress& progress) const {
   constexpr double calm = 0.05;
-  constexpr int hold_is_fixed = 2;  // number of closings after which the hold level is fixed
+  constexpr int hold_is_fixed = 2;  // number of closings after which the hold level of the waveform is fixed
   Draws draws(scene.options().seed, first_draw(known.closings));
   std::vector<LearnedShot> shots;
   for (std::size_t k = known.forgotten; k < known.fired.size(); ++k) {
@@ -273,7 +275,8 @@ void Tuner::State::propose_next(Knowledge& known, const Progress& progress) cons
   if (known.in_a_row >= 2 && proposal.cost.landing < calm) repeat(known, forecast);
 }
 
-// Updates the best shot among those that did not bounce when last applied, unless the next waveform is clearly better.
+// Updates the best shot so far: one whose waveform did not bounce when last applied, unless the next waveform is clearly
+// better.
 void Tuner::State::keep_best(Knowledge& known, const OutcomeForecast& forecast, double expected) const {
   constexpr double clearly = 0.15;
   known.kept = known.next;
@@ -307,7 +310,7 @@ void Tuner::State::repeat(Knowledge& known, const OutcomeForecast& forecast) con
 
 void Tuner::State::fire_kept_again() {
   const auto fired = std::ranges::find(now.fired, now.kept.number, [](const Fired& one) { return one.as_proposed.number; });
-  if (fired == now.fired.end() || now.controller) return;  // the repeated waveform is already that of `kept`
+  if (fired == now.fired.end() || now.controller) return;  // the repeated waveform is already that of the shot `kept`
   now.x = fired->x;
   now.next_waveform = fired->waveform;
   const int number = now.next.number;
@@ -358,7 +361,7 @@ BeliefSummary Tuner::belief() const {
   const TuningModel& scene = state_->scene;
   const Belief& belief = state_->now.belief;
   const std::vector<SpreadVariable>& variables = scene.nominal().scene.spread.variables;
-  std::vector<Eigen::VectorXd> values;  // values of each device: the varied quantities, then the trigger delay
+  std::vector<Eigen::VectorXd> values;  // values of each device of the belief: the varied quantities, then the trigger delay
   for (const Eigen::VectorXd& z : belief.points) {
     std::vector<double> own = scene.values(z);
     own.push_back(scene.delay(z));
@@ -397,8 +400,8 @@ BeliefSummary Tuner::belief() const {
 
 namespace {
 
-// Returns "The device does not match the model: its contact gap is 4.8 % wider ...". All devices of [spread] have one gap
-// ratio.
+// Describes a gap ratio that differs from the scene's: "The device does not match the model: its contact gap is 4.8 % wider
+// ...". All devices of [spread] have one gap ratio.
 std::string gap_ratio_prose(const BelievedQuantity& ratio) {
   constexpr double percent = 100;
   const double change = percent * (ratio.mean - 1);

@@ -20,9 +20,9 @@
 // 0.02 max(0, t_p / T_p - 1), where T_p is that of the plain step. If a drive can move the switch to its contact through stable
 // equilibria, the approach of the recipe with the lower cost is tuned.
 //
-// No shot exceeds the limits of the drivers, or has a level at which more than one in a thousand devices of the belief would
-// collapse onto the electrode. The same shot is repeated after two closings without a bounce, if no bounce is expected. Its
-// voltages are then multiplied by a factor s that corrects t_i, s <- s [1 - 0.2 (t_i - t_ref) / (dt_i / d ln s)], until the
+// No shot exceeds the limits of the voltage sources, or has a level at which more than one in a thousand devices of the belief
+// would collapse onto the electrode. The same shot is repeated after two closings without a bounce, if no bounce is expected.
+// Its voltages are then multiplied by a factor s that corrects t_i, s <- s [1 - 0.2 (t_i - t_ref) / (dt_i / d ln s)], until the
 // device bounces. Then all records but the last eight are dropped.
 //
 // All numbers depend only on scene, options and the pairs of shot and record. A tuner that receives the records of a log again,
@@ -60,62 +60,65 @@ inline constexpr auto approaches =
     std::to_array<Named<Approach>>({{Approach::fast, "catch"}, {Approach::quasi_static, "quasi-static"}});
 static_assert(is_complete<approaches>());
 
-/// A waveform from which searches start, optimised once for a scene.
+/// A waveform from which searches of a tuning start, optimised once for a scene.
 struct CandidateWaveform {
   Approach approach = Approach::fast;
-  std::vector<double> x;       ///< parameters of the waveform: the variables of TuningSpace
+  std::vector<double> x;       ///< parameters of the candidate's waveform: the variables of TuningSpace
   double volts = 1, time = 1;  ///< factors of voltage and time of the devices for which the waveform was optimised, relative to
                                ///< the nominal device
-  double cost = 0;             ///< expected cost over the devices for which the waveform was optimised
+  double cost = 0;             ///< expected cost of closings over the devices for which the waveform was optimised
 };
 
 struct TunerOptions {
-  Actuator actuator = Actuator::electrostatic;  ///< actuator whose drives have tuned waveforms
+  Actuator actuator = Actuator::electrostatic;  ///< actuator whose drives get tuned waveforms
   std::uint64_t seed = 1;
   int jobs = 1;  ///< number of threads; does not change the results
   LaboratoryErrors laboratory = {};
-  int most_recipes = 1;  ///< number of voltage units for which recipes are searched, 1 to 5
-  double effort = 1;     ///< factor on the usual number of evaluations of every search
-  /// Limit of the first contact time: before or by a time; none for no limit.
+  int most_recipes = 1;  ///< number of voltage units of devices for which candidate waveforms (recipes) are searched, 1 to 5
+  double effort = 1;     ///< factor on the usual number of evaluations of every search in the tuning
+  /// Limit of the first contact time of the tuned waveform: before or by a time; none for no limit.
   std::optional<Condition> touch = {};
-  /// Beliefs about devices of the same wafer that were tuned before. They determine the prior of the device to tune.
+  /// Beliefs about (estimates of) devices of the same wafer that were tuned before. They determine the prior of the device to
+  /// tune.
   std::vector<TunedBelief> wafer = {};
-  /// Result of Tuner::recipes() for the same scene and options; if empty, recipes are searched.
+  /// Candidate waveforms (recipes) that Tuner::recipes() returned for the same scene and options; if empty, they are searched.
   std::vector<CandidateWaveform> recipes = {};
   Vectors vectors = vectors_in_use();
 };
 
-/// Throws InvalidInput for options out of range.
+/// Throws InvalidInput for options of a tuning that are out of range.
 void check(const TunerOptions& options);
 
-/// The prediction that a belief makes for the record of a shot.
+/// The prediction that a belief makes for the contact record of a shot.
 struct PredictedRecord {
-  double touches = 0;         ///< share of the devices that reach contact
-  double touch_median = 0;    ///< median time of first contact [s]; NaN if no device reaches contact
-  double touch_low = 0;       ///< 2.5th percentile of first contact, from a normal distribution with measurement errors [s]
-  double touch_high = 0;      ///< 97.5th percentile of first contact, computed as touch_low [s]
-  double bounces = 0;         ///< share of the devices with an opening that is long enough to be recorded
-  double rebound_median = 0;  ///< median of the highest rebound [m]
-  double rebound_high = 0;    ///< 95th percentile of the highest rebound [m]
+  double touches = 0;       ///< share of the devices of the belief that reach their contact
+  double touch_median = 0;  ///< median over the devices of the time of first contact [s]; NaN if no device reaches contact
+  /// 2.5th percentile of the time of first contact, from a normal distribution with measurement errors [s].
+  double touch_low = 0;
+  /// 97.5th percentile of the time of first contact, from a normal distribution with measurement errors [s].
+  double touch_high = 0;
+  double bounces = 0;         ///< share of the devices of the belief with an opening that is long enough to be recorded
+  double rebound_median = 0;  ///< median over the devices of the highest rebound [m]
+  double rebound_high = 0;    ///< 95th percentile over the devices of the highest rebound [m]
 };
 
 struct TunerShot {
   int number = 0;                        ///< number of the shot, counted from 1
-  std::vector<Waveform> waveforms = {};  ///< commanded waveforms, in the order of Switch::drives() [V]
-  double hold_time = 0;                  ///< time of holding the levels and recording, after the last breakpoint [s]
-  double expected_cost = 0;              ///< mean cost over the devices of the belief
+  std::vector<Waveform> waveforms = {};  ///< commanded waveforms of the shot, in the order of Switch::drives() [V]
+  double hold_time = 0;  ///< time for which the last levels are held and the contact is recorded, after the last breakpoint [s]
+  double expected_cost = 0;  ///< mean cost of the shot's closing over the devices of the belief
   PredictedRecord predicted = {};
 };
 
-/// Name of the delay of records behind the drives, as a quantity in a belief.
+/// Name of the delay of contact records behind the drives, as a quantity in a belief.
 inline constexpr const char* trigger_delay_name = "trigger delay";
 
-/// A quantity of the device, with its mean and deviation before and after the records.
+/// A quantity of the tuned device, with its mean and deviation before and after the contact records.
 struct BelievedQuantity {
-  std::string name;                            ///< name of the quantity's entry in [spread], or trigger_delay_name
-  std::string unit;                            ///< SI unit; empty for a factor
-  double prior_mean = 0, prior_deviation = 0;  ///< mean and deviation before the records: factors of the scene's value, or
-                                               ///< values in `unit`
+  std::string name;  ///< name of the quantity's entry in [spread], or trigger_delay_name
+  std::string unit;  ///< SI unit of the quantity; empty for a factor
+  /// Mean and deviation of the quantity before the records: factors of the scene's value, or values in `unit`.
+  double prior_mean = 0, prior_deviation = 0;
   double mean = 0, deviation = 0;
 };
 
@@ -124,17 +127,17 @@ struct TouchMisfit {
   double least = 0;         ///< least |z|^2 + sum of r^2 over the records (belief.h): the value of the device z that fits the
                             ///< records best
   double bound = 0;         ///< value that |z|^2 + sum of r^2 exceeds for one in a thousand devices of [spread]
-  std::size_t records = 0;  ///< number of used records
+  std::size_t records = 0;  ///< number of contact records in the misfit
   [[nodiscard]] bool is_beyond() const { return least > bound; }
 };
 
 struct BeliefSummary {
   std::vector<BelievedQuantity> quantities;
-  /// Contact gap over electrode gap, relative to the scene, if all devices of [spread] have the same ratio.
+  /// Ratio of contact gap to electrode gap, relative to the scene, if all devices of [spread] have the same ratio.
   std::optional<BelievedQuantity> gap_ratio = {};
-  double effective_devices = 0;         ///< effective number of devices: 1 over the sum of the squared weights
-  TouchMisfit touch_misfit = {};        ///< misfit of the records from which the belief was computed
-  std::vector<std::string> correlated;  ///< sentences about quantities that the records do not separate
+  double effective_devices = 0;         ///< effective number of devices in the belief: 1 over the sum of the squared weights
+  TouchMisfit touch_misfit = {};        ///< misfit of the contact records from which the belief was computed
+  std::vector<std::string> correlated;  ///< sentences about quantities of the device that the contact records do not separate
   /// Belief for tuning another device of the wafer, in standard normal coordinates of [spread], and the trigger delay as the
   /// last coordinate.
   TunedBelief coordinates = {};
@@ -142,9 +145,10 @@ struct BeliefSummary {
 
 class Tuner {
  public:
-  /// Prepares the scene and searches the recipes of its nominal device, which takes seconds in SIMD lanes. Throws InvalidInput
-  /// for a scene that cannot be tuned (no contact, no drive to vary, options out of range), for wafer beliefs about other
-  /// quantities, and for recipes of other waveform shapes. Throws Interrupted if `progress` asks to stop.
+  /// Prepares the scene and searches the recipes (candidate waveforms) of its nominal device, which takes seconds in SIMD
+  /// lanes. Throws InvalidInput for a scene that cannot be tuned (no contact, no drive to vary, options out of range), for
+  /// wafer beliefs about other quantities, and for recipes of other waveform shapes. Throws Interrupted if `progress` asks to
+  /// stop.
   Tuner(const SceneFile& file, const TunerOptions& options, const Progress& progress = {});
   ~Tuner();
   Tuner(Tuner&&) noexcept;
@@ -155,28 +159,30 @@ class Tuner {
 
   /// Returns the scene on which the belief is based, with nominal device, drives and limits.
   [[nodiscard]] const PreparedScene& scene() const;
-  /// Returns the recipes; the recipe of the nominal device comes first.
+  /// Returns the recipes (candidate waveforms from which searches start); the recipe of the nominal device comes first.
   [[nodiscard]] const std::vector<CandidateWaveform>& recipes() const;
   [[nodiscard]] Approach approach() const;
-  /// Returns the time of first contact of the plain step on the nominal device [s].
+  /// Returns the time of first contact under the plain step on the nominal device [s].
   [[nodiscard]] double step_closing_time() const;
-  /// Returns the permanent contact time of the plain step on the nominal device [s]; NaN unless the approach is quasi-static.
+  /// Returns the permanent contact time under the plain step on the nominal device [s]; NaN unless the approach is
+  /// quasi-static.
   [[nodiscard]] double step_permanent_contact() const;
   /// True if the scene has no [spread] and a spread was assumed.
   [[nodiscard]] bool spread_is_assumed() const;
 
-  /// Returns the next shot. The shot does not change until learn() adds a record.
+  /// Returns the next shot, the voltages for the next closing of the device. The shot does not change until learn() adds a
+  /// record.
   [[nodiscard]] const TunerShot& next() const;
   /// Adds the record of next() to the belief, and proposes the following shot. After a record with an error the same waveform
   /// is proposed again, under the next number. Throws InvalidInput for an invalid record, and Interrupted if `progress` asks to
   /// stop; the record is then not added.
   void learn(const ContactRecord& record, const Progress& progress = {});
 
-  /// Returns the number of closings whose records were added.
+  /// Returns the number of closings whose contact records were added.
   [[nodiscard]] int closings() const;
   [[nodiscard]] BeliefSummary belief() const;
-  /// Returns the best shot so far, with its prediction: one whose waveform did not bounce when last applied, unless the next
-  /// waveform is expected to be clearly better. While a shot is repeated, returns the last shot that did not bounce.
+  /// Returns the best shot so far, with its prediction. This is a shot whose waveform did not bounce when last applied, unless
+  /// the next waveform is expected to be clearly better. While a shot is repeated, returns the last shot that did not bounce.
   [[nodiscard]] const TunerShot& kept() const;
   /// True if the last closing had the waveform of the shot kept().
   [[nodiscard]] bool was_kept_last() const;
@@ -195,7 +201,8 @@ class Tuner {
   /// devices of the belief predicted.
   [[nodiscard]] int unexpected_bounces() const;
   /// Returns the reason why the device does not match the model; none if it may match. Reasons are: no device of [spread]
-  /// closes at the recorded times, closings bounced against the prediction, or the gaps have another ratio than in the scene.
+  /// closes at the recorded times, closings bounced against the prediction, or contact and electrode gap have another ratio
+  /// than in the scene.
   [[nodiscard]] std::optional<std::string> broken_assumption() const;
 
  private:

@@ -24,13 +24,13 @@
 namespace softland {
 namespace {
 
-constexpr double belief_accuracy = 1e-4;  // relative accuracy of simulated closings
+constexpr double belief_accuracy = 1e-4;  // relative accuracy of the closings that are simulated for the belief about a device
 constexpr double viscosity_deviation = 0.05, contact_deviation = 0.1;
-// Error of the model in time, over the closing time of the plain step.
+// Error of the model in time, as a share of the closing time of the plain step.
 constexpr double delay_share = 0.003;
 
-// Simulated times over the closing time of the plain step: after first contact, without contact, and after the last breakpoint
-// of the waveforms.
+// Simulated times as shares of the closing time of the plain step: after first contact, without contact, and after the last
+// breakpoint of the waveforms.
 constexpr double after_touch = 1.8, longest_wait = 7.4, tail = 0.75;
 
 bool varies(const DeviceSpread& spread, const std::string& path) {
@@ -66,13 +66,13 @@ std::vector<std::string> contact_keys(const SceneFile& file, const Device& devic
   return keys;
 }
 
-// Returns the keys of the contact gaps; none if the contact is the face of a dielectric.
+// Returns the keys of the contact gaps in the scene; none if the contact is the face of a dielectric.
 std::vector<std::string> contact_gaps(const PreparedScene& prepared) {
   if (prepared.scene.file.written("gap.contact")) return {"gap.contact"};
   return contact_keys(prepared.scene.file, prepared.scene.device, "gap");
 }
 
-// Returns the name of the quantity that varies these contact gaps.
+// Returns the name of the varied quantity of these contact gaps.
 std::string gap_name(const std::vector<std::string>& gaps) { return gaps.size() == 1 ? gaps.front() : "contact gaps"; }
 
 // Returns the scene in volts, with every default written out, and with the further quantities that a belief varies.
@@ -99,7 +99,7 @@ SceneFile with_nuisances(const PreparedScene& prepared, const TunerOptions& opti
   return file;
 }
 
-// Records the closing of one SIMD lane.
+// Records the closing of one device, one of the SIMD lanes that are simulated together.
 class LaneClosing final : public LandingObserver {
  public:
   void touch(const Touch& touch) override {
@@ -113,7 +113,7 @@ class LaneClosing final : public LandingObserver {
   PredictedClosing closing = {};
 };
 
-// Records a closing that is simulated alone, and its capacitance if an instrument records it.
+// Records a closing that is simulated alone (not in SIMD lanes), and its capacitance if an instrument records it.
 class SingleClosing final : public ClosingObserver {
  public:
   SingleClosing(const Switch& model, double threshold, double speed_per_rate)
@@ -153,7 +153,7 @@ class SingleClosing final : public ClosingObserver {
     return own;
   }
   ReboundFinder finder_;
-  double speed_per_rate_;  // impact velocity over the rate of the capacitance [m/F]
+  double speed_per_rate_;  // ratio of the impact velocity to the rate of the capacitance [m/F]
   std::optional<CapacitanceEdges> edges_;
 };
 
@@ -238,7 +238,8 @@ TuningModel::TuningModel(const SceneFile& file, const TunerOptions& options, con
     step_stays_from_ = std::isfinite(step.permanent_contact_time) ? step.permanent_contact_time : scales_.closing_time;
   }
   if (options.touch) scales_.latest_touch = beside_step(*options.touch, scales_.closing_time).limit;
-  constexpr double coarsest = 0.1;  // largest error of an edge, over the closing time of the plain step
+  // Largest error of a recorded contact time, as a share of the closing time of the plain step.
+  constexpr double coarsest = 0.1;
   require(options.laboratory.edge_error < coarsest * scales_.closing_time, [&] {
     return fmt::format("the error of edges, {}, must be below a tenth of the closing time of the plain step, {}",
                        engineering(options.laboratory.edge_error, "s", 3), engineering(scales_.closing_time, "s", 3));
@@ -269,7 +270,7 @@ NormalBelief TuningModel::in_spread(const NormalBelief& belief) const {
 }
 
 std::vector<double> TuningModel::values(const Eigen::VectorXd& point) const {
-  constexpr double furthest = 8;  // bound of the coordinates, in standard deviations
+  constexpr double furthest = 8;  // bound of the coordinates z of a device, in standard deviations
   const Eigen::VectorXd z = spread_point(point);
   std::vector<double> u(static_cast<std::size_t>(size() - 1));
   for (std::size_t k = 0; k < u.size(); ++k)
@@ -320,7 +321,7 @@ std::vector<Signal> TuningModel::signals(const PredictedShot& shot) const {
 }
 
 std::vector<PredictedClosing> TuningModel::close(std::span<const PredictedShot> shots, const Progress& progress) const {
-  // Choose the task size so that all threads are busy and lanes are filled.
+  // Choose the number of devices of a task so that all threads are busy and SIMD lanes are filled.
   constexpr std::size_t lanes = 8, most_in_lanes = 64, most_by_itself = 4;
   const auto jobs = static_cast<std::size_t>(options_.jobs);
   const std::size_t share = (shots.size() + jobs - 1) / jobs;
@@ -381,7 +382,7 @@ std::vector<PredictedClosing> TuningModel::close(std::span<const PredictedShot> 
 
 namespace {
 
-// Returns the gain of the source of a drive.
+// Returns the gain of the voltage source of a drive.
 double gain_of(const DeviceSpread& spread, const std::string& drive, const std::vector<double>& values) {
   double gain = 1;
   for (std::size_t i = 0; i < spread.variables.size(); ++i) {
@@ -399,7 +400,7 @@ void TuningModel::find_units(const Progress& progress) {
   const PreparedScene& p = nominal_;
   volts_slope_ = time_slope_ = pulled_through_slope_ = Eigen::VectorXd::Zero(size());
   if (options_.actuator != Actuator::pzt && has_pulling_electrode(p.scene.device)) electrode_ = searched_drive(p.scene.device);
-  constexpr double apart = 0.5;  // step of the finite differences, in standard deviations
+  constexpr double apart = 0.5;  // step of the finite differences in the coordinates z, in standard deviations
   std::vector<double> levels = hold_levels(p.signals()), bias;
   if (electrode_) bias = bias_of(p.scene, *electrode_);
   struct Found {

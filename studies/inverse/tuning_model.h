@@ -39,45 +39,48 @@ namespace softland {
   return contact.name.empty() ? "contact" : "contact." + contact.name;
 }
 
-/// The scales of a scene by which costs and errors are divided.
+/// The scales of a scene's closing by which costs and errors are divided.
 struct TuningScales {
-  double closing_time = 0;  ///< T_0: first contact time of the plain step on the nominal device [s]
-  double gap = 0;           ///< contact gap [m]
-  double rebound = 0;       ///< least height of a significant rebound [m]
+  double closing_time = 0;  ///< T_0: time of first contact under the plain step on the nominal device [s]
+  double gap = 0;           ///< rest gap of the contact [m]
+  double rebound = 0;       ///< least height of a rebound that counts as significant [m]
   double rise = 0;  ///< capacitance of the closed state less that of the open state [F]; 0 if the capacitance is not recorded
-  double latest_touch = std::numeric_limits<double>::infinity();  ///< requested limit for the time of first contact [s]
+  /// Requested limit of the time of first contact [s]; infinite for no limit.
+  double latest_touch = std::numeric_limits<double>::infinity();
   /// Permanent contact time of the plain step on the nominal device [s]; NaN unless the approach is quasi-static.
   double permanent_contact = std::numeric_limits<double>::quiet_NaN();
-  [[nodiscard]] double speed() const { return gap / closing_time; }  ///< unit of velocities [m/s]
+  [[nodiscard]] double speed() const { return gap / closing_time; }  ///< unit of velocities in costs and errors [m/s]
 };
 
-/// A simulated device of the belief about a device.
+/// A simulated device that stands for the belief about a device.
 struct Particle {
   Eigen::VectorXd z;
   SampledDevice sampled;
-  double delay = 0;  ///< delay of the device's record behind the drives [s]
+  double delay = 0;  ///< delay of the device's record behind the drive waveforms [s]
 };
 
-/// A closing as an instrument without errors would record it.
+/// The contact in a closing as an instrument without errors would record it.
 template <class Openings>
 struct SeenClosing {
-  double touch = std::numeric_limits<double>::quiet_NaN();  ///< time of first contact after the drives begin [s]
+  double touch = std::numeric_limits<double>::quiet_NaN();  ///< time of first contact after the drive waveforms begin [s]
   /// Impact velocity at the time `touch` [m/s]. If the capacitance is recorded instead of the contact, this is the rate of the
   /// capacitance over TuningScales::rise, times the contact gap.
   double speed = std::numeric_limits<double>::quiet_NaN();
-  Openings openings = {};  ///< openings, by time after the drives begin [s]
+  Openings openings = {};  ///< time spans in which the contact is open, by time after the drive waveforms begin [s]
 };
 
 /// A simulated closing of a device of a belief, without errors of measurement.
 struct PredictedClosing {
-  bool followed = false;                                      ///< true if the closing was simulated to the end of its window
-  double touch = std::numeric_limits<double>::quiet_NaN();    ///< first contact after the drives begin [s]; NaN without contact
-  double speed = std::numeric_limits<double>::quiet_NaN();    ///< impact velocity of the first touch [m/s]
-  double fastest = std::numeric_limits<double>::quiet_NaN();  ///< largest impact velocity of all touches [m/s]
-  double highest = 0;                                         ///< highest rebound [m]
-  std::vector<ContactOpening> openings = {};                  ///< openings, by time after the drives begin [s]
-  double delay = 0;                                           ///< delay of the record of the closing behind the drives [s]
-  /// The closing according to the capacitance; none if the instrument records the contact.
+  bool followed = false;  ///< true if the closing was simulated to the end of its simulated time
+  /// Time of first contact after the drive waveforms begin [s]; NaN without contact.
+  double touch = std::numeric_limits<double>::quiet_NaN();
+  double speed = std::numeric_limits<double>::quiet_NaN();    ///< impact velocity of the first touch of the contact [m/s]
+  double fastest = std::numeric_limits<double>::quiet_NaN();  ///< largest impact velocity of all touches of the contact [m/s]
+  double highest = 0;                                         ///< height of the highest rebound [m]
+  /// Time spans in which the contact is open, by time after the drive waveforms begin [s].
+  std::vector<ContactOpening> openings = {};
+  double delay = 0;  ///< delay of the record of the closing behind the drive waveforms [s]
+  /// The contact in the closing as the capacitance shows it; none if the instrument records the contact.
   std::optional<SeenClosing<std::vector<ContactOpening>>> by_capacitance = {};
   [[nodiscard]] bool closes() const { return followed && touch == touch; }
   [[nodiscard]] SeenClosing<std::span<const ContactOpening>> seen() const {
@@ -92,11 +95,11 @@ struct PredictedClosing {
   [[nodiscard]] double stays_from() const { return openings.empty() ? touch : std::max(touch, openings.back().end); }
 };
 
-/// A device in a shot, with one waveform for every drive.
+/// A device of the belief in a shot, with one waveform for every drive.
 struct PredictedShot {
   const Particle* device = nullptr;
   const std::vector<Waveform>* waveforms = nullptr;
-  double gain = 1;  ///< gain that all sources have in this shot
+  double gain = 1;  ///< gain that all voltage sources have in this shot
 };
 
 class TuningModel {
@@ -111,14 +114,15 @@ class TuningModel {
   /// 1e-4.
   [[nodiscard]] const PreparedScene& nominal() const { return nominal_; }
   [[nodiscard]] const TuningScales& scales() const { return scales_; }
-  /// Returns the approach of the waveforms: fast unless choose() was called.
+  /// Returns the approach to the contact that the waveforms make: fast unless choose() was called.
   [[nodiscard]] Approach approach() const { return approach_; }
   /// True if a varied drive can move the switch to its contact through stable equilibria.
   [[nodiscard]] bool has_stable_path() const { return std::isfinite(step_stays_from_); }
-  /// Sets the approach. Throws InvalidInput for a quasi-static approach if the scene has no stable path to contact.
+  /// Sets the approach to the contact. Throws InvalidInput for a quasi-static approach if the scene has no stable path to
+  /// contact.
   void choose(Approach approach);
   [[nodiscard]] bool spread_is_assumed() const { return spread_is_assumed_; }
-  /// True if closings are computed in SIMD lanes.
+  /// True if closings are computed in SIMD lanes, several devices at once.
   [[nodiscard]] bool is_in_lanes() const {
     return why_not_in_lanes(nominal_.model).empty() && options_.vectors != Vectors::none &&
            !options_.laboratory.sees_capacitance();
@@ -127,9 +131,9 @@ class TuningModel {
   [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(nominal_.scene.spread.variables.size()) + 1; }
   /// True for a coordinate that does not change the units of voltage and time: viscosity, contact stiffness, trigger delay.
   [[nodiscard]] bool is_nuisance(Eigen::Index k) const { return nuisances_[static_cast<std::size_t>(k)]; }
-  /// Returns the standard deviation of the trigger delay before the first record [s].
+  /// Returns the standard deviation of the trigger delay (of contact records behind the drives) before the first record [s].
   [[nodiscard]] double delay_deviation() const;
-  /// Returns the trigger delay of a device at z, by which the device's records begin late [s].
+  /// Returns the trigger delay of the device at z, by which its contact records begin late [s].
   [[nodiscard]] double delay(const Eigen::VectorXd& z) const { return delay_deviation() * spread_point(z)[size() - 1]; }
 
   /// Replaces the coordinates z by coordinates in which the belief `prior` about z is standard normal.
@@ -138,33 +142,35 @@ class TuningModel {
   /// Converts a belief in the current coordinates to the coordinates of [spread].
   [[nodiscard]] NormalBelief in_spread(const NormalBelief& belief) const;
 
-  /// Returns the values of the varied quantities at z (DeviceSpread::to_values).
+  /// Returns the values of the varied quantities of the device at z (DeviceSpread::to_values).
   [[nodiscard]] std::vector<double> values(const Eigen::VectorXd& z) const;
-  /// Returns contact gap over electrode gap of a device with these values, relative to that of the scene. None if [spread]
-  /// varies the contact gap as a separate quantity.
+  /// Returns the ratio of contact gap to electrode gap of a device with these values, relative to that of the scene. None if
+  /// [spread] varies the contact gap as a separate quantity.
   [[nodiscard]] std::optional<double> gap_ratio(std::span<const double> values) const;
-  /// Returns the name of the gap ratio, "gap.contact / gap.electrode", for a scene that has such a ratio.
+  /// Returns the name of the ratio of contact to electrode gap, "gap.contact / gap.electrode", for a scene that has such a
+  /// ratio.
   [[nodiscard]] std::string gap_ratio_name() const {
     return nominal_.scene.spread.variables[gap_ratio_->contact].name + " / gap.electrode";
   }
-  /// Returns the deviation of the gap ratio at z from that of the scene, in units of gap_ratio_deviation; none if the scene has
-  /// no gap ratio.
+  /// Returns the deviation of the gap ratio of the device at z from that of the scene, in units of gap_ratio_deviation; none if
+  /// the scene has no gap ratio.
   [[nodiscard]] std::optional<double> gap_ratio_coordinate(const Eigen::VectorXd& z) const;
-  /// Returns the nearest point to z with the gap ratio of the scene; z if the scene has no gap ratio.
+  /// Returns the device nearest to z that has the gap ratio of the scene; z if the scene has no gap ratio.
   [[nodiscard]] Eigen::VectorXd with_gap_ratio_of_scene(const Eigen::VectorXd& z) const;
-  /// Standard deviation of the ratio of contact to electrode gap in a belief. Devices of [spread] all have the same ratio.
+  /// Standard deviation of the ratio of contact to electrode gap in a belief, although the devices of [spread] all have the
+  /// same ratio.
   static constexpr double gap_ratio_deviation = 0.03;
   [[nodiscard]] std::vector<Particle> devices(std::span<const Eigen::VectorXd> points, const Progress& progress = {}) const;
-  /// Returns the applied voltages of a shot.
+  /// Returns the applied voltages of a shot, one signal per drive.
   [[nodiscard]] std::vector<Signal> signals(const PredictedShot& shot) const;
-  /// Simulates the closings of these shots, in order. An outcome does not depend on the other shots. Throws Interrupted if
-  /// `progress` asks to stop.
+  /// Simulates the closings of these shots (device and waveforms), in order. An outcome does not depend on the other shots.
+  /// Throws Interrupted if `progress` asks to stop.
   [[nodiscard]] std::vector<PredictedClosing> close(std::span<const PredictedShot> shots, const Progress& progress = {}) const;
   /// Returns the time for which a closing with contact is simulated after the last breakpoint of the waveforms [s].
   [[nodiscard]] double hold_time() const;
 
-  /// Units of a device at z over those of the nominal device, to first order in the logarithm. The unit of the commanded
-  /// voltages is the static pull-in voltage of the closing electrode over the gain of its source. The unit of time is the
+  /// Units of a device at z relative to those of the nominal device, to first order in the logarithm. The unit of the commanded
+  /// voltages is the static pull-in voltage of the closing electrode divided by the gain of its source. The unit of time is the
   /// period of the first mode.
   struct Units {
     double volts = 1, time = 1;
@@ -187,8 +193,9 @@ class TuningModel {
   TunerOptions options_;
   bool spread_is_assumed_ = false;
   struct GapRatio {
-    std::size_t contact;                // index of the variable of the contact gap
-    std::optional<std::size_t> shared;  // index of the variable of the other gaps, if the contact gap varies with them
+    std::size_t contact;  // index in [spread] of the variable of the contact gap
+    // Index in [spread] of the variable of the other gaps, if the contact gap varies with them.
+    std::optional<std::size_t> shared;
   };
   std::optional<GapRatio> gap_ratio_;
   PreparedScene nominal_;
@@ -197,13 +204,14 @@ class TuningModel {
   std::unique_ptr<const DeviceDrives> drives_;
   TuningScales scales_;
   Approach approach_ = Approach::fast;
-  double step_stays_from_ =
-      std::numeric_limits<double>::quiet_NaN();  // permanent contact time of the plain step [s]; NaN without a stable path
-  std::optional<std::size_t> electrode_;         // index of the electrode that closes the switch in Switch::drives()
+  // Permanent contact time under the plain step [s]; NaN without a stable path to the contact.
+  double step_stays_from_ = std::numeric_limits<double>::quiet_NaN();
+  std::optional<std::size_t> electrode_;  // index of the electrode that closes the switch in Switch::drives()
   Eigen::VectorXd volts_slope_, time_slope_, pulled_through_slope_;
   std::optional<NormalBelief> prior_;
-  Eigen::MatrixXd prior_factor_;                                     // factor L of the prior: L L^T is its covariance
-  double pulled_through_ = std::numeric_limits<double>::infinity();  // collapse voltage of the nominal device [V]
+  Eigen::MatrixXd prior_factor_;  // factor L of the covariance L L^T of the prior of z
+  // Collapse voltage of the nominal device under its closing electrode [V].
+  double pulled_through_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace softland

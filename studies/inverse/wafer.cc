@@ -13,7 +13,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// The measurement y = J z + n of one tuned device.
+// The measurement y = J z + n that the tuning of a device amounts to.
 struct LinearMeasurement {
   MatrixXd rows;
   VectorXd values;
@@ -27,8 +27,8 @@ void check(const NormalBelief& belief, Index size) {
 }
 
 LinearMeasurement measurement_of(const TunedBelief& tuned) {
-  // Largest variance of a measured direction, over that of the prior: the variance of samples without information scatters
-  // around 1.
+  // Largest variance of a measured direction, as a share of the prior's variance. The variance of samples without information
+  // scatters around 1.
   constexpr double measured_share = 0.5;
   const Index n = tuned.prior.mean.size();
   const MatrixXd inverse = whitening_of(tuned.prior.covariance);
@@ -42,7 +42,8 @@ LinearMeasurement measurement_of(const TunedBelief& tuned) {
                         .values = VectorXd(static_cast<Index>(measured.size()))};
   for (Index i = 0; i < all.values.size(); ++i) {
     const Index k = measured[static_cast<std::size_t>(i)];
-    const double variance = eigen.values[k], precision = 1 / variance - 1;  // precision from the records alone
+    // Precision (inverse variance) from the records alone, without the prior.
+    const double variance = eigen.values[k], precision = 1 / variance - 1;
     const VectorXd direction = eigen.vectors.col(k);
     all.rows.row(i) = std::sqrt(precision) * direction.transpose() * inverse;
     all.values[i] = direction.dot(mean) / variance / std::sqrt(precision) + all.rows.row(i).dot(tuned.prior.mean);
@@ -61,7 +62,8 @@ WaferBelief believed_of_wafer(std::span<const TunedBelief> tuned, Index size) {
     all.push_back(measurement_of(one));
     count += all.back().values.size();
   }
-  MatrixXd rows(count, size), own = MatrixXd::Zero(count, count);  // J of all measurements; `own` has J J^T of each device
+  // J (directions in z) of all measurements; `own` has J J^T of each device.
+  MatrixXd rows(count, size), own = MatrixXd::Zero(count, count);
   VectorXd values(count);
   Index begin = 0;
   for (const LinearMeasurement& one : all) {
@@ -72,7 +74,7 @@ WaferBelief believed_of_wafer(std::span<const TunedBelief> tuned, Index size) {
     begin += m;
   }
   constexpr int steps = 40;
-  constexpr double least_apart = 0.03;  // smallest standard deviation within a wafer, over that of all devices
+  constexpr double least_apart = 0.03;  // smallest standard deviation within a wafer, as a share of that of all devices
   const MatrixXd identity = MatrixXd::Identity(count, count), shared = rows * rows.transpose();
   std::vector<double> shares, logarithms;
   std::vector<NormalBelief> nexts;

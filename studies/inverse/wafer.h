@@ -28,7 +28,7 @@ struct TunedBelief {
 
 struct WaferBelief {
   NormalBelief next;  ///< belief about the next device of the wafer, before its tuning
-  double share = 0;   ///< posterior mean of rho, the part of the variance that devices of the wafer share
+  double share = 0;   ///< posterior mean of rho, the part of the variance of z that devices of the wafer share
 };
 
 /// Returns the belief about the next device, given the beliefs `tuned`. Throws InvalidInput unless all beliefs are finite, have

@@ -1,4 +1,5 @@
-// Bang-bang landings of an undamped switch of one degree of freedom: starting points of the search for the real switch.
+// Bang-bang closings, with zero speed at the contact, of an undamped switch of one degree of freedom: starting points of the
+// search for the real switch.
 //
 //   m x'' = -U'(x),  U = U_driven from x_0 to x_s, U_coasting from x_s to x_c
 //
@@ -8,7 +9,7 @@
 //   U_driven(x_0) - U_driven(x_s) = U_coasting(x_c) - U_coasting(x_s)
 //
 // The two times are quadratures of dx / v, v^2 = 2 (energy - U) / m. With the largest pull first and the least pull afterwards,
-// no landing at zero speed is quicker: the force enters linearly, so that the optimal drive jumps between its bounds
+// no closing at zero speed is quicker: the force enters linearly, so that the optimal drive jumps between its bounds
 // (Pontryagin), and one jump is enough to reach a point of rest. For a plate on a spring the balance is the formula of
 // Czaplewski, Dyck, Sumali et al., J. Micromech. Microeng. 16 (2006) 1. Valid without damping and contact forces, where
 // U_coasting rises up to x_c. No solution exists if the driven switch does not reach x_c, or if the switch reaches x_c by
@@ -33,18 +34,19 @@ using Potential = std::function<double(double)>;
                                                        double contact);
 
 struct BangBang {
-  double switching_position = 0;  ///< position x_s where the drive jumps to its coasting value [m]
-  double driven_time = 0;         ///< time from rest at x_0 to x_s [s]
-  double coasting_time = 0;       ///< time from x_s to rest at the contact [s]
+  double switching_position = 0;  ///< position x_s of the switch where the drive jumps to its coasting value [m]
+  double driven_time = 0;         ///< time of the motion from rest at x_0 to x_s [s]
+  double coasting_time = 0;       ///< time of the motion from x_s to rest at the contact [s]
 };
 
-/// Returns the landing with zero speed of a mass [kg] from x_0 = `from` to x_c = `contact` [m], or nothing if no solution
-/// exists.
+/// Returns the closing with zero speed at the contact of a mass [kg] from x_0 = `from` to x_c = `contact` [m], or nothing if no
+/// solution exists.
 [[nodiscard]] std::optional<BangBang> bang_bang(const Potential& driven, const Potential& coasting, double mass, double from,
                                                 double contact);
 
-/// Computes the landing with zero speed of a switch that moves in its first mode alone, from rest under the drive values
-/// `before` (none: 0). The drives have the values `driven` up to the switching position x_s, and `coasting` after it.
+/// Computes the closing with zero speed at the contact of a switch that moves in its first mode alone, from rest under the
+/// drive values `before` (none: 0). The drives have the values `driven` up to the switching position x_s, and `coasting` after
+/// it.
 [[nodiscard]] std::optional<BangBang> bang_bang(const Switch& model, const std::vector<double>& driven,
                                                 const std::vector<double>& coasting, std::span<const double> before = {});
 

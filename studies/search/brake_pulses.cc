@@ -12,7 +12,7 @@
 namespace softland {
 namespace {
 
-constexpr int brake_pulses = 2;  // number of pulses of every drive that brakes
+constexpr int brake_pulses = 2;  // number of voltage pulses of every drive that brakes the opening
 
 }  // namespace
 
@@ -72,8 +72,8 @@ std::vector<std::vector<double>> BrakePulses::starts() const {
   return all;
 }
 
-// Returns the point of the search at which the drive `braking` gives the pulse train. The times of `pulse_train` are in periods
-// of the first mode.
+// Returns the point of the search at which the drive `braking` gives `pulse_train`, whose times are in periods of the first
+// mode; the other drives stay at 0 V.
 std::vector<double> BrakePulses::start(const Brake& braking, const std::array<double, 6>& pulse_train) const {
   std::vector<double> x;
   for (const Brake& b : brakes_) {

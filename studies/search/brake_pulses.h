@@ -1,5 +1,6 @@
 // Waveforms that open a closed switch and stop it in its open position. Every drive goes from its hold level to 0 V. The drives
-// that the actuator may vary then give two pulses, each after a wait at 0 V, within the limits of [driver.*].
+// that the actuator may vary then give two pulses, each after a wait at 0 V, within the limits of the voltage sources in
+// [driver.*].
 #pragma once
 
 #include <array>
@@ -16,7 +17,7 @@
 
 namespace softland {
 
-/// Corners of a piecewise linear voltage: time since the command to open [s] and voltage [V].
+/// Corners of a piecewise linear drive voltage: time since the command to open [s] and voltage [V].
 using Corners = std::vector<std::pair<double, double>>;
 
 class BrakePulses {
@@ -27,20 +28,21 @@ class BrakePulses {
   BrakePulses(const PreparedScene& given, Actuator actuator, std::vector<double> holds, std::string_view asker);
 
   [[nodiscard]] const std::vector<Variable>& variables() const { return variables_; }
-  /// Starting points: in each, one drive brakes, by one pulse or by a push and then a braking pulse, at different times and
-  /// levels. All other drives stay at 0 V.
+  /// Returns the starting points of the search: in each, one drive brakes, by one pulse or by a push and then a braking pulse,
+  /// at different times and levels. All other drives stay at 0 V.
   [[nodiscard]] std::vector<std::vector<double>> starts() const;
-  /// Commanded voltages at a point of the search, one list of corners per drive of the switch.
+  /// Returns the commanded voltages at a point of the search, one list of corners per drive of the switch.
   [[nodiscard]] std::vector<Corners> commanded(std::span<const double> x) const;
-  /// Commanded voltages of the plain opening: every drive goes to 0 V at once, or at its driver's slew limit.
+  /// Returns the commanded voltages of the plain opening: every drive goes to 0 V at once, or at the slew limit of its source.
   [[nodiscard]] const std::vector<Corners>& plain() const { return plain_; }
   [[nodiscard]] const std::vector<double>& holds() const { return holds_; }
 
  private:
-  // A drive that may brake, and the index of its parameters in a point of the search.
+  // A drive that may brake the opening, and the index of its parameters in a point of the search.
   struct Brake {
     std::size_t drive = 0;
-    std::size_t first = 0;  // index of the drive's first parameter: edge, then wait, level, duration of every pulse
+    // Index of the drive's first parameter in the point: edge, then wait, level, duration of every pulse.
+    std::size_t first = 0;
     DriverLimits limits;
   };
 
@@ -49,8 +51,8 @@ class BrakePulses {
   [[nodiscard]] Corners corners(const Brake& brake, std::span<const double> x) const;
 
   const PreparedScene& given_;
-  double period_;              // period of the first mode [s]
-  std::vector<double> holds_;  // hold levels [V]
+  double period_;              // period of the switch's first mode [s]
+  std::vector<double> holds_;  // hold levels by drive [V]
   std::vector<Corners> plain_;
   std::vector<Brake> brakes_;
   std::vector<Variable> variables_;

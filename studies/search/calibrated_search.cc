@@ -1,5 +1,5 @@
 // The part of RobustSearch with a per-device calibration: searches on devices whose pull-in voltage and timing are measured,
-// and the performance of the found waveforms on fresh devices.
+// and the performance of the found waveforms on fresh devices (new to the search).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,16 +13,19 @@
 namespace softland {
 namespace {
 
-constexpr std::uint64_t measured_devices = 128;            // number of devices in a search with a per-device calibration
-constexpr double coarse_error = 0.01, fine_error = 0.002;  // relative measurement errors of Vdp and period
+constexpr std::uint64_t measured_devices = 128;  // number of devices in a search with a per-device calibration
+// Relative measurement errors of Vdp and period in the two calibrations that are searched.
+constexpr double coarse_error = 0.01, fine_error = 0.002;
 constexpr double least_times_of_error = 20;
-constexpr std::array errors_of_pull_in{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02};  // relative errors of Vdp
-constexpr double most_rows = 4;                // largest number of rows of results with a per-device calibration
-constexpr std::size_t devices_by_error = 256;  // number of fresh devices for the results by measurement error
-constexpr double ranked_by_share = 0.25;       // bounce-free share under the best waveform from which on searches maximise this
-                                               // share
-constexpr std::uint64_t which_measured = 2;    // number of these random devices: they differ from the devices of
-                                               // robust_search.cc
+// Relative errors of measured Vdp for which results are computed.
+constexpr std::array errors_of_pull_in{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02};
+constexpr double most_rows = 4;  // largest number of rows of results with a per-device calibration
+// Number of fresh devices (new to the search) for the results by error of the measured Vdp.
+constexpr std::size_t devices_by_error = 256;
+// Bounce-free share of devices under the best waveform from which on searches maximise this share.
+constexpr double ranked_by_share = 0.25;
+// Number of this set of random devices, which differ from the devices of robust_search.cc.
+constexpr std::uint64_t which_measured = 2;
 
 }  // namespace
 
@@ -49,19 +52,20 @@ bool DevicesRow::is_worth_measuring(const DevicesRow& uncalibrated) const {
   return speed(*this) < worth_choosing * speed(uncalibrated);
 }
 
-// Computes in advance the measured quantities of the fresh devices, for the rows of results with a per-device calibration.
+// Computes in advance the measured quantities of the fresh devices (new to the search), for the rows of results with a
+// per-device calibration.
 void RobustSearch::measure_ahead() {
   try {
     meter_.emplace(first().given, MeasuredQuantities{.closing_time = true});
   } catch (const InvalidInput&) {
-    return;  // without a pull-in voltage devices cannot be measured
+    return;  // without a pull-in voltage devices cannot be measured: there is nothing to compute
   }
   (void)calibrated({.pull_in_error = coarse_error});
   if (tells_time()) (void)calibrated({.time_error = usual_time_error});
 }
 
-// True if the closing time is long enough to distinguish devices despite its measurement error. For a quicker switch, Vdp and
-// period are measured more precisely instead.
+// True if the closing time under the slow step is long enough to distinguish devices despite its measurement error. For a
+// quicker switch, Vdp and period are measured more precisely instead.
 bool RobustSearch::tells_time() const { return meter_->closing_time() > least_times_of_error * usual_time_error; }
 
 CalibratedSearch RobustSearch::in_measured_units(const ChosenFrom& winner, const DriveWaveforms& drawing) {
@@ -91,7 +95,8 @@ CalibratedSearch RobustSearch::in_measured_units(const ChosenFrom& winner, const
   return all;
 }
 
-// Searches in parallel with each of the calibrations. No waveforms for a calibration whose search found none.
+// Searches a waveform for each of the calibrations, in parallel. The result has no waveforms for a calibration whose search
+// found none.
 std::array<RobustSearch::Found, 2> RobustSearch::searched_in(const ChosenFrom& winner, const DriveWaveforms& drawing,
                                                              const std::array<Calibration, 2>& calibrations) {
   const auto family = std::ranges::find(names_, winner.family);
@@ -106,7 +111,7 @@ std::array<RobustSearch::Found, 2> RobustSearch::searched_in(const ChosenFrom& w
             first(), aims_.tail,
             own_devices(first(), known[i], measured_devices, options_.seed, which_measured, options_.jobs, progress_));
         RaceOptions own = race_options();
-        own.memory = nullptr;  // keys of the memory do not depend on the measured units
+        own.memory = nullptr;  // do not use the memory of evaluations: its keys do not depend on the measured units
         own.progress = [&, i](double part) {
           parts[i] = part;
           progress_.tell("searching for devices that are measured", (parts[0] + parts[1]) / 2);
@@ -127,7 +132,7 @@ std::array<RobustSearch::Found, 2> RobustSearch::searched_in(const ChosenFrom& w
 }
 
 RaceResult RobustSearch::searched_at_pace(const RobustCost& cost, const RaceAims& aims, std::size_t family, RaceOptions options) {
-  constexpr long shorter = 3;  // divisor of the number of closings of a search without calibration
+  constexpr long shorter = 3;  // divisor of the number of closings: a search with calibration takes a third of those without
   RobustAim aim = tail_aim_;
   aim.free = free_;
   for (const Condition& one : aims.tail.conditions) {
@@ -166,8 +171,8 @@ DevicesRow RobustSearch::row_of(const char* name, const DriveWaveforms& waveform
                                          std::move(outcomes))};
 }
 
-// Computes results for several measurement errors of Vdp, each for the best of `waveforms` and `in_volts`. The waveform
-// `in_volts` does not depend on Vdp.
+// Computes results on the fresh devices (new to the search) for several measurement errors of Vdp, each for the best of
+// `waveforms` and `in_volts`. The waveform `in_volts` does not depend on Vdp.
 std::vector<CalibrationError> RobustSearch::judged_by_error(const std::vector<DriveWaveforms>& waveforms,
                                                             const DriveWaveforms& in_volts) {
   std::vector<CalibrationError> judged;
@@ -198,7 +203,8 @@ RobustCost RobustSearch::verdict_devices(const MeasuredUnits& known) {
   return {first(), aims_.tail, known_as(calibrated(known.calibration()), known, options_.seed)};
 }
 
-// Returns the fresh devices with their exact measured quantities, which are computed once for all calibrations.
+// Returns the fresh devices (new to the search) with their exact measured quantities, which are computed once for all
+// calibrations.
 const CalibratedEnsemble& RobustSearch::calibrated(const Calibration& knowledge) {
   std::optional<CalibratedEnsemble>& all = knowledge.time_error ? calibrated_by_time_ : calibrated_by_pull_in_;
   if (!all)

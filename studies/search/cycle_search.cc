@@ -20,8 +20,9 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t searched_cycles = 4;  // simulated cycles of a candidate
-constexpr double line_tolerance = 1e-5;     // error of the piecewise linear waveforms in a scene file, over the peak voltage
+constexpr std::size_t searched_cycles = 4;  // number of cycles that are simulated for a candidate pair of waveforms
+// Error of the piecewise linear waveforms in a scene file, as a share of the peak voltage.
+constexpr double line_tolerance = 1e-5;
 
 class PairSearch {
  public:
@@ -45,9 +46,9 @@ class PairSearch {
   [[nodiscard]] const BrakePulses& pulses() const { return pulses_; }
   [[nodiscard]] long evaluations() const { return budget_.taken(); }
 
-  /// Returns the closing and opening waveforms of a point, whose first parameters are those of the closing. Without parameters
-  /// of the opening, the drives go to 0 V at once. Returns nothing if a drive exceeds its limits, or if a waveform is longer
-  /// than its part of a cycle.
+  /// Returns the closing and opening waveforms of a point of the search, whose first parameters are those of the closing.
+  /// Without parameters of the opening, the drives go to 0 V at once. Returns nothing if a drive exceeds its limits, or if a
+  /// waveform is longer than its part of a cycle.
   [[nodiscard]] std::optional<CycleWaveforms> pair(std::span<const double> x) const {
     std::optional<std::vector<Signal>> closing = setting_.allowed_commands(setting_.space.waveforms(x.first(closing_)));
     if (!closing) return std::nullopt;
@@ -60,7 +61,8 @@ class PairSearch {
     return fits ? std::optional(std::move(waveforms)) : std::nullopt;
   }
 
-  /// Returns the cost of the worst among the first `cycles` cycles; infinite if the simulation fails.
+  /// Returns the cost of a pair of waveforms: that of the worst among the first `cycles` cycles; infinite if the simulation
+  /// fails.
   [[nodiscard]] double cost(const CycleWaveforms& waveforms, std::size_t cycles = searched_cycles) const {
     const Cycles run = CycledSwitch(coarse_, coarse_.model, waveforms).run(times(cycles), false, {.stop = progress_.stop});
     if (run.cycles.size() < cycles) return std::numeric_limits<double>::infinity();
@@ -74,7 +76,8 @@ class PairSearch {
     return worst;
   }
 
-  /// Returns the vibration of the contact point about its open position before the second cycle begins, over the contact gap.
+  /// Returns the vibration of the contact point about its open position before the second cycle begins, as a share of the
+  /// contact gap.
   [[nodiscard]] double unrest(const CycleWaveforms& waveforms) const {
     const Cycles run = CycledSwitch(coarse_, coarse_.model, waveforms).run(times(1), false, {.stop = progress_.stop});
     if (run.cycles.empty()) return std::numeric_limits<double>::infinity();
@@ -90,7 +93,7 @@ class PairSearch {
   }
   [[nodiscard]] double cost_of_cycles(const CycleWaveforms& waveforms) const { return cost(waveforms); }
 
-  /// Improves the parameters with index `first` and above; all other parameters stay as in `from`.
+  /// Improves the waveform parameters with index `first` and above; all other parameters stay as in `from`.
   [[nodiscard]] OptimizerResult improve(const char* what, Price by, std::size_t first, const std::vector<double>& from,
                                         std::vector<std::vector<double>> starts) {
     const std::vector<Variable> all = variables();
@@ -121,20 +124,20 @@ class PairSearch {
   const SearchSetting& setting_;
   const CycleSearchOptions& options_;
   const Progress& progress_;
-  SearchBudget budget_;  // counts the evaluated pairs of waveforms
+  SearchBudget budget_;  // budget of the search, which counts the evaluated pairs of waveforms
   PreparedScene coarse_;
   BrakePulses pulses_;
-  std::size_t closing_;  // number of parameters of the closing
+  std::size_t closing_;  // number of parameters of the closing waveform
   CostScale scale_;
 };
 
-// Returns a scene with one cycle of the waveforms, which closes, and opens on command.
+// Returns the scene of one cycle with these waveforms: it closes, and opens on command.
 SceneFile scene_of_cycle(const PreparedScene& given, const CycleWaveforms& waveforms, const CycleTimes& times) {
   const std::vector<Signal> signals = cycled(waveforms, times);
   const std::vector<std::string> names = given.drive_names();
   DriveWaveforms tables;
   for (std::size_t k = 0; k < names.size(); ++k) {
-    if (names[k] == dispersion_drive) continue;  // the dispersion force has no source
+    if (names[k] == dispersion_drive) continue;  // the factor of the dispersion force needs no voltage source
     Table table;
     const double tolerance = line_tolerance * std::max(signals[k].peak(), 1e-9);
     for (const auto& [time, voltage] : polyline(signals[k], times.period, tolerance, 0)) {
@@ -185,7 +188,8 @@ CycleSearchResult search_cycle(const SceneFile& file, const CycleSearchOptions& 
   require(given.rest().has_value(), "with every drive at 0 V the switch has no stable open state: it cannot be opened");
   PairSearch search(setting, options, progress);
 
-  // Starts are the closing waveform that was searched alone, and the starts of its family, as far as they fit into a cycle.
+  // Starts of the search are the closing waveform that was searched alone, and the starts of its waveform family, as far as
+  // they fit into a cycle.
   std::vector<std::vector<double>> closings = setting.space.starts();
   if (alone.best_scene) {
     const DriveWaveforms found = setting.space.searched(alone.best_scene->drives.waveforms());
@@ -196,7 +200,7 @@ CycleSearchResult search_cycle(const SceneFile& file, const CycleSearchOptions& 
     return fmt::format("at {} and a duty of {:g} % no waveform of the family \"{}\" fits into its part of a cycle, or no opening",
                        engineering(options.rate, "Hz", 4), 100 * options.duty, alone.family);
   });
-  // Find the best start in a cycle that begins at rest.
+  // Find the best start of the search in a cycle that begins at rest.
   std::vector<double> best = closings.front();
   double least = std::numeric_limits<double>::infinity();
   for (const std::vector<double>& x : closings) {

@@ -23,25 +23,26 @@
 namespace softland {
 
 struct CycleSearchOptions {
-  double rate = 0;    ///< cycles per second [Hz]
-  double duty = 0.5;  ///< share of a cycle before the command to open
+  double rate = 0;    ///< rate of the cycles [Hz]
+  double duty = 0.5;  ///< share of a cycle before the command to open the switch
   Aim target = Target::bounce;
   Actuator actuator = Actuator::electrostatic;  ///< drives that the closing and the opening waveform may use
-  std::string family = {};                      ///< waveform families of the closing: families_of(); empty: default
-  long max_evaluations = 3000;                  ///< evaluations: a third each for the closing, the opening, and both together
-  std::size_t cycles = 10;                      ///< simulated cycles of the best pair of waveforms
+  std::string family = {};                      ///< waveform families of the closing waveform: families_of(); empty: default
+  long max_evaluations = 3000;  ///< number of evaluations: a third each for the closing, the opening, and both together
+  std::size_t cycles = 10;      ///< number of simulated cycles of the best pair of waveforms
   std::uint64_t seed = 1;
   int jobs = 1;
 };
 
 struct CycleSearchResult {
   PreparedScene given;
-  Cycling cycling;     ///< simulated cycles of the plain pair of waveforms, and of the best pair if there is one
-  std::string family;  ///< waveform family of the closing
-  std::map<std::string, double> parameters;  ///< parameters of the best pair, by closing.drive.name and opening.drive.name
+  Cycling cycling;     ///< simulated cycles with the plain pair of waveforms, and with the best pair if there is one
+  std::string family;  ///< waveform family of the closing waveform
+  /// Waveform parameters of the best pair, by closing.drive.name and opening.drive.name.
+  std::map<std::string, double> parameters;
   double cost = std::numeric_limits<double>::quiet_NaN();        ///< cost of the best pair of waveforms
   double plain_cost = std::numeric_limits<double>::quiet_NaN();  ///< cost of the plain pair: a step to close and a step to open
-  long evaluations = 0;                                          ///< evaluated pairs of waveforms
+  long evaluations = 0;                                          ///< number of evaluated pairs of waveforms
   /// The scene of one cycle, a closing and an opening on command, of the best pair of waveforms; of the plain pair if no pair
   /// was feasible.
   SceneFile scene;
@@ -50,8 +51,8 @@ struct CycleSearchResult {
   [[nodiscard]] bool is_better() const { return cost < plain_cost; }
 };
 
-/// Throws InvalidInput as optimize() does, for a scene without an open state, and for a rate at which no waveform of the family
-/// fits into the closed or the open part of a cycle.
+/// Searches the waveforms of a cycle. Throws the exceptions of optimize(), and InvalidInput for a scene without an open state,
+/// and for a rate at which no waveform of the waveform family fits into the closed or the open part of a cycle.
 [[nodiscard]] CycleSearchResult search_cycle(const SceneFile& file, const CycleSearchOptions& options,
                                              const Progress& progress = {});
 

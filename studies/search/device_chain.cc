@@ -10,7 +10,7 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t remembered = 14;  // number of earlier candidates with whose median a candidate is compared
+constexpr std::size_t remembered = 14;  // number of earlier candidate waveforms with whose median a candidate is compared
 constexpr std::size_t fewest_remembered = 5;
 
 }  // namespace
@@ -56,7 +56,7 @@ ChainEnd search_chain(const StagedCost& cost, const Chain& chain, SearchBudget& 
     if (tried.cost < best.cost) best.x = x, best.cost = tried.cost;
     budget.took(tried.closings);
     if (budget.over() || best.closings >= chain.closings) enough = true;
-    told(x, tried.cost);  // may throw Interrupted
+    told(x, tried.cost);  // `told` may throw Interrupted
     if (budget.interrupted()) enough = true;
     return tried.cost;
   };

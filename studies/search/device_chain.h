@@ -1,5 +1,5 @@
-// A search over devices from one starting point by CMA-ES. Candidates are tried on more and more devices. A candidate with a
-// higher cost on the first devices than the median of the earlier candidates is given up.
+// A search over devices from one starting point by CMA-ES. Candidate waveforms are tried on more and more devices. A candidate
+// with a higher cost on the first devices than the median of the earlier candidates is given up.
 //
 // Source for giving up candidates: O. Maron & A. W. Moore, "Hoeffding races", NIPS 1993 (the idea; the test here is the median
 // of the earlier candidates).
@@ -19,7 +19,8 @@
 
 namespace softland {
 
-/// The cost of a candidate over varied devices, evaluated in stages: on 8 devices, on 32, and on all requested devices.
+/// The cost of a candidate waveform over varied devices, evaluated in stages: on 8 devices, on 32, and on all requested
+/// devices.
 class StagedCost {
  public:
   /// Keeps references to `setting`, `cost` and `aim`. `memory` may be null; `seed` identifies the devices and the aim in
@@ -29,10 +30,12 @@ class StagedCost {
       : setting_(setting), cost_(cost), aim_(aim), memory_(memory), seed_(seed) {}
 
   struct Tried {
-    double cost = std::numeric_limits<double>::infinity();  ///< infinite if the waveform exceeds a driver's limits
+    /// Cost of the candidate; infinite if its waveform exceeds a limit of a voltage source.
+    double cost = std::numeric_limits<double>::infinity();
     long closings = 0;
   };
-  /// Evaluates the point `x` on the first `most` devices, or on fewer if the cost on these already exceeds `hopeless`.
+  /// Evaluates the waveform at the point `x` on the first `most` devices, or on fewer if its cost on these already exceeds
+  /// `hopeless`.
   [[nodiscard]] Tried tried(const std::vector<double>& x, std::size_t most,
                             double hopeless = std::numeric_limits<double>::infinity(), int jobs = 1) const;
   [[nodiscard]] std::vector<Variable> variables() const { return setting_.space.variables(); }
@@ -45,25 +48,26 @@ class StagedCost {
   std::uint64_t seed_;
 };
 
-/// Numbers of simulated devices after which a bad candidate is given up.
+/// Numbers of simulated devices after which a bad candidate waveform is given up.
 inline constexpr std::array<std::size_t, 2> stages{8, 32};
 
 struct Chain {
   std::vector<double> start = {};
-  std::size_t devices = 0;  ///< number of devices that candidates are tried on
-  long closings = 0;        ///< most simulated closings of the chain
+  std::size_t devices = 0;  ///< number of devices on which candidate waveforms are tried
+  long closings = 0;        ///< largest number of closings that this search may simulate
   double step = 0.1;        ///< first step size of CMA-ES, as a share of the range of every variable
-  double population = 1;    ///< number of candidates of a CMA-ES generation, over the default number
+  double population = 1;    ///< number of candidate waveforms of a CMA-ES generation, as a multiple of the default number
   std::uint64_t seed = 1;
-  int jobs = 1;  ///< threads for one candidate; does not change the result
+  int jobs = 1;  ///< number of threads for one candidate waveform; does not change the result
 };
 struct ChainEnd {
-  std::vector<double> x = {};                             ///< the best point; empty if no candidate was feasible
-  double cost = std::numeric_limits<double>::infinity();  ///< cost of the best point; infinite without one
+  std::vector<double> x = {};  ///< parameters of the best candidate waveform; empty if no candidate was feasible
+  /// Cost of the best candidate waveform; infinite if no candidate was feasible.
+  double cost = std::numeric_limits<double>::infinity();
   long closings = 0;
 };
-/// Searches until the chain has used its number of closings or the budget is spent. Calls `told` with every candidate, after
-/// the budget has counted the candidate's closings.
+/// Searches a waveform from one starting point until the search has used its number of closings or the budget is spent. Calls
+/// `told` with every candidate, after the budget has counted the candidate's closings.
 [[nodiscard]] ChainEnd search_chain(const StagedCost& cost, const Chain& chain, SearchBudget& budget,
                                     const std::function<void(const std::vector<double>& x, double cost)>& told);
 

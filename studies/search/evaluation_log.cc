@@ -19,7 +19,7 @@ EvaluationLog::EvaluationLog(const OptimizeOptions& options, const SearchBudget&
       scene_(std::move(scene)),
       progress_{.baseline_cost = step_cost, .planned = options.counts_work ? options.max_evaluations : 0} {}
 
-// Returns true if `cost` is the least cost so far, and stores it.
+// Returns true if `cost` is the least cost in the search so far, and stores it.
 bool EvaluationLog::improves(double cost) {
   const bool is_least = std::isfinite(cost) && !(progress_.best_cost <= cost);
   if (is_least) progress_.best_cost = cost;

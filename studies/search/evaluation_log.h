@@ -32,11 +32,11 @@ class EvaluationLog {
   /// Reports the progress of the search without a new evaluation.
   void tell();
 
-  /// The evaluations by their index.
+  /// Returns the evaluations of the search by their index.
   [[nodiscard]] const std::map<long, Evaluation>& evaluations() const { return evaluations_; }
-  /// The evaluations whose Evaluation::problem is `problem`, by their index.
+  /// Returns the evaluations whose Evaluation::problem is `problem`, by their index.
   [[nodiscard]] std::map<long, Evaluation> evaluations(std::size_t problem) const;
-  /// One more than the largest index of the evaluations; 0 without evaluations.
+  /// Returns one more than the largest index of the evaluations; 0 without evaluations.
   [[nodiscard]] long next_index() const { return evaluations_.empty() ? 0 : evaluations_.rbegin()->first + 1; }
 
  private:
@@ -45,7 +45,7 @@ class EvaluationLog {
   const OptimizeOptions& options_;
   const SearchBudget& budget_;
   SceneOf scene_;
-  std::mutex mutex_;  // guards the members below
+  std::mutex mutex_;  // guards the evaluations and the progress, since several threads add evaluations
   std::map<long, Evaluation> evaluations_;
   OptimizeProgress progress_;
 };

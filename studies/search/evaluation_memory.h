@@ -1,6 +1,6 @@
 // The evaluations of a search, stored by an owner that outlives the search. A search is a function of its scene and options:
-// run again, it evaluates the same candidates in the same order. If some evaluations come from this memory, the search ends
-// with the same bits, and simulates only the missing candidates.
+// run again, it evaluates the same candidate waveforms in the same order. If some evaluations come from this memory, the search
+// ends with the same bits, and simulates only the missing candidates.
 #pragma once
 
 #include <cstddef>
@@ -16,26 +16,29 @@
 
 namespace softland {
 
-/// What an evaluation depends on: the waveform parameters of a candidate, and the devices on which the candidate is simulated.
+/// The data on which an evaluation depends: the waveform parameters of a candidate, and the devices on which the candidate is
+/// simulated.
 struct EvaluationKey {
   std::size_t family = 0;     ///< number of the waveform family among those that share the memory
-  std::vector<double> x;      ///< searched parameters of the candidate
-  std::uint64_t devices = 0;  ///< number of varied devices; 0: the nominal device alone
-  std::uint64_t seed = 0;     ///< seed of the random devices
-  /// A candidate whose cost on the first devices exceeds this value is not simulated on the rest.
+  std::vector<double> x;      ///< searched waveform parameters of the candidate
+  std::uint64_t devices = 0;  ///< number of varied devices in the evaluation; 0: the nominal device alone
+  std::uint64_t seed = 0;     ///< seed of the random devices in the evaluation
+  /// Cost limit of the evaluation: a candidate waveform whose cost on the first devices exceeds this value is not simulated on
+  /// the rest.
   double hopeless = std::numeric_limits<double>::infinity();
 };
 
 struct EvaluationValues {
-  double cost =
-      std::numeric_limits<double>::infinity();  ///< cost by the target of the search; infinite if the waveform is infeasible
-  double guide = std::numeric_limits<double>::infinity();  ///< cost in the first stage of a search; see GuidedSearch
-  bool lands = false;                                      ///< true if the switch closes without a significant rebound
-  long closings = 1;                                       ///< simulated closings of the evaluation
+  /// Cost of the candidate by the target of the search; infinite if the waveform is infeasible.
+  double cost = std::numeric_limits<double>::infinity();
+  /// Cost of the candidate waveform in the first stage of a search; see GuidedSearch.
+  double guide = std::numeric_limits<double>::infinity();
+  bool lands = false;  ///< true if the switch closes without a significant rebound
+  long closings = 1;   ///< number of simulated closings of the evaluation
 };
 
-/// Interface of a memory of evaluations, called from any thread. Neither function throws: the owner reports failures of
-/// storage.
+/// Interface of a memory of a search's evaluations, called from any thread. Neither function throws: the owner reports failures
+/// of storage.
 class EvaluationMemory {
  public:
   virtual ~EvaluationMemory() = default;
@@ -45,19 +48,19 @@ class EvaluationMemory {
 
 /// The parameters of the waveform families that share a memory or a log, as columns of a table.
 struct FamilyColumns {
-  std::vector<std::vector<std::string>> families;  ///< parameter names of each family
+  std::vector<std::vector<std::string>> families;  ///< names of the waveform parameters, by waveform family
 
-  /// Names of the columns, in the order of the values in row().
+  /// Returns the names of the columns, in the order of the values in row().
   [[nodiscard]] std::vector<std::string> names() const;
-  /// The row of a point of one family: NaN in the columns of other families. Throws InvalidInput if x is not a point of the
-  /// family.
+  /// Returns the row of the table for a point of one waveform family: NaN in the columns of other families. Throws InvalidInput
+  /// if x is not a point of the family.
   [[nodiscard]] std::vector<double> row(std::size_t family, std::span<const double> x) const;
 };
 
 /// Waveforms from which a search begins.
 struct StartingWaveforms {
-  std::string name;                           ///< name for messages: "--start run1/best.toml"
-  DriveWaveforms waveforms;                   ///< waveforms by drive [V, s]
+  std::string name;                           ///< name of the starting waveforms for messages: "--start run1/best.toml"
+  DriveWaveforms waveforms;                   ///< waveforms by drive: voltage [V] over time [s]
   std::map<std::string, double> before = {};  ///< voltages of the drives before t = 0, if not 0 [V]
 };
 

@@ -18,24 +18,24 @@ namespace softland {
 /// Name of the database file in the folder of a search.
 inline constexpr const char* evaluations_file = "evaluations.sqlite";
 
-/// A database file with one row per simulated candidate, in the order in which the simulations ended. On request the file takes
-/// over rows of a search in the same file that differs only in its budget.
+/// A database file with one row per simulated candidate waveform, in the order in which the simulations ended. On request the
+/// file takes over rows of a search in the same file that differs only in its budget.
 class EvaluationStore : public EvaluationMemory {
  public:
-  /// `columns` are the parameters of all waveform families. `points` is the largest number of evaluations of the plan; later
-  /// evaluations are not stored. Throws what the constructor of StudyStore throws.
+  /// `columns` are the parameters of all waveform families. `points` is the largest number of evaluations that the search
+  /// `plan` makes; later evaluations are not stored. Throws the exceptions of the constructor of StudyStore.
   EvaluationStore(const std::filesystem::path& file, const nlohmann::json& plan, std::int64_t points, std::uint64_t seed,
                   FamilyColumns columns, const StoredOrigin& origin);
 
   [[nodiscard]] std::optional<EvaluationValues> recall(const EvaluationKey& key) noexcept override;
   void note(const EvaluationKey& key, const EvaluationValues& values) noexcept override;
 
-  /// Return the number of simulated evaluations, and of evaluations that were read from the file.
+  /// Return the number of simulated evaluations, and the number of evaluations that were read from the file.
   [[nodiscard]] std::int64_t computed() const;
   [[nodiscard]] std::int64_t recalled() const;
-  /// Rethrows the first exception that storing or reading an evaluation caused, if any.
+  /// Rethrows the first exception, if any, that storing or reading an evaluation caused.
   void check();
-  /// Waits until all evaluations are on the disk, and closes the file. Throws what check() throws.
+  /// Waits until all evaluations are on the disk, and closes the database file. Throws the exceptions of check().
   void close();
 
  private:
@@ -45,7 +45,8 @@ class EvaluationStore : public EvaluationMemory {
   StudyStore store_;
   std::int64_t points_;
   mutable std::mutex mutex_;
-  std::map<ContentKey, EvaluationValues> known_;  // evaluations of this plan that the file contained at the beginning
+  // Evaluations of the same search that the database file contained at the beginning.
+  std::map<ContentKey, EvaluationValues> known_;
   std::int64_t next_ = 0, computed_ = 0, recalled_ = 0;
   std::exception_ptr failure_;
 };

@@ -17,24 +17,24 @@
 
 namespace softland {
 
-/// Searches one waveform family. Evaluation::problem is the number of the family.
+/// Searches the waveforms of one waveform family. Evaluation::problem is the number of the family.
 class FamilySearch {
  public:
   /// Keeps references to `setting` and `options`. Calls `on_evaluation` with every evaluation.
   FamilySearch(const SearchSetting& setting, const OptimizeOptions& options,
                std::function<void(const Evaluation&)> on_evaluation);
 
-  /// Adds a starting point before the family's own: the given waveforms, or the most similar waveforms of the family. Waveforms
-  /// from which a search cannot begin are skipped.
+  /// Adds a starting point before the waveform family's own: the given waveforms, or the most similar waveforms of the family.
+  /// Waveforms from which a search cannot begin are skipped.
   void begin_at(const DriveWaveforms& waveforms);
-  /// Adds a starting point before all others: the point `x` of the family.
+  /// Adds a starting point of the search before all others: the point `x` of the waveform family's parameters.
   void begin_at_point(const std::vector<double>& x);
-  /// Runs the search: see GuidedSearch::run().
+  /// Searches within the waveform family in one or two stages: see GuidedSearch::run().
   [[nodiscard]] OptimizerResult run(const OptimizerOptions& share, Costs costs, long more, long first_index);
-  /// Returns the best evaluation by a cost: see GuidedSearch::best().
+  /// Returns the evaluation with the lowest guide or target cost: see GuidedSearch::best().
   [[nodiscard]] std::optional<GuidedSearch::Best> best(Costs costs) const;
 
-  /// Returns the parameters of the given waveforms; none if the family cannot describe the waveforms.
+  /// Returns the waveform family's parameters of the given waveforms; none if the family cannot describe them.
   [[nodiscard]] std::optional<std::vector<double>> point(const DriveWaveforms& waveforms) const {
     return setting_.space.parameters(waveforms);
   }
@@ -43,7 +43,8 @@ class FamilySearch {
   [[nodiscard]] PreparedScene prepared(const Evaluation& e) const { return setting_.prepared(waveforms(e)); }
   /// Returns the waveform parameters of an evaluation, by drive.name.
   [[nodiscard]] std::map<std::string, double> named(const Evaluation& e) const;
-  /// Returns GuidedSearch::surest_below(); `others` may contain evaluations of other families.
+  /// Returns the evaluation that GuidedSearch::surest_below() finds; `others` may contain evaluations of other waveform
+  /// families.
   [[nodiscard]] std::optional<Evaluation> surest_below(double own, const std::vector<Evaluation>& others) const;
 
  private:

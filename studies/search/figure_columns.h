@@ -7,11 +7,11 @@
 
 namespace softland {
 
-/// A column of numbers.
+/// A column of numbers in a table: a figure of merit or a searched parameter.
 struct PointFigure {
-  std::string quantity;  ///< key of the quantity: "impact_velocity"
-  std::string name;      ///< displayed name: "Impact speed"
-  std::string unit;      ///< SI unit; empty for a count, a share, and true or false (1 or 0)
+  std::string quantity;  ///< key of the figure or parameter: "impact_velocity"
+  std::string name;      ///< displayed name of the figure or parameter: "Impact speed"
+  std::string unit;      ///< SI unit of the figure or parameter; empty for a count, a share, and true or false (1 or 0)
 };
 
 /// Returns the column of a searched parameter: "main.level_1_V" gives "main.level_1" in V.

@@ -89,7 +89,7 @@ void FirstTouchProblem::add_free(const PreparedScene& prepared, const std::strin
     pull = up ? bound.upper : bound.lower;
     release = up ? bound.lower : bound.upper;
   } else {
-    // Voltages are relative to the voltage at which the electrode does not pull; with a slew limit, to 0 V.
+    // Voltages count from the voltage at which the electrode does not pull (neutral voltage); with a slew limit, from 0 V.
     const double neutral = ramps_ ? 0 : model_.neutral_voltage(drive);
     f.sign = std::abs(low - neutral) > std::abs(high - neutral) ? -1 : 1;
     const double most = f.sign > 0 ? std::min(high, peak) - neutral : neutral - std::max(low, -peak);
@@ -123,7 +123,7 @@ std::vector<double> FirstTouchProblem::strengths(const VectorXd& c) const {
   return all;
 }
 
-// Computes the control of a voltage, which may be outside the bounds.
+// Converts a voltage to a control, the dimensionless strength of a drive, which may be outside its bounds.
 double FirstTouchProblem::control(const Free& f, double volts) const {
   const bool squared = !ramps_ && model_.drive_kind(f.drive) == DriveKind::electrode;
   return (squared ? model_.strength(f.drive, volts) : f.sign * volts) / f.largest;
@@ -192,15 +192,15 @@ std::map<std::string, double> FirstTouchProblem::volts(const VectorXd& c) const 
   return all;
 }
 
-// Returns the hold levels of all drives; those of the controlled drives are multiplied by `share_of_free`.
+// Returns the hold levels of all drives [V]; those of the controlled drives are multiplied by `share_of_free`.
 std::vector<double> FirstTouchProblem::held_levels(double share_of_free) const {
   std::vector<double> all = hold_;
   for (const Free& f : free_) all[f.drive] *= share_of_free;
   return all;
 }
 
-// Least share of the controlled drives' hold levels that keeps the switch closed. Below this share, the closed equilibrium does
-// not exist. Share 1 must keep the switch closed.
+// Returns the least share of the controlled drives' hold levels that keeps the switch closed. Below this share, the closed
+// equilibrium does not exist. Share 1 must keep the switch closed.
 double FirstTouchProblem::least_closing_share() const {
   constexpr double precision = 1e-9;
   const auto closes = [&](double share) { return keeps_closed(model_, closed_equilibrium(model_, held_levels(share))); };
@@ -261,7 +261,7 @@ std::optional<ControlledCourse> FirstTouchProblem::swing(double longest) const {
 
 std::optional<ControlledCourse> FirstTouchProblem::flown(std::span<const Signal> signals, int intervals, double longest) const {
   constexpr double tolerance = 1e-6;
-  constexpr int looks = 16;  // samples of a signal per interval of the controls
+  constexpr int looks = 16;  // number of samples of a signal per interval of the controls
   std::vector<double> times{0};
   std::vector<VectorXd> states{start_};
   ClosingOptions options{.duration = longest, .tolerance = tolerance, .after_contact = 0};

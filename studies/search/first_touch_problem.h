@@ -5,8 +5,9 @@
 // The symbols are: q modal coordinates, omega natural frequencies, g contact gap, s_i displacement of the contact point by mode
 // i. A mode with a node at the contact point has a tenth of the largest s_i. z_i is the displacement of the contact point by
 // mode i, in gaps. A control is the strength of a drive over its largest strength: Switch::strength() of an electrode, the
-// voltage of a piezo. The motion is linear in the controls, and the quickest control jumps between its bounds. If the driver's
-// slew is limited, the control is the voltage over the largest voltage, and linear between knots.
+// voltage of a piezo. The motion is linear in the controls, and the quickest control jumps between its bounds. If the slew of
+// the voltage source is limited, the control is the voltage over the largest voltage, and linear between knots (points in
+// time).
 #pragma once
 
 #include <Eigen/Core>
@@ -27,10 +28,9 @@ namespace softland {
 
 class FirstTouchProblem final : public ControlledSystem {
  public:
-  /// Keeps a reference to `prepared`. The controls are the drives whose waveforms the actuator may vary, within their limits
-  /// and, for electrodes, up to `peak` [V]. The other drives stay at their values in the plain step. Throws InvalidInput for a
-  /// scene that lacks the drive or its limits, whose gas film is compressible, or whose open switch does not rest above its
-  /// contact.
+  /// Keeps a reference to `prepared`. Controlled are the drives whose waveforms the actuator may vary, within their limits and,
+  /// for electrodes, up to `peak` [V]. The other drives stay at their values in the plain step. Throws InvalidInput for a scene
+  /// that lacks the drive or its limits, whose gas film is compressible, or whose open switch does not rest above its contact.
   FirstTouchProblem(const PreparedScene& prepared, Actuator actuator, double peak = std::numeric_limits<double>::infinity());
 
   [[nodiscard]] Eigen::Index states() const override { return 2 * modes_; }
@@ -42,41 +42,42 @@ class FirstTouchProblem final : public ControlledSystem {
 
   [[nodiscard]] const std::vector<ControlBound>& bounds() const { return bounds_; }
   [[nodiscard]] bool ramps() const { return ramps_; }
-  [[nodiscard]] double time_unit() const { return 1 / omega_[0]; }  ///< unit of dimensionless time [s]
-  /// Row vectors that give position [gap] and velocity [gap per time unit] of the contact point as products with a state.
+  [[nodiscard]] double time_unit() const { return 1 / omega_[0]; }  ///< unit of the dimensionless time, 1 / omega_1 [s]
+  /// Row vectors whose products with a state are position [gap] and velocity [gap per time unit] of the contact point.
   [[nodiscard]] const Eigen::VectorXd& tip() const { return tip_; }
   [[nodiscard]] const Eigen::VectorXd& tip_speed() const { return tip_speed_; }
-  [[nodiscard]] double speed_unit() const { return gap_ * omega_[0]; }  ///< unit of dimensionless velocity [m/s]
+  /// Unit of the dimensionless velocity, contact gap times omega_1 [m/s].
+  [[nodiscard]] double speed_unit() const { return gap_ * omega_[0]; }
   [[nodiscard]] const Eigen::VectorXd& start() const { return start_; }
   struct Landing {
     Eigen::VectorXd state, controls;
   };
-  /// The beam at rest on the contact plane under the hold levels of all drives; none if the contact force would have to be
-  /// tensile. If the slew is limited, the controlled drives have the smallest share of their hold levels that keeps the switch
-  /// closed: with a larger share the contact point would have to come to rest from behind the contact plane.
+  /// Returns the beam at rest on the contact plane under the hold levels of all drives; none if the contact force would have to
+  /// be tensile. If the slew is limited, the controlled drives have the smallest share of their hold levels that keeps the
+  /// switch closed: with a larger share the contact point would have to come to rest from behind the contact plane.
   [[nodiscard]] std::optional<Landing> landing() const;
 
-  /// The quickest single swing to the contact: full pull, then full release, so that the contact point turns back as it
+  /// Returns the quickest single swing to the contact: full pull, then full release, so that the contact point turns back as it
   /// arrives. None if full pull does not reach the contact within `longest` [s].
   [[nodiscard]] std::optional<ControlledCourse> swing(double longest) const;
-  /// The motion until first contact under signals of all drives, with the controls in `intervals` intervals. The controls are
-  /// the signals of the controlled drives, clamped to their bounds. None if the switch does not touch its contact within
-  /// `longest` [s].
+  /// Returns the motion until first contact under signals of all drives, with the controls in `intervals` intervals. The
+  /// controls are the signals of the controlled drives, clamped to their bounds. None if the switch does not touch its contact
+  /// within `longest` [s].
   [[nodiscard]] std::optional<ControlledCourse> flown(std::span<const Signal> signals, int intervals, double longest) const;
-  /// The voltages of the controlled drives at the controls `c`, by drive [V].
+  /// Returns the voltages of the controlled drives at the values `c` of the controls, by drive [V].
   [[nodiscard]] std::map<std::string, double> volts(const Eigen::VectorXd& c) const;
-  /// The slew limit of the driver of a controlled drive [V/s].
+  /// Returns the slew limit of a controlled drive's voltage source [V/s].
   [[nodiscard]] double max_slew(const std::string& drive) const;
-  /// The values of the controls that pull most towards the contact.
+  /// Returns the values of the controls (dimensionless drive strengths) that pull most towards the contact.
   [[nodiscard]] const Eigen::VectorXd& pull() const { return pull_; }
 
  private:
   struct Free {
     std::size_t drive;
     std::string name;
-    double largest;   ///< largest strength of the drive, or largest voltage if the slew is limited
-    double sign;      ///< sign of an electrode's voltage, which does not change its pull
-    double max_slew;  ///< slew limit of the driver [V/s]
+    double largest;   ///< largest strength of the controlled drive, or its largest voltage if the slew is limited
+    double sign;      ///< sign of the voltage that an electrode gets; its pull does not depend on the sign
+    double max_slew;  ///< slew limit of the drive's voltage source [V/s]
   };
   [[nodiscard]] double strength(std::size_t drive, double value) const;
   [[nodiscard]] std::vector<double> strengths(const Eigen::VectorXd& c) const;
@@ -90,8 +91,8 @@ class FirstTouchProblem final : public ControlledSystem {
   Eigen::Index modes_;
   double gap_;
   Eigen::VectorXd omega_, per_q_, per_v_, per_acceleration_, tip_, tip_speed_, start_, pull_, release_;
-  std::vector<double> held_;  ///< strengths of all drives; entries of controlled drives are not used
-  std::vector<double> hold_;  ///< values of all drives after first contact
+  std::vector<double> held_;  ///< constant strengths of all drives; the entries of controlled drives are not used
+  std::vector<double> hold_;  ///< voltages of all drives after first contact [V]
   std::vector<Free> free_;
   std::vector<ControlBound> bounds_;
   bool ramps_ = false;

@@ -1,4 +1,5 @@
-// The result of a search: on the nominal device, over devices by one measure, or over devices by a tournament of families.
+// The result of a search: on the nominal device, over devices by one measure of risk, or over devices by a tournament of
+// waveform families.
 #pragma once
 
 #include <variant>
@@ -20,7 +21,7 @@ struct FoundSearch {
 };
 
 /// Runs the search with the first of its seeds. A search over varied devices of a scene without [spread] uses the spread of
-/// assume_spread(). Throws InvalidInput as optimize() does.
+/// assume_spread(). Throws the exceptions of optimize().
 [[nodiscard]] FoundSearch run(PlannedSearch& search);
 
 }  // namespace softland

@@ -16,17 +16,18 @@
 
 namespace softland {
 
-/// The two costs of one point; infinite if the point is infeasible.
+/// The guide cost and the target cost of one point; infinite if the point is infeasible.
 struct SearchCosts {
   double guide = std::numeric_limits<double>::infinity();
   double target = std::numeric_limits<double>::infinity();
   bool lands = false;  ///< true if the switch closes without a significant rebound
-  /// Values of a search under conditions: costs without the penalty of broken conditions, and each excess g of Conditions.
+  /// Costs of a point without the penalty of broken conditions, and, apart from them, each excess g of Conditions.
   struct Apart {
     double guide, target;
     std::vector<double> excess;
   };
-  std::optional<Apart> apart = {};  ///< none without conditions, and if the costs come from an EvaluationMemory
+  /// Costs apart from the conditions; none without conditions, and if the costs come from an EvaluationMemory.
+  std::optional<Apart> apart = {};
 };
 
 /// Functions for the gradients of the guide cost and the target cost, as Problem::gradient; may be null. Under conditions they
@@ -34,12 +35,12 @@ struct SearchCosts {
 struct CostGradients {
   std::function<std::vector<double>(std::span<const double>)> guide, target;
   std::size_t conditions = 0;
-  /// Computes the costs of a point again, even if the memory has them.
+  /// Computes the costs of a point again, apart from the conditions, even if the memory has them.
   std::function<SearchCosts::Apart(std::span<const double>)> apart = {};
 };
 
-/// The cost that a run minimises. `same`: guide cost and target cost are the same; `both`: the guide for two thirds of the
-/// budget, then the target.
+/// The cost that a run of the search minimises. `same`: guide cost and target cost are the same; `both`: the guide cost for two
+/// thirds of the budget, then the target cost.
 enum class Costs { same, guide, target, both };
 
 /// Divisor of the budget: one part in this number is spent on the target cost, if it differs from the guide cost.
@@ -54,19 +55,19 @@ class GuidedSearch {
       : price_(std::move(price)), on_evaluation_(std::move(on_evaluation)), slopes_(std::move(slopes)) {}
 
   /// Minimises over the variables of `problem` from its starts. The objective of `problem` and the callbacks of `options` are
-  /// not used. Throws as minimize() does. Result, improvements and indices are those of one search by the target cost; the
-  /// first index is `first_index`. If both costs are the same and no point closes without a bounce, a second stage of `more`
-  /// evaluations continues from the best points. A further call of run() begins at these points, and at starts that were not
-  /// tried; its result covers all calls.
+  /// not used. Throws the exceptions of minimize(). Result, improvements and indices are those of one search by the target
+  /// cost; the first index is `first_index`. If both costs are the same and no point closes without a bounce, a second stage of
+  /// `more` evaluations continues from the best points. A further call of run() begins at these points, and at starts that were
+  /// not tried; its result covers all calls.
   [[nodiscard]] OptimizerResult run(Problem problem, OptimizerOptions options, Costs costs, long more = 0, long first_index = 0);
   struct Best {
-    Evaluation evaluation;  ///< evaluation with the target cost as value
-    double cost = 0;        ///< guide or target cost of the evaluation, as requested
+    Evaluation evaluation;  ///< best evaluation, with the target cost as value
+    double cost = 0;        ///< guide cost or target cost of the evaluation, as requested
   };
   /// Returns the evaluation with the lowest guide cost for `Costs::guide`, with the lowest target cost otherwise. Nothing if no
   /// evaluation is feasible.
   [[nodiscard]] std::optional<Best> best(Costs costs) const;
-  /// All evaluations, by index, with the target cost as value.
+  /// Returns all evaluations of the search, by index, with the target cost as value.
   [[nodiscard]] const std::map<long, Evaluation>& log() const { return log_; }
   /// Returns the evaluation with the least guide cost among evaluations whose target cost is below `own` and whose points
   /// differ from `others`.
@@ -83,8 +84,8 @@ class GuidedSearch {
   CostGradients slopes_;
   std::mutex mutex_;
   std::map<std::vector<double>, SearchCosts> known_;
-  std::map<long, Evaluation> log_;  ///< evaluations by index
-  long first_index_ = 0;            ///< index of the first evaluation in the current stage
+  std::map<long, Evaluation> log_;  ///< evaluations of the search by index
+  long first_index_ = 0;            ///< index of the first evaluation in the current stage of the search
 };
 
 }  // namespace softland

@@ -12,12 +12,13 @@
 namespace softland {
 namespace {
 
-constexpr std::array shares = {0.15, 0.4, 1.0};  // shares of the voltage ranges, for drives other than the pulling electrode
-constexpr double edge_of_period = 0.005;         // shortest edge of the waveform families, in periods of the first mode
-constexpr double longest = 3;                    // longest swing, in periods of the first mode
+// Used shares of the voltage ranges, for drives other than the pulling electrode.
+constexpr std::array shares = {0.15, 0.4, 1.0};
+constexpr double edge_of_period = 0.005;  // shortest edge of the waveform families, in periods of the first mode
+constexpr double longest = 3;             // longest swing (pull, then release) to the contact, in periods of the first mode
 
 struct Levels {
-  double pulling = 0, releasing = 0;  // voltages of the two parts of a swing [V]
+  double pulling = 0, releasing = 0;  // voltages that pull, then release, in the two parts of a swing to the contact [V]
 };
 
 Levels levels_of(const DriveSearch& s, const PreparedScene& given, double share) {

@@ -3,7 +3,8 @@
 // several drives, or of a piezo, begins with these waveforms.
 //
 // The pulling electrode goes to its limits. The other drives use only shares of their ranges, since their full range would
-// excite the higher modes. A piezo pulls and then lifts; an electrode on the far side waits and then brakes.
+// excite the higher modes. A piezo pulls and then lifts; an electrode on the far side (away from the contact) waits and then
+// brakes.
 #pragma once
 
 #include <string>

@@ -25,20 +25,24 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr int first_knots = 48;       // intervals of the controls before refinement
-constexpr double piece_angle = 0.75;  // phase angle of the fastest mode in one piece of the mesh
-// Permitted difference of optimum and simulation: relative in the time of first contact, or in contact gaps if only one of the
-// two touches.
+constexpr int first_knots = 48;       // number of intervals of the controls before their refinement
+constexpr double piece_angle = 0.75;  // phase angle by which the fastest mode turns in one interval of the time mesh [rad]
+// Permitted difference between optimal control and simulation: relative in the time of first contact, or in contact gaps if
+// only one of the two motions touches.
 constexpr double agreement = 1e-4;
-constexpr double longest_swing = 3;       // longest time of a swing, in periods of the first mode
-constexpr double softness = 0.2;          // relative excess over the permitted speed that a simulation may have
-constexpr double catch_tolerance = 1e-6;  // tolerance of the integrator for comparing catches
-constexpr int refinements = 3;            // refinements of the knots: each halves the shortest interval
-constexpr int most_meshes = 3;            // meshes of the optimal control problem, each with half the width of its predecessor
+constexpr double longest_swing = 3;  // longest time of a swing to the contact, in periods of the first mode
+// Relative excess over the permitted impact velocity that a simulation of the waveforms may have.
+constexpr double softness = 0.2;
+// Relative tolerance of the integrator for comparing catches (pulls after first contact).
+constexpr double catch_tolerance = 1e-6;
+constexpr int refinements = 3;  // number of refinements of the controls' time points: each halves the shortest interval
+constexpr int most_meshes = 3;  // number of meshes of the optimal control problem, each with half the width of its predecessor
 
-// Permitted differences of modal coordinates from the closed equilibrium, in gaps, for successive solutions.
+// Permitted differences of modal coordinates from the closed equilibrium, in contact gaps, for successive solutions of the
+// optimal control problem.
 constexpr std::array rest_distances = {0.1, 0.03, 0.01, 0.003, 0.001, 0.0003};
-constexpr long nearing_iterations = 100;  // largest number of Ipopt iterations per distance; about thirty if a solution exists
+// Largest number of Ipopt iterations per permitted distance from the equilibrium; about thirty if a solution exists.
+constexpr long nearing_iterations = 100;
 
 std::vector<double> uniform_knots(int intervals) {
   std::vector<double> knots;
@@ -57,7 +61,7 @@ Arrival arrival(const PreparedScene& prepared, const DriveWaveforms& searched, A
   return {m.initial_contact_time, m.impact_velocity};
 }
 
-// One search for a least time: the optimal control problem, its best solution so far, and its progress.
+// One search for the least time of a first contact: the optimal control problem, its best solution so far, and its progress.
 class LeastTimeSearch {
  public:
   LeastTimeSearch(const PreparedScene& prepared, const LeastTimeOptions& options)
@@ -74,8 +78,8 @@ class LeastTimeSearch {
     return from(std::move(*swing), longest_time());
   }
 
-  // Returns waveforms of solutions that end closer and closer to rest, on the initial intervals and mesh. After first contact
-  // the drives are as in `plain`.
+  // Returns waveforms of solutions whose modes end closer and closer to rest on the contact, on the initial intervals and mesh.
+  // After first contact the drives are as in `plain`.
   std::vector<DriveWaveforms> ways_to_rest(const DriveWaveforms& plain) {
     std::vector<DriveWaveforms> all;
     std::optional<ControlledCourse> swing = first_touch_.swing(longest_time());
@@ -139,12 +143,12 @@ class LeastTimeSearch {
                 .knots = uniform_knots(first_knots),
                 .longest_piece = piece_angle / (fastest * course_.time),
                 .stop = options_.progress.stop};
-    // A beam stays at rest only if the drives end at the levels of the equilibrium in which it lands.
+    // A beam stays at rest on the contact only if the drives end at the levels of its equilibrium.
     for (Index k = 0; landing && first_touch_.ramps() && k < first_touch_.controls(); ++k)
       problem_.bounds[static_cast<std::size_t>(k)].after = landing->controls[k];
   }
 
-  // Solves again from the last solution, which remains if the solver fails.
+  // Solves the optimal control problem again from the last solution, which remains if the solver fails.
   Status improve() {
     ControlledCourse course = solve(problem_, course_);
     result_.message = course.message;
@@ -192,7 +196,8 @@ class LeastTimeSearch {
     return Status::done;
   }
 
-  // Solves on finer meshes until time and speed of first contact agree with a simulation of the waveforms.
+  // Solves the optimal control problem on finer meshes until time and speed of first contact agree with a simulation of the
+  // waveforms.
   LeastTime refine_until_simulated() {
     for (int mesh = 1;; ++mesh) {
       result_.course = course_;
@@ -208,7 +213,7 @@ class LeastTimeSearch {
       const double missed = apart * std::max(touch.velocity, result_.impact_velocity);
       bool near = apart <= agreement * result_.time || missed <= agreement * prepared_.scene.device.contact_gap();
       const bool as_soft = touch.velocity <= result_.impact_velocity + softness * options_.impact_velocity;
-      // In the simulation a contact point that comes to rest near the contact plane may touch earlier.
+      // In the simulation a contact point that comes to rest near the contact plane may touch earlier than in the optimum.
       near = near || (options_.at_rest && as_soft && touch.time < result_.time);
       if ((near && as_soft) || (near && mesh == most_meshes)) return ended(Status::done, {});
       if (mesh == most_meshes) return ended(Status::numerical_failure, "a simulation of the waveform touches at another time");
@@ -241,8 +246,8 @@ LeastTime least_time(const PreparedScene& prepared, const LeastTimeOptions& opti
 std::vector<DriveWaveforms> rest_to_rest_starts(const PreparedScene& prepared, Actuator actuator, double impact_velocity,
                                                 const Progress& progress) {
   constexpr int most_modes_followed = 4;
-  constexpr std::array ramps = {1.0 / 9,
-                                1.0 / 18};  // time from one end of a drive's range to the other, in periods of the first mode
+  // Time in which a drive's voltage goes from one end of its range to the other, in periods of the first mode.
+  constexpr std::array ramps = {1.0 / 9, 1.0 / 18};
   const double period = 2 * pi / prepared.model.basis().angular_frequencies()[0];
   std::vector<DriveWaveforms> found;
   if (prepared.model.modes() > most_modes_followed) return found;
@@ -261,7 +266,7 @@ std::vector<DriveWaveforms> rest_to_rest_starts(const PreparedScene& prepared, A
       const LeastTimeOptions options{.actuator = actuator, .impact_velocity = impact_velocity, .progress = own};
       std::ranges::move(LeastTimeSearch(smooth, options).ways_to_rest(plain_step(prepared, actuator)), std::back_inserter(found));
     } catch (const InvalidInput&) {
-      return {};  // a scene that FirstTouchProblem refuses
+      return {};  // no starts for a scene that FirstTouchProblem refuses
     }
   }
   return found;
@@ -269,11 +274,12 @@ std::vector<DriveWaveforms> rest_to_rest_starts(const PreparedScene& prepared, A
 
 namespace {
 
-// Delays of the catch (the pull after first contact), over the time of first contact. Without delay, the drives would pull
-// while the modes still swing back from the contact.
+// Delays of the catch (the pull after first contact), as shares of the time of first contact. Without delay, the drives would
+// pull while the modes still swing back from the contact.
 constexpr std::array catch_delays = {0.0, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04};
 
-// The catches that can follow the waveforms of `path`, which end at first contact, and their simulated closings.
+// The catches (pulls after first contact) that can follow the waveforms of `path`, which end at first contact, and their
+// simulated closings.
 class AfterTouch {
  public:
   AfterTouch(const PreparedScene& prepared, const LeastTime& path, Actuator actuator)
@@ -285,9 +291,11 @@ class AfterTouch {
     until_touch_.waveforms = tables_of(first_touch_, path.course);
   }
 
-  // Returns the catch whose closing rebounds least, among catches that begin after `delay` and last at most `longest`.
+  // Returns the catch (pull after first contact) whose closing rebounds least, among catches that begin after `delay` and last
+  // at most `longest`.
   [[nodiscard]] Catch best_catch(double delay, const Progress& progress) const {
-    constexpr double longest = 3, step = 0.1;  // multiples of the time of first contact
+    // Longest catch, and step between two lengths of a catch, as multiples of the time of first contact.
+    constexpr double longest = 3, step = 0.1;
     const double period = 2 * pi / prepared_.model.basis().angular_frequencies()[0];
     Catch best;
     double least = std::numeric_limits<double>::infinity();
@@ -324,7 +332,7 @@ class AfterTouch {
   FirstTouchProblem first_touch_;
   DriveWaveforms plain_;
   const LeastTime& path_;
-  LeastTime until_touch_;  // path_ with waveforms that end at first contact
+  LeastTime until_touch_;  // least time with its waveforms, which end at first contact
 };
 
 bool goes_before(const LimitLanding& a, const std::optional<LimitLanding>& b) {
@@ -369,11 +377,12 @@ class LimitStudy {
   }
 
  private:
-  static constexpr std::array quicker = {10.0, 3.0};  // multiples of the permitted impact velocity, for quicker closings
+  // Multiples of the permitted impact velocity at which quicker closings are tried.
+  static constexpr std::array quicker = {10.0, 3.0};
   static constexpr std::array speeds = {0.3, 1.0, 3.0, 10.0, 30.0, 100.0};
   static constexpr std::array peaks = {0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95};
 
-  // Faster first contacts are tried for the closing, unless the user gave a permitted impact velocity.
+  // True if closings with a faster first contact may be tried: the user gave no permitted impact velocity.
   [[nodiscard]] bool may_be_quicker() const { return !result_.options.impact_velocity; }
   [[nodiscard]] bool has_peaks() const { return result_.options.curves && result_.options.actuator != Actuator::pzt; }
 
@@ -390,8 +399,8 @@ class LimitStudy {
     return known_.emplace(share, least_time(result_.given, other)).first->second;
   }
 
-  // Simulates closings on `path`, with several catches if `catches`, until a closing is bounce-free; stores the best one in the
-  // result.
+  // Simulates closings with the waveforms `path` of a least time, with several catches (pulls after first contact) if
+  // `catches`, until a closing is bounce-free; stores the best one in the result.
   void land(const LeastTime& path, bool catches) {
     if (path.status != Status::done) return;
     const AfterTouch after(result_.given, path, result_.options.actuator);
@@ -418,15 +427,15 @@ class LimitStudy {
   const Progress& progress_;
   LeastTimeOptions usual_;
   double parts_, done_ = 0;
-  std::map<double, LeastTime> known_;  // least times by the ratio of their impact velocity to the permitted one
+  std::map<double, LeastTime> known_;  // least times by the ratio of their impact velocity to the permitted impact velocity
 };
 
 }  // namespace
 
 namespace {
 
-// Refuses an electrode with faces on both sides if the far face is nearer: any voltage would pull the switch away from its
-// contact.
+// Throws InvalidInput for an electrode with faces on both sides of the beam if the far face is nearer: any voltage would pull
+// the switch away from its contact.
 void refuse_what_pulls_away(const PreparedScene& given, Actuator actuator) {
   if (actuator == Actuator::pzt || !has_pulling_electrode(given.scene.device)) return;
   const std::size_t k = searched_drive(given.scene.device);
@@ -458,7 +467,7 @@ Limit limit(const SceneFile& file, const LimitOptions& options, const Progress& 
   progress.throw_if_stopped();
   if (!prepared.scene.spread.empty()) result.approach = stable_approach(prepared, options.actuator);
   if (result.approach) result.quasi_static = quasi_static_speed(*result.approach, prepared, result.step.steady_force_time);
-  constexpr double soft = 0.01;  // share of the plain step's impact velocity
+  constexpr double soft = 0.01;  // permitted impact velocity as a share of that under the plain step
   require_request(options.impact_velocity || std::isfinite(result.step.impact_velocity),
                   [] { return "the plain step does not touch: give " + requested("impact-velocity"); });
   result.impact_velocity = options.impact_velocity.value_or(soft * result.step.impact_velocity);

@@ -29,15 +29,17 @@
 namespace softland {
 namespace {
 
-constexpr double time_share = 0.3;          // weight of the opening time in periods; vibration in contact gaps has weight 1
-constexpr double outside_share = 5;         // extra weight of the vibration beyond the band
-constexpr double stays_closed = 10;         // cost of a waveform under which the switch stays closed
+// Weight in the cost of the opening time in periods of the first mode; vibration in contact gaps has weight 1.
+constexpr double time_share = 0.3;
+constexpr double outside_share = 5;         // extra weight in the cost of the vibration beyond the band about the open position
+constexpr double stays_closed = 10;         // cost of an opening waveform under which the switch stays closed
 constexpr double touched_again = 0.5;       // additional cost of every contact after the switch has opened
-constexpr double opening_tolerance = 1e-5;  // tolerance of the integrator
-constexpr double seen_for = 1;              // periods over which a candidate's vibration is measured, with drives at 0 V
-constexpr double watched_for = 3;           // periods over which the best waveform's vibration is measured, at least
+constexpr double opening_tolerance = 1e-5;  // relative tolerance of the integrator in simulated openings
+// Number of periods with all drives at 0 V over which a candidate waveform's vibration is measured.
+constexpr double seen_for = 1;
+constexpr double watched_for = 3;  // least number of periods over which the best waveform's vibration is measured
 
-// Time for which sources stay at their hold levels before the command to open, in time constants of the sources.
+// Time for which voltage sources stay at their hold levels before the command to open, in time constants of the sources.
 constexpr double settled_after = 50;
 
 class ReleaseSearch {
@@ -50,18 +52,18 @@ class ReleaseSearch {
         pulses_(given, options.actuator, hold_levels(signals_of(given.waveforms())), "release"),
         plain_(applied(pulses_.plain())) {}
 
-  /// Signals of the plain opening: every drive goes to 0 V at once, as far as its source can.
+  /// Returns the signals of the plain opening: every drive goes to 0 V at once, as far as its source can.
   [[nodiscard]] const std::vector<Signal>& plain() const { return plain_; }
   [[nodiscard]] std::vector<Signal> signals(std::span<const double> x) const { return applied(pulses_.commanded(x)); }
 
-  /// Returns the scene with the commanded voltages of all drives at the point `x`, from the hold levels on; if `x` is empty,
-  /// with those of the plain opening.
+  /// Returns the scene with the commanded voltages of all drives at the point `x` of the search, from the hold levels on; if
+  /// `x` is empty, with those of the plain opening.
   [[nodiscard]] SceneFile scene(std::span<const double> x) const {
     const std::vector<Corners> commanded = x.empty() ? pulses_.plain() : pulses_.commanded(x);
     const std::vector<std::string> names = given_.drive_names();
     DriveWaveforms waveforms;
     for (std::size_t k = 0; k < names.size(); ++k) {
-      if (names[k] == dispersion_drive) continue;  // the dispersion force has no source
+      if (names[k] == dispersion_drive) continue;  // the factor of the dispersion force needs no voltage source
       Table table;
       for (const auto& [time, voltage] : commanded[k]) {
         table.time.push_back(time);
@@ -78,7 +80,7 @@ class ReleaseSearch {
     return file;
   }
 
-  /// Simulates an opening of `model`, the switch of the scene or a model of this switch with more modes.
+  /// Simulates an opening of the switch `model`: that of the scene, or the same switch with more modes.
   [[nodiscard]] Opening open(const Switch& model, std::span<const double> closed, std::vector<Signal> signals, double tolerance,
                              double window, const std::atomic<bool>* stop = nullptr) const {
     Opening o{.signals = std::move(signals), .voltages_end = 0, .trajectory = {}, .figures = {}};
@@ -124,8 +126,8 @@ class ReleaseSearch {
     return all;
   }
 
-  // Returns the applied voltage of drive k for the commanded voltages `points`, if the source was at the first voltage long
-  // enough to settle.
+  // Returns the applied voltage of drive k for the commanded voltages `points`, if the voltage source was at the first voltage
+  // long enough to settle.
   [[nodiscard]] Signal applied(std::size_t k, Corners points) const {
     const DriverModel& source = given_.drives[k].source;
     const SourceErrors& errors = given_.drives[k].errors;
@@ -150,7 +152,7 @@ bool is_open_with_drives(const OpeningFigures& f, double band) {
   return f.status == Status::done && f.residual_vibration <= band;
 }
 
-// True if the opening `a` is open for good earlier than `b`; with equal times, or none, if `a` leaves less vibration.
+// True if the opening `a` comes to stay open earlier than `b`; with equal times, or none, if `a` leaves less vibration.
 bool better(const OpeningFigures& a, const OpeningFigures& b) {
   if (!std::isfinite(a.release_time)) return false;
   if (!std::isfinite(b.release_time)) return true;
@@ -179,7 +181,7 @@ DeviceOpenings summarised(const std::vector<OpeningFigures>& openings, double ba
           .overshoot = quantile_95(openings, &OpeningFigures::overshoot)};
 }
 
-// Returns the figures of varied devices; none if no device is closed under its hold levels.
+// Returns the figures of the openings of varied devices; none if no device is closed under its hold levels.
 std::optional<OpeningsOnDevices> on_devices(const ReleaseSearch& search, const OpeningResult& r, const Progress& progress) {
   SceneFile file = r.given.scene.file;
   OpeningsOnDevices found{.spread_assumed = assume_spread(file), .plain = {}, .best = {}};

@@ -8,7 +8,8 @@
 //
 // The cost is the residual vibration over the contact gap, plus five times the vibration's excess over the band about the open
 // position, plus 0.3 times the time until the switch stays open, in periods of its first mode. The best waveform is verified by
-// a simulation over the whole window at the scene's accuracy, and confirmed with a tighter integrator and with two more modes.
+// a simulation over the scene's whole simulated time at its accuracy, and confirmed with a tighter integrator and with two more
+// modes.
 #pragma once
 
 #include <cstdint>
@@ -29,62 +30,65 @@ namespace softland {
 
 struct OpeningOptions {
   Actuator actuator = Actuator::electrostatic;  ///< drives whose waveforms may brake the beam
-  double band = 0.05;  ///< largest distance from the open position of an open switch, over the contact gap
+  double band = 0.05;  ///< largest distance of an open switch from its open position, as a share of the contact gap
   long max_evaluations = 3000;
   std::uint64_t seed = 1;
   int jobs = 1;
-  std::uint64_t devices = 200;  ///< varied devices on which the waveform is simulated; 0: none
+  std::uint64_t devices = 200;  ///< number of varied devices on which the waveform is simulated; 0: none
 };
 
 /// A simulated opening, under one signal per drive of the switch.
 struct Opening {
   std::vector<Signal> signals = {};
-  double voltages_end = std::numeric_limits<double>::quiet_NaN();  ///< time from which on all drives are at 0 V [s]
+  /// Time from which on all drives are at 0 V in the opening [s].
+  double voltages_end = std::numeric_limits<double>::quiet_NaN();
   Trajectory trajectory;
   OpeningFigures figures;
 };
 
 struct ConfirmingOpening {
-  std::string name;  ///< "tolerance 1e-9", "6 modes"
+  std::string name;  ///< changed setting of the confirming simulation: "tolerance 1e-9", "6 modes"
   OpeningFigures figures;
 };
 
 /// Openings of varied devices, with the scene's spread or the assumed spread (config/assumed_spread.h), and without errors of
-/// the sources. All devices get the voltages of the nominal device. The figures of a device that does not stay open are
+/// the voltage sources. All devices get the voltages of the nominal device. The figures of a device that does not stay open are
 /// infinite.
 struct DeviceOpenings {
-  double open = 0;     ///< share of devices that are open and stay open at the end of the window
-  double in_band = 0;  ///< share of devices within the band as soon as all drives are at 0 V
-  double settling_time = 0, residual_vibration = 0, overshoot = 0;  ///< 95th percentiles [s], [m], [m]
+  double open = 0;     ///< share of devices that are open and stay open at the end of the simulated time
+  double in_band = 0;  ///< share of devices within the band about the open position as soon as all drives are at 0 V
+  /// 95th percentiles of settling time [s], residual vibration [m] and overshoot [m].
+  double settling_time = 0, residual_vibration = 0, overshoot = 0;
 };
 struct OpeningsOnDevices {
-  std::uint64_t devices = 0;  ///< number of devices that are valid and closed under the hold levels
+  std::uint64_t devices = 0;  ///< number of devices whose parameters are valid and that are closed under the hold levels
   bool spread_assumed = false;
-  DeviceSpread spread = {};  ///< process variation of the devices
+  DeviceSpread spread = {};  ///< process variation (spread) of the devices
   DeviceOpenings plain, best;
 };
 
 struct OpeningResult {
   PreparedScene given;
   OpeningOptions options;
-  double open_position = 0;   ///< position of the contact point with all drives at 0 V [m]
-  double band = 0;            ///< band about the open position [m]
-  double contact_force = 0;   ///< force that holds the switch closed before t = 0 [N]
+  double open_position = 0;  ///< position of the contact point with all drives at 0 V [m]
+  /// Largest distance from the open position of the band about the open position in which the switch counts as at rest [m].
+  double band = 0;
+  double contact_force = 0;   ///< contact force that holds the switch closed before t = 0 [N]
   double window = 0;          ///< simulated time after the command to open [s]
   std::vector<double> holds;  ///< hold levels of the drives before t = 0 [V]
   Opening plain;
   std::optional<Opening> best;               ///< opening by the best waveform; none if no waveform opens the switch
-  std::map<std::string, double> parameters;  ///< parameters of the best waveform, by drive.name
+  std::map<std::string, double> parameters;  ///< parameters of the best opening waveform, by drive.name
   /// Scene with the commanded waveforms of the best opening, from the hold levels on, in volts; of the plain opening if there
   /// is no best opening.
   std::optional<SceneFile> scene;
   std::vector<ConfirmingOpening> checks;
-  std::optional<OpeningsOnDevices> on_devices;  ///< openings of varied devices; none if not requested, or if no waveform opens
-                                                ///< the switch
+  /// Figures of the openings of varied devices; none if not requested, or if no waveform opens the switch.
+  std::optional<OpeningsOnDevices> on_devices;
   OptimizerResult search;
-  bool better = false;     ///< true if the best opening is open for good earlier than the plain opening, or else vibrates less
-  bool goal_met = false;   ///< true if the best opening is within the band as soon as all drives are at 0 V
-  bool confirmed = false;  ///< true if `checks` confirm the result
+  bool better = false;     ///< true if the best opening comes to stay open earlier than the plain opening, or else vibrates less
+  bool goal_met = false;   ///< true if the switch is within the band about its open position as soon as all drives are at 0 V
+  bool confirmed = false;  ///< true if the simulations `checks` confirm the best opening
   bool interrupted = false;
 };
 

@@ -23,27 +23,35 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t most_candidates = 8;  // largest number of candidates that are verified
-constexpr std::size_t most_sure = 4;        // further candidates of each family that are verified, by the target's separate
-                                            // cost
-constexpr std::size_t most_of_family = 4;   // candidates of each family that are verified if no candidate was confirmed
-constexpr long fewest_for_landings = 1000;  // budget from which on starts that reach the contact at rest are computed
-constexpr double least_for_landings = 60;   // time budget from which on starts that reach the contact at rest are computed [s]
-// Ends of the search, of the search with slower edges, and of the search with several numbers of modes, as shares of a time
-// budget. The rest is for verifying the best waveform.
+constexpr std::size_t most_candidates = 8;  // largest number of candidate waveforms that are verified
+// Number of further candidates of each waveform family that are verified, by the target's separate cost.
+constexpr std::size_t most_sure = 4;
+// Number of candidates of each waveform family that are verified if no candidate was confirmed.
+constexpr std::size_t most_of_family = 4;
+// Budget in evaluations from which on starting waveforms that reach the contact at rest are computed.
+constexpr long fewest_for_landings = 1000;
+// Time budget from which on starting waveforms that reach the contact at rest are computed [s].
+constexpr double least_for_landings = 60;
+// Ends of the search, of the search with slower voltage edges, and of the search with several numbers of modes, as shares of a
+// time budget. The rest is for verifying the best waveform.
 constexpr double end_of_search = 0.6, end_of_gentle = 0.75, end_of_worst = 0.85;
-constexpr double soft_touch = 0.01;            // impact speed of starts that reach the contact at rest, over the plain step's
-constexpr double distinct = 1.01;              // least ratio between the costs of two verified candidates
-constexpr std::size_t families_sifted = 2;     // families in which the search with several numbers of modes is run
-constexpr long evaluations_of_the_worst = 50;  // divisor of the budget for the search with several numbers of modes
-constexpr long shortest_half = 100;            // budget in evaluations below which a budget is not divided into halves
-constexpr double opening = 0.6;                // share of the budget for all families; the best family gets the rest
+// Impact speed of starting waveforms that reach the contact at rest, as a share of the plain step's.
+constexpr double soft_touch = 0.01;
+constexpr double distinct = 1.01;  // least ratio between the costs of two candidate waveforms that are both verified
+// Number of waveform families in which the search with several numbers of modes is run.
+constexpr std::size_t families_sifted = 2;
+// Divisor of the budget that gives the evaluations of the search with several numbers of modes.
+constexpr long evaluations_of_the_worst = 50;
+constexpr long shortest_half = 100;  // number of evaluations below which a budget is not divided into halves
+// Share of the budget that is divided between all waveform families; the best family gets the rest.
+constexpr double opening = 0.6;
 
-// Numbers of candidates in OptimizeResult::tried: see RunningSearch::tried().
+// Numbers of candidate waveforms in OptimizeResult::tried: the best, those evenly spaced by rank, and those of every waveform
+// family.
 constexpr std::size_t kept_best = 100, kept_of_ladder = 150, kept_of_family = 15;
 
-// Returns improvements of a search, the best first, each distinctly worse than the one before: similar candidates would fail
-// for the same reason.
+// Returns the evaluations that improved the best cost of a search, the best first, each distinctly worse than the one before:
+// similar waveforms would fail for the same reason.
 std::vector<Evaluation> candidates(const std::vector<Evaluation>& improvements) {
   std::vector<Evaluation> chosen;
   for (auto e = improvements.rbegin(); e != improvements.rend() && chosen.size() < most_candidates; ++e) {
@@ -56,7 +64,7 @@ std::vector<Evaluation> candidates(const std::vector<Evaluation>& improvements) 
 // One search: its waveform families, its log and its reports.
 class RunningSearch {
  public:
-  /// The index of each setting is the number of its family. The search may use `seconds` [s] of the budget `whole`.
+  /// The index of each setting is the number of its waveform family. The search may use `seconds` [s] of the budget `whole`.
   RunningSearch(const std::vector<SearchSetting>& settings, const OptimizeOptions& options, SearchBudget& whole, double seconds)
       : settings_(settings),
         options_(options),
@@ -73,7 +81,7 @@ class RunningSearch {
   }
 
   // Adds the waveforms of the scene and of other searches as first candidates. The search starts at these waveforms, or at the
-  // nearest waveforms of its families.
+  // nearest waveforms of its waveform families.
   void begin() {
     const SearchSetting& setting = settings_.front();
     if (!setting.starts_as_step())
@@ -97,7 +105,7 @@ class RunningSearch {
     }
   }
 
-  // Adds the starting point `x` to a search in one family.
+  // Adds the starting point `x` to a search in one waveform family.
   void begin_at_point(const std::vector<double>& x) { families_.front().begin_at_point(x); }
 
   // Finds starting waveforms that reach the contact with all modes at rest, for a piezo and for several drives.
@@ -128,7 +136,7 @@ class RunningSearch {
       add(e);
       if (all.decided(e.value)) break;
     }
-    // Verify candidates of other families, since all candidates of one family excite the same neglected modes.
+    // Verify candidates of other waveform families, since all candidates of one family excite the same neglected modes.
     for (std::size_t k = 0; k < families_.size() && families_.size() > 1 && !all.confirmed(); ++k) {
       std::size_t added = 0;
       for (const Evaluation& e : candidates(improvements_of(log_.evaluations(k)))) {
@@ -138,8 +146,8 @@ class RunningSearch {
         ++added;
       }
     }
-    // For a target with a separate cost, verify further candidates whose target cost is below that of the best verified
-    // candidate, in the order of the guide cost.
+    // For a target with a separate cost, verify further candidate waveforms whose target cost is below that of the best
+    // verified candidate, in the order of the guide cost.
     if (options_.target.has_own_cost()) {
       for (const FamilySearch& family : families_) {
         for (std::size_t k = 0; k < most_sure; ++k) {
@@ -151,14 +159,15 @@ class RunningSearch {
     }
   }
 
-  // Candidates of one family, the best first.
+  // Candidate waveforms of one waveform family, the best first.
   struct Promising {
     std::size_t family = 0;
     double least = std::numeric_limits<double>::infinity();
     std::vector<std::vector<double>> points = {};
   };
 
-  // Ranks the candidates of every family by the cost of `other`; the family with the best candidate comes first.
+  // Ranks the candidate waveforms of every waveform family by the cost of `other`; the family with the best candidate comes
+  // first.
   [[nodiscard]] std::vector<Promising> promising(const SearchSetting& other) const {
     std::vector<Promising> all;
     for (std::size_t k = 0; k < families_.size(); ++k) {
@@ -176,7 +185,8 @@ class RunningSearch {
     return all;
   }
 
-  // Returns some of the candidates that touch: the best of all, candidates evenly spaced by rank, and the best of every family.
+  // Returns some of the candidate waveforms that touch: the best of all, candidates evenly spaced by rank, and the best of
+  // every waveform family.
   [[nodiscard]] std::vector<TriedWaveform> tried() const {
     std::vector<Evaluation> all;
     for (std::size_t k = 0; k < families_.size(); ++k) {
@@ -197,7 +207,7 @@ class RunningSearch {
     return kept;
   }
 
-  // Returns the results of every waveform family.
+  // Returns the results of the search in every waveform family.
   [[nodiscard]] std::vector<SearchedFamilyResult> families() const {
     std::vector<SearchedFamilyResult> all;
     for (std::size_t k = 0; k < families_.size(); ++k) {
@@ -233,8 +243,8 @@ class RunningSearch {
     const long own = has_own ? evaluations / target_share : 0;
     const double bounce_seconds = all_seconds * (has_own ? 1 - 1.0 / target_share : 1);
     if (!run_families(evaluations - own, bounce_seconds, has_own ? Costs::guide : Costs::same)) return false;
-    // Search by the separate cost of the target next, from the best points of every family. The remaining budget also counts
-    // gradients.
+    // Search by the separate cost of the target next, from the best points of every waveform family. The remaining budget also
+    // counts gradients.
     const long rest = evaluations - (all_.evaluations - before);
     return !has_own || rest <= 0 || run_families(rest, budget_.seconds_left(), Costs::target);
   }
@@ -255,9 +265,9 @@ class RunningSearch {
             .parameters = families_[k].named(e)};
   }
 
-  // Runs each family with a share of the budget, and the best family with the rest. By the cost of bounce, each family begins
-  // at the results of earlier families. By the separate cost of the target, only the best family does so, since all would end
-  // in one minimum. Returns false if the search must end.
+  // Searches each waveform family with a share of the budget, and the best family with the rest. By the cost of bounce, each
+  // family begins at the results of earlier families. By the separate cost of the target, only the best family does so, since
+  // all would end in one minimum. Returns false if the search must end.
   bool run_families(long all_evaluations, double all_seconds, Costs costs) {
     const SearchBudget all(budget_, all_evaluations, all_seconds);
     const double share = opening / static_cast<double>(families_.size());
@@ -271,7 +281,7 @@ class RunningSearch {
     return go_on(leader(costs), rest, all.seconds_left(), options_.more_evaluations, costs, true);
   }
 
-  // Adds the given waveforms as a candidate and as a start. `prepared()` returns the scene with these waveforms.
+  // Adds the given waveforms to a search, as a candidate and as a start. `prepared()` returns the scene with these waveforms.
   template <class MakePrepared>
   void refine(const std::vector<Signal>& drives, const DriveWaveforms& waveforms, const MakePrepared& prepared) {
     const double cost = settings_.front().price(drives).target;
@@ -292,7 +302,7 @@ class RunningSearch {
     log_.begin_with(given, can_be_written(waveforms) ? std::optional(landing.scene.scene.file) : std::nullopt);
   }
 
-  // Returns the number of the family with the least cost; of equal families, the first one.
+  // Returns the number of the waveform family with the least cost; of equal families, the first one.
   [[nodiscard]] std::size_t leader(Costs costs) const {
     std::size_t leader = 0;
     double least = std::numeric_limits<double>::infinity();
@@ -309,7 +319,7 @@ class RunningSearch {
     }
   }
 
-  // Runs the search of one family and adds its result to all_. Returns false if the search must end.
+  // Runs the search of one waveform family and adds its result to all_. Returns false if the search must end.
   bool go_on(std::size_t family, long evaluations, double time, long more, Costs costs, bool goes_on) {
     if (!(time > 0)) return false;
     const OptimizerResult now =
@@ -330,7 +340,7 @@ class RunningSearch {
     return now.termination != Termination::interrupted && now.termination != Termination::failure;
   }
 
-  // Copies the improvements of all families to all_, in the order of their runs.
+  // Copies the improving evaluations of all waveform families to all_, in the order of their runs.
   void take_improvements() {
     all_.improvements = improvements_of(log_.evaluations());
     if (all_.improvements.empty()) return;
@@ -343,16 +353,16 @@ class RunningSearch {
   const OptimizeOptions& options_;
   SearchBudget budget_;
   EvaluationLog log_;
-  std::vector<std::string> names_;  // names of the families
+  std::vector<std::string> names_;  // names of the waveform families
   std::deque<FamilySearch> families_;
   std::vector<FoundWaveform> landings_;
   OptimizerResult all_;
   std::uint64_t runs_ = 0;
 };
 
-// Continues a search whose best waveform is bounce-free only with the scene's number of modes: with slower edges, then with the
-// worst cost over several numbers of modes. These evaluations are not in the database file: a continued search makes them
-// again.
+// Continues a search whose best waveform is bounce-free only with the scene's number of modes: with slower voltage edges, then
+// with the worst cost over several numbers of modes. These evaluations are not in the database file: a continued search makes
+// them again.
 class SearchBeyondModes {
  public:
   SearchBeyondModes(const OptimizeOptions& options, SearchBudget& budget, Verification& verified)
@@ -364,7 +374,7 @@ class SearchBeyondModes {
     own_.on_improvement = {};
   }
 
-  /// Continues a search with the slower edges of `gentle`, then by sift(). Returns the number of evaluations.
+  /// Continues a search with the slower voltage edges of `gentle`, then by sift(). Returns the number of evaluations.
   long go_on(const RunningSearch& search, const std::vector<SearchSetting>& settings, const std::vector<SearchSetting>& gentle) {
     if (!verified_.belongs_to_modes()) return 0;
     if (gentle.empty()) return sift(search, settings);
@@ -376,7 +386,7 @@ class SearchBeyondModes {
     return sift(other, gentle);
   }
 
-  /// Continues a search with the worst cost over several numbers of modes, in its best families. Returns the number of
+  /// Continues a search with the worst cost over several numbers of modes, in its best waveform families. Returns the number of
   /// evaluations.
   long sift(const RunningSearch& search, const std::vector<SearchSetting>& settings) {
     if (!verified_.belongs_to_modes() && !verified_.confirmed()) return evaluations_;
@@ -386,7 +396,7 @@ class SearchBeyondModes {
       if (!begin("searching on by the worst of more modes", options_.max_evaluations / evaluations_of_the_worst, end_of_worst))
         break;
       std::vector<SearchSetting> worst{by_the_worst_of_modes(settings[k])};
-      worst.front().family = 0;  // index of the only family
+      worst.front().family = 0;  // the search by the worst cost has a single waveform family, whose index is 0
       own_.family = families_of(options_.family)[k];
       RunningSearch other(worst, own_, budget_, own_.max_seconds);
       for (const std::vector<double>& point : points) other.begin_at_point(point);
@@ -397,7 +407,7 @@ class SearchBeyondModes {
   }
 
  private:
-  // Prepares options for a further search. Returns false if no time is left.
+  // Prepares the options of a further search. Returns false if no time is left.
   bool begin(std::string what, long evaluations, double end) {
     own_.max_evaluations = std::max(evaluations, 1L);
     own_.max_seconds = budget_.seconds_left(end);
@@ -442,7 +452,7 @@ double OptimizeResult::parameter(std::string_view name) const {
 
 OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& asked) {
   OptimizeOptions options = asked;
-  static_cast<void>(optimizer_description(options.optimizer));  // throws InvalidInput for an unknown name
+  static_cast<void>(optimizer_description(options.optimizer));  // throws InvalidInput for an unknown name of an optimizer
   SearchBudget budget({.seconds = options.max_seconds, .stop = options.stop});
   const std::vector<SearchSetting> settings =
       search_settings(file, options.target, options.actuator, options.family,
@@ -457,7 +467,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& asked) {
   budget.leave_out([&] {
     if (options.on_start) options.on_start(searched_columns(searched, options.family));
   });
-  options.memory = asked.memory;  // the caller may create the memory in on_start
+  options.memory = asked.memory;  // the caller may create the memory of evaluations in on_start
   RunningSearch search(searched, options, budget,
                        std::max(budget.seconds_left(may_go_on ? end_of_search : end_of_worst), budget.seconds() / 4));
   search.begin();
@@ -468,7 +478,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& asked) {
   search.check(verified);
   result.families = search.families();
   if (options.keep_tried) result.tried = search.tried();
-  result.family = result.families.front().family;  // the family to report if there is no best waveform
+  result.family = result.families.front().family;  // the waveform family to report if there is no best waveform
   result.variables = setting.space.variables();
   SearchBeyondModes beyond(options, budget, verified);
   result.evaluations_of_modes = is_gentle ? beyond.sift(search, gentle) : beyond.go_on(search, settings, gentle);

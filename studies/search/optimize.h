@@ -1,9 +1,9 @@
 // The search for a drive waveform: from a scene, through the plain step as baseline and a search, to a verified waveform.
 //
-// The best candidate is read back from the text of best.toml and verified by a simulation over the whole window at the scene's
-// accuracy. Simulations with a tighter integrator and with two more modes confirm the result. If a candidate fails one of these
-// simulations, the next best is tried. The scene's own waveform and the given starts are candidates too, so that refining a
-// waveform never makes it worse. Baseline and scores: search_setting.h.
+// The best candidate is read back from the text of best.toml and verified by a simulation over the scene's whole simulated time
+// at its accuracy. Simulations with a tighter integrator and with two more modes confirm the result. If a candidate fails one
+// of these simulations, the next best is tried. The scene's own waveform and the given starts are candidates too, so that
+// refining a waveform never makes it worse. Baseline and scores: search_setting.h.
 #pragma once
 
 #include <atomic>
@@ -25,40 +25,42 @@
 
 namespace softland {
 
-/// Progress of a running search.
+/// Progress of a running search for a waveform.
 struct OptimizeProgress {
   long evaluations = 0;
-  double best_cost = std::numeric_limits<double>::quiet_NaN();  ///< least cost so far; NaN before a waveform was feasible
+  /// Least cost in the search so far; NaN before a waveform was feasible.
+  double best_cost = std::numeric_limits<double>::quiet_NaN();
   double baseline_cost = std::numeric_limits<double>::quiet_NaN();
-  long planned = 0;  ///< evaluations of the whole search, if OptimizeOptions::counts_work; 0: max_evaluations
+  long planned = 0;  ///< planned evaluations of the whole search, if OptimizeOptions::counts_work; 0: max_evaluations
 };
 
 /// The estimated work of a search.
 struct SearchEstimate {
   double closing = 0;      ///< computing time of one closing of the nominal device on this machine [s]
-  long evaluations = 0;    ///< evaluations of candidates on the nominal device
-  long closings = 0;       ///< closings of varied devices; 0: none
-  bool has_fewer = false;  ///< true if the search makes fewer closings because each closing is slow
-  double seconds = 0;      ///< processor time of the whole search [s]
+  long evaluations = 0;    ///< number of evaluations of candidate waveforms on the nominal device
+  long closings = 0;       ///< number of closings of varied devices; 0: none
+  bool has_fewer = false;  ///< true if the search makes fewer closings than usual because each closing is slow
+  double seconds = 0;      ///< estimated processor time of the whole search [s]
 };
 
 /// Default number of evaluations: as many as found bounce-free waveforms from every seed tried, on the shipped scenes and their
 /// variants. A search of a piezo needs more. A target with a separate cost gets 1.5 times as many evaluations as `bounce`.
 [[nodiscard]] long default_budget(const Aim& target, Shaped drives);
 
-/// Evaluation::index of the scene's own waveform, and of the given starts.
+/// Value of Evaluation::index for the scene's own waveform, and for the given starts.
 inline constexpr long given_index = -1;
 
 struct OptimizeOptions {
   Aim target = Target::bounce;
-  /// Conditions that the found waveform must fulfil, on conditioned_figures.
+  /// Conditions on figures among conditioned_figures that the found waveform must fulfil.
   std::vector<Condition> conditions = {};
   Actuator actuator = Actuator::electrostatic;
-  std::string family = "pulse";  ///< waveform families, see families_of(); the best waveform of all families is the result
+  /// Waveform families to search, see families_of(); the best waveform of all families is the result.
+  std::string family = "pulse";
   /// Waveforms from the user's code that `family` may name. They have no gradients, and no scene file can contain them.
   OwnWaveforms own_waveforms = {};
   std::string optimizer = "auto";
-  long max_evaluations = 2500;  ///< budget of evaluations, see default_budget()
+  long max_evaluations = 2500;  ///< budget of the search in evaluations, see default_budget()
   /// Further evaluations from the best points, if max_evaluations found no closing without a significant rebound.
   long more_evaluations = 0;
   /// true: max_evaluations counts closings of usual computing time; the search makes fewer if closings are slow
@@ -68,39 +70,42 @@ struct OptimizeOptions {
   /// larger budget is never worse. Use this to compare budgets; an undivided search finds more. The budget must be in
   /// evaluations, not in seconds.
   bool begins_with_half = false;
-  double max_seconds = std::numeric_limits<double>::infinity();  ///< time budget [s]
+  double max_seconds = std::numeric_limits<double>::infinity();  ///< time budget of the whole search [s]
   std::uint64_t seed = 1;
   int jobs = 1;
-  /// Waveforms of the searched drives, for example from other searches. They are candidates, and the search starts at the
-  /// nearest point of each family.
+  /// Waveforms of the searched drives, for example from other searches. The waveforms are candidates, and the search starts at
+  /// the nearest point of each waveform family.
   std::vector<StartingWaveforms> starts = {};
-  /// true: OptimizeResult::tried gets some of the candidates that touch, of every family: the best, and a selection with higher
-  /// costs.
+  /// true: OptimizeResult::tried gets some of the candidate waveforms that touch, of every waveform family: the best, and a
+  /// selection with higher costs.
   bool keep_tried = false;
-  /// Gives the costs of candidates that were simulated before, and stores the costs of new candidates; may be null.
+  /// Gives the costs of candidate waveforms that were simulated before, and stores the costs of new candidates; may be null.
   EvaluationMemory* memory = nullptr;
-  /// Flag from outside (Ctrl-C) that ends the search. The best candidate so far is still verified and confirmed.
+  /// Flag that another thread sets (Ctrl-C) to end the search. The best candidate waveform so far is still verified and
+  /// confirmed.
   const std::atomic<bool>* stop = nullptr;
-  /// Progress of the computations before and after the search: pull-in voltages, baseline, and verification of the best
-  /// waveform. See Progress.
+  /// Function that receives the progress of the computations before and after the search: pull-in voltages, baseline, and
+  /// verification of the best waveform. See base/progress.h.
   std::function<void(std::string_view what, double part)> on_preparation = {};
-  /// Called once before the first evaluation, when scene and options are valid, with the searched parameters of every family.
-  /// Evaluation::problem is the index of a family. A budget of time excludes the duration of this call.
+  /// Function that is called once before the first evaluation, when scene and options are valid, with the searched parameters
+  /// of every waveform family. Evaluation::problem is the index of a family. A budget of time excludes the duration of this
+  /// call.
   std::function<void(const FamilyColumns&)> on_start = {};
-  /// Called once before on_start with the estimated work; may be null.
+  /// Function that is called once before on_start with the estimated work; may be null.
   std::function<void(const SearchEstimate&)> on_estimate = {};
-  /// Called under a lock after every evaluation.
+  /// Function that is called under a lock after every evaluation of a candidate waveform.
   std::function<void(const Evaluation&, const OptimizeProgress&)> on_evaluation = {};
-  /// Called under the lock of on_evaluation after an evaluation on some of the devices, which on_evaluation does not report.
+  /// Function that is called under the lock of on_evaluation after an evaluation on some of the devices, which on_evaluation
+  /// does not report.
   std::function<void(const OptimizeProgress&)> on_progress = {};
-  /// Called under the lock of on_evaluation at every improvement that touches, with a scene of the improved waveform. The first
-  /// may be the scene's own waveform or one of `starts`, with the index given_index and, if the family cannot describe that
-  /// waveform, an empty x. Not called for own_waveforms, which no scene file can contain.
+  /// Function that is called under the lock of on_evaluation at every improvement that touches, with a scene of the improved
+  /// waveform. The first may be the scene's own waveform or one of `starts`, with the index given_index and, if the waveform
+  /// family cannot describe that waveform, an empty x. Not called for own_waveforms, which no scene file can contain.
   std::function<void(const Evaluation&, const SceneFile&)> on_improvement = {};
 };
 
-/// Returns the default options of a search on the nominal device: the families and the budget that suit target, actuator and
-/// scene, as of `softland optimize SCENE --robust none` on one thread.
+/// Returns the default options of a search on the nominal device: the waveform families and the budget that suit target,
+/// actuator and scene, as of `softland optimize SCENE --robust none` on one thread.
 [[nodiscard]] OptimizeOptions usual_options(const SceneFile& scene, const Aim& target = Target::bounce,
                                             Actuator actuator = Actuator::electrostatic);
 
@@ -108,7 +113,8 @@ struct OptimizeOptions {
 struct SearchedFamilyResult {
   std::string family;
   long evaluations = 0;
-  double cost = std::numeric_limits<double>::quiet_NaN();  ///< least cost; NaN if no waveform was feasible
+  /// Least cost of the waveform family's waveforms; NaN if no waveform was feasible.
+  double cost = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// A candidate waveform that was simulated on the nominal device.
@@ -119,37 +125,39 @@ struct TriedWaveform {
 };
 
 struct OptimizeResult {
-  PreparedScene scene;  ///< the given scene
+  PreparedScene scene;  ///< the scene that the user gave
   PreparedScene baseline_scene;
   Closing baseline;
-  std::optional<PreparedScene> best_scene;  ///< the scene of best.toml
+  /// The scene of best.toml, with the best waveform; none if there is no best waveform.
+  std::optional<PreparedScene> best_scene;
   std::optional<Closing> best;
   std::vector<CheckingRun> checks;
-  std::vector<SearchedFamilyResult> families = {};  ///< results of the searched families
-  std::string family;                               ///< family of the best waveform
-  std::string prefix;                               ///< prefix of the best waveform's parameters among those of all families:
-                                                    ///< prefix_of()
-  std::map<std::string, double> parameters;         ///< parameters of the best waveform, by drive.name
-  std::vector<Variable> variables;                  ///< variables of the best waveform's family, with their bounds
+  std::vector<SearchedFamilyResult> families = {};  ///< results of the searched waveform families
+  std::string family;                               ///< waveform family of the best waveform
+  std::string prefix;  ///< prefix of the best waveform's parameters among those of all waveform families: prefix_of()
+  std::map<std::string, double> parameters;  ///< waveform parameters of the best waveform, by drive.name
+  std::vector<Variable> variables;           ///< variables (parameters with bounds) of the best waveform's waveform family
   double best_cost = std::numeric_limits<double>::quiet_NaN();
   double baseline_cost = std::numeric_limits<double>::quiet_NaN();
-  OptimizerResult search;  ///< evaluations; their points are parameters of the family with the index Evaluation::problem
+  /// Evaluations of the search; their points are parameters of the waveform family with the index Evaluation::problem.
+  OptimizerResult search;
   bool goal_met = false;
-  bool confirmed = false;  ///< true if the goal is also met with a tighter integrator and with more modes
+  bool confirmed = false;  ///< true if the best waveform also meets the goal with a tighter integrator and with more modes
   /// Further evaluations, each with several numbers of modes, if the found waveforms were bounce-free only with the scene's
   /// number of modes.
   long evaluations_of_modes = 0;
   bool better_than_baseline = false;
-  bool plain_step_wins = false;  ///< true if the plain step is the result: it is bounce-free, and all other candidates are
-                                 ///< harder or no better
-  double harder_than_step = 0;   ///< hardness_beyond_step() of the best waveform
+  /// True if the plain step is the result: it is bounce-free, and all other candidate waveforms are harder or no better.
+  bool plain_step_wins = false;
+  /// Excess by which the closing of the best waveform is harder than that of the plain step, see hardness_beyond_step().
+  double harder_than_step = 0;
   /// True if the best waveform meets the goal or is better than the plain step.
   [[nodiscard]] bool is_success() const { return best && !best->is_pulled_through && (goal_met || better_than_baseline); }
-  std::vector<std::string> broken_conditions = {};  ///< conditions that the best waveform does not fulfil
-  std::vector<TriedWaveform> tried = {};            ///< candidates that were tried, see OptimizeOptions::keep_tried
+  std::vector<std::string> broken_conditions = {};  ///< texts of the conditions that the best waveform does not fulfil
+  std::vector<TriedWaveform> tried = {};            ///< candidate waveforms that were simulated, see OptimizeOptions::keep_tried
 
-  /// The best waveform's value of the parameter `name`, one of searched_columns(); NaN if its family lacks the parameter, or if
-  /// there is no best waveform.
+  /// Returns the best waveform's value of the parameter `name`, one of searched_columns(); NaN if its family lacks the
+  /// parameter, or if there is no best waveform.
   [[nodiscard]] double parameter(std::string_view name) const;
 };
 
@@ -157,12 +165,12 @@ struct OptimizeResult {
 /// called. Numerical failures are reported in the result.
 [[nodiscard]] OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options);
 
-/// Goal of the target `settling`: settling time of the contact over the time of first contact under the plain step. On the
-/// shipped gold cantilevers the goal is about 1.1 times the best settling time known for pulses.
+/// Goal of the target `settling`: largest ratio of the contact's settling time to the time of first contact under the plain
+/// step. On the shipped gold cantilevers the goal is about 1.1 times the best settling time known for pulses.
 inline constexpr double settling_goal = 1.3;
 
-/// Largest relative excess of a closing over the plain step, in impact speed, peak contact force or impact energy; 0 if the
-/// excess is at most a thousandth.
+/// Returns the largest relative excess of a closing over the plain step, in impact speed, peak contact force or impact energy;
+/// 0 if the excess is at most a thousandth.
 [[nodiscard]] double hardness_beyond_step(const Metrics& closing, const Metrics& step);
 
 /// True if the closing `best` meets the goal of the target. For a user objective from Aim::from_the_start(): the switch touches

@@ -11,22 +11,25 @@
 namespace softland {
 namespace {
 
-// Rounds of the search. The numbers of closings are for waveforms that last as long as the plain step bounces.
+// Rounds (stages) of the search for slow waveforms. The numbers of closings are for waveforms that last as long as the plain
+// step bounces.
 constexpr std::array pace_rounds{
     Round{.devices = 64, .closings = 10'000, .step = 0.15}, Round{.devices = 128, .closings = 10'000, .step = 0.1},
     Round{.devices = 256, .closings = 10'000, .step = 0.08}, Round{.devices = 256, .closings = 10'000, .step = 0.04}};
 
-constexpr double of_the_time = 0.995;  // share of the permitted time that is used, since other devices take a little longer
+// Share of the permitted time until a steady force that is used, since other devices take a little longer.
+constexpr double of_the_time = 0.995;
 using Point = std::vector<double>;
-constexpr std::uint64_t first_of_paces = 1'000'000;  // offset of the random streams, beyond those of the tournament of families
+// Offset of the random streams, beyond those that the tournament of waveform families uses.
+constexpr std::uint64_t first_of_paces = 1'000'000;
 
 bool has_pace(const RobustAim& aim) { return aim.free.until > 0 && std::isfinite(aim.free.until); }
 
-// Returns the time until a steady force that a pace permits [s].
+// Returns the time until a steady contact force that a pace permits [s].
 double allowed(const Pace& pace, const RobustAim& aim) { return of_the_time * pace.of_step * aim.free.until; }
 
-// Returns the duration of the first starting waveform over FreeTime::until. The computing time of a closing is proportional to
-// this duration.
+// Returns the duration of the first starting waveform divided by FreeTime::until. The computing time of a closing is
+// proportional to this duration.
 double relative_duration(const SearchSetting& setting, const RobustAim& aim) {
   if (!has_pace(aim)) return 1;
   const DriveWaveforms first = setting.space.waveforms(setting.space.starts().front());

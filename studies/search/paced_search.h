@@ -1,5 +1,5 @@
 // A search over varied devices for a quasi-static approach. CMA-ES begins at a closed-form waveform, and uses more devices in
-// every round. The pace is given by the time from which on the devices have to carry a steady contact force.
+// every round (stage). The pace is given by the time from which on the devices have to carry a steady contact force.
 #pragma once
 
 #include <functional>
@@ -9,15 +9,16 @@
 
 namespace softland {
 
-/// The pace of a quasi-static approach, and the waveform family that is searched.
+/// The pace of a quasi-static approach (the time that the slow closing may take), and the waveform family that is searched.
 struct Pace {
-  double of_step = 1;      ///< time until devices have to carry a steady force, over the same time under the plain step
-  std::size_t family = 0;  ///< index of the family among the settings of the search
+  double of_step = 1;      ///< time until devices have to carry a steady force, as a multiple of that time under the plain step
+  std::size_t family = 0;  ///< index of the waveform family among the settings of the search
 };
 
-/// Searches at a pace. `setting` is that of a quasi-static family; `aim` is the aim of the whole search, with the plain step's
-/// time as FreeTime. None if no waveform of this pace is within the limits, or if the budget ends before a waveform was tried.
-/// RaceOptions::closings scales the number of closings of this search, as in race().
+/// Searches the waveforms of a quasi-static approach at a pace. `setting` is that of a quasi-static waveform family; `aim` is
+/// the aim of the whole search, with the plain step's time as FreeTime. None if no waveform of this pace is within the limits,
+/// or if the budget ends before a waveform was tried. RaceOptions::closings scales the number of closings of this search, as in
+/// race().
 [[nodiscard]] std::optional<Contender> search_at_pace(const SearchSetting& setting, const Pace& pace, const RobustCost& cost,
                                                       const RobustAim& aim, SearchBudget& budget, const RaceOptions& options);
 

@@ -1,4 +1,5 @@
-// Waveforms of a path of optimal control: until first contact, and with the pull after it that keeps the switch closed.
+// Waveforms from a solution of the optimal control problem: until first contact, and with the pull after it that keeps the
+// switch closed.
 #pragma once
 
 #include <vector>
@@ -8,17 +9,18 @@
 
 namespace softland {
 
-/// The waveform after first contact: full pull from `begin` to `end`, then the hold levels.
+/// The waveform after first contact (catch): full pull from `begin` to `end`, then the hold levels.
 struct Catch {
-  double begin = 0, end = 0;  ///< times after first contact [s]
+  double begin = 0, end = 0;  ///< begin and end of the full pull, as times after first contact [s]
 };
 
-/// Returns the controls until first contact as tables of voltage against time.
+/// Returns the controls of a motion until first contact as tables of voltage against time, by drive.
 [[nodiscard]] DriveWaveforms tables_of(const FirstTouchProblem& flight, const ControlledCourse& course);
-/// Returns the waveforms of `found`, then a catch, then the hold levels of the waveforms `held`, or 0 V.
+/// Returns the waveforms of the least time `found`, then a pull after first contact (catch), then the hold levels of the
+/// waveforms `held`, or 0 V.
 [[nodiscard]] DriveWaveforms with_catch(const FirstTouchProblem& flight, const LeastTime& found, const Catch& pulled,
                                         const DriveWaveforms& held);
-/// Returns the signals of all drives: `searched`, for other drives `plain`, else the waveforms of the scene.
+/// Returns the signals of all drives: those of `searched`, for other drives those of `plain`, else those of the scene.
 [[nodiscard]] std::vector<Signal> applied(const PreparedScene& prepared, DriveWaveforms searched, const DriveWaveforms& plain);
 
 }  // namespace softland

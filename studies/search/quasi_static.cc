@@ -19,7 +19,7 @@ struct Ramp {
   }
 };
 
-// Returns the weights of an input shaper: binomial coefficients over their sum.
+// Returns the weights of the impulses of an input shaper: binomial coefficients divided by their sum.
 std::vector<double> shaper(std::size_t impulses) {
   std::vector<double> weights{1};
   for (std::size_t n = 1; n < impulses; ++n) {
@@ -30,12 +30,12 @@ std::vector<double> shaper(std::size_t impulses) {
   return weights;
 }
 
-// A signal: a first value plus a sum of ramps.
+// A piecewise linear signal: a first value plus a sum of ramps.
 class BrokenLine {
  public:
   explicit BrokenLine(double first) : first_(first) {}
 
-  /// Adds a ramp from `begin` to `end`, filtered by an input shaper whose impulses are half a `period` apart.
+  /// Adds a ramp to the signal from `begin` to `end`, filtered by an input shaper whose impulses are half a `period` apart.
   void add(double begin, double end, double height, std::size_t impulses, double period) {
     const std::vector<double> weights = shaper(impulses);
     for (std::size_t k = 0; k < weights.size(); ++k) {
@@ -43,7 +43,7 @@ class BrokenLine {
       ramps_.push_back({begin + shift, end + shift, weights[k] * height});
     }
   }
-  /// Adds an edge of duration `length`: a ramp through an input shaper of three impulses.
+  /// Adds an edge of duration `length` to the signal: a ramp through an input shaper of three impulses.
   void add_edge(double begin, double length, double height) { add(begin, begin + length / 2, height, 3, length / 2); }
   void add_line(double begin, double end, double height) { ramps_.push_back({begin, end, height}); }
 
@@ -75,8 +75,8 @@ class BrokenLine {
   std::vector<Ramp> ramps_;
 };
 
-// Returns a piecewise linear waveform through `points` (time, voltage), clamped to the driver's voltages and slowed to its
-// slew.
+// Returns a piecewise linear waveform through `points` (time, voltage), clamped to the voltage limits of the source and slowed
+// to its slew limit.
 Waveform slewed(const std::vector<std::pair<double, double>>& points, double before, const DriverLimits& limits) {
   Table table{.time = {0}, .voltage = {before}};
   double time = 0;
@@ -92,8 +92,8 @@ Waveform slewed(const std::vector<std::pair<double, double>>& points, double bef
   return table;
 }
 
-// Returns pairs: the square of the holder's level, from 0 to `most`, and the voltage of the carrying drive at which the nominal
-// design then touches.
+// Returns pairs for the stable approach: the square of the level of the electrode that holds the closed switch, from 0 to
+// `most`, and the voltage of the carrying drive at which the nominal design then touches.
 std::vector<std::pair<double, double>> touching_by_level(const PreparedScene& prepared, const StableApproach& approach,
                                                          double most) {
   constexpr int levels = 6;
@@ -108,17 +108,21 @@ std::vector<std::pair<double, double>> touching_by_level(const PreparedScene& pr
   return all;
 }
 
-constexpr double slow_before = 3.5, fast_before = 1.5, beyond = 2;  // ends of rise and line, in standard deviations of the
-                                                                    // touching voltage
-constexpr double least_deviation = 0.005;                           // least standard deviation, as a share of the touching
-                                                                    // voltage
-constexpr double nearest_points = 1e-6;  // least distance of two corners of a waveform, in periods of mode 1
-constexpr double step_after_line = 1.2,
-                 holder_after_line = 0.8;  // delay of the holder after the line through the touching voltages, in periods
-constexpr double settle = 0.5;             // rise time of a searched holder waveform, in periods of mode 1
-constexpr double least_contact_level = 0.16, most_low = 0.5;    // levels before contact, as shares of the holder's hold level
-constexpr std::array lower_levels{0.03, 0.12};                  // levels of further starts, over the holder's hold level
-constexpr double back = 1, back_of_step = 5.7, back_after = 2;  // duration of a piezo's return, and the wait before, in periods
+// Ends of the rise and of the line through the touching voltages, in standard deviations of the touching voltage over devices.
+constexpr double slow_before = 3.5, fast_before = 1.5, beyond = 2;
+// Least standard deviation of the touching voltage over devices, as a share of this voltage.
+constexpr double least_deviation = 0.005;
+constexpr double nearest_points = 1e-6;  // least distance in time of two corners of a waveform, in periods of the first mode
+// `holder_after_line`: delay of the holding electrode after the line through the touching voltages, in periods of the first
+// mode.
+constexpr double step_after_line = 1.2, holder_after_line = 0.8;
+constexpr double settle = 0.5;  // rise time of a searched waveform of the holding electrode, in periods of the first mode
+// Levels of the holding electrode before contact, as shares of its hold level.
+constexpr double least_contact_level = 0.16, most_low = 0.5;
+// Levels of the holding electrode in further starts, as shares of its hold level.
+constexpr std::array lower_levels{0.03, 0.12};
+// Duration of a piezo's return to its hold level, and the wait before it, in periods of the first mode.
+constexpr double back = 1, back_of_step = 5.7, back_after = 2;
 
 }  // namespace
 
@@ -140,7 +144,8 @@ QuasiStatic::QuasiStatic(const PreparedScene& prepared, Actuator actuator, Stabl
   reaches_.emplace_back(0, approach_.reaches);
   if (holding_ == Holding::shaped) reaches_ = touching_by_level(prepared, approach_, most_low * holder_hold_);
   approach_.deviation = std::max(approach_.deviation, least_deviation * std::abs(approach_.reaches));
-  constexpr double usual = 20;  // time until the force is steady, over the plain step's first touch
+  // Time until the contact force is steady, as a multiple of the plain step's time of first contact.
+  constexpr double usual = 20;
   for (const double times : {usual, usual / 2, 2 * usual}) starts_.push_back(closed_form(times * first_touch, approach_.low));
   bound(starts_.front(), false);
   clamp_starts();
@@ -173,11 +178,11 @@ double QuasiStatic::share(double deviations) const {
   return std::min(1 + deviations * approach_.deviation / reach, std::max(1.0, std::abs(approach_.limit) / reach));
 }
 
-// Returns the parameters by closed formulas, for devices that carry a steady contact force from `steady` on [s].
+// Returns the waveform parameters by closed formulas, for devices that carry a steady contact force from `steady` on [s].
 std::vector<double> QuasiStatic::closed_form(double steady, double low) const {
   const double rise = share(impulses_ > 2 ? -slow_before : -fast_before), end = share(beyond);
-  const double risen = static_cast<double>(impulses_ + 1) / 2 - (impulses_ > 2 ? 0.5 : 0);  // end of the rise, in periods of
-                                                                                            // mode 1
+  // End of the rise to the first touching voltage, in periods of the first mode.
+  const double risen = static_cast<double>(impulses_ + 1) / 2 - (impulses_ > 2 ? 0.5 : 0);
   const double after = holding_ == Holding::by_step  ? step_after_line
                        : holding_ == Holding::shaped ? holder_after_line + settle
                                                      : 1.0;
@@ -201,7 +206,8 @@ void QuasiStatic::bound(const std::vector<double>& start, bool is_paced) {
     variables_.push_back({std::move(name), lower, upper});
   };
   const double line = start[1];
-  constexpr double earliest = 9, latest = 6;  // bounds of rise and end, in standard deviations of the touching voltage
+  // Bounds of the rise and of the end, in standard deviations of the touching voltage over devices.
+  constexpr double earliest = 9, latest = 6;
   between(carrier + "rise", std::max(0.3, share(-earliest)), share(1));
   is_paced ? between(carrier + "line_s", std::max(0.2 * period_, line - 2 * period_), line + 2 * period_)
            : between(carrier + "line_s", 0.2 * period_, 5 * line + 5 * period_);
@@ -235,7 +241,8 @@ QuasiStatic QuasiStatic::paced(double steady) const {
   return own;
 }
 
-// Returns the carrying drive's waveform. Ramps of an electrode are linear in its squared voltage, and approximated by chords.
+// Returns the waveform of the drive that carries the switch to its contact. Ramps of an electrode are linear in its squared
+// voltage, and approximated by chords.
 Waveform QuasiStatic::carrying(Points points) const {
   if (!is_electrode_) return slewed(points, before_, limits_);
   constexpr int chords = 5;
@@ -262,8 +269,8 @@ DriveWaveforms QuasiStatic::waveforms(std::span<const double> x) const {
   const double touching = reaches(holding_ == Holding::shaped ? x[3] : holder_before_), line = x[1];
   const auto within = [&](double voltage) { return std::clamp(voltage, limits_.min_voltage, limits_.max_voltage); };
   const double rise_voltage = within(x[0] * touching), end_voltage = within(x[2] * touching);
-  const std::size_t of_line = impulses_ > 2 ? impulses_ : 1;  // number of impulses that shape the ends of the second ramp; 1:
-                                                              // the ramp is not filtered
+  // Number of impulses that shape the ends of the second ramp, through the touching voltages; 1: no filter.
+  const std::size_t of_line = impulses_ > 2 ? impulses_ : 1;
   const double risen = static_cast<double>(impulses_ + 1) / 2 * period_;
   const double begin = impulses_ > 2 ? risen - period_ / 2 : risen, end = begin + line;
   BrokenLine carrier(strength(before_));

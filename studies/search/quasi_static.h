@@ -35,7 +35,7 @@
 namespace softland {
 
 inline constexpr std::string_view quasi_static_family = "quasi-static";
-/// Default number of impulses of the input shaper.
+/// Default number of impulses of the input shaper, which filters the ramps of the waveform.
 inline constexpr std::size_t usual_impulses = 3;
 
 class QuasiStatic {
@@ -45,44 +45,47 @@ class QuasiStatic {
               double first_touch);
 
   [[nodiscard]] const StableApproach& approach() const { return approach_; }
-  /// Names of the drives in waveforms(): the carrying drive, then the holder if there is one.
+  /// Returns the names of the drives in waveforms(): the carrying drive, then the holder if there is one.
   [[nodiscard]] std::vector<std::string> drives() const;
-  /// Searched parameters; their names begin with the drive: "piezo.rise", "piezo.line_s".
+  /// Returns the searched parameters; their names begin with the drive: "piezo.rise", "piezo.line_s".
   [[nodiscard]] const std::vector<Variable>& variables() const { return variables_; }
   [[nodiscard]] const std::vector<std::vector<double>>& starts() const { return starts_; }
   [[nodiscard]] DriveWaveforms waveforms(std::span<const double> x) const;
-  /// Returns the approach with bounds about its closed-form waveforms for devices that carry a steady contact force from
-  /// `steady` on [s]. The search starts at the closed form, and, if the holder is varied, also at lower levels of the holder.
+  /// Returns the quasi-static approach with bounds about its closed-form waveforms for devices that carry a steady contact
+  /// force from `steady` on [s]. The search starts at the closed form, and, if the holder is varied, also at lower levels of
+  /// the holder.
   [[nodiscard]] QuasiStatic paced(double steady) const;
 
  private:
   /// How the switch is kept closed after contact.
   enum class Holding {
-    by_itself,  ///< the carrying drive goes on to its hold level
-    shaped,     ///< the holder's waveform is searched
-    by_step,    ///< the holder's plain step comes after the contact is made
+    by_itself,  ///< the drive that carries the switch to its contact goes on to its hold level
+    shaped,     ///< the waveform of the electrode that holds the closed switch is searched
+    by_step,    ///< the plain step of the electrode that holds the closed switch comes after the contact is made
   };
   using Points = std::vector<std::pair<double, double>>;  // corners of a waveform: time [s] and voltage [V]
 
-  // `low` is the holder's level before contact [V].
+  // `low` is the level before contact of the electrode that holds the closed switch [V].
   [[nodiscard]] std::vector<double> closed_form(double steady, double low) const;
   void clamp_starts();
   void bound(const std::vector<double>& start, bool is_paced);
   [[nodiscard]] Waveform carrying(Points points) const;
-  /// The voltage of the carrying drive at which the nominal design touches while the holder is at `low` [V].
+  /// Returns the voltage of the carrying drive at which the nominal design touches while the holding electrode is at `low` [V].
   [[nodiscard]] double reaches(double low) const;
-  /// The voltage `deviations` standard deviations beyond the touching voltage, as a share of the latter, within the driver's
-  /// limit.
+  /// Returns the voltage that is `deviations` standard deviations beyond the touching voltage, as a share of the touching
+  /// voltage, within the limit of the voltage source.
   [[nodiscard]] double share(double deviations) const;
 
   StableApproach approach_;
   Holding holding_ = Holding::by_itself;
   std::size_t impulses_;
-  double period_ = 0;                               // period of mode 1 [s]
-  bool is_electrode_ = false;                       // true if the carrying drive is an electrode
-  double neutral_ = 0;                              // Switch::neutral_voltage() of the carrying drive [V]
-  std::vector<std::pair<double, double>> reaches_;  // touching voltages by the holder's level squared: [V^2, V]
-  double hold_ = 0, before_ = 0, holder_hold_ = 0, holder_before_ = 0;  // [V]
+  double period_ = 0;          // period of the first mode [s]
+  bool is_electrode_ = false;  // true if the drive that carries the switch to its contact is an electrode
+  double neutral_ = 0;         // voltage at which the carrying drive exerts no force [V], see Switch::neutral_voltage()
+  // Touching voltages [V] by the square of the holding electrode's level [V^2].
+  std::vector<std::pair<double, double>> reaches_;
+  // Hold level and level before t = 0, of the carrying drive and of the holding electrode [V].
+  double hold_ = 0, before_ = 0, holder_hold_ = 0, holder_before_ = 0;
   DriverLimits limits_, holder_limits_;
   std::vector<Variable> variables_;
   std::vector<std::vector<double>> starts_;

@@ -18,22 +18,24 @@ namespace {
 
 using Point = std::vector<double>;
 
-// Rounds of a race (a tournament), with closings per search at the default length. The last two rounds continue the search with
-// the best result.
+// Rounds (stages) of a tournament of searches, with the number of closings that each search makes in a tournament of default
+// length. The last two rounds continue the search with the best result.
 constexpr std::array race_rounds{Round{.devices = 32, .closings = 2000, .step = 0.15},
                                  Round{.devices = 64, .closings = 6000, .step = 0.08},
                                  Round{.contenders = 3, .devices = 128, .closings = 10'000, .step = 0.03},
                                  Round{.contenders = 1, .devices = 128, .closings = 8000, .step = 0.03},
                                  Round{.contenders = 1, .devices = 128, .closings = 8000, .step = 0.03}};
 constexpr std::size_t usual_rounds = 3;
-constexpr double enough_land = 0.25,
-                 many_land = 0.4;        // bounce-free shares from which on searches are ranked, or continued, by the share
-constexpr double worth_going_on = 0.01;  // least gain in the bounce-free share for which another round is worthwhile
+// Shares of bounce-free devices from which on searches are ranked by this share, or continued.
+constexpr double enough_land = 0.25, many_land = 0.4;
+// Least gain in the bounce-free share of devices for which another round of the search is worthwhile.
+constexpr double worth_going_on = 0.01;
 constexpr double population_by_share = 2, longer_where_many_land = 1.7;
-constexpr std::size_t first_devices = 16;  // devices on which starts are tried
+constexpr std::size_t first_devices = 16;  // number of devices on which starting points are tried
 constexpr std::uint64_t box_points = 32;
 
-// Returns the closings per search in the rounds `first` to `last` - 1, at the default length of a tournament.
+// Returns the number of closings that each search makes in the rounds (stages) `first` to `last` - 1, in a tournament of
+// default length.
 double closings_of_rounds(std::size_t first, std::size_t last) {
   double all = 0;
   for (std::size_t k = first; k < last; ++k) all += race_rounds[k].closings;
@@ -46,8 +48,8 @@ class Race {
        const RaceOptions& options)
       : settings_(settings), cost_(cost), aims_(aims), options_(options), budget_(budget, options.closings) {}
 
-  /// Runs a tournament between `contenders`, or, if `alone`, a single search through all rounds. `begun` are further starting
-  /// waveforms.
+  /// Runs a tournament between the searches `contenders`, or, if `alone`, a single search through all rounds. `begun` are
+  /// further starting waveforms.
   RaceResult run(std::vector<Contender> contenders, const std::vector<DriveWaveforms>& begun, bool alone) {
     alone_ = alone;
     length_ = static_cast<double>(options_.closings) / static_cast<double>(race_closings);
@@ -83,9 +85,9 @@ class Race {
     if (options_.progress) options_.progress(budget_.share_taken());
   }
 
-  // Sets the starting point of every search to the best of many starts, by the search's measure.
+  // Sets the starting point of every search to the best of many starts, by the measure that the search minimises.
   void begin(std::vector<Contender>& contenders, const std::vector<DriveWaveforms>& begun) {
-    std::map<std::size_t, std::vector<Point>> starts;  // starting points of each family
+    std::map<std::size_t, std::vector<Point>> starts;  // starting points of each waveform family
     for (const Contender& r : contenders) {
       if (starts.contains(r.family)) continue;
       std::vector<Point>& own = starts[r.family] = starting_points(setting(r), begun);
@@ -109,7 +111,7 @@ class Race {
     }
   }
 
-  // Returns the outcomes of the first `devices` devices; empty if the waveform exceeds a driver's limits.
+  // Returns the outcomes of the first `devices` devices; empty if the waveform exceeds a limit of a voltage source.
   std::vector<DeviceOutcome> closed(const SearchSetting& own, const Point& x, std::size_t devices, int jobs) {
     const DriveWaveforms searched = own.space.waveforms(x);
     if (!own.is_allowed(searched)) return {};
@@ -126,7 +128,7 @@ class Race {
     r.closings += improve(r.x, staged, chain, part, [this] { tell(); }).searched;
   }
 
-  // Compares the searches after round `k`, and returns the searches of the next round.
+  // Compares the searches after round `k` of the tournament, and returns the searches of the next round.
   std::vector<Contender> select(std::vector<Contender> contenders, std::size_t k) {
     const double before = contenders.front().bounce_free;
     judge(contenders, race_rounds[std::min(k + 1, race_rounds.size() - 1)].devices);
@@ -148,14 +150,15 @@ class Race {
     return contenders;
   }
 
-  // Sets the budget for longer rounds, and for the rounds that continue the search with the best result.
+  // Sets the budget of closings for rounds (stages of the tournament) that are longer than usual since many devices are
+  // bounce-free, and for the rounds that continue the search with the best result.
   void plan_longer() {
     const double again = alone_ ? 0 : closings_of_rounds(usual_rounds, race_rounds.size());
     const double left = longer_ / length_ * static_cast<double>(budget_.left()) + longer_ * again;
     budget_.allow(budget_.taken() + std::lround(left));
   }
 
-  // Computes the figures of every search on the first `devices` devices.
+  // Computes the costs and the bounce-free share of every search on the first `devices` devices.
   void judge(std::vector<Contender>& contenders, std::size_t devices) {
     run_tasks(
         contenders.size(), options_.jobs,
@@ -170,10 +173,10 @@ class Race {
         budget_.stop());
   }
 
-  // Returns the member by which searches are ranked.
+  // Returns the member (cost by share or by tail) by which searches are ranked.
   static double Contender::*rank_by(bool share) { return share ? &Contender::share : &Contender::tail; }
 
-  // Returns the best search of every family, and the best of the remaining searches by the other measure.
+  // Returns the best search of every waveform family, and the best of the remaining searches by the other measure of risk.
   [[nodiscard]] std::vector<Contender> survivors(std::vector<Contender> contenders) const {
     std::ranges::stable_sort(contenders, {}, rank_by(many_));
     std::vector<Contender> kept, others;
@@ -199,10 +202,11 @@ class Race {
   const RobustCost& cost_;
   const RaceAims& aims_;
   const RaceOptions& options_;
-  SearchBudget budget_;             // budget of the planned closings
-  double length_ = 1, longer_ = 1;  // length relative to the default; length if many devices are bounce-free
-  bool alone_ = false;              // true: a single search, not a tournament
-  bool many_ = false;               // true: many devices are bounce-free
+  SearchBudget budget_;  // budget of closings that the tournament may simulate
+  // Length of the tournament relative to the default; this length if many devices are bounce-free.
+  double length_ = 1, longer_ = 1;
+  bool alone_ = false;  // true: a single search, not a tournament
+  bool many_ = false;   // true: many devices are bounce-free after the first round
   RaceResult result_;
 };
 

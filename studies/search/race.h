@@ -32,7 +32,7 @@ namespace softland {
 
 /// Default waveform families of a race (a tournament of searches).
 inline constexpr std::string_view raced_families = "knots:6+catch+dual-pulse+bspline:6+staircase:5";
-/// Default number of closings in a race (a tournament) of five families by two measures.
+/// Default number of closings in a race (a tournament) of five waveform families by two measures.
 inline constexpr long race_closings = 86'000;
 /// Shortest race, as a share of race_closings: shorter tournaments end too early to be meaningful.
 inline constexpr double least_length_of_race = 0.25;
@@ -41,37 +41,37 @@ inline constexpr std::uint64_t raced_devices = 256;
 
 /// The two measures of cost that the searches of a race (a tournament) minimise.
 struct RaceAims {
-  RobustAim tail;   ///< tail of the cost distribution, like cvar:0.9
-  RobustAim share;  ///< share of bounce-free devices
+  RobustAim tail;   ///< measure of the tail of the cost distribution, such as cvar:0.9
+  RobustAim share;  ///< measure by the share of bounce-free devices
 };
 
 /// A search that takes part in a race (a tournament), and its result so far.
 struct Contender {
-  std::size_t family = 0;  ///< index of the waveform family among the settings
-  bool by_share = false;   ///< true: searched by RaceAims::share; false: by RaceAims::tail
+  std::size_t family = 0;  ///< index of the waveform family among the settings of the tournament
+  bool by_share = false;   ///< true: the search minimises RaceAims::share; false: RaceAims::tail
   std::string measure = {};
   std::vector<double> x = {};
-  DriveWaveforms waveforms = {};  ///< waveforms of the searched drives [V]
-  long closings = 0;              ///< simulated closings of this search in all rounds
+  DriveWaveforms waveforms = {};  ///< best waveforms of this search for the searched drives [V]
+  long closings = 0;              ///< number of simulated closings of this search in all rounds
   double bounce_free = 0;         ///< share of bounce-free devices in the last round of the search
-  double tail = std::numeric_limits<double>::infinity(),
-         share = std::numeric_limits<double>::infinity();  ///< costs by RaceAims::tail and RaceAims::share in the last round
+  /// Costs by the measures RaceAims::tail and RaceAims::share in the last round of the search.
+  double tail = std::numeric_limits<double>::infinity(), share = std::numeric_limits<double>::infinity();
 };
 
 struct RaceOptions {
-  long closings = race_closings;  ///< total closings; the rounds are scaled to this number
+  long closings = race_closings;  ///< total number of closings of the tournament; its rounds are scaled to this number
   bool are_a_budget = false;      ///< true: `closings` is a limit even if many devices close without a rebound
   std::uint64_t seed = 1;
-  int jobs = 1;                               ///< threads; does not change the result
-  EvaluationMemory* memory = nullptr;         ///< may be null; its keys contain SearchSetting::family, which must differ
-                                              ///< between settings
-  std::function<void(double)> progress = {};  ///< called with the share of the race that is done, from any thread
-  /// Called with the best search at the end of every round except the last; may be null.
+  int jobs = 1;  ///< number of threads; does not change the result
+  /// Memory of evaluations; may be null; its keys contain SearchSetting::family, which must differ between settings.
+  EvaluationMemory* memory = nullptr;
+  std::function<void(double)> progress = {};  ///< called with the share of the tournament that is done, from any thread
+  /// Function that is called with the best search at the end of every round (stage) except the last; may be null.
   std::function<void(const Contender&)> on_stage = {};
 };
 
 struct RaceResult {
-  std::vector<Contender> contenders;  ///< the best searches of all rounds, the last round first
+  std::vector<Contender> contenders;  ///< the best searches of all rounds of the tournament, those of the last round first
   long closings = 0;
 };
 
@@ -81,8 +81,8 @@ struct RaceResult {
 [[nodiscard]] RaceResult race(const std::vector<SearchSetting>& settings, const RobustCost& cost, const RaceAims& aims,
                               SearchBudget& budget, const RaceOptions& options, const std::vector<DriveWaveforms>& begun = {});
 
-/// Runs a single search, of one family by one measure, through all rounds of a tournament. `begun` are further waveforms from
-/// which the search begins.
+/// Runs a single search, of one waveform family by one measure of risk, through all rounds of a tournament. `begun` are further
+/// waveforms from which the search begins.
 [[nodiscard]] RaceResult race_single_search(const SearchSetting& setting, std::size_t family, const RobustCost& cost,
                                             const RaceAims& aims, bool by_share, const std::vector<DriveWaveforms>& begun,
                                             SearchBudget& budget, const RaceOptions& options);

@@ -22,7 +22,8 @@ constexpr double most_violation = 10;
 
 double value_of(const DeviceOutcome& outcome, const Condition& condition) { return outcome.of(condition.figure); }
 
-// Relative accuracy of closings for ranking candidates; results on fresh devices have the accuracy of the scene.
+// Relative accuracy of closings for ranking candidate waveforms; results on fresh devices (new to the search) have the accuracy
+// of the scene.
 constexpr double ranking_accuracy = 1e-4;
 
 PreparedScene for_ranking(const PreparedScene& given) {
@@ -169,8 +170,8 @@ std::vector<Signal> RobustCost::signals(const std::vector<Waveform>& waveforms, 
                                : setting_.given.applied(waveforms);
 }
 
-// Finds the gains of the devices' drives. Drives that differ from device to device only by a gain are prepared once, since a
-// sampled waveform has many breakpoints.
+// Finds the gains of the devices' voltage sources. Drive signals that differ from device to device only by a gain are prepared
+// once, since a sampled waveform has many breakpoints.
 void RobustCost::find_gains() {
   if (std::ranges::none_of(ensemble_.units, [&](const DeviceUnits& units) { return drives_.differ(units); })) return;
   ungained_levels_ = hold_levels(drives_.without_gains(setting_.drives({})));
@@ -184,8 +185,8 @@ void RobustCost::find_gains() {
   }
 }
 
-// Returns the closed state of device k under the hold levels of `signals`. All devices count as held if the nominal device is
-// not kept closed.
+// Returns the state of the closed device k under the hold levels of `signals`. All devices count as held if the nominal device
+// is not kept closed.
 RobustCost::Kept RobustCost::kept(std::size_t k, const std::vector<Signal>& signals) const {
   const Hold hold = hold_of(*ensemble_.devices[k].model, signals, nominal_closed_);
   return {.is_held = !nominal_closed_ || hold.is_held,
@@ -200,7 +201,7 @@ std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& wavefo
 
 std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& waveforms, std::size_t first, std::size_t last,
                                              double after_contact, int jobs) const {
-  constexpr std::size_t together = 64;  // devices of one parallel task
+  constexpr std::size_t together = 64;  // number of devices that one parallel task simulates
   std::vector<Signal> nominal = gains_ ? drives_.without_gains(waveforms) : setting_.given.applied(waveforms);
   const bool same_levels = hold_levels(nominal) == (gains_ ? ungained_levels_ : levels_), by_gains = gains_ && same_levels;
   if (gains_ && !by_gains) nominal = setting_.given.applied(waveforms);
@@ -309,8 +310,8 @@ bool RobustCost::is_told(std::span<const DeviceOutcome> outcomes) const {
                             : risk(scores(outcomes), aim_.measure.risk) < (1 - rounding) * worst_score;
 }
 
-// Returns the measure of risk of scores with failing devices. The standard deviation of all scores would decrease if most
-// devices fail.
+// Returns the measure of risk of the devices' scores, with care for failing devices: the standard deviation of all scores would
+// decrease if most devices fail.
 double RobustCost::risk_of(std::span<const DeviceOutcome> outcomes, const std::vector<double>& scores, const Risk& measure) {
   if (measure.kind != RiskKind::mean_sigma || std::ranges::none_of(outcomes, fails)) return risk(scores, measure);
   std::vector<double> others;

@@ -1,4 +1,5 @@
-// The cost of a drive over varied devices: a measure of risk over the costs of their closings, and conditions on their figures.
+// The cost of drive waveforms over varied devices: a measure of risk over the costs of their closings, and conditions on their
+// figures.
 //
 //   s_k   cost of the closing of device k, every figure relative to the plain step on the nominal device:
 //           bounce             (largest impact speed + highest rebound) / 2
@@ -41,21 +42,22 @@
 
 namespace softland {
 
-/// Replaces limits that refer to the plain step by numbers: the 95th percentile of the figure under the plain step, whose
-/// outcomes are `of_step`. Throws InvalidInput if this percentile does not exist.
+/// Replaces limits of conditions that refer to the plain step by numbers: the 95th percentile of the figure under the plain
+/// step, whose outcomes are `of_step`. Throws InvalidInput if this percentile does not exist.
 [[nodiscard]] std::vector<Condition> beside_step(std::vector<Condition> conditions, std::span<const DeviceOutcome> of_step);
 
 /// The share of devices that have to fulfil a condition of the search.
 inline constexpr double constrained_share = 0.95;
 
-/// The time until contact that costs nothing; later contact is penalised.
+/// The time until contact that costs nothing in a search; later contact is penalised.
 struct FreeTime {
-  double Metrics::*figure = &Metrics::initial_contact_time;  ///< the compared time until contact: of first contact, settling or
-                                                             ///< steady force
-  double until = 0;  ///< 95th percentile [s]; 0: only the median of first contact costs, infinite: no time costs
+  /// The compared time until contact, a member of Metrics: of first contact, settling or steady force.
+  double Metrics::*figure = &Metrics::initial_contact_time;
+  /// 95th percentile of this time under the plain step [s]; 0: only the median of first contact costs, infinite: no time costs.
+  double until = 0;
 };
-/// Returns the time until contact under the plain step, whose outcomes are `of_step`. The time is 0 if fewer than 95 % of the
-/// devices touch. Throws no exception.
+/// Returns the time until contact under the plain step, from the devices' outcomes `of_step`. The time is 0 if fewer than 95 %
+/// of the devices touch. Throws no exception.
 [[nodiscard]] FreeTime free_time(std::span<const DeviceOutcome> of_step);
 
 struct RobustAim {
@@ -67,7 +69,7 @@ struct RobustAim {
 /// Devices, and the exact values of the scale factors that a per-device calibration measures.
 struct CalibratedEnsemble {
   std::vector<SampledDevice> devices;
-  std::vector<DeviceUnits> exact;  ///< exact scale factors of the devices; 1 for an invalid device
+  std::vector<DeviceUnits> exact;  ///< exact scale factors of the devices' waveforms; 1 for an invalid device
 };
 /// Builds the devices and computes their measured quantities, pull-in voltages with the relative `precision`. Throws
 /// Interrupted if `progress` asks to stop.
@@ -91,14 +93,14 @@ struct BuiltEnsemble {
 [[nodiscard]] BuiltEnsemble build_all(const Ensemble& ensemble, const MeasuredUnits& known, std::uint64_t seed, int jobs,
                                       const Progress& progress = {});
 
-/// Builds devices for ranking candidates, with closings of an accuracy of 1e-4 at best. The random devices depend on `seed` and
-/// `which`. Throws Interrupted if `progress` asks to stop.
+/// Builds devices for ranking candidate waveforms, with closings of an accuracy of 1e-4 at best. The random devices depend on
+/// `seed` and `which`. Throws Interrupted if `progress` asks to stop.
 [[nodiscard]] BuiltEnsemble own_devices(const SearchSetting& setting, const MeasuredUnits& known, std::uint64_t count,
                                         std::uint64_t seed, std::uint64_t which, int jobs, const Progress& progress);
 
 class RobustCost {
  public:
-  /// Keeps references to `setting` and `aim`.
+  /// Keeps references to `setting` and `aim` (measure of risk and conditions).
   RobustCost(const SearchSetting& setting, const RobustAim& aim, BuiltEnsemble ensemble, Vectors vectors = vectors_in_use());
 
   [[nodiscard]] std::size_t devices() const { return ensemble_.devices.size(); }
@@ -107,32 +109,33 @@ class RobustCost {
   [[nodiscard]] std::vector<DeviceOutcome> close(const std::vector<Waveform>& waveforms, std::size_t first, std::size_t last,
                                                  int jobs) const;
   [[nodiscard]] double value(std::span<const DeviceOutcome> outcomes) const { return value(outcomes, aim_); }
-  /// The cost of the outcomes by another aim than that of the constructor.
+  /// Returns the cost of the outcomes by another aim (measure of risk and conditions) than that of the constructor.
   [[nodiscard]] double value(std::span<const DeviceOutcome> outcomes, const RobustAim& aim) const;
-  /// The measure R(s) of the outcomes alone, without time and conditions.
+  /// Returns the measure of risk R(s) of the outcomes alone, without time and conditions.
   [[nodiscard]] double measured(std::span<const DeviceOutcome> outcomes, const RobustAim& aim) const;
-  /// Simulates all devices under the plain step until 95 % of them carry a steady force, or for the longest permitted run.
+  /// Simulates all devices under the plain step until 95 % of them carry a steady contact force, or for the longest permitted
+  /// run.
   [[nodiscard]] std::vector<DeviceOutcome> close_by_step(int jobs) const;
-  /// Simulates all devices after first contact for the window of the scene or until `free` [s], whichever is longer.
+  /// Simulates all devices; after first contact for the scene's simulated time or until `free` [s], whichever is longer.
   [[nodiscard]] std::vector<DeviceOutcome> close_until(const std::vector<Waveform>& waveforms, double free, int jobs) const;
-  /// False if the measure would be the same if all devices failed: the tail consists of failing devices only, or no device
-  /// fulfils the condition of a yield.
+  /// False if the measure of risk would be the same if all devices failed: the tail consists of failing devices only, or no
+  /// device fulfils the condition of a yield.
   [[nodiscard]] bool is_told(std::span<const DeviceOutcome> outcomes) const;
 
   /// Cost s_k of a device that does not close.
   static constexpr double not_closed = 3;
   [[nodiscard]] const SampledDevice& device(std::size_t k) const { return ensemble_.devices[k]; }
-  /// Simulates the closing of device k with its waveforms scaled by `units`.
+  /// Simulates the closing of device k with its waveforms scaled by the factors `units`.
   [[nodiscard]] DeviceOutcome close(const std::vector<Waveform>& waveforms, std::size_t k, const DeviceUnits& units) const;
-  /// Cost s_k of a device; not_closed if the figure is not known.
+  /// Returns the cost s_k of a device; not_closed if the figure of the cost is not known.
   [[nodiscard]] double score(const DeviceOutcome& outcome) const;
 
  private:
-  // Closed state of a device under its hold levels.
+  // State of a closed device under its hold levels.
   struct Kept {
     bool is_held = true;
-    double steady_force = Metrics::unset;  // contact force that counts as steady [N]
-    double resistance = Metrics::unset;    // contact resistance at rest [Ohm]
+    double steady_force = Metrics::unset;  // contact force from which on the contact counts as steady [N]
+    double resistance = Metrics::unset;    // contact resistance of the closed device at rest [Ohm]
   };
   void find_gains();
   [[nodiscard]] Kept kept(std::size_t k, const std::vector<Signal>& signals) const;
@@ -153,28 +156,29 @@ class RobustCost {
   BuiltEnsemble ensemble_;
   DeviceDrives drives_;
   std::optional<std::vector<std::vector<double>>>
-      gains_;                            // gains of every device; none if their drives differ by more than gains
-  std::vector<double> ungained_levels_;  // hold levels of the plain step, from sources with a gain of 1
+      gains_;  // gains of every device's voltage sources; none if the drive signals differ by more than gains
+  std::vector<double> ungained_levels_;  // hold levels of the plain step, from voltage sources with a gain of 1 [V]
   Vectors vectors_;
-  DeviceOutcome step_;                               // outcome of the nominal device under the plain step
-  std::optional<ClosedEquilibrium> nominal_closed_;  // closed equilibrium of the nominal device under the hold levels; none if
-                                                     // not kept closed
-  std::vector<double> levels_;                       // hold levels of the nominal device
-  std::vector<Kept> kept_;                           // closed state of each device under the hold levels
-  double window_, tail_, wait_;  // simulated time after first contact, after the last breakpoint, and for a contact [s]
+  DeviceOutcome step_;  // outcome of the nominal device under the plain step
+  // Closed equilibrium of the nominal device under the hold levels; none if these do not keep the device closed.
+  std::optional<ClosedEquilibrium> nominal_closed_;
+  std::vector<double> levels_;  // hold levels of the nominal device [V]
+  std::vector<Kept> kept_;      // state of each closed device under the hold levels
+  // Simulated time after first contact, after the last breakpoint, and for waiting for a contact [s].
+  double window_, tail_, wait_;
 };
 
 /// True if a device does not close and stay closed, cannot be simulated, or is invalid.
 [[nodiscard]] bool fails(const DeviceOutcome& outcome);
 
-/// Time until contact of a device, by FreeTime::figure [s]: the end of the simulation if the device does not reach that
-/// contact, infinite if the device fails.
+/// Returns the time until contact of a device, by FreeTime::figure [s]: the end of the simulation if the device does not reach
+/// that contact, infinite if the device fails.
 [[nodiscard]] double waited(const DeviceOutcome& outcome, double Metrics::*figure);
-/// 95th percentile over the devices of the time until contact by FreeTime::figure [s].
+/// Returns the 95th percentile over the devices of the time until contact by FreeTime::figure [s].
 [[nodiscard]] double waited(std::span<const DeviceOutcome> outcomes, double Metrics::*figure);
 
 [[nodiscard]] bool fulfils(const DeviceOutcome& outcome, const Condition& condition);
-/// The share of devices that fulfil the condition.
+/// Returns the share of devices that fulfil the condition.
 [[nodiscard]] Yield share_that_fulfils(std::span<const DeviceOutcome> outcomes, const Condition& condition);
 /// True if constrained_share of the devices fulfils each of the conditions.
 [[nodiscard]] bool hold(std::span<const Condition> conditions, std::span<const DeviceOutcome> outcomes);

@@ -1,12 +1,12 @@
 // The search for a waveform that performs well on devices with process variation, by one measure of risk.
 //
-// All candidates are tried on the same devices. Starts are those of the family, the best of two searches on the nominal device,
-// the waveform of the scene, the given waveforms, and points of the whole search space. All starts are tried on 8 devices, the
-// best on 32, and CMA-ES begins at the best six on 32 devices. The search continues from the best two points on all devices,
-// and then from the best point, by smaller steps. A candidate that is worse on the first 8 or 32 devices than the median of
-// earlier candidates is not tried on the rest, and gets its cost on the first devices. The best point of every round is
-// compared on 512 other devices. The best waveform is evaluated on 2000 fresh devices over the whole window, since the search
-// is over-fitted to the searched devices.
+// All candidates are tried on the same devices. Starts are those of the waveform family, the best of two searches on the
+// nominal device, the waveform of the scene, the given waveforms, and points of the whole search space. All starts are tried on
+// 8 devices, the best on 32, and CMA-ES begins at the best six on 32 devices. The search continues from the best two points on
+// all devices, and then from the best point, by smaller steps. A candidate that is worse on the first 8 or 32 devices than the
+// median of earlier candidates is not tried on the rest, and gets its cost on the first devices. The best point of every round
+// is compared on 512 other devices. The best waveform is evaluated on 2000 fresh devices (new to the search) over the scene's
+// whole simulated time, since the search is over-fitted to the searched devices.
 //
 // Source for giving up candidates: O. Maron & A. W. Moore, "Hoeffding races", NIPS 1993 (the idea; the test here is the median
 // of the earlier candidates).
@@ -31,39 +31,40 @@ inline constexpr std::uint64_t most_searched = 100'000;  ///< largest number of 
 
 struct RobustOptions {
   RobustAim aim;
-  std::uint64_t samples = 128;                 ///< number of devices on which candidates are tried
-  std::uint64_t verdict = 2000;                ///< number of fresh devices on which the best waveform is evaluated
-  std::function<double()> clock = wall_clock;  ///< clock for a time budget [s]
+  std::uint64_t samples = 128;   ///< number of varied devices on which candidate waveforms are tried
+  std::uint64_t verdict = 2000;  ///< number of fresh devices (new to the search) on which the best waveform is evaluated
+  std::function<double()> clock = wall_clock;  ///< clock that measures a time budget [s]
 };
 
 struct FulfilledCondition {
-  std::string text;    ///< text of the condition
-  Yield share;         ///< share of fresh devices that fulfil the condition
-  bool holds = false;  ///< true if constrained_share of the fresh devices fulfil the condition
+  std::string text;    ///< text of the condition on a figure
+  Yield share;         ///< share of fresh devices (new to the search) that fulfil the condition
+  bool holds = false;  ///< true if constrained_share of the fresh devices (new to the search) fulfil the condition
 };
 [[nodiscard]] FulfilledCondition fulfilled(const std::vector<DeviceOutcome>& outcomes, const Condition& condition);
 
-/// The findings of a search over varied devices by one measure, as written to JSON.
+/// The findings of a search over varied devices by one measure of risk, as written to JSON.
 struct RobustFindings {
   std::string measure;
-  double devices = Metrics::unset, fresh_devices = Metrics::unset,
-         closings = Metrics::unset;          ///< numbers of devices, and of closings in the search
-  double cost_on_searched = Metrics::unset;  ///< cost of the best waveform on the searched devices
-  double failing = Metrics::unset;           ///< share of the fresh devices that do not close and stay closed, by fails()
-  bool is_told = true;                       ///< false if the measure would be the same if all devices failed, see
-                                             ///< RobustCost::is_told()
-  std::optional<FulfilledCondition> yield;   ///< condition of a yield, if the measure is one
+  /// Number of devices in the search, number of fresh devices (new to the search), and number of closings in the search.
+  double devices = Metrics::unset, fresh_devices = Metrics::unset, closings = Metrics::unset;
+  double cost_on_searched = Metrics::unset;  ///< cost of the best waveform on the devices of the search
+  /// Share of the fresh devices (new to the search) that do not close and stay closed, as by fails().
+  double failing = Metrics::unset;
+  bool is_told = true;  ///< false if the measure of risk would be the same if all devices failed, see RobustCost::is_told()
+  std::optional<FulfilledCondition> yield;  ///< condition of the yield, if the measure of risk is a yield
   std::vector<FulfilledCondition> conditions;
 };
 
 struct RobustResult {
-  OptimizeResult found;               ///< the best waveform; its costs are those on fresh devices
-  std::optional<Robustness> verdict;  ///< plain step and best waveform on the same fresh devices; none if interrupted
+  OptimizeResult found;  ///< the best waveform; its costs are those on fresh devices (new to the search)
+  /// Results of plain step and best waveform on the same fresh devices (new to the search); none if interrupted.
+  std::optional<Robustness> verdict;
   RobustFindings findings;
 };
 
-/// Searches for a waveform by one measure. `options.max_evaluations` counts closings of devices; `options.optimizer` is not
-/// used. Throws InvalidInput as optimize() does, and for a scene without [spread].
+/// Searches for a waveform for varied devices by one measure of risk. `options.max_evaluations` counts closings of devices;
+/// `options.optimizer` is not used. Throws InvalidInput as optimize() does, and for a scene without [spread].
 [[nodiscard]] RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& options, const RobustOptions& robust);
 
 /// The parameters that a search will vary, and the height from which on a rebound is significant.
@@ -71,8 +72,8 @@ struct SearchedParameters {
   FamilyColumns columns;
   double significant_rebound = 0;  ///< least height of a significant rebound [m]
 };
-/// Returns the parameters of optimize(), or of robust_optimize() if `over_devices`. Throws what these functions would throw
-/// before they begin.
+/// Returns the parameters of optimize(), or of robust_optimize() if `over_devices`. Throws the exceptions that optimize() or
+/// robust_optimize() would throw before the search.
 [[nodiscard]] SearchedParameters searched_parameters(const SceneFile& file, const OptimizeOptions& options, bool over_devices,
                                                      const Progress& progress);
 

@@ -22,29 +22,33 @@
 
 namespace softland {
 
-/// The best candidate so far of a running search over varied devices, evaluated on the devices on which the choice is made.
+/// The best candidate waveform so far of a running search over varied devices, evaluated on the devices on which the best
+/// waveform is chosen.
 struct Leading {
   std::string family;
-  std::vector<DeviceOutcome> of_step, own;  ///< outcomes of the same devices under the plain step and under the candidate
-  double Metrics::*waited_for = nullptr;    ///< member of Metrics with the time that users wait for, FreeTime::figure
-  SceneFile scene;                          ///< the scene with the candidate's waveform
+  /// Outcomes of the same devices under the plain step and under the best candidate waveform.
+  std::vector<DeviceOutcome> of_step, own;
+  /// Member of Metrics with the time until contact that users wait for, as FreeTime::figure.
+  double Metrics::*waited_for = nullptr;
+  SceneFile scene;  ///< the scene with the best candidate's waveform
 };
 
 struct RobustSearchOptions {
-  std::vector<Condition> conditions = {};  ///< conditions on device_figures for 95 % of the devices
-  std::uint64_t verdict = 2000;            ///< number of fresh devices on which the waveforms are evaluated in the end
-  bool verdict_is_asked = false;           ///< false: `verdict` is a default, reduced if closings are slow, see counts_work
+  std::vector<Condition> conditions = {};  ///< conditions on device_figures that 95 % of the devices have to fulfil
+  /// Number of fresh devices (new to the search) on which the waveforms are evaluated in the end.
+  std::uint64_t verdict = 2000;
+  bool verdict_is_asked = false;  ///< false: the number `verdict` is a default, reduced if closings are slow, see counts_work
   /// Waveform families of the tournament. Empty: those of raced_families that the scene's limits permit, and the quasi-static
   /// approach.
   std::string families = {};
-  bool hold_step_is_chosen = true;  ///< true: with the actuator pzt, the instant of the electrode's plain step is searched;
-                                    ///< false: t = 0
-  bool is_of_before = false;        ///< true: searches as earlier versions did: the time of first contact costs, and there is
-                                    ///< no quasi-static approach
-  long closings = race_closings;    ///< total number of closings of the tournament of families
-  bool are_a_budget = false;        ///< true: `closings` is a limit even if many devices close without a bounce
-  bool counts_work = false;         ///< true: fewer than `closings` are made if closings are slow (search_work.h)
-  /// Called with every new best candidate; from any thread, one call at a time.
+  /// True: with the actuator pzt, the instant of the electrode's plain step is searched; false: the step is at t = 0.
+  bool hold_step_is_chosen = true;
+  bool is_of_before = false;      ///< true: searches as earlier versions did: the time of first contact costs, and there is
+                                  ///< no quasi-static approach
+  long closings = race_closings;  ///< total number of closings of the tournament of waveform families
+  bool are_a_budget = false;      ///< true: `closings` is a limit even if many devices close without a bounce
+  bool counts_work = false;       ///< true: the tournament makes fewer than `closings` if closings are slow (search_work.h)
+  /// Function that is called with every new best candidate waveform; from any thread, one call at a time.
   std::function<void(const Leading&)> on_leading = {};
 };
 
@@ -52,47 +56,49 @@ struct RobustSearchOptions {
 /// tournament over devices.
 void share_budget(OptimizeOptions& options, RobustSearchOptions& devices);
 
-/// A row of the main table of results: the fresh devices under one waveform and calibration.
+/// A row of the main table of results: the fresh devices (new to the search) under one waveform and calibration.
 struct DevicesRow {
-  std::string name;             ///< "plain step", "for the drawing", "for the devices", "Vdp to 1 %"
-  Calibration knowledge = {};   ///< per-device calibration
+  std::string name;             ///< name of the row: "plain step", "for the drawing", "for the devices", "Vdp to 1 %"
+  Calibration knowledge = {};   ///< measurements of each device by which its waveform is scaled
   bool searched_for_it = true;  ///< false: the waveform was searched for another calibration than `knowledge`
-  bool judged_whole = true;  ///< true: simulated over the whole window of the scene; false: over the shorter window of a search
+  /// True: simulated over the scene's whole simulated time; false: over the shorter time of a search.
+  bool judged_whole = true;
   DriveRobustness judged = {};
 
-  /// Takes the waveform of `other`, if `other` needs a less precise calibration and closes better.
+  /// Takes the waveform of the row `other`, if `other` needs a less precise calibration and its devices close better.
   void inherit(const DevicesRow& other);
-  /// Returns true when this row is so much better than a row without a calibration that devices are worth measuring.
+  /// Returns true if this row of results is so much better than a row without a calibration that devices are worth measuring.
   [[nodiscard]] bool is_worth_measuring(const DevicesRow& uncalibrated) const;
 };
-/// A further waveform is offered only when its impact velocity or time is below this share of the first one's.
+/// A further waveform is offered to the user only when its impact velocity or time is below this share of those of the first
+/// one.
 inline constexpr double worth_choosing = 0.9;
 
 /// True if more devices of `a` than of `b` are bounce-free, provided that `a` or `b` has at least half bounce-free devices;
 /// otherwise true if the impacts of `a` are softer.
 [[nodiscard]] bool lands_better(const DevicesRow& a, const DevicesRow& b);
 
-/// A candidate for the best waveform, with its figures on the devices on which the choice is made.
+/// A candidate for the best waveform, with its figures on the devices on which the best waveform is chosen.
 struct ChosenFrom {
-  std::string measure, family;  ///< measure and waveform family, as in RaceEntry
+  std::string measure, family;  ///< measure of risk and waveform family of the candidate's search, as in RaceEntry
   DriveWaveforms waveforms;
   std::map<std::string, double>
-      parameters;  ///< parameters by drive.name; empty for waveforms of the search on the nominal device
+      parameters;  ///< waveform parameters by drive.name; empty for waveforms of the search on the nominal device
   std::vector<Variable> variables;
   long closings = 0;
-  // The members below are figures on the devices on which the choice is made.
-  double bounce_free = 0, tail = 0;                                    ///< bounce-free share of the devices; tail of the cost
-  double measured = 0;                                                 ///< measure of risk alone, without the cost of the time
-                                                                       ///< until contact
-  double first_touch = Metrics::unset, impact_speed = Metrics::unset;  ///< 95th percentiles over the devices [s], [m/s]
-  double median_touch = Metrics::unset;                                ///< median time of first contact [s]
-  double waited = Metrics::unset;  ///< 95th percentile of the time until contact by FreeTime::figure [s]
-  bool is_good_enough = false;     ///< true if the candidate meets the bounds of the choice: no figure much worse than under
-                                   ///< the plain step
-  bool is_in_usual_room = false;   ///< true if found by the tournament within the default voltage limits
+  // The members below are figures on the devices on which the best waveform is chosen.
+  double bounce_free = 0, tail = 0;  ///< bounce-free share of the devices; tail of the cost over the devices
+  double measured = 0;  ///< measure of risk of the candidate waveform alone, without the cost of the time until contact
+  /// 95th percentiles over the devices of first contact time [s] and impact speed [m/s].
+  double first_touch = Metrics::unset, impact_speed = Metrics::unset;
+  double median_touch = Metrics::unset;  ///< median over the devices of the time of first contact [s]
+  double waited = Metrics::unset;        ///< 95th percentile over the devices of the time until contact by FreeTime::figure [s]
+  /// True if the candidate waveform meets the bounds of the choice: no figure much worse than under the plain step.
+  bool is_good_enough = false;
+  bool is_in_usual_room = false;  ///< true if the tournament within the default voltage limits found the candidate waveform
 };
 
-/// Bounce-free share of devices from which on candidates are compared by this share.
+/// Bounce-free share of devices from which on candidate waveforms are compared by this share.
 inline constexpr double lands_half = 0.5;
 
 /// Return a quantile over devices of the figure `key` of device_figures, and its 95th percentile.
@@ -108,7 +114,7 @@ struct CalibratedSearch {
                                          ///< [s]
   std::vector<DevicesRow> rows = {};
   std::vector<CalibrationError> by_error = {};
-  std::size_t best = 0;                ///< index of the best of `rows`
+  std::size_t best = 0;                ///< index in `rows` of the best row
   DriveWaveforms best_waveforms = {};  ///< waveforms of the searched drives in the best of `rows`, for the nominal device
 };
 
@@ -117,72 +123,78 @@ inline constexpr std::string_view raced_prefix = "devices.";
 
 class RobustSearch {
  public:
-  /// Keeps references to `options` and `devices`. `tell` receives the progress, from any thread. Throws what optimize() throws.
+  /// Keeps references to `options` and `devices`. `tell` receives the progress, from any thread. Throws the exceptions of
+  /// optimize().
   RobustSearch(const SceneFile& file, const OptimizeOptions& options, const RobustSearchOptions& devices,
                std::function<void(std::string_view what, double part)> tell);
 
-  /// The setting of the first waveform family; its scene is the given scene with the spread that is used.
+  /// Returns the setting of the first waveform family; its scene is the given scene with the process variation that is used.
   [[nodiscard]] const SearchSetting& first() const { return settings_.front(); }
   [[nodiscard]] const MeasuredUnits& known() const { return *known_; }
   [[nodiscard]] bool spread_assumed() const { return spread_assumed_; }
-  /// The parameters of all waveform families; the names begin with raced_prefix.
+  /// Returns the parameters of all waveform families; the names begin with raced_prefix.
   [[nodiscard]] FamilyColumns columns() const;
-  /// The budget of the whole search: its time, from the construction of this RobustSearch on, and the closings of devices so
-  /// far.
+  /// Returns the budget of the whole search: its time, from the construction of this RobustSearch on, and the closings of
+  /// devices so far.
   [[nodiscard]] SearchBudget& budget() { return budget_; }
   /// Adds the work of this search to `nominal`, the estimate for the search on the nominal device.
   [[nodiscard]] SearchEstimate estimate(SearchEstimate nominal) const;
 
-  /// Runs the tournament, ranks its candidates, and measures the fresh devices. The families of the tournament come after
-  /// `before` other families that share the memory. Calls `looked` once, after the first candidate was evaluated on the devices
-  /// on which the choice is made. Leaves `reserved` [s] of a time budget to later work other than the final evaluation. Throws
-  /// Interrupted if a stop is requested.
+  /// Runs the tournament, ranks its candidate waveforms, and measures the fresh devices (new to the search). The waveform
+  /// families of the tournament come after `before` other families that share the memory. Calls `looked` once, after the first
+  /// candidate was evaluated on the devices on which the best waveform is chosen. Leaves `reserved` [s] of a time budget to
+  /// later work other than the final evaluation. Throws Interrupted if a stop is requested.
   void run(std::size_t before, std::function<void()> looked, double reserved);
   /// Makes run() end soon, without a usable result; from any thread.
   void give_up() { budget_.give_up(); }
 
-  /// The stable path by which a drive moves the switch to its contact; none if the quasi-static approach is not searched.
+  /// Returns the stable path by which a drive moves the switch to its contact; none if the quasi-static approach is not
+  /// searched.
   [[nodiscard]] const std::optional<StableApproach>& approach() const { return approach_; }
-  /// The share of varied devices that a drive can move to their contact through stable equilibria.
+  /// Returns the share of varied devices that a drive can move to their contact through stable equilibria.
   [[nodiscard]] double share_with_path() const { return share_with_path_; }
 
   // Results of run(), valid after this call.
-  /// The time until contact that costs nothing: that of the tournament's devices under the plain step.
+  /// Returns the time until contact that costs nothing: that of the tournament's devices under the plain step.
   [[nodiscard]] const FreeTime& free() const { return free_; }
-  /// The cost over the devices of the tournament.
+  /// Returns the cost of a waveform over the devices of the tournament.
   [[nodiscard]] const RobustCost& cost() const { return *cost_; }
   [[nodiscard]] const RaceAims& aims() const { return aims_; }
   [[nodiscard]] const std::vector<Condition>& conditions() const { return conditions_; }
-  /// Evaluates a candidate on the devices on which the choice is made, and adds it to placed().
+  /// Evaluates a candidate waveform on the devices on which the best waveform is chosen, and adds it to placed().
   void place(ChosenFrom candidate);
-  /// The best candidate so far of an interrupted search; null if worse than the plain step.
+  /// Returns the best candidate waveform so far of an interrupted search; null if worse than the plain step.
   [[nodiscard]] const ChosenFrom* leader() const;
-  /// The candidates that were evaluated during the tournament, with figures on the devices on which the choice is made.
+  /// Returns the candidate waveforms that were evaluated during the tournament, with figures on the devices on which the best
+  /// waveform is chosen.
   [[nodiscard]] std::vector<ChosenFrom> looked_at() const;
   [[nodiscard]] const std::vector<DeviceOutcome>& step_on_others() const { return step_on_others_; }
-  /// The ranked candidates, the best first; those with ChosenFrom::is_good_enough come before all others.
+  /// Returns the ranked candidate waveforms, the best first; those with ChosenFrom::is_good_enough come before all others.
   [[nodiscard]] std::vector<ChosenFrom> placed() const;
   [[nodiscard]] std::size_t good_enough() const;
   /// Searches with a per-device calibration, starting at the best waveform `winner` and at the nominal design's waveform
   /// `drawing`. No rows if devices cannot be measured.
   [[nodiscard]] CalibratedSearch in_measured_units(const ChosenFrom& winner, const DriveWaveforms& drawing);
-  /// The cost over the fresh devices, with their measured scale factors, for closings over the window of a search.
+  /// Returns the cost over the fresh devices (new to the search), with their measured scale factors, for closings over the
+  /// simulated time of a search.
   [[nodiscard]] RobustCost verdict_devices(const MeasuredUnits& known);
-  /// The outcomes of all devices of `cost` under the waveforms; budget() counts these closings.
+  /// Returns the outcomes of all devices of `cost` under the waveforms; budget() counts these closings.
   [[nodiscard]] std::vector<DeviceOutcome> closed(const RobustCost& cost, const DriveWaveforms& waveforms);
-  /// The waveforms of all drives: `searched` for the searched drives, and the plain step for the others.
+  /// Returns the waveforms of all drives: `searched` for the searched drives, and the plain step for the others.
   [[nodiscard]] DriveWaveforms all_drives(DriveWaveforms searched) const;
-  /// Number of fresh devices: as requested, or fewer if closings are slow.
+  /// Returns the number of fresh devices (new to the search): as requested, or fewer if closings are slow.
   [[nodiscard]] std::uint64_t verdict() const { return verdict_; }
 
  private:
-  // Upper bounds, relative to the plain step, on the figures of a candidate that may become the result.
+  // Upper bounds, relative to the plain step, on the figures of a candidate waveform that may become the result.
   struct Bounds {
-    std::vector<double> figures;  // 95th percentiles of judged_figures under the plain step
-    double first_touch, open;     // 95th percentile of first contact [s], and share of open devices, under the plain step
+    std::vector<double> figures;  // 95th percentiles of the figures judged_figures under the plain step
+    // 95th percentile of the time of first contact [s], and share of open devices, under the plain step.
+    double first_touch, open;
 
     explicit Bounds(const std::vector<DeviceOutcome>& step);
-    /// `own`: outcomes of the candidate; `in_time`: true if the candidate must not close much later than the plain step.
+    /// Returns true if the devices' outcomes `own` under the candidate waveform are within the bounds. `in_time`: the candidate
+    /// must also not close much later than the plain step.
     [[nodiscard]] bool keeps(const std::vector<DeviceOutcome>& own, double significant, bool in_time) const;
   };
   struct Placed {
@@ -231,34 +243,36 @@ class RobustSearch {
   SearchBudget budget_;
   bool spread_assumed_ = false;
   std::vector<SearchSetting> settings_;
-  std::size_t raced_ = 0;                  // number of settings in the tournament, which come first in settings_
-  std::vector<SearchSetting> usual_room_;  // settings within the default voltage limits; none unless the limits of the scene
-                                           // are wider
-  std::vector<std::string> names_;         // names of the waveform families
+  std::size_t raced_ = 0;  // number of settings in the tournament, which come first in settings_
+  // Settings of the search within the default voltage limits; none unless the scene's limits are wider.
+  std::vector<SearchSetting> usual_room_;
+  std::vector<std::string> names_;  // names of the waveform families
   std::optional<StableApproach> approach_;
   double share_with_path_ = Metrics::unset;
   std::optional<MeasuredUnits> known_;
-  std::optional<SearchBudget> before_verdict_;  // part of the budget for the work before the final evaluation
+  std::optional<SearchBudget> before_verdict_;  // part of the search's budget for the work before the final evaluation
   long race_length_ = race_closings;
   std::uint64_t verdict_ = RobustSearchOptions{}.verdict;
-  std::vector<Condition> conditions_;  // conditions whose limits are numbers
+  std::vector<Condition> conditions_;  // conditions on figures whose limits are numbers
   RobustAim tail_aim_;
   RaceAims aims_;
-  std::vector<Condition> at_most_step_;      // conditions that no figure is worse than under the plain step
-  std::optional<RobustCost> cost_, others_;  // costs over the devices of the tournament, and over those on which the choice is
-                                             // made
+  std::vector<Condition> at_most_step_;  // conditions that no figure of a candidate waveform is worse than under the plain step
+  // Costs of a waveform over the devices of the tournament, and over those on which the best waveform is chosen.
+  std::optional<RobustCost> cost_, others_;
   FreeTime free_;
   std::vector<Contender> paced_;
   RaceResult race_, race_in_usual_room_;
   std::optional<Bounds> bounds_;
-  std::vector<DeviceOutcome> step_on_others_;  // outcomes under the plain step on the devices on which the choice is made
+  // Outcomes under the plain step of the devices on which the best waveform is chosen.
+  std::vector<DeviceOutcome> step_on_others_;
   std::function<void()> looked_;
-  std::vector<Placed> looked_at_;  // candidates in the order in which they were evaluated
-  std::optional<Placed> leader_;   // the best candidate of looked_at_
-  std::vector<Placed> placed_;     // candidates in the order in which place() received them
-  std::optional<CalibratedEnsemble> calibrated_by_pull_in_, calibrated_by_time_;  // fresh devices with measured pull-in
-                                                                                  // voltage, and with measured closing time
-  std::optional<PullInMeter> meter_;  // measures devices; none if devices cannot be measured
+  std::vector<Placed> looked_at_;  // candidate waveforms evaluated during the tournament, in this order
+  std::optional<Placed> leader_;   // the best candidate waveform so far, among looked_at_
+  std::vector<Placed> placed_;     // candidate waveforms in the order in which place() received them
+  // Fresh devices (new to the search) with measured pull-in voltage, and with measured closing time.
+  std::optional<CalibratedEnsemble> calibrated_by_pull_in_, calibrated_by_time_;
+  // Measures pull-in voltage and closing time of devices; none if devices cannot be measured.
+  std::optional<PullInMeter> meter_;
 };
 
 }  // namespace softland

@@ -17,16 +17,16 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t scouted_on = 16, ranked_on = 64;  // devices for ranking candidates of the nominal search
-constexpr std::size_t kept_of_scouted = 24;             // best candidates on scouted_on devices, by each measure
-constexpr std::size_t most_of_ranked = 2;               // best candidates on ranked_on devices, by each measure
-constexpr std::size_t most_judged = 3;  // candidates evaluated on fresh devices, until one is not worse than the plain step
-constexpr double end_of_drawing = 0.3;  // end of the nominal search, as a share of a time budget
+constexpr std::size_t scouted_on = 16, ranked_on = 64;  // devices on which the nominal search's candidate waveforms are ranked
+constexpr std::size_t kept_of_scouted = 24;             // best candidate waveforms on `scouted_on` devices, by each measure
+constexpr std::size_t most_of_ranked = 2;               // best candidate waveforms on `ranked_on` devices, by each measure
+constexpr std::size_t most_judged = 3;                  // largest number of candidate waveforms tried on fresh devices
+constexpr double end_of_drawing = 0.3;                  // end of the search on the nominal device, as a share of a time budget
 
 constexpr const char *fast_row = "fast", *soft_row = "soft";
-// Largest time until a steady contact of the choices "fast", "default" and "soft", over that of the plain step.
+// Largest time until a steady contact of the choices "fast", "default" and "soft", as a multiple of that under the plain step.
 constexpr double fast_within = 0.5, usual_within = 1, soft_within = 2;
-constexpr double by_chance = 1.02;  // factor on these times that allows for other random devices
+constexpr double by_chance = 1.02;  // factor on the choices' times that allows for other random devices
 constexpr double fewer_bounce_free = 0.05;
 
 class RobustSearchStudy {
@@ -46,10 +46,10 @@ class RobustSearchStudy {
         choose_of_all();
         judge();
       }
-    } catch (const Interrupted&) {  // return the results so far
+    } catch (const Interrupted&) {  // the search was interrupted: return the results so far
     }
     searched_.give_up();
-    if (beside_.valid()) beside_.wait();  // the results of the search over devices are read from here on
+    if (beside_.valid()) beside_.wait();  // wait for the search over devices, whose results are read from here on
     if (progress_.stopped() && result_->rows.empty()) take_leader();
     result_->interrupted = progress_.stopped();
     if (!result_->rows.empty()) complete_findings(*result_, searched_, options_.seed);
@@ -58,7 +58,7 @@ class RobustSearchStudy {
 
  private:
   [[nodiscard]] const SearchSetting& first() const { return searched_.first(); }
-  // Reports progress, except while the search on the nominal device runs, which makes its own reports.
+  // Reports the progress of the study, except while the search on the nominal device runs, which makes its own reports.
   void tell(std::string_view what, double part) const {
     if (options_.on_preparation && !searches_drawing_) options_.on_preparation(what, part);
   }
@@ -75,14 +75,14 @@ class RobustSearchStudy {
     }
   }
 
-  // Options of the search on the nominal device: its candidates are stored for ranking on devices, and on_start gets the
-  // parameters of both searches.
+  // Options of the search on the nominal device: its candidate waveforms are stored for ranking on devices, and on_start gets
+  // the parameters of both searches.
   OptimizeOptions options_of_drawing() {
     OptimizeOptions own = options_;
     own.keep_tried = true;
     if (std::isfinite(own.max_seconds)) own.max_seconds = searched_.budget().seconds_left(end_of_drawing);
     own.max_seconds = std::max(own.max_seconds, 1e-3);
-    own.on_improvement = {};  // best.toml is not the waveform for the nominal device
+    own.on_improvement = {};  // no best.toml of this search: that file gets the waveform for varied devices
     own.on_estimate = [this](const SearchEstimate& of_drawing) {
       if (options_.on_estimate) options_.on_estimate(searched_.estimate(of_drawing));
     };
@@ -90,14 +90,14 @@ class RobustSearchStudy {
       FamilyColumns all = of_drawing;
       std::ranges::copy(searched_.columns().families, std::back_inserter(all.families));
       if (options_.on_start) options_.on_start(all);
-      drawing_options_.memory = options_.memory;  // the caller may create the memory in on_start
+      drawing_options_.memory = options_.memory;  // the caller may create the memory of evaluations in on_start
       search_beside(of_drawing.families.size());
     };
     return own;
   }
 
   // Starts the search over devices, and returns when that search has evaluated a first waveform; then the search on the nominal
-  // device begins. `before` is the number of families of the search on the nominal device.
+  // device begins. `before` is the number of waveform families of the search on the nominal device.
   void search_beside(std::size_t before) {
     const bool is_beside = options_.jobs > 1, is_timed = std::isfinite(options_.max_seconds);
     const double of_drawing = is_timed ? end_of_drawing * options_.max_seconds : 0;
@@ -105,7 +105,7 @@ class RobustSearchStudy {
     const std::future<void> look = looked.get_future();
     beside_ = std::async(is_beside ? std::launch::async : std::launch::deferred,
                          [this, before, reserved = is_beside ? 0 : of_drawing, given = std::move(looked)]() mutable {
-                           std::promise<void> own = std::move(given);  // its destruction ends the wait below
+                           std::promise<void> own = std::move(given);  // destroying `own` ends the wait
                            searched_.run(
                                before, [&own] { own.set_value(); }, reserved);
                          });
@@ -119,7 +119,7 @@ class RobustSearchStudy {
     searches_drawing_ = true;
   }
 
-  // Makes the best candidate so far the result of a search that was interrupted before the final evaluation.
+  // Makes the best candidate waveform so far the result of a search that was interrupted before the final evaluation.
   void take_leader() {
     const ChosenFrom* leader = searched_.leader();
     if (leader == nullptr) return;
@@ -148,7 +148,7 @@ class RobustSearchStudy {
     return first().space.searched(result_->drawing.best_scene->drives.waveforms());
   }
 
-  // Returns the waveforms of the search on the nominal device that are best on devices.
+  // Returns the waveforms of the search on the nominal device that are best on varied devices.
   std::vector<ChosenFrom> ranked_again() {
     std::vector<ChosenFrom> all;
     for (TriedWaveform& one : result_->drawing.tried)
@@ -166,7 +166,7 @@ class RobustSearchStudy {
     return all;
   }
 
-  // Returns the best `kept` candidates by each measure.
+  // Returns the best `kept` candidate waveforms on the first `devices` devices, by each measure of risk.
   std::vector<ChosenFrom> best_on(std::vector<ChosenFrom> all, std::size_t devices, std::size_t kept) {
     struct Ranked {
       double tail, share;
@@ -208,7 +208,7 @@ class RobustSearchStudy {
       if (one.name != default_choice) drives.push_back(named(one.name.c_str(), one.candidate));
     }
     if (undelayed_) drives.push_back(named(undelayed_row, *undelayed_));
-    drives.push_back(of_candidate(0));  // the last drive is the one that reports describe
+    drives.push_back(of_candidate(0));  // the last set of waveforms is the one that reports describe
     result_->verdict = robustness(result_->varied, drives, verdict_options(), progress_);
     result_->interrupted = result_->verdict.interrupted;
     add_row(plain_step_row, plain_step(first().given, options_.actuator));
@@ -223,8 +223,8 @@ class RobustSearchStudy {
     result_->findings.windows = hold_windows(first().given, verdict_options(), progress_);
   }
 
-  // Returns the softest candidate whose devices wait at most `times` as long as under the plain step; null if no candidate
-  // does.
+  // Returns the candidate waveform with the softest impacts whose devices wait for a steady contact at most `times` as long as
+  // under the plain step; null if no candidate does.
   [[nodiscard]] const ChosenFrom* softest_within(double times, const std::vector<ChosenFrom>& candidates) const {
     const ChosenFrom* best = nullptr;
     for (const ChosenFrom& one : candidates) {
@@ -239,7 +239,7 @@ class RobustSearchStudy {
     return same_drives(given.commanded(first().drives(a.waveforms)), given.commanded(first().drives(b.waveforms)));
   }
 
-  // Makes the first candidate the default choice, and adds a quicker and a softer choice if they differ from the default.
+  // Makes the first candidate the default choice; adds a quicker and a softer choice if they differ from the default.
   void make_choices() {
     const ChosenFrom& usual = result_->candidates.front();
     const double until = searched_.free().until, tau = usual.waited / until;
@@ -269,8 +269,8 @@ class RobustSearchStudy {
     return {.name = name, .waveforms = searched_.all_drives(one.waveforms), .calibration = searched_.known().calibration()};
   }
 
-  // Returns the scene with a window that contains all waveforms of the choices completely, and the bounces under the plain
-  // step.
+  // Returns the scene with a simulated time that contains all waveforms of the choices completely, and the bounces under the
+  // plain step.
   [[nodiscard]] PreparedScene over_whole_window(PreparedScene given) const {
     double last = 0;
     const auto consider = [&](const ChosenFrom& one) {
@@ -317,7 +317,7 @@ class RobustSearchStudy {
   }
   [[nodiscard]] NamedDrive of_candidate(std::size_t n) const { return named(for_the_devices, result_->candidates[n]); }
 
-  // Adds a row with the results of an evaluated waveform, which is found by its name or by equal signals.
+  // Adds a row of results for an evaluated waveform, which is found by its name or by equal drive signals.
   void add_row(const char* name, const DriveWaveforms& waveforms) {
     const std::vector<DriveRobustness>& drives = result_->verdict.drives;
     auto found = std::ranges::find(drives, std::string_view(name), &DriveRobustness::name);
@@ -331,7 +331,7 @@ class RobustSearchStudy {
     if (found != drives.end()) result_->rows.push_back({.name = name, .knowledge = found->known.calibration(), .judged = *found});
   }
 
-  // Decides the result on the fresh devices: the first candidate that is not worse than the plain step, else the plain step.
+  // Decides the result on fresh devices: the first candidate waveform not worse than the plain step, else the plain step.
   void decide() {
     const double significant = first().given.scene.metrics.significant_rebound;
     std::vector<DriveRobustness>& drives = result_->verdict.drives;
@@ -370,7 +370,7 @@ class RobustSearchStudy {
       findings().conditions.push_back(fulfilled(result_->row_of_devices().judged.outcomes, condition));
   }
 
-  // Replaces the best waveform by a quicker choice, if the latter is not worse than the best waveform and than the plain step.
+  // Replaces the best waveform by a quicker choice that is worse neither than the best waveform nor than the plain step.
   void prefer_sooner(const DriveRobustness& step) {
     const double significant = first().given.scene.metrics.significant_rebound;
     const auto fast = std::ranges::find(result_->choices, std::string_view(fast_row), &DeviceChoice::name);
@@ -401,7 +401,7 @@ class RobustSearchStudy {
     }
   }
 
-  // Evaluates the choices on the fresh devices, and removes a choice if a quicker choice equals it in speed, rebound and force.
+  // Evaluates the offered waveforms on fresh devices; removes one that a quicker one equals in impact speed, rebound and force.
   void decide_choices() {
     std::vector<DeviceChoice> all = std::exchange(result_->choices, {});
     if (result_->best.plain_step_wins) return;
@@ -432,7 +432,7 @@ class RobustSearchStudy {
     result_->choices = std::move(kept);
   }
 
-  // Returns the scene with the waveforms in volts, over the window of the final evaluation.
+  // Returns the scene with the waveforms in volts, with the simulated time of the final evaluation.
   [[nodiscard]] SceneFile scene_of(const DriveWaveforms& waveforms) const {
     SceneFile file = with_waveforms(result_->drawing.baseline_scene, waveforms);
     if (result_->varied.duration > first().given.duration)
@@ -440,7 +440,7 @@ class RobustSearchStudy {
     return file;
   }
 
-  // Makes the waveforms the result: simulates and confirms the closing of the nominal device.
+  // Makes the waveforms the result of the search: simulates and confirms the closing of the nominal device.
   void win(const DriveWaveforms& waveforms) {
     OptimizeResult& best = result_->best;
     const OptimizeResult& drawing = result_->drawing;
@@ -467,10 +467,10 @@ class RobustSearchStudy {
   std::atomic<bool> searches_drawing_ = false;
   RobustSearch searched_;
   OptimizeOptions drawing_options_;
-  std::optional<RobustSearchResult> result_;  // none before the search on the nominal device
-  std::optional<ChosenFrom> undelayed_;       // the best candidate whose electrode steps at t = 0, if the electrode of other
-                                              // candidates may step later
-  std::future<void> beside_;                  // last member, so that the members used by its thread outlive it
+  std::optional<RobustSearchResult> result_;  // result of the whole search; none before the search on the nominal device
+  // Best candidate waveform whose electrode steps at t = 0; none unless the step of other candidates may come later.
+  std::optional<ChosenFrom> undelayed_;
+  std::future<void> beside_;  // search over devices in another thread; last member, so that the members it uses outlive it
 };
 
 }  // namespace

@@ -10,7 +10,7 @@
 //      0.2 % replace the closing time if the switch is too quick. A calibrated search is repeated under conditions if its
 //      result closes harder than the plain step.
 //   5  Evaluation on 2000 fresh devices (500 or more if closings are slow): plain step, nominal design's waveform and best
-//      waveform over the whole window. Rows with a calibration use the window of a search, which moves 95th percentiles by less
+//      waveform over the whole simulated time. Rows with a calibration use a shorter time, which moves 95th percentiles by less
 //      than 0.4 %.
 //
 // The best waveform, if a drive can move the switch to its contact through stable equilibria (stable_approach.h): candidates
@@ -44,37 +44,39 @@ namespace softland {
 
 /// A waveform that is offered to the user: the default, one with an earlier steady contact, or a softer and slower one.
 struct DeviceChoice {
-  std::string name;  ///< "fast", "default", "soft"
+  std::string name;  ///< name of the choice: "fast", "default", "soft"
   ChosenFrom candidate;
-  double tau = Metrics::unset;  ///< 95th percentile of the time until a steady contact, over that under the plain step
+  /// 95th percentile of the time until a steady contact, as a multiple of that under the plain step.
+  double tau = Metrics::unset;
   DriveRobustness judged = {};
-  std::optional<SceneFile> scene = {};  ///< scene with the waveform, for "fast" and "soft"
+  std::optional<SceneFile> scene = {};  ///< scene with the waveform of the choice, for "fast" and "soft"
 };
 
 struct RobustSearchResult {
-  PreparedScene varied;  ///< the scene with the spread that is used, over the window of the final evaluation
+  PreparedScene varied;  ///< the scene with the process variation that is used, over the simulated time of the final evaluation
   OptimizeResult drawing;
   /// The best waveform on the nominal device: the plain step if all other candidates are worse over the devices. Without
   /// best_scene if the search was interrupted before the choice.
   OptimizeResult best;
-  std::optional<ChosenFrom> chosen = {};    ///< best candidate; none if the plain step is best
+  std::optional<ChosenFrom> chosen = {};    ///< candidate waveform that became the result; none if the plain step is best
   std::vector<ChosenFrom> candidates = {};  ///< candidates for the best waveform, the best first
-  std::vector<DeviceChoice> choices = {};   ///< choices, that with the earliest steady contact first; none if the plain step is
-                                            ///< best
-  FreeTime free = {};                       ///< the time until contact that cost nothing
+  /// Waveforms offered to the user, that with the earliest steady contact first; none if the plain step is best.
+  std::vector<DeviceChoice> choices = {};
+  FreeTime free = {};  ///< the time until contact that costs nothing in the search
   std::optional<StableApproach> approach =
-      {};                   ///< stable path by which a drive can move the switch to its contact; none if no drive can
-  Robustness verdict = {};  ///< plain step, nominal design's waveform and best waveform on the fresh devices
+      {};  ///< stable path by which a drive can move the switch to its contact; none if no drive can
+  /// Results under plain step, nominal design's waveform and best waveform on the fresh devices (new to the search).
+  Robustness verdict = {};
   std::vector<DevicesRow> rows = {};
-  std::optional<SceneFile> calibrated = {};  ///< scene with the waveform for calibrated devices and its [calibration]
-  double pull_in = Metrics::unset;           ///< dynamic pull-in voltage of the nominal device [V]; set if devices are
-                                             ///< calibrated
-  double closing_time = Metrics::unset;      ///< closing time of the nominal device under the step whose closing time is
-                                             ///< measured [s]
-  DevicesFindings findings = {};             ///< findings for reports; without rows if interrupted before the final evaluation
+  /// Scene with the waveform for calibrated devices and the [calibration] that it needs.
+  std::optional<SceneFile> calibrated = {};
+  double pull_in = Metrics::unset;       ///< dynamic pull-in voltage of the nominal device [V]; set if devices are calibrated
+  double closing_time = Metrics::unset;  ///< closing time of the nominal device under the step whose closing time is
+                                         ///< measured [s]
+  DevicesFindings findings = {};         ///< findings for reports; without rows if interrupted before the final evaluation
   bool interrupted = false;
 
-  /// Returns the row of the winner over the devices; call only after the verdict.
+  /// Returns the row of results for the best waveform over the devices; call it only after the final evaluation.
   [[nodiscard]] DevicesRow& row_of_devices();
   /// True if 95 % of the devices have no significant rebound under the plain step.
   [[nodiscard]] bool plain_step_lands() const;
@@ -82,7 +84,7 @@ struct RobustSearchResult {
 
 /// Runs the search on the nominal device with the options of optimize(), and the search over varied devices; max_seconds is the
 /// budget of both together. Calls on_start with the parameters of all searches; those of the tournament begin with
-/// raced_prefix. Throws what optimize() throws.
+/// raced_prefix. Throws the exceptions of optimize().
 [[nodiscard]] RobustSearchResult robust_search(const SceneFile& file, const OptimizeOptions& options,
                                                const RobustSearchOptions& devices);
 

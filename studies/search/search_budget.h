@@ -17,15 +17,17 @@
 
 namespace softland {
 
-/// The limits of a budget: evaluations, time and a flag.
+/// The limits of a search's budget: evaluations, time and a flag.
 struct BudgetLimits {
-  long evaluations = std::numeric_limits<long>::max();       ///< largest number of evaluations, or of closings of devices
-  double seconds = std::numeric_limits<double>::infinity();  ///< time from the construction of the budget on [s]
-  const std::atomic<bool>* stop = nullptr;                   ///< flag from outside (Ctrl-C) that ends the search; may be null
-  std::function<double()> clock = wall_clock;                ///< clock that measures the time [s]
+  /// Largest number of evaluations of one switch, or of closings of devices.
+  long evaluations = std::numeric_limits<long>::max();
+  /// Time that the search may take from the construction of the budget on [s].
+  double seconds = std::numeric_limits<double>::infinity();
+  const std::atomic<bool>* stop = nullptr;     ///< flag that another thread sets (Ctrl-C) to end the search; may be null
+  std::function<double()> clock = wall_clock;  ///< clock that measures the time of the budget [s]
 };
 
-/// A budget, and the evaluations spent so far. Several threads may use the same budget.
+/// The budget of a search, and the evaluations spent so far. Several threads may use the same budget.
 class SearchBudget {
  public:
   explicit SearchBudget(BudgetLimits limits);
@@ -34,42 +36,42 @@ class SearchBudget {
   /// Constructs a part of the budget `whole` with its own time `seconds` from now on [s].
   SearchBudget(SearchBudget& whole, long evaluations, double seconds);
 
-  /// Adds to the evaluations spent, of this budget and of the whole one.
+  /// Adds to the evaluations spent, of this budget and of the budget of which it is a part.
   void took(long evaluations);
   [[nodiscard]] long taken() const { return taken_; }
-  /// Number of evaluations that are left; negative if the last candidate used more than were left.
+  /// Returns the number of evaluations that are left; negative if the last candidate waveform used more than were left.
   [[nodiscard]] long left() const { return evaluations_ - taken_; }
-  /// Share of the evaluations that is spent, 0 to 1.
+  /// Returns the share of the evaluations that is spent, 0 to 1.
   [[nodiscard]] double share_taken() const;
-  /// Changes the number of evaluations in the budget.
+  /// Changes the number of evaluations that the budget has.
   void allow(long evaluations) { evaluations_ = evaluations; }
 
-  /// The time of the budget [s]; infinite without a limit.
+  /// Returns the time of the budget [s]; infinite without a limit.
   [[nodiscard]] double seconds() const { return seconds_; }
-  /// Time since the construction of the budget [s].
+  /// Returns the time since the construction of the budget [s].
   [[nodiscard]] double elapsed() const { return clock_() - begin_; }
-  /// Time until `share` of the budget's time has passed [s]; infinite without a limit, negative after that time.
+  /// Returns the time until `share` of the budget's time has passed [s]; infinite without a limit, negative after that time.
   [[nodiscard]] double seconds_left(double share = 1) const { return share * seconds_ - elapsed(); }
-  /// Does `work`, whose time does not count for the budget.
+  /// Calls work(), whose time does not count for the budget.
   void leave_out(const std::function<void()>& work);
 
   /// Ends the search with this budget and its parts; may be called from any thread.
   void give_up() { given_up_ = true; }
   [[nodiscard]] bool given_up() const { return given_up_ || (whole_ != nullptr && whole_->given_up()); }
-  /// True if the flag from outside (Ctrl-C) is set.
+  /// True if another thread has set the flag that ends the search (Ctrl-C).
   [[nodiscard]] bool interrupted() const { return stop_ != nullptr && stop_->load(std::memory_order_relaxed); }
   [[nodiscard]] bool out_of_time() const;
-  /// True if the search has to end even if evaluations are left.
+  /// True if the search with this budget has to end even if evaluations are left.
   [[nodiscard]] bool over() const { return interrupted() || given_up() || out_of_time(); }
   [[nodiscard]] const std::atomic<bool>* stop() const { return stop_; }
 
  private:
-  SearchBudget* whole_ = nullptr;  // null for a budget that is not a part
+  SearchBudget* whole_ = nullptr;  // budget of which this budget is a part; null for a budget that is not a part
   std::atomic<long> evaluations_, taken_ = 0;
-  double seconds_;  // time of the budget [s]
+  double seconds_;  // time that the search may take [s]
   const std::atomic<bool>* stop_;
   std::function<double()> clock_;
-  double begin_;  // time of the clock at construction [s]
+  double begin_;  // time of the clock at the construction of the budget [s]
   std::atomic<bool> given_up_ = false;
 };
 

@@ -13,8 +13,9 @@ namespace {
 
 constexpr std::size_t most_of_front = 6;
 constexpr std::size_t drawn_devices = 50, instants_of_course = 240;
-constexpr double units_of_gap = 5000;  // resolution of the stored gaps, in units per contact gap
-constexpr double after_steady = 1.1;   // end of the stored gaps over time, in times until steady contact
+constexpr double units_of_gap = 5000;  // resolution of the stored contact gaps over time, in units per contact gap at rest
+// End of the stored contact gaps over time, as a multiple of the time until steady contact.
+constexpr double after_steady = 1.1;
 
 DevicesFindings::Row told(const DevicesRow& row) {
   const DriveRobustness& drive = row.judged;
@@ -48,7 +49,8 @@ DevicesFindings::Row told(const DevicesRow& row) {
 
 }  // namespace
 
-// Computes contact gaps of devices over time, under the plain step and the best waveform, until the contact force is steady.
+// Computes the contact gaps of devices over time, under the plain step and the best waveform, until the contact force is
+// steady.
 void draw_courses(RobustSearchResult& result, const RobustnessOptions& judging, const Progress& progress) {
   if (result.best.plain_step_wins) return;
   const DriveRobustness &step = result.verdict.drives.front(), &own = result.row_of_devices().judged;
@@ -69,8 +71,8 @@ void draw_courses(RobustSearchResult& result, const RobustnessOptions& judging, 
   result.findings.courses = {.end = end, .unit = unit, .step = courses(step), .own = courses(own)};
 }
 
-// Finds the Pareto front of the candidates in time and impact speed, and evaluates the candidates of the front on the fresh
-// devices.
+// Finds the Pareto front of the candidate waveforms in time of first contact and impact speed, and evaluates the candidates of
+// the front on the fresh devices (new to the search).
 void judge_front(RobustSearchResult& result, RobustSearch& search, const Progress& progress) {
   std::vector<const ChosenFrom*> kept;
   for (const ChosenFrom& one : result.candidates) {
@@ -93,7 +95,7 @@ void judge_front(RobustSearchResult& result, RobustSearch& search, const Progres
   std::ranges::stable_sort(result.findings.front, {}, &FrontPoint::first_touch);
 }
 
-// Adds the findings that were not stored earlier.
+// Adds the findings of the search that were not stored earlier.
 void complete_findings(RobustSearchResult& result, RobustSearch& search, std::uint64_t seed) {
   DevicesFindings& d = result.findings;
   const std::optional<Closing>& drawn = result.drawing.best;

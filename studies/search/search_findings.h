@@ -1,4 +1,5 @@
-// What reports need of a search over devices, besides its verdict: the front of its candidates, gaps over time, and all rows.
+// Findings that reports need of a search over devices, besides its final evaluation: the Pareto front of its candidate
+// waveforms, contact gaps over time, and all rows of results.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +9,13 @@
 
 namespace softland {
 
-/// Finds the Pareto front of the candidates in time and impact velocity, and judges its candidates on the fresh devices.
+/// Finds the Pareto front of the candidate waveforms in time of first contact and impact velocity, and evaluates its candidates
+/// on the fresh devices (new to the search).
 void judge_front(RobustSearchResult& result, RobustSearch& search, const Progress& progress);
-/// Computes contact gaps of devices over time, under the plain step and the winner, until the contact force is steady.
+/// Computes the contact gaps of devices over time, under the plain step and the best waveform, until the contact force is
+/// steady.
 void draw_courses(RobustSearchResult& result, const RobustnessOptions& judging, const Progress& progress);
-/// Adds the findings that were not stored earlier.
+/// Adds the findings of the search that were not stored earlier.
 void complete_findings(RobustSearchResult& result, RobustSearch& search, std::uint64_t seed);
 
 }  // namespace softland

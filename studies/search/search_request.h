@@ -1,5 +1,5 @@
-// The request of a search as text, as on the command line, in plans and in database files, and the search that the request
-// describes.
+// The request of a search as text, as on the command line, in plans (stored requests) and in database files, and the search
+// that the request describes.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@
 
 namespace softland {
 
-/// Values of SearchRequest::robust other than a measure: search over devices by a tournament, beside the nominal design; or
-/// search for the nominal design alone.
+/// Values of SearchRequest::robust other than a measure of risk: search over devices by a tournament, beside the nominal
+/// design; or search for the nominal design alone.
 inline constexpr std::string_view by_race = "auto", nominal_alone = "none";
 
 /// Values of SearchRequest::hold_step: the instant of the electrode's plain step is searched (actuator pzt), or is t = 0.
@@ -25,20 +25,21 @@ inline constexpr std::string_view step_is_chosen = "chosen", step_is_fixed = "fi
 
 /// The request of a search. A member that is empty was not given: completed() fills it in.
 struct SearchRequest {
-  std::string target = {};                  ///< "bounce", "0.7 bounce + 0.3 energy"
-  std::string actuator = {};                ///< "electrostatic", "pzt", "both"
-  std::string waveform = {};                ///< waveform families: "knots+dual-pulse"
-  std::string optimizer = {};               ///< "auto", or a method
-  std::string robust = {};                  ///< by_race, nominal_alone, or the measure of a search over devices
-  std::string hold_step = {};               ///< instant of the electrode's plain step: step_is_chosen or step_is_fixed
-  std::string calibrate = {};               ///< per-device calibration: "Vdp:1 %,frequency"; empty: that of the scene
-  std::vector<std::string> constrain = {};  ///< conditions: "peak_contact_force < 20 uN"
-  std::optional<std::string> samples = {};  ///< number of devices
-  std::optional<std::string> budget = {};   ///< evaluations, or closings of devices, "2500", or time, "90 s"
+  std::string target = {};     ///< target of the search: "bounce", "0.7 bounce + 0.3 energy"
+  std::string actuator = {};   ///< actuator whose waveforms are searched: "electrostatic", "pzt", "both"
+  std::string waveform = {};   ///< waveform families to search: "knots+dual-pulse"
+  std::string optimizer = {};  ///< optimizer: "auto", or the name of a method
+  std::string robust = {};     ///< search over devices: by_race, nominal_alone, or the measure of risk to minimise
+  std::string hold_step = {};  ///< instant of the electrode's plain step: step_is_chosen or step_is_fixed
+  std::string calibrate = {};  ///< measurements of a per-device calibration: "Vdp:1 %,frequency"; empty: that of the scene
+  std::vector<std::string> constrain = {};  ///< conditions that the waveform must fulfil: "peak_contact_force < 20 uN"
+  std::optional<std::string> samples = {};  ///< number of varied devices in the search
+  /// Budget of the search: evaluations, or closings of devices, "2500", or time, "90 s".
+  std::optional<std::string> budget = {};
   std::optional<std::string> seed = {};
-  std::optional<std::string> seeds = {};  ///< number of searches, with the seeds `seed`, `seed` + 1, ...
+  std::optional<std::string> seeds = {};  ///< number of searches of a study, with the seeds `seed`, `seed` + 1, ...
 
-  /// True for a search over devices by one measure.
+  /// True for a search over devices by one measure of risk.
   [[nodiscard]] bool is_by_measure() const { return robust != by_race && robust != nominal_alone; }
 };
 
@@ -59,30 +60,31 @@ void visit_prose(const Visit& visit, Requests&... requests) {
   visit("seeds", requests.seeds...);
 }
 
-/// Returns `request` with the empty members filled in from `other`.
+/// Returns `request`, whose empty members get the values of `other`.
 [[nodiscard]] SearchRequest or_else(SearchRequest request, const SearchRequest& other);
 
 /// Returns `request` with defaults, which depend on the scene and on the other members, for all empty members except the
 /// optional members.
 [[nodiscard]] SearchRequest completed(SearchRequest request, const SceneFile& scene);
 
-/// Parts of a request from the user's code, which no text can describe.
+/// Parts of a search request from the user's code, which no text can describe.
 struct OwnParts {
-  std::shared_ptr<const OwnObjective> objective = nullptr;  ///< objective that replaces the target; may be null
+  std::shared_ptr<const OwnObjective> objective = nullptr;  ///< objective of the search that replaces the target; may be null
   OwnWaveforms waveforms = {};
 };
 
 /// A search, or several searches that differ in their seeds, ready to run.
 struct PlannedSearch {
-  SceneFile scene;                                 ///< scene with the requested calibration
-  OptimizeOptions options;                         ///< options of the search with the first seed, on one thread
-  std::optional<RobustOptions> robust;             ///< options of a search over devices by one measure
-  std::optional<RobustSearchOptions> for_devices;  ///< options of a search with a tournament of measures and families
+  SceneFile scene;                      ///< scene to search, with the requested calibration
+  OptimizeOptions options;              ///< options of the search with the first seed, on one thread
+  std::optional<RobustOptions> robust;  ///< options of a search over devices by one measure of risk; none for another search
+  /// Options of a search over devices with a tournament of measures and waveform families.
+  std::optional<RobustSearchOptions> for_devices;
   std::uint64_t seeds = 1;
 
   [[nodiscard]] std::uint64_t seed(std::uint64_t k) const { return options.seed + k; }
-  /// Number of devices on which candidates are tried by one measure, or of fresh devices after a tournament; 0: nominal device
-  /// only.
+  /// Returns the number of devices on which candidate waveforms are tried by one measure of risk, or of fresh devices after a
+  /// tournament; 0: nominal device only.
   [[nodiscard]] std::uint64_t devices() const { return robust ? robust->samples : for_devices ? for_devices->verdict : 0; }
 };
 

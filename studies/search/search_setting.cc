@@ -19,19 +19,21 @@
 namespace softland {
 namespace {
 
-constexpr double latest_touch = 2.5;  // multiples of the baseline's time of first contact
-// First contact up to these multiples of the plain step's time costs little: an electrode can close softly in about the time of
-// the step, a piezo only slows the beam.
+constexpr double latest_touch = 2.5;  // latest permitted time of first contact, as a multiple of the baseline's
+// A first contact up to these multiples of the time under the plain step costs little: an electrode can close softly in about
+// the time of the step, a piezo only slows the beam.
 constexpr double driven_touch = 1.5, braked_touch = 2.0;
-constexpr double search_tolerance = 1e-6;  // tolerance of the integrator: costs good to about 1e-4
-constexpr double most_broken = 10;         // largest relative violation of a condition
-// Weight of the impact speed in the cost over several numbers of modes. The impact speed hardly counts in the cost of bounce,
-// but changes most with further modes.
+constexpr double search_tolerance = 1e-6;  // relative tolerance of the integrator in a search, which gives costs to about 1e-4
+constexpr double most_broken = 10;         // largest relative violation of a condition that counts in the cost
+// Weight of the impact speed in the cost of a search over several numbers of modes. The impact speed hardly counts in the cost
+// of bounce, but changes most with further modes.
 constexpr double weight_of_speed = 0.04;
-constexpr double hopeless = 0.25;  // cost of bounce from which on models with more modes are not simulated; plain step: about 1
+// Cost of bounce from which on a candidate waveform is not simulated with more modes; plain step: about 1.
+constexpr double hopeless = 0.25;
 constexpr double golden_ratio = 1.618033988749895;
 
-// Returns estimated figures of a plain step that does not close: an overshooting initial pulse may still close the switch.
+// Returns estimated figures of the baseline for a plain step that does not close: an overshooting initial pulse may still close
+// the switch.
 Metrics imagined_step(const PreparedScene& given, double period) {
   const double gap = given.scene.device.contact_gap();
   Metrics step;
@@ -42,14 +44,14 @@ Metrics imagined_step(const PreparedScene& given, double period) {
   return step;
 }
 
-// Returns the excess g of a condition for a constrained optimizer. The margin keeps the condition fulfilled at the end of the
-// search, where g = 0.
+// Returns the excess g of a figure over the limit of a condition, for a constrained optimizer. The included margin keeps the
+// condition fulfilled at the end of the search, where g = 0.
 double excess(const Condition& one, const Metrics& metrics) {
   constexpr double margin = 1e-6;
   return std::clamp(one.violation(one.figure.value(metrics)) + margin, -most_broken, most_broken);
 }
 
-// Returns the derivative of excess() by the figure.
+// Returns the derivative of excess() by the figure of the condition.
 double excess_rate(const Condition& one, const Metrics& metrics) {
   if (std::abs(excess(one, metrics)) >= most_broken) return 0;
   const double scale = one.limit == 0 ? 1 : std::abs(one.limit);
@@ -107,7 +109,8 @@ PreparedScene prepared_with(const PreparedScene& prepared, DriveWaveforms wavefo
 PreparedScene read_back(const SceneFile& file, const std::string& name, const PreparedScene& given) {
   PreparedScene p = choose(prepare(file.again(name)));
   p.scene.warnings = given.scene.warnings;
-  p.scene.standing = given.scene.standing;  // in volts the file would have hold levels for all drives
+  // Keep the levels of the scene: in volts the scene file would give hold levels for all drives.
+  p.scene.standing = given.scene.standing;
   return p;
 }
 
@@ -147,7 +150,8 @@ bool SearchSetting::keeps_limits(const std::string& drive, const Waveform& wavef
   return violation(commanded, limits_for(waveform, limits.at(drive))).empty();
 }
 
-// The simulation lasts beyond the last breakpoint, since a later change of a drive could open the switch again.
+// The simulation of a candidate waveform lasts beyond the last breakpoint, since a later change of a drive could open the
+// switch again.
 ClosingOptions SearchSetting::run_of(const std::vector<Signal>& signals) const {
   ClosingOptions own = run;
   own.no_end_before = last_breakpoint(signals) + given.model.basis().in_contact_period();
@@ -180,7 +184,7 @@ SearchCosts SearchSetting::worst_price(const RecordedClosing& closing) const {
 }
 
 Metrics SearchSetting::with_rest_and_drives(Metrics metrics, const std::vector<Signal>& signals) const {
-  metrics.hold_force = baseline.metrics.hold_force;  // force under the hold levels, which a search never changes
+  metrics.hold_force = baseline.metrics.hold_force;  // contact force under the hold levels, which a search never changes
   metrics.capacitance = baseline.metrics.capacitance;
   metrics.resistance = baseline.metrics.resistance;
   set_drive_figures(metrics, given, signals);
@@ -204,8 +208,8 @@ SearchCosts SearchSetting::price_of(const RecordedClosing& closing) const {
   for (const Condition& one : followed_conditions()) costs.apart->excess.push_back(excess(one, figures));
   const double violation = broken(conditions, figures);
   if (!(violation > 0)) return costs;
-  // The penalty is less than the cost difference between closing and not touching. The separate cost of a target gets 1 more,
-  // so that it exceeds every cost of closings that fulfil the conditions.
+  // The penalty for violated conditions is less than the cost difference between closing and not touching. The separate cost of
+  // a target gets 1 more, so that it exceeds every cost of closings that fulfil the conditions.
   const double penalty = 3 * violation / (1 + violation);
   costs.guide += penalty;
   costs.target += target.has_own_cost() ? 1 + penalty : penalty;
@@ -260,7 +264,7 @@ SignalSlopes SearchSetting::signal_slopes(std::span<const double> x, const std::
 }
 
 std::vector<ParameterGroup> SearchSetting::parameter_groups() const {
-  std::vector<double> inside;  // a generic point: no two parameters at the same share of their range
+  std::vector<double> inside;  // a generic point of the search space: no two parameters at the same share of their range
   for (const Variable& v : space.variables())
     inside.push_back(std::lerp(v.lower, v.upper, 0.3 + 0.4 * std::fmod(golden_ratio * static_cast<double>(inside.size()), 1.0)));
   return signal_slopes(inside).groups();
@@ -377,7 +381,7 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
   scale.step = step.touched() && step.is_complete() ? step : imagined_step(given, period);
   const Aim aim = step.touched() && step.is_complete() ? target.in_units_of(step) : target;
   const double baseline_cost = cost(aim, step, scale, given.scene.metrics);
-  // Contact must be early enough for a bounce within the window: a later closing would look soft.
+  // Contact must be early enough for a bounce within the simulated time: a later closing would look soft.
   run.no_contact_before =
       std::min(latest_touch * scale.step.initial_contact_time, given.duration - 2 * given.model.basis().in_contact_period());
   require(run.no_contact_before > 0, [&] {

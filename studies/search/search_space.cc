@@ -19,7 +19,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double rounding =
-    1e-9;  // tolerance of a bound, as a share of the variable's range, since numbers in a scene file are rounded
+    1e-9;  // relative tolerance of a bound, as a share of the variable's range, since numbers in a scene file are rounded
 
 /// The waveform family of each drive, from a text like "pulse" or "main=step,pzt=pulse".
 class FamilyOfDrives {
@@ -67,8 +67,8 @@ class FamilyOfDrives {
   std::map<std::string, std::string> named_;
 };
 
-// Minimises the sum of squares of the residuals `apart`, from the start `x` and within the bounds of the variables, by
-// Gauss-Newton steps with the damping of Marquardt (1963).
+// Minimises the sum of squares of the residuals that `apart` computes, from the start `x` and within the bounds of the
+// variables, by Gauss-Newton steps with the damping of Marquardt (1963).
 template <class Apart>
 std::vector<double> fitted(std::vector<double> x, const std::vector<Variable>& variables, const Apart& apart) {
   constexpr int most_steps = 40;
@@ -181,9 +181,10 @@ std::optional<std::vector<double>> DriveSearch::parameters(const Waveform& wavef
 
 namespace {
 
-constexpr int instants = 250;  // number of instants at which waveforms are compared
+constexpr int instants = 250;  // number of instants at which two waveforms are compared
 
-// Returns samples of a signal until `end` [s]: the square of an electrode's voltage with its sign, or the piezo's voltage.
+// Returns samples of a drive signal until `end` [s]: the square of an electrode's voltage with its sign, or the piezo's
+// voltage.
 VectorXd course_of(const DriveSearch& drive, const Signal& signal, double end) {
   VectorXd all(instants);
   for (int i = 0; i < instants; ++i) {
@@ -194,12 +195,13 @@ VectorXd course_of(const DriveSearch& drive, const Signal& signal, double end) {
 }
 
 double end_of_course(const DriveSearch& drive, const Signal& given) {
-  constexpr double beyond = 1.25, least = 2.5;  // end of the comparison: multiples of the last breakpoint, and of first contact
+  // End of the comparison of waveforms: multiples of the last breakpoint, and of the time of first contact.
+  constexpr double beyond = 1.25, least = 2.5;
   return std::max(beyond * given.breakpoints().back(), least * drive.first_touch);
 }
 
-// Returns the point at which the samples `course` differ least from `wanted`. `about_hold` is the mean square of `wanted` about
-// its hold level.
+// Returns the point of a waveform family at which the samples `course` differ least from `wanted`. `about_hold` is the mean
+// square of `wanted` about its hold level.
 template <class Course>
 std::vector<double> nearest_point(const std::vector<Variable>& variables, const std::vector<std::vector<double>>& starts,
                                   const Course& course, const VectorXd& wanted, double about_hold) {
@@ -215,7 +217,7 @@ std::vector<double> nearest_point(const std::vector<Variable>& variables, const 
     if (left < fewest) fewest = left, best = std::move(fit);
   };
   for (const std::vector<double>& start : starts) fit_from(start);
-  // Search without derivatives for families of steps: samples of steps have no derivatives by times.
+  // Search without derivatives for waveform families of steps, whose samples have no derivatives by times.
   if (fewest > near_enough * about_hold) {
     Problem problem;
     problem.variables = variables;
@@ -255,7 +257,7 @@ std::string DriveSearch::misfit(const Waveform& waveform) const {
 
 namespace {
 
-// Returns the waveform from the user's code with this name, or null.
+// Returns the waveform from the user's code that has this name; null if there is no such waveform.
 std::shared_ptr<const OwnWaveform> own_of(const OwnWaveforms& all, const std::string& name) {
   const auto found = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one != nullptr && one->name() == name; });
   return found == all.end() ? nullptr : *found;
@@ -389,7 +391,8 @@ DriveWaveforms SearchSpace::waveforms(std::span<const double> x) const {
 }
 
 std::optional<std::vector<double>> SearchSpace::parameters(const DriveWaveforms& waveforms) const {
-  if (joint_) return std::nullopt;  // waveforms of the quasi-static family are tables, whose parameters cannot be recovered
+  // Waveforms of the quasi-static family are tables, from which the parameters cannot be recovered.
+  if (joint_) return std::nullopt;
   std::vector<double> all;
   for (const DriveSearch& d : drives_) {
     const auto found = waveforms.find(d.drive);
@@ -410,7 +413,7 @@ std::vector<double> SearchSpace::nearest(const DriveWaveforms& waveforms) const 
   return all;
 }
 
-// Each drive's samples (course_of()) are scaled by their largest value.
+// Finds the nearest point for all drives together: each drive's samples (course_of()) are divided by their largest value.
 std::vector<double> SearchSpace::nearest_of_all(const DriveWaveforms& given) const {
   std::vector<double> scales;
   double end = 0, hold = 0;

@@ -47,48 +47,50 @@ namespace softland {
 
 /// The drives whose waveforms are searched; the defaults of a search depend on this value.
 enum class Shaped { electrode, piezo, several };
-/// Returns `several` for an electrode and a piezo, and if the scene has a driver for an electrode on the far side.
+/// Returns `several` for an electrode and a piezo, and if the scene has a voltage source [driver] for an electrode on the far
+/// side (away from the contact).
 [[nodiscard]] Shaped shaped_drives(const SceneFile& scene, Actuator actuator);
-/// The default waveform families: together they find a bounce-free waveform for every switch of results/comparison.md.
+/// Returns the default waveform families, which together find a bounce-free waveform for every switch of results/comparison.md.
 [[nodiscard]] std::string_view default_families(Shaped drives);
 /// Splits a list of waveform families like "knots+dual-pulse+staircase:5+knots:8". Throws InvalidInput if a name is empty or
 /// occurs twice.
 [[nodiscard]] std::vector<std::string> families_of(const std::string& text);
-/// Prefix of a family's parameters: "knots." if there are several families, empty if it is the only one.
+/// Returns the prefix of a waveform family's parameters: "knots." if there are several families, empty if it is the only one.
 [[nodiscard]] std::string prefix_of(const std::string& families, const std::string& family);
 
 struct SearchedFamily;
 /// Waveforms from the user's code. A search request lists their names like waveform families.
 using OwnWaveforms = std::vector<std::shared_ptr<const OwnWaveform>>;
-/// The names of all waveform families, for messages: "step, pulse, ..., sines:N or quasi-static:N".
+/// Returns the names of all waveform families, for messages: "step, pulse, ..., sines:N or quasi-static:N".
 [[nodiscard]] std::string listed_searched_families();
 /// True for the waveform family that varies all drives together: "quasi-static", "quasi-static:2".
 [[nodiscard]] bool is_quasi_static(std::string_view family);
 
-/// The waveform parameters of one drive.
+/// The searched waveform of one drive: its waveform family, parameters and bounds.
 struct DriveSearch {
   std::string drive;
-  const SearchedFamily* family = nullptr;            ///< waveform family; null: `own` is used
-  std::shared_ptr<const OwnWaveform> own = nullptr;  ///< waveform from the user's code, instead of a family
-  std::size_t count = 0;   ///< number of levels, knots, pulses or sines, if the family has such a number
-  double hold = 0;         ///< hold level [V]
-  double before = 0;       ///< voltage before t = 0 [V]
-  bool brakes = false;     ///< true for an electrode on the far side
+  const SearchedFamily* family = nullptr;  ///< waveform family of the drive; null: `own` is used
+  /// Waveform from the user's code that is searched instead of a waveform family.
+  std::shared_ptr<const OwnWaveform> own = nullptr;
+  std::size_t count = 0;   ///< number of levels, knots (corners), pulses or sines, if the waveform family has such a number
+  double hold = 0;         ///< hold level of the drive [V]
+  double before = 0;       ///< voltage of the drive before t = 0 [V]
+  bool brakes = false;     ///< true for an electrode on the far side (away from the contact), which brakes the beam
   double first_touch = 0;  ///< time of first contact under the plain step [s]
   DriverLimits limits;
   std::vector<Variable> variables;
   std::vector<std::vector<double>> starts;
   [[nodiscard]] Waveform waveform(std::span<const double> x) const;
-  /// The parameters of `waveform`; none if it is not of this waveform family or is outside the bounds, up to rounding.
+  /// Returns the parameters of `waveform`; none if it is not of this waveform family or is outside the bounds, up to rounding.
   [[nodiscard]] std::optional<std::vector<double>> parameters(const Waveform& waveform) const;
-  /// The parameters of this waveform family that approximate `waveform` best: least mean square difference of an electrode's
-  /// squared voltage, or of the piezo's voltage, until a little after the last breakpoint. The result is exact for a waveform
-  /// of this family.
+  /// Returns the parameters of this waveform family that approximate `waveform` best: least mean square difference of an
+  /// electrode's squared voltage, or of the piezo's voltage, until a little after the last breakpoint. The result is exact for
+  /// a waveform of this family.
   [[nodiscard]] std::vector<double> nearest(const Waveform& waveform) const;
-  /// The reason why a search cannot begin with a waveform, as text: another hold level, or values beyond the driver's limits.
-  /// Empty if it can begin.
+  /// Returns the reason why a search cannot begin with a waveform, as text: another hold level, or values beyond the limits of
+  /// the voltage source. Empty if the search can.
   [[nodiscard]] std::string misfit(const Waveform& waveform) const;
-  /// True if a signal ends on the hold level, up to rounding.
+  /// True if a signal of this drive ends on its hold level, up to rounding.
   [[nodiscard]] bool holds(const Signal& signal) const;
 
  private:
@@ -105,23 +107,26 @@ class SearchSpace {
               const OwnWaveforms& own = {});
 
   [[nodiscard]] const std::vector<DriveSearch>& drives() const { return drives_; }
-  /// The searched drive of this name, which must exist.
+  /// Returns the searched drive of this name, which must exist.
   [[nodiscard]] const DriveSearch& drive(const std::string& name) const;
   [[nodiscard]] std::vector<Variable> variables() const;
   [[nodiscard]] std::vector<std::vector<double>> starts() const;
-  /// Waveforms of the searched drives at the point `x`.
+  /// Returns the waveforms of the searched drives at the point `x` of the search space.
   [[nodiscard]] DriveWaveforms waveforms(std::span<const double> x) const;
-  /// The point whose waveforms are the given ones, if this point exists: the start for refining an earlier result.
+  /// Returns the point of the search space that has the given waveforms, if this point exists: the start for refining an
+  /// earlier result.
   [[nodiscard]] std::optional<std::vector<double>> parameters(const DriveWaveforms& waveforms) const;
-  /// The point whose waveforms differ least from the given ones, for which misfit() must be empty: a start in another family.
+  /// Returns the point of the search space whose waveforms differ least from the given ones, for which misfit() must be empty:
+  /// a start in another family.
   [[nodiscard]] std::vector<double> nearest(const DriveWaveforms& waveforms) const;
-  /// The reason why a search cannot begin with the given waveforms, as text; empty if it can.
+  /// Returns the reason why a search cannot begin with the given waveforms, as text; empty if it can.
   [[nodiscard]] std::string misfit(const DriveWaveforms& waveforms) const;
-  /// The given waveforms, without those of drives that are not searched.
+  /// Returns the given waveforms, without those of drives that are not searched.
   [[nodiscard]] DriveWaveforms searched(const DriveWaveforms& waveforms) const;
-  /// The quasi-static approach, if the searched family is quasi-static; otherwise null.
+  /// Returns the quasi-static approach, if the searched family is quasi-static; otherwise null.
   [[nodiscard]] const QuasiStatic* quasi_static() const { return joint_ ? &*joint_ : nullptr; }
-  /// The space of the quasi-static approach, with bounds about its closed form for a steady force from `steady` on [s].
+  /// Returns the space of the quasi-static approach, with bounds about its closed form for a steady contact force from `steady`
+  /// on [s].
   [[nodiscard]] SearchSpace paced(double steady) const;
 
  private:
@@ -129,7 +134,8 @@ class SearchSpace {
   [[nodiscard]] std::vector<double> nearest_of_all(const DriveWaveforms& given) const;
 
   std::vector<DriveSearch> drives_;
-  std::optional<QuasiStatic> joint_;  // the quasi-static family, which varies all drives together
+  // The quasi-static approach, a waveform family that varies all drives together; none for other families.
+  std::optional<QuasiStatic> joint_;
 };
 
 }  // namespace softland

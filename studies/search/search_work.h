@@ -16,16 +16,16 @@
 
 namespace softland {
 
-/// The work of simulating one closing.
+/// The work of simulating one closing, as a number and as a time.
 struct ClosingWork {
-  double counted = 0;  ///< work w in right-hand sides
-  double seconds = 0;  ///< computing time on this machine [s]
+  double counted = 0;  ///< work w of the closing, in right-hand sides of the equations of motion
+  double seconds = 0;  ///< computing time of the closing on this machine [s]
 };
-/// Simulates the closings under the plain step and under the first starting waveform of the family, with the options of a
-/// search, and returns the work of the slower one. Throws no exception: a simulation that fails counts up to its failure.
+/// Simulates the closings under the plain step and under the first starting waveform of the waveform family, with the options
+/// of a search, and returns the work of the slower one. Throws no exception: a simulation that fails counts up to its failure.
 [[nodiscard]] ClosingWork closing_work(const SearchSetting& setting);
 
-/// Reference work u, in right-hand sides; shipped scenes with quick closings need less work.
+/// Returns the reference work u of a closing, in right-hand sides; shipped scenes with quick closings need less work.
 [[nodiscard]] double usual_work(Shaped drives);
 /// Number of devices that SIMD lanes simulate in the time of one.
 inline constexpr double usual_lanes = 8;
@@ -34,7 +34,7 @@ inline constexpr double usual_lanes = 8;
 /// quasi-static approach, relative to another closing.
 inline constexpr double device_share = 0.8, slow_approach = 3;
 
-/// Number of closings n of a budget of `closings`, at least 1.
+/// Returns the number of closings n of a budget of `closings` when a closing has the work `counted`; at least 1.
 [[nodiscard]] long within_work(long closings, double counted, double usual);
 
 /// Reduces a default budget of the search on the nominal device if the closings of the scene are slow, and reports the estimated

@@ -28,7 +28,8 @@ void add_step(DriveSearch& s, const PreparedScene&, double t0) {
   s.starts = {{0.5 * t0}};
 }
 
-// Adds a piecewise linear waveform: the voltages at its knots, the total time, and the shares of the time between knots.
+// Adds the variables of a piecewise linear waveform: the voltages at its knots (corners), the total time, and the shares of the
+// time between knots.
 void add_knots(DriveSearch& s, const PreparedScene& p, double t0) {
   for (std::size_t k = 0; k < s.count; ++k)
     s.variables.push_back({fmt::format("level_{}_V", k + 1), s.limits.min_voltage, s.limits.max_voltage});
@@ -46,14 +47,15 @@ void add_knots(DriveSearch& s, const PreparedScene& p, double t0) {
   if (s.drive == piezo_drive) {
     const double gap = p.scene.device.contact_gap();
     line([](double) { return 0; }, 1.5, 1);
-    // The piezo pulls towards the contact, then brakes, then returns to its hold level.
+    // Start waveforms of a piezo: it pulls towards the contact, then brakes, then returns to its hold level.
     line([&](double part) { return lifting_voltage(p, (part < 0.5 ? -0.4 : 0.3) * gap); }, 2, 1);
   } else {
-    line([&](double part) { return (0.7 + 0.2 * part) * s.hold; }, 8, 0.2);            // a slow ramp
-    line([&](double part) { return (0.75 + 0.2 * part) * s.hold; }, 3, 0.2);           // a quicker ramp
-    line([&](double part) { return part < 0.55 ? s.hold : 0.5 * s.hold; }, 1.5, 0.1);  // full pull, then coasting
+    line([&](double part) { return (0.7 + 0.2 * part) * s.hold; }, 8, 0.2);   // start waveform: a slow ramp
+    line([&](double part) { return (0.75 + 0.2 * part) * s.hold; }, 3, 0.2);  // start waveform: a quicker ramp
+    // Start waveform: full pull, then coasting.
+    line([&](double part) { return part < 0.55 ? s.hold : 0.5 * s.hold; }, 1.5, 0.1);
     line([&](double part) { return part < 0.75 ? 0.3 * s.hold : 0.6 * s.hold; }, 1.8,
-         0.1);  // low voltage, if the other drives close the switch
+         0.1);  // start waveform: low voltage, if the other drives close the switch
   }
 }
 
@@ -84,8 +86,8 @@ Waveform harmonic_at(const DriveSearch& s, std::span<const double> x) {
                   .fade = d.fade};
 }
 
-// Returns straight lines through the voltages with the given durations, which may be 0; lines that exceed the driver's slew are
-// longer.
+// Returns straight lines through the voltages with the given durations, which may be 0; lines that exceed the slew limit of the
+// source are longer.
 Waveform broken_line(const DriveSearch& s, std::span<const double> voltages, std::span<const double> durations) {
   Table table{.time = {0}, .voltage = {s.before}};
   for (std::size_t k = 0; k < voltages.size(); ++k) {
@@ -166,7 +168,7 @@ constexpr auto families = std::to_array<SearchedFamily>({
     {"sines", FamilyOf<Sines>::name, 4, add_sines, sines_at, of_sines},
 });
 
-constexpr std::size_t fewest = 2, most = 20;  // permitted numbers of levels, knots, pulses or sines
+constexpr std::size_t fewest = 2, most = 20;  // permitted numbers of levels, knots, pulses or sines of a waveform family
 
 }  // namespace
 

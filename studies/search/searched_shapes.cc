@@ -47,9 +47,10 @@ std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const Prepare
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (names[k] == s.drive) driven[k] = found.pulling, coasting[k] = found.coasting;
   }
-  // Use the swing of all modes, or the bang-bang landing of the first mode if the gas film is compressible.
+  // Use the quickest swing of all modes to the contact, or the bang-bang closing of the first mode alone if the gas film is
+  // compressible.
   if (p.model.film_states() == 0 && p.rest()) {
-    constexpr double longest = 3;  // longest swing, in periods of the first mode
+    constexpr double longest = 3;  // longest swing (pull, then release) to the contact, in periods of the first mode
     const std::optional<Swing> swing = quickest_swing(p.model, driven, coasting, longest * first_period(p), p.values_before());
     if (!swing) return std::nullopt;
     found.driven_time = swing->driven_time;
@@ -78,7 +79,7 @@ void add_s_curve(DriveSearch& s, const PreparedScene& p, double t0) {
 }
 
 Waveform s_curve_at(const DriveSearch& s, std::span<const double> x) {
-  // An edge of half a cosine is pi / 2 times as steep in its middle as a straight edge.
+  // An edge of half a cosine is pi / 2 times as steep in its middle as a straight edge of the same duration.
   const double rise = std::max(std::abs(x[0] - s.before), std::abs(s.hold - x[0])) * pi / 2 / s.limits.max_slew;
   const double edge = std::max(x[2], rise * (1 + 1e-12));
   return SCurve{.levels = {x[0], s.hold}, .times = {edge + x[1]}, .edge = edge};
@@ -196,7 +197,7 @@ void add_bspline(DriveSearch& s, const PreparedScene& p, double t0) {
 }
 
 Waveform bspline_at(const DriveSearch& s, std::span<const double> x) {
-  // The spline begins at the first level, or with a slew limit at the voltage before. It ends with two hold levels, for a
+  // The spline begins at the first level, or with a slew limit at the voltage before t = 0. It ends with two hold levels, for a
   // smooth end.
   BSpline spline{.levels = {}, .duration = x.back()};
   if (std::isfinite(s.limits.max_slew)) spline.levels.push_back(s.before);
@@ -250,7 +251,7 @@ Waveform sines_at(const DriveSearch& s, std::span<const double> x) {
               .amplitudes = {x.begin(), x.end() - 1},
               .start = longest_rise(s),
               .duration = x.back()};
-  // Beyond the limits all amplitudes are reduced by one factor, so that the spectrum keeps its form.
+  // Beyond the voltage limits all amplitudes are reduced by one factor, so that the spectrum keeps its form.
   Sines alone = sines;
   alone.base = 0;
   const Signal swing = signal(alone);
@@ -260,7 +261,7 @@ Waveform sines_at(const DriveSearch& s, std::span<const double> x) {
   if (up > s.limits.max_voltage - s.hold) share = std::min(share, (s.limits.max_voltage - s.hold) / up);
   if (down > s.hold - s.limits.min_voltage) share = std::min(share, (s.hold - s.limits.min_voltage) / down);
   if (steepest > s.limits.max_slew) share = std::min(share, s.limits.max_slew / steepest);
-  constexpr double precision = 1e-7;  // precision of the computed extrema, over the sum of all amplitudes
+  constexpr double precision = 1e-7;  // precision of the computed extrema of the sines, as a share of the sum of all amplitudes
   if (share < 1) {
     for (double& amplitude : sines.amplitudes) amplitude *= share * (1 - precision);
   }

@@ -14,20 +14,22 @@ namespace softland::internal {
 
 using Parameters = std::optional<std::vector<double>>;
 
-/// The voltage, clamped to the limits of the drive.
+/// Returns the voltage, clamped to the limits of the drive's voltage source.
 [[nodiscard]] double inside(const DriveSearch& s, double voltage);
-/// Piezo voltage [V] that, without other drives, deflects the contact point statically by `lift` away from the contact [m].
+/// Returns the piezo voltage [V] that, without other drives, deflects the contact point statically by `lift` away from the
+/// contact [m].
 [[nodiscard]] double lifting_voltage(const PreparedScene& p, double lift);
-/// Period of the first mode [s].
+/// Returns the period of the first mode [s].
 [[nodiscard]] double first_period(const PreparedScene& p);
-/// Full pull, then least pull, so that the switch reaches its contact at rest (swing.h). If the gas film is compressible, the
-/// durations are those of the first mode alone, without damping (bang_bang.h). The other drives stay at their hold levels.
+/// A start of a search: full pull, then least pull, so that the switch reaches its contact at rest (swing.h). If the gas film
+/// is compressible, the durations are those of the first mode alone, without damping (bang_bang.h). The other drives stay at
+/// their hold levels.
 struct ThrowAndCoast {
-  double pulling = 0, coasting = 0;           ///< voltages of the two parts [V]
-  double driven_time = 0, coasting_time = 0;  ///< durations of the two parts [s]
+  double pulling = 0, coasting = 0;           ///< voltages of the pull and of the coast [V]
+  double driven_time = 0, coasting_time = 0;  ///< durations of the pull and of the coast [s]
 };
-/// Durations of the pull after first contact in starting points, over the plain step's time of first contact. Modes that are
-/// still excited decay during this pull.
+/// Durations of the pull after first contact in starting points, as multiples of the plain step's time of first contact. Modes
+/// that are still excited decay during this pull.
 inline constexpr std::array pushes = {0.5, 1.0, 2.0, 3.5};
 /// Returns the full pull and the coast of a drive; nothing if the switch cannot reach its contact by pull and coast, and for a
 /// drive that pulls away from the contact.

@@ -1,8 +1,8 @@
 // The searched waveform families that are one pulse train: pulses of a level and a duration each, with coasting between pulses
 // in some families, then the hold level; all edges have one duration. searched_families.cc has the restrictions of each family.
 //
-// The parameters of a train are level_1 ... level_N, duration_1 ... duration_N, coast_1 ... and edge. A drive that brakes waits
-// before each of its pulses instead of coasting after them.
+// The parameters of a train are level_1 ... level_N, duration_1 ... duration_N, coast_1 ... and edge. A drive that brakes the
+// beam waits before each of its pulses instead of coasting after them.
 #pragma once
 
 #include <array>
@@ -17,26 +17,28 @@ namespace softland::internal {
 
 /// The restrictions of a waveform family on its pulse train.
 struct TrainRules {
-  std::size_t pulses = 0;              ///< number of pulses; 0: given by the user, or the family is not a pulse train
-  bool coasts = false;                 ///< true: no voltage between two pulses
-  std::array<double, 3> longest = {};  ///< longest durations of the pulses, over the plain step's time of first contact; the
-                                       ///< last entry also applies to later pulses
-  double longest_edge = 0.1;           ///< longest edge, in periods of the first mode
+  std::size_t pulses = 0;  ///< number of pulses in the train; 0: given by the user, or the waveform family is not a pulse train
+  bool coasts = false;     ///< true: the drive has no voltage between two pulses
+  /// Longest durations of the pulses, as multiples of the plain step's time of first contact; the last entry also applies to
+  /// later pulses.
+  std::array<double, 3> longest = {};
+  double longest_edge = 0.1;  ///< longest edge of the pulses, in periods of the first mode
   std::string_view first_duration = "duration_1_s";
 };
 
-/// A waveform with the given levels and durations, then the hold level. The edges are as long as the driver's slew requires,
-/// and no duration is shorter than its edge.
+/// Returns a waveform with the given levels and durations, then the hold level. The edges are as long as the voltage source's
+/// slew requires, and no duration is shorter than its edge.
 [[nodiscard]] Waveform pulse_of(const DriveSearch& s, std::span<const double> levels, std::span<const double> durations,
                                 double edge);
 
 void add_pulse(DriveSearch& s, const PreparedScene& p, double t0);
-/// Adds variables and starts of a catch: an overshooting initial pulse, a coast, and a level that presses the switch on its
-/// contact.
+/// Adds variables and starts of the waveform family catch: an overshooting initial pulse, a coast, and a level that presses the
+/// switch on its contact.
 void add_catch(DriveSearch& s, const PreparedScene& p, double t0);
 void add_staircase(DriveSearch& s, const PreparedScene& p, double t0);
 void add_coast(DriveSearch& s, const PreparedScene& p, double t0);
-/// Adds variables and starts of pulses: the first accelerates the switch, all others press it on its contact.
+/// Adds variables and starts of a waveform family of pulses: the first accelerates the switch, all others press it on its
+/// contact.
 void add_pulses(DriveSearch& s, const PreparedScene& p, double t0);
 [[nodiscard]] Waveform train_at(const DriveSearch& s, std::span<const double> x);
 [[nodiscard]] Parameters of_train(const DriveSearch& s, const Waveform& waveform);

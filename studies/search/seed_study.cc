@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-// Columns with the outcome of a search, between the columns of figures and of parameters.
+// Columns with the outcome of the search of a seed, between the columns of figures and of parameters.
 constexpr std::array<std::pair<const char*, const char*>, 7> verdict_columns{
     {{"goal_met", "Goal met"},
      {"confirmed", "Confirmed"},

@@ -18,7 +18,7 @@ std::vector<double> values_of(std::string_view key, const std::vector<DeviceOutc
   return all;
 }
 
-// True if the quantile of `own` at `compared_at` is above that of `of_step`; both may be infinite.
+// True if the quantile at `compared_at` of a figure's values `own` is above that of `of_step`; both may be infinite.
 bool is_above(const std::vector<double>& own, const std::vector<double>& of_step) {
   return sample_quantile(own, compared_at) > sample_quantile(of_step, compared_at);
 }
@@ -42,7 +42,8 @@ bool is_worse(const std::vector<double>& own, const std::vector<double>& of_step
 std::vector<std::string_view> worse_in(const std::vector<DeviceOutcome>& drive, const std::vector<DeviceOutcome>& step,
                                        double significant, std::uint64_t seed) {
   std::vector<std::string_view> worse;
-  const std::size_t both = std::min(drive.size(), step.size());  // an interrupted simulation has fewer outcomes
+  // An interrupted simulation has fewer outcomes: compare the devices that both lists have.
+  const std::size_t both = std::min(drive.size(), step.size());
   for (const std::string_view key : judged_figures) {
     const double least = key == key_of(&Metrics::major_bounce_height) ? significant : 0;
     std::vector<double> own = values_of(key, drive, least), of_step = values_of(key, step, least);

@@ -1,4 +1,4 @@
-// Compares the waveform of a drive with the plain step on varied devices.
+// Compares drive waveforms with the plain step on varied devices.
 //
 // The compared figures are the largest impact speed, the highest rebound and the peak force. The waveform is worse in a figure
 // if the 95th percentile is above that under the step on the same devices, and the 95 % interval of the difference, by a
@@ -15,18 +15,19 @@
 
 namespace softland {
 
-/// Keys of the compared device_figures.
+/// Keys of the compared figures, which are among device_figures.
 inline constexpr std::array judged_figures{key_of(&Metrics::largest_impact_velocity), key_of(&Metrics::major_bounce_height),
                                            key_of(&Metrics::peak_contact_force)};
 
-/// Keys of the figures in which the waveform of `drive` is worse. Both lists of outcomes have the same devices, up to the end
-/// of the shorter list; rebounds below the height `significant` are equal [m].
+/// Returns the keys of the figures in which the waveform of `drive` is worse. Both lists of outcomes have the same devices, up
+/// to the end of the shorter list; rebounds below the height `significant` are equal [m].
 [[nodiscard]] std::vector<std::string_view> worse_in(const std::vector<DeviceOutcome>& drive,
                                                      const std::vector<DeviceOutcome>& step, double significant,
                                                      std::uint64_t seed);
 
-/// Conditions that each of judged_figures is at most the 95th percentile of the plain step's outcomes, and a rebound at most
-/// the larger of this percentile and `significant` [m]. A figure whose percentile is not finite has no condition.
+/// Returns the conditions that each of judged_figures is at most the 95th percentile of the plain step's outcomes, and a
+/// rebound at most the larger of this percentile and `significant` [m]. A figure whose percentile is not finite has no
+/// condition.
 [[nodiscard]] std::vector<Condition> at_most_step(const std::vector<DeviceOutcome>& step, double significant);
 
 }  // namespace softland

@@ -19,9 +19,10 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kind = "search";
-constexpr const char* raced_families_key = "raced_waveform";  // key in a plan: waveform families that the user gave
+// Key in a stored request (plan): waveform families that the user gave.
+constexpr const char* raced_families_key = "raced_waveform";
 
-// Reads the request from a plan. A plan without the member `robust` is of a search on the nominal device.
+// Reads the request of a search from its stored plan. A plan without the member `robust` is of a search on the nominal device.
 SearchRequest request_in(const json& plan) {
   SearchRequest request{.robust = std::string(nominal_alone)};
   const auto take = [&](std::string_view name, auto& word) {
@@ -33,7 +34,8 @@ SearchRequest request_in(const json& plan) {
   return request;
 }
 
-// Returns the requested starting scenes, or, if none are requested, those of the plan `known`, which the search continues.
+// Returns the requested starting scenes. If none are requested, returns those of `known`, the stored request of an earlier
+// search that is continued.
 std::vector<StartingScene> starting_scenes(const AskedSearch& asked, const json& known) {
   std::vector<StartingScene> all;
   for (const StartingScene& one : asked.starts) {
@@ -48,7 +50,8 @@ std::vector<StartingScene> starting_scenes(const AskedSearch& asked, const json&
   return all;
 }
 
-// Returns the requested scene, or that of the plan `known`, which the search continues, with the requested assignments added.
+// Returns the requested scene. If none is requested, returns that of `known`, the stored request of an earlier search that is
+// continued, with the assignments added.
 json given_scene(const AskedSearch& asked, const json& known) {
   json given;
   if (asked.given) {
@@ -67,7 +70,7 @@ SceneFile scene_of(const json& given) {
   return scene;
 }
 
-// Returns the plan of a search: the texts of the request, with defaults for missing numbers.
+// Returns the plan of a search, its stored request: the texts of the request, with defaults for missing numbers.
 json plan_of(SearchRequest request, const PlannedSearch& search, const std::vector<StartingScene>& starts, const json& given) {
   request.seed = std::to_string(search.options.seed);
   request.seeds = std::to_string(search.seeds);
@@ -182,7 +185,8 @@ std::string difference(const json& there, const json& asked) {
 json plan_of_seed(const json& plan, std::uint64_t seed) {
   json one = plan;
   one["seed"] = std::to_string(seed);
-  for (const char* key : {"seeds", "given"}) one.erase(key);  // these members do not change the result
+  // The members "seeds" and "given" do not change the result of the search.
+  for (const char* key : {"seeds", "given"}) one.erase(key);
   return one;
 }
 

@@ -1,5 +1,5 @@
-// The plan of a search, as its database files contain it: everything on which the result depends, so that the search can be
-// continued.
+// The plan (stored request) of a search, as its database files contain it: everything on which the result depends, so that the
+// search can be continued.
 #pragma once
 
 #include <atomic>
@@ -17,12 +17,13 @@ namespace softland {
 
 /// The text of the scene that the user gave, with the name and the folder of its file.
 struct GivenText {
-  std::string file, folder, text;  ///< `folder` is the base of relative paths in the scene
+  /// Name of the scene file, folder to which relative paths in the scene refer, and text of the scene.
+  std::string file, folder, text;
 };
 
-/// A scene whose waveforms are a start of the search.
+/// A scene whose waveforms are a starting point of the search.
 struct StartingScene {
-  std::string name;  ///< name of the scene as the user gave it
+  std::string name;  ///< name of the starting scene as the user gave it
   SceneFile scene;
 };
 
@@ -30,8 +31,8 @@ struct StartingScene {
 struct AskedSearch {
   SearchRequest request = {};
   std::optional<GivenText> given = {};
-  std::optional<SceneFile> scene = {};  ///< scene of `given` with the assignments `set`; none without `given`
-  std::vector<std::string> set = {};    ///< assignments to keys of the scene: "structure.length=250 um"
+  std::optional<SceneFile> scene = {};  ///< scene of the text `given` with the assignments `set`; none without `given`
+  std::vector<std::string> set = {};    ///< assignments of values to keys of the scene: "structure.length=250 um"
   std::vector<StartingScene> starts = {};
   int jobs = 1;
   const std::atomic<bool>* stop = nullptr;
@@ -41,32 +42,35 @@ struct StoredSearch : PlannedSearch {
   nlohmann::json plan;
 };
 
-/// An earlier search that is continued.
+/// An earlier search that a new run continues.
 struct KnownSearch {
-  std::filesystem::path place;  ///< folder with the search's database files
+  std::filesystem::path place;  ///< folder with the database files of the earlier search
   nlohmann::json plan;
-  std::string command;  ///< command that began the search
+  std::string command;  ///< command line that began the earlier search
 };
 
-/// Plans a search. `known` is the plan of a search that is continued; without this plan the request must have a scene. Throws
-/// InvalidRequest with field, value and rule, and what reading a scene throws.
+/// Returns the search that a request describes. `known` is the plan (stored request) of an earlier search that is continued;
+/// without it the request must have a scene. Throws InvalidRequest with field, value and rule, and the exceptions of reading a
+/// scene.
 [[nodiscard]] StoredSearch stored_search(const AskedSearch& asked, const nlohmann::json& known = {});
 
 /// Plans a search that continues the first search in the database files `stores` that matches the request; this search becomes
-/// `known`. Plans a new search if `stores` is empty. Throws what the other stored_search() throws, and InvalidRequest about the
-/// field `resume`, with the differences, if no search matches.
+/// `known`. Plans a new search if `stores` is empty. Throws the exceptions of the other stored_search(), and InvalidRequest
+/// about the field `resume`, with the differences, if no search matches.
 [[nodiscard]] StoredSearch stored_search(const AskedSearch& asked, const std::vector<std::filesystem::path>& stores,
                                          std::optional<KnownSearch>& known);
 
-/// Returns the reason why the plan `asked` does not continue the search of the plan `there`, with fields marked as by
-/// requested(). Empty if `asked` continues it: the plans differ only in the budget, or `asked` has more seeds.
+/// Returns the reason why the search with the stored request (plan) `asked` does not continue that of the plan `there`, with
+/// fields marked as by requested(). Empty if `asked` continues it: the plans differ only in the budget, or `asked` has more
+/// seeds.
 [[nodiscard]] std::string difference(const nlohmann::json& there, const nlohmann::json& asked);
 
-/// Returns the plan of the search from one seed alone. The evaluations of the search from this seed depend on this plan only.
+/// Returns the stored request (plan) of the search from one seed alone. The evaluations of the search from this seed depend on
+/// this plan only.
 [[nodiscard]] nlohmann::json plan_of_seed(const nlohmann::json& plan, std::uint64_t seed);
 
-/// Returns the largest number of evaluations of the whole search. Most evaluations over varied devices take at least eight
-/// closings.
+/// Returns the largest number of evaluations that the whole search can make. Most evaluations over varied devices take at least
+/// eight closings.
 [[nodiscard]] std::int64_t evaluations_at_most(const PlannedSearch& search);
 
 }  // namespace softland

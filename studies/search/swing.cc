@@ -13,7 +13,7 @@ using Eigen::VectorXd;
 
 struct Flight {
   bool touched = false;
-  std::vector<VectorXd> states;  // modal coordinates and rates, after each step
+  std::vector<VectorXd> states;  // modal coordinates and rates after each step of the motion
 };
 
 // Simulates the motion from rest under full pull, then under full release, until the switch touches or its contact point turns
@@ -64,8 +64,8 @@ class PullAndRelease {
 
   const Switch& model_;
   Eigen::VectorXd rest_;
-  std::vector<double> pulling_, releasing_;  // [V]
-  double step_, longest_;                    // [s]
+  std::vector<double> pulling_, releasing_;  // voltages of the drives during the pull and during the release [V]
+  double step_, longest_;                    // time step, and longest time of the motion [s]
   Switch::Workspace work_;
 };
 
@@ -77,7 +77,7 @@ std::optional<Swing> quickest_swing(const Switch& model, const std::vector<doubl
   require(model.film_states() == 0, "the quickest swing is not known where the gas film is compressible");
   const std::optional<VectorXd> rest = model.open_equilibrium(before);
   require(rest.has_value(), "a switch without an open state has no swing");
-  constexpr double step_angle = 0.05;  // phase angle of the fastest mode in one step
+  constexpr double step_angle = 0.05;  // phase angle by which the fastest mode turns in one time step [rad]
   Swing swing{.step = step_angle / model.basis().angular_frequencies().maxCoeff()};
   PullAndRelease drives(model, *rest, pulling, releasing, swing.step, longest);
   const Flight full = drives.fly(longest);
@@ -89,7 +89,7 @@ std::optional<Swing> quickest_swing(const Switch& model, const std::vector<doubl
   }
   swing.states = drives.fly(high).states;
   swing.driven_time = high;
-  // Only the step that ends at the release is shorter; the difference is negligible for a starting point.
+  // Only the time step that ends at the release is shorter; the difference is negligible for a starting point.
   swing.releasing_time = std::max(0.0, static_cast<double>(swing.states.size() - 1) * swing.step - high);
   return swing;
 }

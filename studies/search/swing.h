@@ -13,9 +13,9 @@
 namespace softland {
 
 struct Swing {
-  double driven_time = 0, releasing_time = 0;  ///< durations of full pull and of full release [s]
-  double step = 0;                             ///< time between two states, except for the state at the release [s]
-  std::vector<Eigen::VectorXd> states = {};    ///< modal coordinates and their rates at each time, from rest on
+  double driven_time = 0, releasing_time = 0;  ///< durations of full pull and of full release in the swing [s]
+  double step = 0;                             ///< time between two states of the swing, except for the state at the release [s]
+  std::vector<Eigen::VectorXd> states = {};    ///< modal coordinates and their rates after each time step, from rest on
 };
 
 /// Finds the swing with the drive values `pulling`, then `releasing`, from rest under the drive values `before` (none: 0) [V].

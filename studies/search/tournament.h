@@ -5,7 +5,7 @@
 // best of many points: the starts of the waveform family, those nearest to given waveforms, and points of the whole search
 // space. Three searches use tournaments, and differ in their contenders and in the measure of comparison:
 //
-//   race.h             families by two measures, compared on the devices of the next round
+//   race.h             waveform families by two measures, compared on the devices of the next round
 //   robust_optimize.h  distant points of one family, compared by their cost on all devices
 //   paced_search.h     one contender, which goes on in every round
 //
@@ -32,39 +32,43 @@ namespace softland {
 
 inline constexpr std::size_t without_bound = std::numeric_limits<std::size_t>::max();
 
-/// A round of a tournament.
+/// A round (stage) of a tournament of searches.
 struct Round {
-  std::size_t contenders = without_bound;  ///< largest number of contenders
-  std::size_t devices = without_bound;     ///< devices of a search, or fewer if there are fewer
-  double closings = 0;                     ///< closings of each search, or a share of the budget: see Tournament::share
-  double step = 0.1;                       ///< first step size of a search, as a share of the range of every variable
+  std::size_t contenders = without_bound;  ///< largest number of searches (contenders) in the round
+  /// Number of devices on which a search tries candidate waveforms; all, if there are fewer.
+  std::size_t devices = without_bound;
+  double closings = 0;  ///< number of closings of each search, or a share of the budget: see Tournament::share
+  double step = 0.1;    ///< first step size of a search, as a share of the range of every variable
 };
 
-/// The part of the budget for one contender in a round.
+/// The part of the budget for one search (contender) in a round of the tournament.
 struct RoundShare {
   long closings = 0;
-  double seconds = std::numeric_limits<double>::infinity();  ///< time of the round [s]
+  double seconds = std::numeric_limits<double>::infinity();  ///< time that the searches of the round may take [s]
 };
 
-/// The number of a round, and the number of a contender in this round.
+/// The number of a round of the tournament, and the number of a search (contender) in this round.
 struct Turn {
   std::size_t round = 0, number = 0;
 };
 
-/// Rounds of searches that share a budget. The type Contender is the state of a search between rounds, at least its point.
+/// Rounds (stages) of searches that share a budget. The type Contender is the state of a search between rounds, at least its
+/// point.
 template <class Contender>
 struct Tournament {
   SearchBudget& budget;
   int jobs = 1;
-  /// Divides the budget: returns the share of each of `contenders` searches in a round.
+  /// A function that divides the budget: it returns the share of each of `contenders` searches in a round.
   std::function<RoundShare(const Round&, std::size_t contenders)> share;
-  /// Searches from a contender, within `part`, the round's part of the budget. Start and seed of `chain` are not set yet.
-  /// Called from several threads.
+  /// A function that searches from a contender, within `part`, the round's part of the budget. Start and seed of `chain` are
+  /// not set yet. Called from several threads.
   std::function<void(Contender&, Turn turn, const Chain& chain, SearchBudget& part)> search;
-  /// Compares the contenders after round `round`, the first of which is 0, and returns the contenders of the next round.
+  /// A function that compares the searches (contenders) after round `round`, the first of which is 0and returns the searches of
+  /// the next round.
   std::function<std::vector<Contender>(std::vector<Contender> contenders, std::size_t round)> select;
 
-  /// Runs the rounds until the budget is spent, no contender continues, or a contender would get no closings.
+  /// Runs the rounds of the tournament until the budget is spent, no search (contender) continues, or a search would get no
+  /// closings.
   void run(std::span<const Round> rounds, std::vector<Contender> contenders) const {
     for (std::size_t k = 0; k < rounds.size() && !contenders.empty() && !budget.over(); ++k) {
       const RoundShare each = share(rounds[k], contenders.size());
@@ -82,21 +86,21 @@ struct Tournament {
   }
 };
 
-/// Points at which a search begins: the starts of its family, the point of the scene's own waveform, and the points nearest to
-/// the waveforms `others`. Waveforms from which the search cannot begin are skipped.
+/// Returns the points at which a search begins: the starts of its waveform family, the point of the scene's own waveform, and
+/// the points nearest to the waveforms `others`. Waveforms from which the search cannot begin are skipped.
 [[nodiscard]] std::vector<std::vector<double>> starting_points(const SearchSetting& setting,
                                                                const std::vector<DriveWaveforms>& others);
-/// The first `count` points of a Sobol' sequence over the whole search space.
+/// Returns the first `count` points of a Sobol' sequence over the whole search space.
 [[nodiscard]] std::vector<std::vector<double>> points_of_box(const std::vector<Variable>& variables, std::uint64_t seed,
                                                              std::uint64_t count);
 
 /// Numbers of closings of a search that improves a point.
 struct ImprovingClosings {
-  long before = 0;    ///< closings for the cost of the point, which the budget does not count
-  long searched = 0;  ///< closings of the search itself
+  long before = 0;    ///< number of closings for the cost of the given point, which the budget does not count
+  long searched = 0;  ///< number of closings of the search itself
 };
-/// Searches from the point `x`, and replaces `x` by the best point of the search if the latter costs less on the chain's
-/// devices. Calls `told` after every candidate.
+/// Searches from the point `x`, and replaces `x` by the best point of the search if that best point costs less on the chain's
+/// devices. Calls `told` after every candidate waveform.
 ImprovingClosings improve(std::vector<double>& x, const StagedCost& cost, Chain chain, SearchBudget& budget,
                           const std::function<void()>& told);
 

@@ -13,10 +13,10 @@
 namespace softland {
 namespace {
 
-constexpr double as_hard = 1e-3;  // relative excess of the impact figures over the plain step that is ignored
+constexpr double as_hard = 1e-3;  // relative excess of impact figures over those under the plain step that is ignored
 
-// Returns the figure of the target; infinite if the closing has no such figure. The figure of a sum is the weighted mean of
-// figures relative to the baseline.
+// Returns the figure of the target in a closing; infinite if the closing has no such figure. The figure of a sum is the
+// weighted mean of figures relative to the baseline.
 double figure(const Aim& aim, const Metrics& m, const Metrics& baseline) {
   if (aim.has_own_objective() && !m.touched()) return std::numeric_limits<double>::infinity();
   const double value = aim.mean(m, baseline, [&](const TargetRow& row) {
@@ -91,9 +91,9 @@ void Verification::move_to(OptimizeResult& result) {
   result.goal_met = best_->confidence >= Confidence::meets_goal;
   result.confirmed = best_->confidence == Confidence::confirmed;
   const Metrics& m = best_->closing.metrics;
-  // If the figures are equal, as with a plain step that does not bounce, compare the costs.
+  // If the figures of the target are equal, as with a plain step that does not bounce, compare the costs.
   const double own = figure(target_, m, baseline_), of_step = figure(target_, baseline_, baseline_);
-  // A closing that has not settled can be better only than a plain step that touches without settling.
+  // A closing that has not settled can be better only than a plain step under which the switch touches without settling.
   const bool may_be_better = (target_.from_the_start() != nullptr && m.touched()) || m.settled ||
                              (!baseline_.settled && std::isfinite(baseline_.initial_contact_time));
   result.better_than_baseline =
@@ -133,7 +133,8 @@ bool goal_met(const Aim& target, const Metrics& best, const Metrics& baseline) {
     return best.touched() && figure(target, best, baseline) < figure(target, baseline, baseline);
   if (!best.settled || best.bounce_count > 0) return false;
   if (!target.has_own_cost()) return true;
-  // The plain step bounces for many times its closing time, so that its settling time would be too weak a goal.
+  // Under the plain step the switch bounces for many times its closing time, so that the step's settling time would be too weak
+  // a goal.
   const bool is_settling = !target.is_sum() && target.is_about(Target::settling);
   if (is_settling && std::isfinite(baseline.initial_contact_time))
     return best.permanent_contact_time <= settling_goal * baseline.initial_contact_time;
