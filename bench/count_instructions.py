@@ -40,10 +40,10 @@ def gas_laws(without):
 
 
 def choices(section, key, without):
-    """Returns the values that docs/scene.md lists for a choice, without some of them."""
-    part = (SCENES.parent / "docs" / "scene.md").read_text().split(f"## [{section}]")[1].split("\n## ")[0]
-    row = next(line for line in part.splitlines() if line.startswith(f"| `{key}` | choice |"))
-    return [name for name in re.findall("`([^`]+)`", row.split("|")[3]) if name not in without]
+    """Returns the values that docs/reference/keys.md lists for a choice, without some of them."""
+    part = (SCENES.parent / "docs" / "reference" / "keys.md").read_text().split(f"## [{section}]")[1].split("\n## ")[0]
+    row = next(line for line in part.splitlines() if line.startswith(f"| `{key}` |"))
+    return [name for name in re.findall("`([^`]+)`", row.split("|")[2]) if name not in without]
 
 
 # Left out: the scene's own law, laws with keys of their own, and a law that is counted elsewhere.

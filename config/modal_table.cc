@@ -154,10 +154,10 @@ std::vector<Key> modal_table_keys() {
       words(keys::file, "table of modes, CalculiX .frd, export of COMSOL, UFF 55 or ANSYS .rom, relative to the scene")
           .needed()
           .instead(keys::positions),
-      words(keys::axis, "axis of the file that points from the clamp to the far end: x, -y"),
-      words(keys::direction, "axis of the file that points towards the near electrode: -z"),
-      words(keys::length_unit, "unit of the positions, if the file does not give it").such_as("mm"),
-      words(keys::mass_unit, "mass unit of the model in the file").such_as("t"),
+      words(keys::axis, "axis of the file that points from the clamp to the far end, such as x or -y; required but for a table"),
+      words(keys::direction, "axis of the file that points towards the near electrode, such as -z; required but for a table"),
+      words(keys::length_unit, "unit of the positions, if the file does not give it; absent: m").such_as("mm"),
+      words(keys::mass_unit, "mass unit of the model in the file, if the file does not give it; absent: kg").such_as("t"),
       number(keys::mass, {dimension::mass}, positive,
              "mass of a structure with constant mass per length; normalises modes that are not mass-normalised")
           .fixed("it normalises the modes of a file; vary structure.frequency_factor"),
@@ -165,10 +165,10 @@ std::vector<Key> modal_table_keys() {
       number(keys::clamp, {dimension::length}, any, "position of the clamp on the axis of the file, if there is no node")
           .fixed("it is a place in the file"),
       numbers(keys::positions, {dimension::length}, not_negative,
-              "instead of a file: positions along the axis; the first is the clamp")
+              "instead of a file: positions along the axis, from 0 m on; the first is the clamp")
           .instead(keys::file),
       numbers(keys::frequencies, {dimension::frequency}, positive,
-              "natural frequencies of the modes, given with positions or for a file without frequencies"),
+              "natural frequencies of the modes, given with positions, or alone beside a file without frequencies"),
       std::move(shapes),
       numbers(keys::rest_offsets, {dimension::length}, any,
               "offset of the face at the positions, towards the near electrode; absent: straight at rest")
@@ -178,7 +178,8 @@ std::vector<Key> modal_table_keys() {
           .instead("width")
           .fixed("it belongs to the modes"),
       one_of(keys::far_anchor, {"free", clamped},
-             "how the far end of the modes is held; clamped: the contact is in the middle; absent: free"),
+             "how the far end is held; clamped, required if no mode moves it: the "
+             "contact is in the middle unless it says at; absent: free"),
   };
 }
 

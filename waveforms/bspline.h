@@ -29,8 +29,10 @@ template <>
 struct FamilyOf<BSpline> {
   static constexpr std::string_view name = "bspline";
   static constexpr auto parameters = std::to_array<Parameter<BSpline>>({
-      {"levels", ParameterKind::level, &BSpline::levels, true, "four or more control levels of the curve; the last one is held"},
-      {"duration", ParameterKind::time, &BSpline::duration, true, "duration of the curve"},
+      {"levels", ParameterKind::level, &BSpline::levels, true,
+       "four or more levels that draw a cubic B-spline from the first to the last, which is held; "
+       "it stays between the smallest and the largest"},
+      {"duration", ParameterKind::time, &BSpline::duration, true, "duration of the curve, > 0"},
   });
   [[nodiscard]] static BSpline example() { return {.levels = {1, -2, 0.5, 3, 0.7}, .duration = 7}; }
 };

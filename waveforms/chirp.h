@@ -39,17 +39,19 @@ struct FamilyOf<Chirp> {
   static constexpr std::string_view name = "chirp";
   static constexpr auto parameters = std::to_array<Parameter<Chirp>>({
       {"base", ParameterKind::level, &Chirp::base, false, "mean level of the sine"},
-      {"rise_time", ParameterKind::time, &Chirp::rise_time, false, "linear rise of the base, from 0 V or `before`"},
+      {"rise_time", ParameterKind::time, &Chirp::rise_time, false, "linear rise of the base from `before`"},
       {"amplitude", ParameterKind::swing, &Chirp::amplitude, true,
        "amplitude at the start, or a percentage of the base; for the piezo, of the hold voltage of the main electrode"},
       {"angular_frequency", ParameterKind::angular_frequency, &Chirp::angular_frequency, true, "of the sine at the start"},
-      {"frequency_ratio", ParameterKind::ratio, &Chirp::frequency_ratio, false, "frequency at the end over that at the start"},
+      {"frequency_ratio", ParameterKind::ratio, &Chirp::frequency_ratio, false,
+       "frequency at the end over that at the start, steady in between; must be 1 without end"},
       {"phase", ParameterKind::angle, &Chirp::phase, false, "of the sine at the start"},
       {"start", ParameterKind::time, &Chirp::start, false, "when the sine begins"},
-      {"end", ParameterKind::end_time, &Chirp::end, false, "when the sine ends; absent: never"},
-      {"fade", ParameterKind::time, &Chirp::fade, false, "linear fade in after start and out before end"},
+      {"end", ParameterKind::end_time, &Chirp::end, false, "when the sine ends, after start; absent: never"},
+      {"fade", ParameterKind::time, &Chirp::fade, false,
+       "linear fade in after start and out before end, at most half of the time between them"},
       {"decay_time", ParameterKind::end_time, &Chirp::decay_time, false,
-       "time in which the amplitude falls by 1/e; absent: constant amplitude"},
+       "time in which the amplitude falls by 1/e; absent: constant amplitude, which needs end"},
   });
   [[nodiscard]] static Chirp example() {
     return {.base = 1,

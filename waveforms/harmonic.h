@@ -34,15 +34,16 @@ struct FamilyOf<Harmonic> {
   static constexpr std::string_view name = "harmonic";
   static constexpr auto parameters = std::to_array<Parameter<Harmonic>>({
       {"base", ParameterKind::level, &Harmonic::base, false, "mean level of the sine"},
-      {"rise_time", ParameterKind::time, &Harmonic::rise_time, false, "linear rise of the base, from 0 V or `before`"},
+      {"rise_time", ParameterKind::time, &Harmonic::rise_time, false, "linear rise of the base from `before`"},
       {"amplitude", ParameterKind::swing, &Harmonic::amplitude, true,
        "amplitude, or a percentage of the base; for the piezo, of the hold voltage of the main electrode"},
-      {"angular_frequency", ParameterKind::angular_frequency, &Harmonic::angular_frequency, true,
-       "angular frequency of the sine"},
-      {"phase", ParameterKind::angle, &Harmonic::phase, false, "phase of the sine at t = 0"},
+      {"angular_frequency", ParameterKind::angular_frequency, &Harmonic::angular_frequency, true, "of the sine"},
+      {"phase", ParameterKind::angle, &Harmonic::phase, false,
+       "phase of the sine at t = 0: it is sin(angular_frequency t + phase)"},
       {"start", ParameterKind::time, &Harmonic::start, false, "when the sine begins"},
-      {"end", ParameterKind::end_time, &Harmonic::end, false, "when the sine ends; absent: never"},
-      {"fade", ParameterKind::time, &Harmonic::fade, false, "linear fade in after start and out before end"},
+      {"end", ParameterKind::end_time, &Harmonic::end, false, "when the sine ends, after start; absent: never"},
+      {"fade", ParameterKind::time, &Harmonic::fade, false,
+       "linear fade in after start and out before end, at most half of the time between them"},
   });
   [[nodiscard]] static Harmonic example() {
     return {.base = 1, .rise_time = 0.5, .amplitude = 2, .angular_frequency = 3, .phase = 0.3, .start = 1, .end = 9, .fade = 2};

@@ -26,9 +26,11 @@ template <>
 struct FamilyOf<Pulse> {
   static constexpr std::string_view name = "pulse";
   static constexpr auto parameters = std::to_array<Parameter<Pulse>>({
-      {"levels", ParameterKind::level, &Pulse::levels, true, "n levels; the last one is held"},
-      {"times", ParameterKind::time, &Pulse::times, false, "n - 1 times at which the edge to the next level begins"},
-      {"edge", ParameterKind::time, &Pulse::edge, false, "duration of every linear edge"},
+      {"levels", ParameterKind::level, &Pulse::levels, true, "one level or more; the last one is held"},
+      {"times", ParameterKind::time, &Pulse::times, false,
+       "one time less than levels: when the edge to the next level begins; rising by at least edge, from edge on"},
+      {"edge", ParameterKind::time, &Pulse::edge, false,
+       "duration of every linear edge; the first, from `before`, runs on [0, edge]"},
   });
   [[nodiscard]] static Pulse example() { return {.levels = {1, -2, 0.5}, .times = {1, 4}, .edge = 0.5}; }
 };

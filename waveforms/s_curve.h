@@ -30,9 +30,11 @@ template <>
 struct FamilyOf<SCurve> {
   static constexpr std::string_view name = "s-curve";
   static constexpr auto parameters = std::to_array<Parameter<SCurve>>({
-      {"levels", ParameterKind::level, &SCurve::levels, true, "n levels; the last one is held"},
-      {"times", ParameterKind::time, &SCurve::times, false, "n - 1 times at which the edge to the next level begins"},
-      {"edge", ParameterKind::time, &SCurve::edge, false, "duration of every edge, half a cosine"},
+      {"levels", ParameterKind::level, &SCurve::levels, true, "one level or more; the last one is held"},
+      {"times", ParameterKind::time, &SCurve::times, false,
+       "one time less than levels: when the edge to the next level begins; rising by at least edge, from edge on"},
+      {"edge", ParameterKind::time, &SCurve::edge, false,
+       "duration of every edge, half a cosine; the first, from `before`, runs on [0, edge]"},
   });
   [[nodiscard]] static SCurve example() { return {.levels = {1, -2, 0.5}, .times = {1, 4}, .edge = 0.5}; }
 };

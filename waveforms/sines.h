@@ -32,12 +32,12 @@ struct FamilyOf<Sines> {
   static constexpr std::string_view name = "sines";
   static constexpr auto parameters = std::to_array<Parameter<Sines>>({
       {"base", ParameterKind::level, &Sines::base, false, "mean level of the sines"},
-      {"rise_time", ParameterKind::time, &Sines::rise_time, false, "linear rise of the base, from 0 V or `before`"},
+      {"rise_time", ParameterKind::time, &Sines::rise_time, false, "linear rise of the base from `before`"},
       {"amplitudes", ParameterKind::swing, &Sines::amplitudes, true,
        "amplitudes of the sines of 1, 2, 3 ... half waves, or percentages of the base; "
        "for the piezo, of the hold voltage of the main electrode"},
       {"start", ParameterKind::time, &Sines::start, false, "when the sines begin"},
-      {"duration", ParameterKind::time, &Sines::duration, true, "duration of the sines"},
+      {"duration", ParameterKind::time, &Sines::duration, true, "duration of the sines, all of which are 0 at both ends; > 0"},
   });
   [[nodiscard]] static Sines example() {
     return {.base = 1, .rise_time = 0.5, .amplitudes = {2, 0, -1}, .start = 0.3, .duration = 6};

@@ -20,7 +20,8 @@ struct FamilyOf<Step> {
   static constexpr std::string_view name = "step";
   static constexpr auto parameters = std::to_array<Parameter<Step>>({
       {"level", ParameterKind::level, &Step::level, true, "level after the rise, which is held"},
-      {"rise_time", ParameterKind::time, &Step::rise_time, false, "linear rise, from 0 V or `before`"},
+      {"rise_time", ParameterKind::time, &Step::rise_time, false,
+       "linear rise from `before`; driver: as steep as max_slew of the driver permits, a jump where it has none"},
   });
   [[nodiscard]] static Step example() { return {.level = 3, .rise_time = 1}; }
 };

@@ -26,8 +26,10 @@ struct FamilyOf<Table> {
   static constexpr std::string_view name = "table";
   static constexpr bool from_file = true;
   static constexpr auto parameters = std::to_array<Parameter<Table>>({
-      {"times", ParameterKind::time, &Table::time, true, "times of the rows, from 0 s on"},
-      {"voltages", ParameterKind::level, &Table::voltage, true, "voltages of the rows, linear between them"},
+      {"times", ParameterKind::time, &Table::time, true,
+       "times of the rows, from 0 s on, not decreasing; two rows of one time are a jump"},
+      {"voltages", ParameterKind::level, &Table::voltage, true,
+       "voltages of the rows, as many as times, linear between them; the last is held"},
   });
   [[nodiscard]] static Table example() { return {.time = {0, 1, 1, 2}, .voltage = {1, 2, 3, -1}}; }
 };

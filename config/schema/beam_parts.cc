@@ -72,7 +72,7 @@ const Section* section_keys() {
                                                             "thickness in the direction of motion"),
                  OfSection::number<&SectionPart::youngs_modulus>(
                      "youngs_modulus", dimension::pressure, positive,
-                     "Young's modulus; absent: that of [structure], as for every key that a section omits"),
+                     "Young's modulus; absent: that of [structure], as for every key but length and holes that a section omits"),
                  OfSection::number<&SectionPart::density>("density", dimension::density, positive, "density of the section"),
                  std::move(of_holes)},
         .about = "section of the beam with its own width, thickness or material",
@@ -93,13 +93,15 @@ const Section* layer_keys() {
     };
     return Section{
         .name = "layers",
-        .keys = {std::move(face), OfLayer::span<&LayerPart::begin, &LayerPart::end>("span", "begin and end, from x = 0").needed(),
+        .keys = {std::move(face),
+                 OfLayer::span<&LayerPart::begin, &LayerPart::end>("span", "begin and end, from x = 0, on the beam").needed(),
                  OfLayer::number<&LayerPart::thickness>("thickness", dimension::length, positive, "of the layer").needed(),
                  OfLayer::number<&LayerPart::youngs_modulus>("youngs_modulus", dimension::pressure, positive, "of the layer")
                      .needed(),
                  OfLayer::number<&LayerPart::density>("density", dimension::density, positive, "of the layer").needed(),
-                 OfLayer::number<&LayerPart::stress>("stress", dimension::pressure, any,
-                                                     "stress along the beam before its release, positive in tension")
+                 OfLayer::number<&LayerPart::stress>(
+                     "stress", dimension::pressure, any,
+                     "stress along the beam before its release, positive in tension: it curls the beam")
                      .by_default("'0 Pa'")
                      .such_as("50 MPa"),
                  OfLayer::number<&LayerPart::poissons_ratio>(
@@ -119,16 +121,16 @@ RestShape& rest_shape(Scene& scene) {
 
 const Section* rest_shape_keys() {
   static const Section keys = [] {
-    Key positions =
-        numbers("positions", {dimension::length, dimension::none}, not_negative, "positions along the beam, from 0 m to the tip")
-            .needed();
+    Key positions = numbers("positions", {dimension::length, dimension::none}, not_negative,
+                            "positions along the beam, rising, from 0 m to the tip")
+                        .needed();
     positions.words = {tip};
     positions.bound.place = [](Scene& scene, std::size_t, std::size_t element) -> Place& {
       return at(rest_shape(scene).positions, element);
     };
     Key heights = numbers("heights", {dimension::length}, any,
                           "heights of the face above the straight shape, "
-                          "away from the near electrode")
+                          "one per position, away from the near electrode")
                       .needed();
     heights.bound.element = [](Scene& scene, std::size_t, std::size_t element) -> double& {
       return at(rest_shape(scene).heights, element);
@@ -153,9 +155,9 @@ const Section* anchor_keys() {
   static const Section keys{
       .name = "anchor",
       .keys = {OfAnchor::template number<&Anchor::rotation>("rotation", dimension::rotational_stiffness, not_negative,
-                                                            "rotational stiffness; absent: rigid"),
+                                                            "rotational stiffness, moment per angle; absent: rigid"),
                OfAnchor::template number<&Anchor::translation>("translation", dimension::stiffness, not_negative,
-                                                               "translational stiffness; absent: rigid")},
+                                                               "translational stiffness, force per deflection; absent: rigid")},
       .about = "how an end of the beam is held",
       .check = [](Scene&, const SectionReader& in, std::size_t) {
         if (!in.has_value("rotation") && !in.has_value("translation"))
@@ -189,7 +191,7 @@ std::vector<Key> beam_part_keys() {
            .part = section_keys},
           {.name = "layers",
            .type = KeyType::tables,
-           .about = "layers on the faces of the beam; a later layer on the same face lies outside",
+           .about = "layers on the faces of the beam, whose far end must be free; a later layer on the same face lies outside",
            .like = "[{ face = \"far\", span = [\"0 um\", \"tip\"], thickness = \"0.2 um\", youngs_modulus = \"70 GPa\", "
                    "density = \"2200 kg/m^3\" }]",
            .part = layer_keys},
@@ -198,7 +200,8 @@ std::vector<Key> beam_part_keys() {
           {.name = "rest_shape",
            .type = KeyType::table,
            .instead_of = {"stress_gradient"},
-           .about = "shape of the released beam: straight lines between heights at positions along it",
+           .about = "shape of the released beam as it was measured: straight lines between "
+                    "heights at positions along it; absent: straight",
            .like = "{ positions = [\"0 um\", \"50 %\", \"tip\"], heights = [\"0 nm\", \"20 nm\", \"80 nm\"] }",
            .part = rest_shape_keys}};
 }

@@ -8,7 +8,7 @@ Section calibration_section() {
           .is_named = true,
           .beside = classes_key,
           .keys = {number("error", {dimension::none, dimension::time}, {.least = 0, .most = 0.5},
-                          "standard deviation of the measurement; for a time in its unit")
+                          "one standard deviation of the measurement, normal: relative, or for a time in its unit")
                        .by_default("'0 %'")},
           .about =
               "per-device calibration, measured before actuation: NAME is Vdp, frequency, piezo (static deflection per volt, "

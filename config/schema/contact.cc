@@ -48,32 +48,35 @@ Key conduction_key(std::string_view name, const Dimension& dimension, Range rang
 // Returns the keys of the resistance of the closed contact (model/contact/resistance.h). A contact law that needs a hardness
 // has a separate key for the hardness.
 std::vector<Key> conduction_keys() {
-  Key hardness = conduction_key<&Conduction::hardness>(
-      "hardness", dimension::pressure, positive, "hardness of the softer metal; conducting spots are plastic at this pressure");
+  Key hardness =
+      conduction_key<&Conduction::hardness>("hardness", dimension::pressure, positive,
+                                            "hardness of the softer metal: conducting spots are plastic at this pressure; "
+                                            "required with resistivity by laws without asperities");
   for_each_law<ContactModel>([&]<class Law>(std::type_identity<Law>) {
     if constexpr (!requires(Law law) { law.hardness; }) hardness.only_for.push_back(Law::name);
   });
-  return {conduction_key<&Conduction::resistivity>(
-              "resistivity", dimension::resistivity, positive,
-              "resistivity of both metals, which gives the contact resistance; absent: no resistance is computed")
-              .such_as("22 nohm m"),
-          std::move(hardness).such_as("1 GPa"),
-          conduction_key<&Conduction::film_resistance>("film_resistance", dimension::resistance, not_negative,
-                                                       "resistance in series with each contact; default 0"),
-          conduction_key<&Conduction::mean_free_path>(
-              "mean_free_path", dimension::length, not_negative,
-              "mean free path of the electrons, which increases the resistance of small spots; default 0")
-              .such_as("38 nm")};
+  return {
+      conduction_key<&Conduction::resistivity>(
+          "resistivity", dimension::resistivity, positive,
+          "resistivity of both metals, the mean of two, which gives the contact resistance; absent: no resistance is computed")
+          .such_as("22 nohm m"),
+      std::move(hardness).such_as("1 GPa"),
+      conduction_key<&Conduction::film_resistance>("film_resistance", dimension::resistance, not_negative,
+                                                   "resistance in series with each contact; default 0"),
+      conduction_key<&Conduction::mean_free_path>(
+          "mean_free_path", dimension::length, not_negative,
+          "mean free path of the electrons, which increases the resistance of spots of that size; default 0: constriction alone")
+          .such_as("38 nm")};
 }
 
 std::vector<Key> contact_keys() {
-  std::vector<Key> keys = keys_of_laws<ContactModel, contact_model>("law of the contact force");
+  std::vector<Key> keys = keys_of_laws<ContactModel, contact_model>("law of the contact force; rigid is for a plate only");
   const auto of_every_law = {
-      OfContact::number<&Contact::pad_length>(
-          "pad_length", dimension::length, positive,
-          "length of the pad, which ends at the free end, or is in the middle between two clamps"),
+      OfContact::number<&Contact::pad_length>("pad_length", dimension::length, positive,
+                                              "length of the pad, less than that of the beam; "
+                                              "required, but not for a plate on a linear, hysteretic or rigid contact"),
       OfContact::number<&Contact::pad_width>("pad_width", dimension::length, positive,
-                                             "width of the pad; absent: that of the beam"),
+                                             "width of one pad; absent: that of the beam"),
       OfContact::choice<contact_distributions, &Contact::distribution>(
           "distribution", "where the force acts: at the centre of the pad, or wherever the pad is beyond the contact plane")
           .by_default("'centre'"),
@@ -81,8 +84,9 @@ std::vector<Key> contact_keys() {
       gap_key(),
       one_of("side", {name_of(sides, Side::near), name_of(sides, Side::far)},
              "side of the contact; far: a back stop on the side away from the electrode; only for [contact.NAME]; default near"),
-      OfContact::number<&Contact::count>("count", dimension::none, {.least = 1, .most = 1000},
-                                         "number of equal contacts side by side across the beam; default 1")
+      OfContact::number<&Contact::count>(
+          "count", dimension::none, {.least = 1, .most = 1000},
+          "whole number of equal contacts side by side across the beam, which share the force; default 1")
           .such_as("2")
           .fixed("it is a number of contacts")};
   keys.insert(keys.begin() + 1, of_every_law);

@@ -16,32 +16,34 @@ void check_dispersion(Scene& scene, const SectionReader& in, std::size_t) {
 }  // namespace
 
 Section dispersion_section() {
-  return {.name = "dispersion",
-          .may_vary = true,
-          .selector = "model",
-          .keys = {OfDispersion::choice<dispersion_models, &Dispersion::model>(
-                       "model", "law of the force; auto: the smaller of the two at each gap")
-                       .needed(),
-                   OfDispersion::choice<conductors, &Dispersion::conductor>("conductor", "metal of the Casimir law")
-                       .by_default("'ideal'")
-                       .of({"casimir", "auto"}),
-                   OfDispersion::number<&Dispersion::hamaker_constant>("hamaker_constant", dimension::energy, positive,
-                                                                       "Hamaker constant of the pair of surfaces")
-                       .needed()
-                       .of({"van-der-waals", "auto"})
-                       .such_as("3e-19 J"),
-                   OfDispersion::number<&Dispersion::equilibrium_distance>(
-                       "equilibrium_distance", dimension::length, not_negative,
-                       "distance at which attraction and repulsion balance; 0 m: no repulsion")
-                       .by_default("'0 m'")
-                       .of({"van-der-waals", "auto"})},
-          .about = "Casimir and van der Waals forces between beam and electrode plane; absent: none",
-          .begin =
-              [](Scene& scene, const SectionReader&, std::string_view) {
-                scene.device.dispersion.emplace();
-                return std::size_t{0};
-              },
-          .check = check_dispersion};
+  return {
+      .name = "dispersion",
+      .may_vary = true,
+      .selector = "model",
+      .keys = {OfDispersion::choice<dispersion_models, &Dispersion::model>(
+                   "model", "law of the force; auto: the smaller of the two at each gap, never the sum")
+                   .needed(),
+               OfDispersion::choice<conductors, &Dispersion::conductor>("conductor", "metal of the Casimir law")
+                   .by_default("'ideal'")
+                   .of({"casimir", "auto"}),
+               OfDispersion::number<&Dispersion::hamaker_constant>(
+                   "hamaker_constant", dimension::energy, positive,
+                   "Hamaker constant of the pair of surfaces, a few 1e-19 J for metals")
+                   .needed()
+                   .of({"van-der-waals", "auto"})
+                   .such_as("3e-19 J"),
+               OfDispersion::number<&Dispersion::equilibrium_distance>(
+                   "equilibrium_distance", dimension::length, not_negative,
+                   "distance at which attraction and repulsion balance, less than gap.electrode - gap.contact; 0 m: no repulsion")
+                   .by_default("'0 m'")
+                   .of({"van-der-waals", "auto"})},
+      .about = "Casimir and van der Waals forces between beam and electrode plane; absent: none",
+      .begin =
+          [](Scene& scene, const SectionReader&, std::string_view) {
+            scene.device.dispersion.emplace();
+            return std::size_t{0};
+          },
+      .check = check_dispersion};
 }
 
 }  // namespace softland::internal

@@ -59,13 +59,13 @@ std::vector<Key> asperity_keys() {
 
 const Section* landing_keys() {
   static const Section keys = [] {
-    Key model =
-        one_of("model", {"wall", "linear", UniformAsperities::name},
-               "law of the face; wall: rigid; linear: springs distributed on the face; asperity-uniform: summits on the face")
-            .needed();
+    Key model = one_of("model", {"wall", "linear", UniformAsperities::name},
+                       "law of the face; wall: it does not yield; linear: springs distributed on the face; "
+                       "asperity-uniform: summits on the face")
+                    .needed();
     model.bound.choose = [](Scene& scene, std::size_t k, std::string_view) { static_cast<void>(landing(scene, k)); };
     Key stiffness = OfLanding::number<&Landing::stiffness>("stiffness", dimension::stress_gradient, positive,
-                                                           "pressure on the face per depth of indentation")
+                                                           "pressure on the face per depth of indentation, such as 1e17 Pa/m")
                         .needed()
                         .such_as("1e17 Pa/m");
     Key from = OfLanding::number<&Landing::from>("from", dimension::length, not_negative,
@@ -97,9 +97,11 @@ const Section* dielectric_keys() {
                                                                "relative permittivity of the insulator")
                    .needed(),
                OfDielectric::number<&Dielectric::roughness>("roughness", dimension::length, not_negative,
-                                                            "air gap that remains where the summits of its roughness touch")
+                                                            "air that its summits leave where the faces touch")
                    .by_default("'0 m'"),
-               OfDielectric::number<&Dielectric::charge>("charge", dimension::charge_density, any, "charge per area on its face")
+               OfDielectric::number<&Dielectric::charge>(
+                   "charge", dimension::charge_density, any,
+                   "charge per area on its face, of either sign, as after dielectric charging")
                    .by_default("'0 C/m^2'")
                    .such_as("-0.1 mC/m^2"),
                Key{.name = "landing",
@@ -197,31 +199,36 @@ void check_electrode(Scene& scene, const SectionReader& in, std::size_t k) {
 }  // namespace
 
 Section electrode_section() {
-  return {.name = "electrode",
-          .is_named = true,
-          .may_vary = true,
-          .keys = {OfElectrode::spans<&Electrode::begin, &Electrode::end, &Electrode::further>(
-                       "span",
-                       "begin and end, from the clamped end, or a list of these for several pads; "
-                       "required for beams, and only for beams"),
-                   number("area", {dimension::area}, positive, "area; for plates only; absent: that of the plate"),
-                   OfElectrode::choice<sides, &Electrode::side>(
-                       "side", "side of the beam; near: that of the contact; far: pulls away from the contact")
-                       .by_default("'near'"),
-                   OfElectrode::number<&Electrode::gap>(
-                       "gap", dimension::length, positive,
-                       "for side far or both, and required there: rest gap between the beam and the electrode on the far side"),
-                   OfElectrode::choice<fringing_laws, &Electrode::fringing>("fringing", "law of the fringing field")
-                       .by_default("'meijs-fokkema'"),
-                   Key{.name = "dielectric",
-                       .type = KeyType::table,
-                       .about = "insulator on the electrode; all gaps of the scene are measured to its face",
-                       .like = "{ thickness = \"0.2 um\", permittivity = 7.6 }",
-                       .part = dielectric_keys}},
-          .about = "an electrode under the beam",
-          .advice = {{"permittiv", dielectric_advice}, {"nitride", dielectric_advice}, {"oxide", dielectric_advice}},
-          .begin = begin_electrode,
-          .check = check_electrode};
+  return {
+      .name = "electrode",
+      .is_named = true,
+      .may_vary = true,
+      .keys = {OfElectrode::spans<&Electrode::begin, &Electrode::end, &Electrode::further>(
+                   "span",
+                   "begin and end, rising, from the clamped end (x = 0), or a list of these for several pads; "
+                   "required for beams, and only for beams"),
+               number("area", {dimension::area}, positive,
+                      "for plates only; absent: that of the plate, which the electrodes of one side together must not exceed"),
+               OfElectrode::choice<sides, &Electrode::side>(
+                   "side",
+                   "side of the beam; near: that of the contact; far: pulls away from it, voltages in V; "
+                   "both: one electrode with a face on either side")
+                   .by_default("'near'"),
+               OfElectrode::number<&Electrode::gap>(
+                   "gap", dimension::length, positive,
+                   "for side far or both, and required there: rest gap between the beam and the face on the far side"),
+               OfElectrode::choice<fringing_laws, &Electrode::fringing>("fringing", "law of the fringing field")
+                   .by_default("'meijs-fokkema'"),
+               Key{.name = "dielectric",
+                   .type = KeyType::table,
+                   .about = "insulator on the electrode, on the near side; "
+                            "all gaps of the scene are measured to its face; absent: bare metal",
+                   .like = "{ thickness = \"0.2 um\", permittivity = 7.6 }",
+                   .part = dielectric_keys}},
+      .about = "an electrode under the beam",
+      .advice = {{"permittiv", dielectric_advice}, {"nitride", dielectric_advice}, {"oxide", dielectric_advice}},
+      .begin = begin_electrode,
+      .check = check_electrode};
 }
 
 }  // namespace softland::internal

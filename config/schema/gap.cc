@@ -54,18 +54,18 @@ void check_gap(Scene& scene, const SectionReader& in, std::size_t) {
 }  // namespace
 
 Section gap_section() {
-  return {
-      .name = "gap",
-      .required = true,
-      .may_vary = true,
-      .keys = {OfGap::number<&Gap::electrode>("electrode", dimension::length, positive, "rest gap between beam and electrode")
-                   .needed(),
-               OfGap::number<&Gap::contact>("contact", dimension::length, positive,
-                                            "rest gap between contact point and contact plane; "
-                                            "not for [contact.NAME], which has its own, nor for a dielectric with a landing")},
-      .about = "gaps at rest",
-      .begin = [](Scene&, const SectionReader&, std::string_view) { return std::size_t{0}; },
-      .check = check_gap};
+  return {.name = "gap",
+          .required = true,
+          .may_vary = true,
+          .keys = {OfGap::number<&Gap::electrode>("electrode", dimension::length, positive, "rest gap between beam and electrode")
+                       .needed(),
+                   OfGap::number<&Gap::contact>(
+                       "contact", dimension::length, positive,
+                       "rest gap between contact point and contact plane; required, "
+                       "but not for [contact.NAME], which has its own, nor for a dielectric with a landing")},
+          .about = "gaps at rest",
+          .begin = [](Scene&, const SectionReader&, std::string_view) { return std::size_t{0}; },
+          .check = check_gap};
 }
 
 }  // namespace softland::internal

@@ -11,7 +11,7 @@ namespace {
 Gas& gas(Scene& scene, std::size_t) { return *scene.device.gas; }
 
 std::vector<Key> gas_keys() {
-  std::vector<Key> keys = keys_of_laws<Gas, gas>("law of the squeeze film");
+  std::vector<Key> keys = keys_of_laws<Gas, gas>("law of the squeeze film; linear: a constant damper");
   std::ranges::find(keys, "damping", &Key::name)
       ->dimensions.push_back(dimension::damping);  // for a plate the damping may be that of the whole plate
   return keys;

@@ -12,8 +12,8 @@ using OfLoad = Of<load>;
 Section load_section() {
   return {.name = "load",
           .keys = {OfLoad::number<&SwitchedLoad::voltage>("voltage", dimension::voltage, positive,
-                                                          "open-circuit voltage of the "
-                                                          "load")
+                                                          "open-circuit voltage of its "
+                                                          "source")
                        .needed()
                        .such_as("5 V"),
                    OfLoad::number<&SwitchedLoad::resistance>("resistance", dimension::resistance, positive,

@@ -96,30 +96,33 @@ void check_metrics(Scene& scene, const SectionReader& in, std::size_t) {
 }  // namespace
 
 Section metrics_section() {
-  return {.name = "metrics",
-          .always_in_force = true,
-          .keys = {OfMetrics::number<&MetricsOptions::significant_rebound>("significant_rebound", dimension::length, positive,
-                                                                           "rebounds up to this height are not significant")
-                       .by_default("'1 nm'"),
-                   OfMetrics::number<&MetricsOptions::steady_force>(
-                       "steady_force", dimension::none, {.least = 0, .most = 1, .least_open = true, .most_open = true},
-                       "share of the hold force above which the contact force is steady; default 10 %")
-                       .such_as("10 %"),
-                   connection_key(),
-                   OfElectrical::number<&ElectricalClosing::force>(
-                       "closed_force", dimension::force, not_negative,
-                       "the connection counts as closed while its contact force is above this; absent: at any force"),
-                   OfElectrical::number<&ElectricalClosing::resistance>(
-                       "closed_resistance", dimension::resistance, positive,
-                       "the connection counts as closed while its resistance is below this; absent: at any resistance")
-                       .such_as("1 ohm"),
-                   OfElectrical::number<&ElectricalClosing::after>(
-                       "closed_after", dimension::time, not_negative,
-                       "openings of the connection up to this duration are not counted; default 0")
-                       .such_as("1 us")},
-          .about = "figures of merit",
-          .begin = [](Scene&, const SectionReader&, std::string_view) { return std::size_t{0}; },
-          .check = check_metrics};
+  return {
+      .name = "metrics",
+      .always_in_force = true,
+      .keys = {OfMetrics::number<&MetricsOptions::significant_rebound>(
+                   "significant_rebound", dimension::length, positive,
+                   "rebounds up to this height are not significant; less than gap.contact")
+                   .by_default("'1 nm'"),
+               OfMetrics::number<&MetricsOptions::steady_force>(
+                   "steady_force", dimension::none, {.least = 0, .most = 1, .least_open = true, .most_open = true},
+                   "share of the hold force above which the contact force is steady; default 10 %")
+                   .such_as("10 %"),
+               connection_key(),
+               OfElectrical::number<&ElectricalClosing::force>(
+                   "closed_force", dimension::force, not_negative,
+                   "the connection counts as closed while its contact force is above this; absent: at any force"),
+               OfElectrical::number<&ElectricalClosing::resistance>(
+                   "closed_resistance", dimension::resistance, positive,
+                   "the connection counts as closed while its resistance is below this; "
+                   "needs resistivity of its contacts; absent: at any resistance")
+                   .such_as("1 ohm"),
+               OfElectrical::number<&ElectricalClosing::after>("closed_after", dimension::time, not_negative,
+                                                               "openings of the connection up to this duration are not counted; "
+                                                               "given alone, closed is what is in touch; default 0")
+                   .such_as("1 us")},
+      .about = "figures of merit",
+      .begin = [](Scene&, const SectionReader&, std::string_view) { return std::size_t{0}; },
+      .check = check_metrics};
 }
 
 }  // namespace softland::internal

@@ -30,15 +30,16 @@ Section piezo_section() {
                    "piezoelectric coefficient, negative for the usual ceramics: a positive voltage lifts the tip")
                    .needed()
                    .instead("e31"),
-               OfPiezo::number<&Piezo::e31>("e31", dimension::charge_density, any,
-                                            "stress per field, d31 youngs_modulus, instead of d31")
+               OfPiezo::number<&Piezo::e31>(
+                   "e31", dimension::charge_density, any,
+                   "stress per field, d31 youngs_modulus, instead of d31; smaller than youngs_modulus over 1 V/m")
                    .needed()
                    .instead("d31"),
                OfPiezo::number<&Piezo::relative_permittivity>(
                    "relative_permittivity", dimension::none, at_least_one,
-                   "permittivity of the layer; absent: the drive energy excludes the charging of the layer")
+                   "relative permittivity of the layer; absent: the drive energy excludes the charging of the layer")
                    .such_as("1500")},
-      .about = "a piezoelectric layer on the face away from the electrode",
+      .about = "a piezoelectric layer as wide as the beam, a cantilever, on the face away from the electrode; absent: none",
       .begin = begin_piezo,
       .check = [](Scene& scene, const SectionReader& in, std::size_t) { in.require_on_beam("span", scene.device.structure); }};
 }

@@ -64,7 +64,9 @@ std::vector<Key> structure_keys() {
   for (Key& key : keys) {
     if (key.only_for == kinds) key.only_for.clear();
   }
-  Key kind = one_of("kind", kinds, "kind of the moving structure");
+  Key kind =
+      one_of("kind", kinds,
+             "a beam clamped at one end, a beam clamped at both ends, a rigid plate on springs, or the modes of another program");
   keys.insert(keys.begin(), std::move(kind).needed());
   return keys;
 }

@@ -55,15 +55,18 @@ std::vector<Key> keys_beside_file() {
              .type = KeyType::integer,
              .range = {.least = 1, .most = 1e6},
              .any_word = true,
-             .about = "name or number of the channel; absent: the only channel, or that with the name of the drive"};
+             .about = "name or number of the channel in the file; absent: the only channel, or that with the name of the drive"};
   Key time_column = column;
   time_column.name = file_keys::time_column;
   time_column.about = "name or number of the column of times; absent: found by its heading";
-  Key interval = number(file_keys::interval, {dimension::time}, positive, "time between rows, instead of the times of the file")
-                     .such_as("8 ns");
+  Key interval =
+      number(
+          file_keys::interval, {dimension::time}, positive,
+          "time between rows, instead of the times of the file; uneven: its times as they stand, two rows of one time are a jump")
+          .such_as("8 ns");
   interval.words = {file_keys::uneven};
-  Key shift =
-      number(file_keys::shift, {dimension::time}, any, "shift added to the times of the file; first: the first row is at t = 0");
+  Key shift = number(file_keys::shift, {dimension::time}, any,
+                     "shift added to the times of the file; first: the first row is at t = 0; default 0 s");
   shift.words = {file_keys::first};
   std::vector<Key> keys;
   keys.push_back(std::move(column));
@@ -73,11 +76,13 @@ std::vector<Key> keys_beside_file() {
                   .type = KeyType::integer,
                   .range = {.least = 0, .most = 1e9},
                   .about = "number of lines at the beginning to skip; default 0"});
-  keys.push_back(words(file_keys::unit, "unit of the channel, if the file names none or a wrong one; absent: V"));
-  keys.push_back(words(file_keys::time_unit, "unit of the times, if the file names none or a wrong one; absent: s"));
+  keys.push_back(
+      words(file_keys::unit, "V, mV, uV or kV: unit of the channel, if the file names none or a wrong one; absent: V"));
+  keys.push_back(
+      words(file_keys::time_unit, "s, ms, us, ns or ps: unit of the times, if the file names none or a wrong one; absent: s"));
   keys.push_back(one_of(file_keys::decimal, {".", ","}, "decimal sign; absent: found from the numbers"));
   keys.push_back(number(file_keys::scale, {dimension::none}, any,
-                        "volts at the switch per volt of the file, such as the factor of a probe; default 1"));
+                        "volts at the switch per volt of the file, such as the factor of a probe or an amplifier; default 1"));
   keys.push_back(std::move(shift));
   return keys;
 }

@@ -39,13 +39,13 @@ struct AdhesiveRepulsiveSurfaces {
     return std::to_array<Field<Law>>({
         {.key = "asperity_pressure", .unit = "Pa", .about = "of the asperities, a nanometre within asperity_distance", .in = reach<Law, &Law::pressure, &P::asperity_pressure>, .fallback = "'1.2 kPa'"},
         {.key = "asperity_distance", .unit = "m", .about = "between the mean planes when asperities meet", .in = reach<Law, &Law::pressure, &P::asperity_distance>, .fallback = "'110 nm'"},
-        {.key = "wall_pressure", .unit = "Pa", .about = "of the soft wall, continued to distance 0", .in = reach<Law, &Law::pressure, &P::wall_pressure>, .fallback = "'0.5 GPa'"},
+        {.key = "wall_pressure", .unit = "Pa", .about = "of the soft wall at distance 0: at the distance x it is wall_pressure exp(-x / wall_range)", .in = reach<Law, &Law::pressure, &P::wall_pressure>, .fallback = "'0.5 GPa'"},
         {.key = "wall_range", .unit = "m", .about = "over which the soft wall falls by e", .in = reach<Law, &Law::pressure, &P::wall_range>, .fallback = "'8.5 nm'"},
         {.key = "adhesion_pressure", .unit = "Pa", .about = "of adhesion, a nanometre within its range", .in = reach<Law, &Law::pressure, &P::adhesion_pressure>, .fallback = "'1 kPa'"},
         {.key = "adhesion_range", .unit = "m", .about = "how far beyond asperity_distance adhesion begins", .in = reach<Law, &Law::pressure, &P::adhesion_range>, .fallback = "'2 nm'"},
         {.key = "hamaker_constant", .unit = "J", .about = "of the attraction from afar", .in = reach<Law, &Law::pressure, &P::hamaker_constant>, .fallback = "'2.15e-19 J'"},
         {.key = "smoothing_distance", .unit = "m", .about = "keeps that attraction finite", .in = reach<Law, &Law::pressure, &P::smoothing_distance>, .fallback = "'30 nm'"},
-        {.key = "reach", .unit = "m", .about = "distance of the mean planes beyond which nothing acts", .in = reach<Law, &Law::pressure, &P::reach>, .fallback = "'1 um'"},
+        {.key = "reach", .unit = "m", .about = "distance of the mean planes beyond which nothing acts; above asperity_distance + adhesion_range, and less than gap.contact above first touch", .in = reach<Law, &Law::pressure, &P::reach>, .fallback = "'1 um'"},
     });
     // clang-format on
   }

@@ -32,7 +32,7 @@ struct PlasticAsperities {
     // clang-format off
     return joined(summit_fields<Law>(), height_fields<Law>(), modulus_fields<Law>(), std::to_array<Field<Law>>({
         {.key = "hardness", .unit = "Pa", .about = "of the softer surface", .in = reach<Law, &Law::hardness>, .required = true, .such_as = "1 GPa"},
-        {.key = "plasticity", .about = "law of one asperity; ceb jumps and is refused", .fallback = "'zmc'",
+        {.key = "plasticity", .about = "law of one asperity: zmc of Zhao, Maietta and Chang; ke of Kogut and Etsion, made continuous; ceb is refused, for its force jumps", .fallback = "'zmc'",
          .words = [] { return names_of(plasticities); },
          .choose = [](Law& law, std::string_view word) { law.plasticity = find_named(plasticities, word)->value; },
          .refused_word = "ceb",

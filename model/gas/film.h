@@ -42,16 +42,16 @@ struct FilmLimits {
 template <class Law>
 [[nodiscard]] consteval auto film_fields() {
   return std::to_array<Field<Law>>({
-      {.key = "viscosity", .unit = "Pa s", .about = "absent: that of air at the temperature", .in = reach<Law, &Law::film, &FilmState::viscosity>},
+      {.key = "viscosity", .unit = "Pa s", .about = "dynamic viscosity; absent: that of air at the temperature", .in = reach<Law, &Law::film, &FilmState::viscosity>},
       {.key = "pressure", .unit = "Pa", .about = "ambient", .in = reach<Law, &Law::film, &FilmState::pressure>, .fallback = "'101325 Pa'"},
       {.key = "temperature", .unit = "K", .about = "of the gas", .in = reach<Law, &Law::film, &FilmState::temperature>, .fallback = "'300 K'"},
-      {.key = "mean_free_path", .unit = "m", .about = "absent: from viscosity, pressure and temperature", .in = reach<Law, &Law::film, &FilmState::mean_free_path>, .range = {.least = 0, .most = 1e9, .least_open = true}, .such_as = "65 nm"},
+      {.key = "mean_free_path", .unit = "m", .about = "at the ambient pressure; absent: from viscosity, pressure and temperature", .in = reach<Law, &Law::film, &FilmState::mean_free_path>, .range = {.least = 0, .most = 1e9, .least_open = true}, .such_as = "65 nm"},
   });
 }
 /// Returns the scene-file key of the length of a single gas film with open ends.
 template <class Law>
 [[nodiscard]] consteval auto end_fields() {
-  return std::to_array<Field<Law>>({{.key = "film_length", .unit = "m", .about = "of one film whose ends are open; absent: much longer than wide", .in = reach<Law, &Law::film_length>, .such_as = "100 um"}});
+  return std::to_array<Field<Law>>({{.key = "film_length", .unit = "m", .about = "length of one film, whose gas leaves at its ends too; absent: much longer than wide", .in = reach<Law, &Law::film_length>, .such_as = "100 um"}});
 }
 /// Returns the scene-file key of the thickness at rest of a second gas film, on the far side.
 template <class Law>

@@ -38,7 +38,7 @@ struct LinearGas {
     // clang-format off
     return std::to_array<Field<Law>>({
         {.key = "damping", .unit = "N s/m^2", .about = "constant force per length and velocity [N s/m^2]; of a plate also that of all of it [N s/m]", .in = reach<Law, &Law::damping>, .required = true, .instead_of = "quality_factor", .such_as = "0.1 N s/m^2"},
-        {.key = "quality_factor", .about = "of the first mode, instead of damping", .in = reach<Law, &Law::quality_factor>, .required = true, .instead_of = "damping"},
+        {.key = "quality_factor", .about = "of the first mode in small free vibration, instead of damping", .in = reach<Law, &Law::quality_factor>, .required = true, .instead_of = "damping"},
     });
     // clang-format on
   }

@@ -51,7 +51,7 @@ struct StripSlitGas {
     // clang-format off
     return joined(film_fields<Law>(), end_fields<Law>(), std::to_array<Field<Law>>({
         {.key = "slit_height", .unit = "m", .about = "of the slit through which the gas leaves at one edge", .in = reach<Law, &Law::slit_height>, .required = true},
-        {.key = "slit_length", .unit = "m", .about = "of that slit, up to ambient pressure", .in = reach<Law, &Law::slit_length>, .required = true},
+        {.key = "slit_length", .unit = "m", .about = "of that slit, up to where the pressure is ambient", .in = reach<Law, &Law::slit_length>, .required = true},
     }), far_fields<Law>());
     // clang-format on
   }

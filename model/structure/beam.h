@@ -44,9 +44,9 @@ struct Beam {
         {.key = "thickness", .unit = "m", .about = "in the direction of motion", .in = reach<S, &S::thickness>, .required = true, .unless = "sections", .if_list = Beam::why_no_list},
         {.key = "youngs_modulus", .unit = "Pa", .about = "used as given unless plate_strain is on", .in = within<S, Beam, &Beam::youngs_modulus>, .required = true, .unless = "sections"},
         {.key = "density", .unit = "kg/m^3", .about = "of the beam", .in = within<S, Beam, &Beam::density>, .required = true, .unless = "sections"},
-        {.key = "modes", .about = "number of modes kept; auto: until the figures stop moving", .count = reach<S, &S::modes>, .or_word = "auto", .range = {.least = 1, .most = S::most_modes}, .fallback = "4"},
+        {.key = "modes", .about = "number of modes kept; auto: as many as the figures of the own closing need", .count = reach<S, &S::modes>, .or_word = "auto", .range = {.least = 1, .most = S::most_modes}, .fallback = "4"},
         S::damping(),
-        {.key = "plate_strain", .about = "use E / (1 - nu^2) for a wide beam", .flag = within<S, Beam, &Beam::plate_strain>, .fallback = "false"},
+        {.key = "plate_strain", .about = "use E / (1 - nu^2) for a wide beam; needs poissons_ratio", .flag = within<S, Beam, &Beam::plate_strain>, .fallback = "false"},
         {.key = "poissons_ratio", .about = "needed by plate_strain and biaxial", .in = within<S, Beam, &Beam::poissons_ratio>, .range = possible_ratio},
     });
     // clang-format on
@@ -79,7 +79,7 @@ struct Cantilever : Beam {
   static consteval auto fields() {
     // clang-format off
     return joined(Beam::fields<S>(), std::to_array<Field<S>>({
-        {.key = "stress_gradient", .unit = "Pa/m", .about = "of the released film over its thickness; positive: the free end rests further from the electrode", .in = within<S, Cantilever, &Cantilever::stress_gradient>, .range = {}, .instead_of = "rest_shape", .such_as = "0.5 MPa/um"},
+        {.key = "stress_gradient", .unit = "Pa/m", .about = "of the released film over its thickness; positive: the free end rests further from the electrode; \"0 Pa/m\" may vary about a straight beam", .in = within<S, Cantilever, &Cantilever::stress_gradient>, .range = {}, .instead_of = "rest_shape", .such_as = "0.5 MPa/um"},
     }));
     // clang-format on
   }
@@ -123,8 +123,8 @@ struct Bridge : Beam {
   static consteval auto fields() {
     // clang-format off
     return joined(Beam::fields<S>(), std::to_array<Field<S>>({
-        {.key = "residual_stress", .unit = "Pa", .about = "along the beam before it bends, positive in tension", .in = within<S, Bridge, &Bridge::residual_stress>, .range = {}, .fallback = "'0 Pa'", .such_as = "20 MPa"},
-        {.key = "biaxial", .about = "residual_stress is that of the unreleased film: the beam keeps residual_stress (1 - nu)", .flag = within<S, Bridge, &Bridge::biaxial>, .fallback = "false"},
+        {.key = "residual_stress", .unit = "Pa", .about = "along the straight beam, positive in tension; above the stress at which the beam buckles", .in = within<S, Bridge, &Bridge::residual_stress>, .range = {}, .fallback = "'0 Pa'", .such_as = "20 MPa"},
+        {.key = "biaxial", .about = "residual_stress is that of the film before release: the beam keeps residual_stress (1 - nu); needs poissons_ratio", .flag = within<S, Bridge, &Bridge::biaxial>, .fallback = "false"},
         {.key = "stretching", .about = "bending stretches the beam: a cubic stiffness", .flag = within<S, Bridge, &Bridge::stretches>, .fallback = "true"},
     }));
     // clang-format on

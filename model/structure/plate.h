@@ -67,8 +67,8 @@ struct Plate {
         {.key = "mass", .unit = "kg", .about = "moving mass", .in = within<S, Plate, &Plate::mass>, .required = true},
         {.key = "stiffness", .unit = "N/m", .about = "of all springs together", .in = within<S, Plate, &Plate::stiffness>, .required = true},
         {.key = "area", .unit = "m^2", .about = "of the plate", .required = true},
-        {.key = "width", .unit = "m", .about = "needed by gas films, fringing and rough contacts; the length is area / width", .in = reach<S, &S::width>, .such_as = "100 um"},
-        {.key = "thickness", .unit = "m", .about = "needed by fringing laws that depend on it", .in = reach<S, &S::thickness>},
+        {.key = "width", .unit = "m", .about = "needed by all gas models but a damper given by quality_factor, all fringing but none, and contacts of asperities; the length is area / width", .in = reach<S, &S::width>, .such_as = "100 um"},
+        {.key = "thickness", .unit = "m", .about = "needed by the fringing laws meijs-fokkema and bao-2001, and by the gas model guo-alexeenko", .in = reach<S, &S::thickness>},
     });
     // clang-format on
   }

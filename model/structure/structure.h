@@ -74,12 +74,14 @@ struct Structure {
 inline constexpr int most_modes = Structure::most_modes;
 
 consteval Field<Structure> Structure::damping() {
-  return {.key = "damping_ratio",
-          .about = "modal, the same for every mode",
-          .in = reach<Structure, &Structure::damping_ratio>,
-          .range = below_one,
-          .fallback = "0.0",
-          .beyond = "for more give [gas] model = \"linear\" and quality_factor = 1 / (2 damping_ratio)"};
+  return {
+      .key = "damping_ratio",
+      .about =
+          "modal, the same for every mode; for 1 and more: [gas] with model = linear and quality_factor = 1 / (2 damping_ratio)",
+      .in = reach<Structure, &Structure::damping_ratio>,
+      .range = below_one,
+      .fallback = "0.0",
+      .beyond = "for more give [gas] model = \"linear\" and quality_factor = 1 / (2 damping_ratio)"};
 }
 
 /// The scene-file keys of a kind of structure, computed at compile time.

@@ -131,11 +131,11 @@ struct ModalStructure {
     // clang-format off
     return std::to_array<Field<S>>({
         S::damping(),
-        {.key = "frequency_factor", .about = "of all natural frequencies, over those of the file", .in = within<S, ModalStructure, &ModalStructure::frequency_factor>, .range = {.least = 0.01, .most = 100}, .fallback = "1.0"},
-        {.key = "axial_stiffness", .unit = "N/m", .about = "between two clamps: force per elongation, E A / L of an even beam; absent: stretching is not simulated", .in = within<S, ModalStructure, &ModalStructure::axial_stiffness>, .such_as = "12 kN/m"},
+        {.key = "frequency_factor", .about = "of all natural frequencies, over those of the file; process variation and fit vary it", .in = within<S, ModalStructure, &ModalStructure::frequency_factor>, .range = {.least = 0.01, .most = 100}, .fallback = "1.0"},
+        {.key = "axial_stiffness", .unit = "N/m", .about = "between two clamps: force per elongation, E A / L of an even beam; absent: stretching is not simulated, and a warning says so", .in = within<S, ModalStructure, &ModalStructure::axial_stiffness>, .such_as = "12 kN/m"},
         {.key = "width", .unit = "m", .about = "across the axis, the same everywhere; absent: that of the file, which may change along it", .in = reach<S, &S::width>, .why_fixed = follows_no_size},
-        {.key = "thickness", .unit = "m", .about = "needed by fringing and gas laws that depend on it, and by nothing else", .in = reach<S, &S::thickness>, .why_fixed = follows_no_size},
-        {.key = "modes", .about = "number of modes kept; absent: all of the file", .count = reach<S, &S::modes>, .range = {.least = 1, .most = S::most_modes}},
+        {.key = "thickness", .unit = "m", .about = "needed by the fringing laws meijs-fokkema and bao-2001 and by the gas model guo-alexeenko, and by nothing else", .in = reach<S, &S::thickness>, .why_fixed = follows_no_size},
+        {.key = "modes", .about = "number of modes kept, at most those of the file; absent: all of the file", .count = reach<S, &S::modes>, .range = {.least = 1, .most = S::most_modes}},
     });
     // clang-format on
   }

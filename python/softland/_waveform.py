@@ -22,7 +22,7 @@ class Waveform:
     >>> pulse(20e-6)
     8.0
 
-    docs/figures.md and docs/scene.md have the families and their parameters, which are numbers in SI units or text with a unit. Vsp and Vdp are valid
+    docs/theory/sources.md and docs/reference/keys.md have the families and their parameters, which are numbers in SI units or text with a unit. Vsp and Vdp are valid
     only in a scene. Raises InvalidInput with parameter, value and rule.
     """
 

@@ -186,7 +186,7 @@ TEST(Ranges, WhatIsNoSuchNumberIsRefusedWithWhatIsExpected) {
 }
 
 TEST(Ranges, TheManualHoldsTheExtentOfEveryKind) {
-  std::ifstream stream(std::string(SOFTLAND_SOURCE_DIR) + "/docs/scene.md");
+  std::ifstream stream(std::string(SOFTLAND_SOURCE_DIR) + "/docs/reference/keys.md");
   const std::string manual{std::istreambuf_iterator<char>(stream), {}};
   with_every_number([&](const Key& key, const Dimension& dimension, const Example&) {
     if (key.type == KeyType::integer || dimension == dimension::none) return;

@@ -119,7 +119,7 @@ std::string document(const std::string& name) {
 }
 
 TEST(Schema, TheManualTellsOfEveryLawAndItsKeys) {
-  const std::string laws = document("theory/contact.md") + document("theory/gas.md"), all = laws + document("scene.md");
+  const std::string laws = document("theory/contact.md") + document("theory/gas.md"), all = laws + document("reference/keys.md");
   const auto quoted = [](std::string_view word) { return fmt::format("`{}`", word); };
   const auto expect = [&]<class Law>(std::type_identity<Law>) {
     EXPECT_THAT(laws, testing::HasSubstr(quoted(Law::name)));

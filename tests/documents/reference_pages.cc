@@ -125,6 +125,9 @@ void print_section(const Section& section, const std::string& title, int depth, 
     if (!choices.empty()) fmt::print("\nWith {} = {}:\n\n", code(section.selector), codes(choices));
     if (!keys.empty()) print_table(keys);
   }
+  if (!section.beside.empty())
+    fmt::print("\n[The scene file](../scene.md) explains the key {} of [{}], which stands beside these sections.\n",
+               code(section.beside), section.name);
   for (const Key& key : section.keys) {
     if (key.part != nullptr) print_section(*key.part(), fmt::format("{} of {}", code(key.name), title), depth + 1, ".");
   }
@@ -133,7 +136,7 @@ void print_section(const Section& section, const std::string& title, int depth, 
 void collect(const Section& section, std::vector<Dimension>& all) {
   for (const Key& key : section.keys) {
     for (const Dimension& one : key.dimensions)
-      if (one != dimension::none && std::ranges::find(all, one) == all.end()) all.push_back(one);
+      if (std::ranges::find(all, one) == all.end()) all.push_back(one);
     if (key.part != nullptr) collect(*key.part(), all);
   }
 }
