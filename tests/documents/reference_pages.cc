@@ -1,8 +1,10 @@
-// reference_pages PAGE: prints a page of the reference from the tables of the code. PAGE is `keys`, the keys of a scene.
+// reference_pages PAGE: prints a page of the reference from the tables of the code. PAGE is `keys`, the keys of a scene, or
+// `figures`, the figures of merit.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <limits>
 #include <string>
@@ -12,6 +14,7 @@
 
 #include "base/engineering.h"
 #include "config/schema.h"
+#include "objectives/figures.h"
 
 namespace softland {
 namespace {
@@ -162,7 +165,7 @@ void print_keys() {
       "*For everyone who writes a scene: which keys are there, what may they be, and what do they mean?*\n\n"
       "This page is made from the table by which softland reads scenes. A section that is absent is an effect that is not simulated. A\n"
       "quantity is a text with its unit, such as \"2 um\"; [the scene file](../scene.md) says how it is written and which rules join\n"
-      "several keys. A default is written as TOML; a key without default may be left out.\n");
+      "several keys. A default is written as TOML; a key without default may be left out. \"Required\" means within the section.\n");
   for (const Section& section : internal::schema()) {
     const std::string name = section.name.empty() ? std::string("Above the first section")
                              : section.is_named
@@ -177,14 +180,86 @@ void print_keys() {
   print_kinds();
 }
 
+// Prints the figures for which `chosen` returns true.
+template <class Chosen>
+void print_figure_table(const Chosen& chosen) {
+  fmt::print("\n| figure | symbol | key in JSON | unit | meaning |\n|---|---|---|---|---|\n");
+  for (const Figure& figure : figure_table)
+    if (chosen(figure))
+      fmt::print("| {} | {} | {} | {} | {} |\n", cell(figure.label()), cell(figure.symbol), code(figure.key), figure.unit,
+                 cell(figure.about));
+}
+
+// Returns how the error of a figure becomes known.
+std::string_view error_text(const Figure& figure) {
+  if (!figure.has_error()) return "none";
+  if (figure.is_told_by_two_runs()) return "two runs";
+  return figure.conditioning == Conditioning::rest ? "quadrature" : "range";
+}
+
+struct Request {
+  bool AskedFigures::*asked;
+  std::string_view words;
+};
+constexpr std::array requests{
+    Request{&AskedFigures::resistance, "the contacts that make the connection have a `resistivity`"},
+    Request{&AskedFigures::electrical, "the scene has `metrics.closed_force`, `closed_resistance` or `closed_after`"},
+    Request{&AskedFigures::pressure, "a contact that makes the connection has asperities and a hardness"},
+    Request{&AskedFigures::charge, "the scene has a `[load]`"},
+    Request{&AskedFigures::break_charge, "the scene has a `[load]`, and the run opens the switch on command"},
+    Request{&AskedFigures::opening, "the run opens the switch on command"},
+};
+
+void print_figures() {
+  fmt::print(
+      "# Figures of merit\n\n"
+      "*For everyone who reads a result: what is this figure, what is its unit, and how does its error become known?*\n\n"
+      "This page is made from the table of figures by which softland writes results. [Figures of merit and searches](../figures.md)\n"
+      "has their rules, and says how far a figure can be trusted. Names follow Bognash 2019. The window is the simulated time span.\n"
+      "Every figure is taken at the contact point. A condition such as `t_p < 45 us` names a figure by its symbol, or by its key\n"
+      "without the unit.\n\n"
+      "## Figures of one run\n");
+  print_figure_table([](const Figure& f) { return f.of_results; });
+  fmt::print("\n## Figures of varied devices\n\nStudies of process variation have one more figure.\n");
+  print_figure_table([](const Figure& f) { return f.of_devices && !f.of_results; });
+  fmt::print(
+      "\n## Figures on request\n\nResults show these figures only under a condition.\n\n| condition | figures |\n|---|---|\n");
+  for (const Request& request : requests) {
+    std::vector<std::string_view> names;
+    for (const Figure& figure : figure_table)
+      if (figure.asked == request.asked) names.push_back(figure.symbol);
+    fmt::print("| {} | {} |\n", request.words, fmt::join(names, ", "));
+  }
+  fmt::print(
+      "\n## Errors and derivatives\n\n"
+      "- Error \"two runs\": `simulate` estimates it from the difference between two runs of different accuracy.\n"
+      "- Error \"range\": the figure may be chaotic. `simulate --certify` gives its range in a cloud of runs.\n"
+      "- Error \"quadrature\": the figure is that of an equilibrium. `simulate --certify` gives its error.\n"
+      "- Derivatives are exact, by parameters of waveforms and by quantities of the device.\n"
+      "- Devices: studies of process variation give quantiles of the figure, and conditions on devices may name it.\n\n"
+      "| figure | lower is better | error | derivative | devices |\n|---|---|---|---|---|\n");
+  for (const Figure& figure : figure_table) {
+    if (!figure.of_results && !figure.of_devices) continue;
+    fmt::print("| {} | {} | {} | {} | {} |\n", cell(figure.symbol), figure.better == Better::lower ? "yes" : "",
+               figure.of_results ? error_text(figure) : "", figure.slope != nullptr ? "yes" : "", figure.of_devices ? "yes" : "");
+  }
+  fmt::print(
+      "\n## Figures inside costs\n\nResults do not show these figures. They enter costs, and objectives of your own receive them.\n");
+  print_figure_table([](const Figure& f) { return !f.of_devices && !f.of_results; });
+}
+
 }  // namespace
 }  // namespace softland
 
 int main(int count, char** arguments) {
-  if (count != 2 || std::string_view(arguments[1]) != "keys") {
-    std::fputs("usage: reference_pages keys\n", stderr);
+  const std::string_view page = count == 2 ? arguments[1] : "";
+  if (page == "keys") {
+    softland::print_keys();
+  } else if (page == "figures") {
+    softland::print_figures();
+  } else {
+    std::fputs("usage: reference_pages keys|figures\n", stderr);
     return 2;
   }
-  softland::print_keys();
   return 0;
 }
