@@ -153,7 +153,7 @@ std::vector<Panel> nem_panels(const Steps& steps, const std::vector<Shaped>& sha
            .x_label = x,
            .y_label = "Gain in %",
            .curves = {{"dither", shaped[0].gain, Role::third}, {"pulse", shaped[1].gain, Role::fourth}}},
-          {.title = "Impact speed of the step",
+          {.title = "Impact velocity of the step",
            .x_label = x,
            .y_label = "Speed",
            .y_unit = "m/s",

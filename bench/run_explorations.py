@@ -59,7 +59,7 @@ def main():
     heights = (1, 30, 100, 200, 300, 400, 500, 650, 800)
     boxes = [(80 + (k % 2) * 470, 150 + (k // 2) * 440, 440 + (k % 2) * 470, 440 + (k // 2) * 440) for k in range(4)]
     parts = panel(step, lambda r: number(r, B_H, 1e-9), heights, "nm", "Plain step: highest rebound", boxes[0], "")
-    parts += panel(step, lambda r: number(r, V_I, 1e-3), (55, 60, 65, 70, 75, 80, 85, 95, 105), "mm/s", "Plain step: impact speed", boxes[1], "")
+    parts += panel(step, lambda r: number(r, V_I, 1e-3), (55, 60, 65, 70, 75, 80, 85, 95, 105), "mm/s", "Plain step: impact velocity", boxes[1], "")
     parts += panel(best, lambda r: number(r, B_H, 1e-9), (0.001, 0.01, 0.1, 1, 3, 10, 30, 100, 300), "nm", "Best pulses: highest rebound", boxes[2], "nothing found" if len(best.rows) < 400 else "")
     parts += panel(best, lambda r: number(r, T_I, 1e-6), (30, 34, 38, 42, 46, 50, 54, 58, 62), "µs", "Best pulses: first touch", boxes[3], "")
     svg = drawing(1000, 1040, ["How a gold cantilever bounces over its length and gap, and how softly a searched pulse lands it"],
@@ -77,7 +77,7 @@ def main():
           f"the rebound is lower by a factor of {statistics.median(ratios):.0f} in the median, {min(ratios):.0f} at the least")
     plain = lambda r: f"{r[B_H] * 1e9:.0f}" + ("" if r["settled"] == 1 else " *")
     print("\nHighest rebound of the step [nm]\n\n" + table(step, plain, (1.2, 1.48, 1.76, 2.04, 2.32, 2.6)))
-    print("\nImpact speed of the step [mm/s]\n\n" + table(step, lambda r: f"{r[V_I] * 1e3:.1f}", (1.2, 1.48, 1.76, 2.04, 2.32, 2.6)))
+    print("\nImpact velocity of the step [mm/s]\n\n" + table(step, lambda r: f"{r[V_I] * 1e3:.1f}", (1.2, 1.48, 1.76, 2.04, 2.32, 2.6)))
     pulse = lambda r: f"{r[B_H] * 1e9:.3g} nm, {r[T_I] * 1e6:.1f} µs" if isinstance(r[B_H], float) else "none"
     print("\nBest pulses: highest rebound, first touch\n\n" + table(best, pulse, (1.2, 1.48, 1.76, 2.04, 2.32, 2.6)))
 

@@ -67,7 +67,7 @@ def main():
         print(rows[-1], file=sys.stderr, flush=True)
     text = [f"""# The limit of what any waveform can do
 
-The least time in which any waveform within the limits of the drivers brings the contact point to its plane, at a hundredth of the plain step's impact speed or less; the
+The least time in which any waveform within the limits of the drivers brings the contact point to its plane, at a hundredth of the plain step's impact velocity or less; the
 least time with every mode at rest; and the quickest landing without a significant rebound that was found from there, or the one that rebounds least. Nothing varies. See
 [docs/figures.md](../docs/figures.md#the-limit-softland-limit).
 

@@ -69,7 +69,7 @@ def main():
     parts += heat_map(casimir.values(B_H, 1e-9), (0.5, 1, 1.5, 2, 2.5, 3, 4, 5, 7), "nm", "Casimir switch: highest rebound", boxes[1], length, contact, "")
     parts += heat_map(dimple.values(B_H, 1e-9), (50, 100, 200, 300, 400, 500, 700, 900, 1200), "nm", "Gold cantilever: highest rebound", boxes[2], end, rest,
                       "no contact")
-    parts += heat_map(dimple.values(V_I, 1e-3), (30, 40, 50, 60, 70, 80, 90, 100, 120), "mm/s", "Gold cantilever: impact speed", boxes[3], end, rest, "")
+    parts += heat_map(dimple.values(V_I, 1e-3), (30, 40, 50, 60, 70, 80, 90, 100, 120), "mm/s", "Gold cantilever: impact velocity", boxes[3], end, rest, "")
     (results / "published-maps.svg").write_text(drawing(1000, 1040, ["Bounces over the size of a switch and its gaps"], [
         f"Casimir force grown from 1 to 1.25 at once, gap of 50 nm: {len(casimir.rows)} closings. Step of 1.25 V_dp of each design: {len(dimple.rows)} closings.",
         "A dimple as high as the gap less the contact gap; an electrode that begins at 60 µm and ends up to 12 µm before the tip."], parts),

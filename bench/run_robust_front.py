@@ -69,7 +69,7 @@ def picture(found, step):
         y = down(tick * 1e-3)
         out += [line(left, y, right, y), words(left - 8, y + 4, tick, anchor="end")]
     out += [words((left + right) / 2, bottom + 40, "first contact of 95 % of the devices (us)".replace("us", "µs"), anchor="middle"),
-            words(26, (top + bottom) / 2, "largest impact speed of 95 % (mm/s)", anchor="middle",
+            words(26, (top + bottom) / 2, "largest impact velocity of 95 % (mm/s)", anchor="middle",
                   more=f' transform="rotate(-90 26 {(top + bottom) / 2:.1f})"')]
     for (colour, dash), (known, winners) in zip(PENS, found.items()):
         points = sorted((quantile(drive, TIME)[0], quantile(drive, SPEED)) for ceiling, drive, _ in winners if keeps(drive, ceiling))
@@ -99,16 +99,16 @@ def main():
             step, winner, seconds = search(program, ceiling, known)
             winners.append((ceiling, winner, seconds))
             print(f"{known}, {ceiling} us: {prefixed(quantile(winner, SPEED)[0], 'm/s')}, {seconds:.0f} s", file=sys.stderr, flush=True)
-    text = [f"""# Impact speed against closing time, of 95 % of the devices
+    text = [f"""# Impact velocity against closing time, of 95 % of the devices
 
 One search per ceiling of the first contact and knowledge of the devices; each winner is judged on 2000 devices that no search has seen, over the whole window. Values
-are 95 % quantiles, with 95 % confidence in brackets; v is the largest impact speed of all touches. A ceiling that 95 % of the fresh devices do not keep is marked.
+are 95 % quantiles, with 95 % confidence in brackets; v is the largest impact velocity of all touches. A ceiling that 95 % of the fresh devices do not keep is marked.
 
 - made by `bench/run_robust_front.py BUILD/apps/softland results`, {datetime.date.today()}, revision {revision()}
 - one search: `softland optimize scenes/mem-gold.toml {" ".join(f'"{w}"' if " " in w else w for w in words_of(CEILINGS[0], "nothing"))}`
 - machine: {machine()}
 
-![largest impact speed against first contact](robust-front.svg)
+![largest impact velocity against first contact](robust-front.svg)
 
 | known | ceiling | t_i | v | B_H | time of the search |
 |---|---|---|---|---|---|"""]

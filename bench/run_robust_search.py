@@ -71,7 +71,7 @@ def main():
 
 `softland optimize ... --robust ...` on the shipped scenes with their own `[spread]` (2 % of thickness, 2 % of both gaps by one factor,
 3 % of the modulus, one standard deviation, normal; see the scenes for the others), each winner judged on 2000 devices that no search has seen, over the scene's whole
-window. 95 % of the devices are below the given values; in brackets 95 % confidence. v is the largest impact speed of all touches.
+window. 95 % of the devices are below the given values; in brackets 95 % confidence. v is the largest impact velocity of all touches.
 
 - made by `bench/run_robust_search.py BUILD/apps/softland > results/robust-search.md`, {datetime.date.today()}, revision {revision()}
 - machine: {machine()}

@@ -41,7 +41,7 @@ def main():
 `softland optimize SCENE --actuator ... --seed N`, then `softland robustness SCENE WINNER ... --samples {DEVICES}`: the same devices
 for all, drawn from the scene's `[spread]` (2 % of thickness, 2 % of both gaps by one factor, 3 % of the modulus; plates 6 % of
 the stiffness and 2 % of the mass instead; one standard deviation, normal), with the volts that the search found for the nominal
-device. Median / 95 % quantile; v is the largest impact speed of all touches.
+device. Median / 95 % quantile; v is the largest impact velocity of all touches.
 
 - made by `bench/run_robustness.py BUILD/apps/softland > results/robustness.md`, {datetime.date.today()}, revision {revision()}
 - machine: {machine()}

@@ -35,4 +35,4 @@ if "ipykernel" in sys.modules:
 # %%
 scene["structure.thickness"] = "2.2 um"
 thicker = scene.simulate()
-print(f"impact speed {closing.impact_velocity * 1e3:.1f} mm/s, of the thicker one {thicker.impact_velocity * 1e3:.1f} mm/s")
+print(f"impact velocity {closing.impact_velocity * 1e3:.1f} mm/s, of the thicker one {thicker.impact_velocity * 1e3:.1f} mm/s")

@@ -35,4 +35,4 @@ step = softland.shipped("mem-gold").simulate(errors=False)
 levels = [found.x[0], found.x[1], hold]
 scene.waveforms["main"] = softland.Waveform("pulse", levels=levels, times=[found.x[2], found.x[3]], edge="1 us")
 closing = scene.simulate()
-print(f"impact speed {closing.impact_velocity * 1e3:.2f} mm/s instead of {step.impact_velocity * 1e3:.1f} mm/s of the plain step")
+print(f"impact velocity {closing.impact_velocity * 1e3:.2f} mm/s instead of {step.impact_velocity * 1e3:.1f} mm/s of the plain step")

@@ -13,7 +13,7 @@ namespace softland {
 /// A variable or a figure of an exploration: a column of its table.
 struct ExploredColumn {
   std::string key;   ///< key of the column in options and files, such as "impact_velocity_m_s"
-  std::string name;  ///< displayed name of the column, such as "Impact speed", or the key of the scene
+  std::string name;  ///< displayed name of the column, such as "Impact velocity", or the key of the scene
   std::string unit;  ///< SI unit of the column; empty for a dimensionless number
   bool is_variable = false;
 };

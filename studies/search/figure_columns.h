@@ -10,7 +10,7 @@ namespace softland {
 /// A column of numbers in a table: a figure of merit or a searched parameter.
 struct PointFigure {
   std::string quantity;  ///< key of the figure or parameter: "impact_velocity"
-  std::string name;      ///< displayed name of the figure or parameter: "Impact speed"
+  std::string name;      ///< displayed name of the figure or parameter: "Impact velocity"
   std::string unit;      ///< SI unit of the figure or parameter; empty for a count, a share, and true or false (1 or 0)
 };
 

@@ -104,7 +104,7 @@ struct Limit {
   /// How a drive can move the switch to its contact through stable equilibria on the devices of [spread]; none if no drive can,
   /// or without [spread].
   std::optional<StableApproach> approach = {};
-  /// Impact speed of a slow stable approach that takes as long as the plain step until its force is steady:
+  /// Impact velocity of a slow stable approach that takes as long as the plain step until its force is steady:
   /// quasi_static_speed() [m/s].
   double quasi_static = std::numeric_limits<double>::quiet_NaN();
   LeastTime touch;                      ///< least time of a first contact at the permitted impact velocity

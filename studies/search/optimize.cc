@@ -35,7 +35,7 @@ constexpr double least_for_landings = 60;
 // Ends of the search, of the search with slower voltage edges, and of the search with several numbers of modes, as shares of a
 // time budget. The rest is for verifying the best waveform.
 constexpr double end_of_search = 0.6, end_of_gentle = 0.75, end_of_worst = 0.85;
-// Impact speed of starting waveforms that reach the contact at rest, as a share of the plain step's.
+// Impact velocity of starting waveforms that reach the contact at rest, as a share of the plain step's.
 constexpr double soft_touch = 0.01;
 constexpr double distinct = 1.01;  // least ratio between the costs of two candidate waveforms that are both verified
 // Number of waveform families in which the search with several numbers of modes is run.

@@ -169,7 +169,7 @@ struct OptimizeResult {
 /// step. On the shipped gold cantilevers the goal is about 1.1 times the best settling time known for pulses.
 inline constexpr double settling_goal = 1.3;
 
-/// Returns the largest relative excess of a closing over the plain step, in impact speed, peak contact force or impact energy;
+/// Returns the largest relative excess of a closing over the plain step, in impact velocity, peak contact force or impact energy;
 /// 0 if the excess is at most a thousandth.
 [[nodiscard]] double hardness_beyond_step(const Metrics& closing, const Metrics& step);
 

@@ -2,8 +2,8 @@
 // figures.
 //
 //   s_k   cost of the closing of device k, every figure relative to the plain step on the nominal device:
-//           bounce             (largest impact speed + highest rebound) / 2
-//           rebound            highest rebound               impact    largest impact speed
+//           bounce             (largest impact velocity + highest rebound) / 2
+//           rebound            highest rebound               impact    largest impact velocity
 //           count              rebounds                      settling  permanent contact, over first contact of the step
 //           energy             impact energy                 steady    steady force time, over first contact of the step
 //           own objective      its value

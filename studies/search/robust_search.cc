@@ -476,8 +476,8 @@ std::vector<ChosenFrom> RobustSearch::placed() const {
   // softer.
   if (!approach_ && free_.until > 0 && !sorted.empty() && sorted.front().candidate.is_good_enough && !sorted.front().lands_half)
     prefer_sooner(sorted);
-  // Costs are similar because of the few devices without a stable path: prefer the lowest 95th percentile of impact speed among
-  // similar costs.
+  // Costs are similar because of the few devices without a stable path: prefer the lowest 95th percentile of impact velocity
+  // among similar costs.
   if (approach_ && !sorted.empty() && sorted.front().candidate.is_good_enough) {
     auto softest = sorted.begin();
     for (auto one = sorted.begin(); one != sorted.end(); ++one) {

@@ -89,7 +89,7 @@ struct ChosenFrom {
   // The members below are figures on the devices on which the best waveform is chosen.
   double bounce_free = 0, tail = 0;  ///< bounce-free share of the devices; tail of the cost over the devices
   double measured = 0;  ///< measure of risk of the candidate waveform alone, without the cost of the time until contact
-  /// 95th percentiles over the devices of first contact time [s] and impact speed [m/s].
+  /// 95th percentiles over the devices of first contact time [s] and impact velocity [m/s].
   double first_touch = Metrics::unset, impact_speed = Metrics::unset;
   double median_touch = Metrics::unset;  ///< median over the devices of the time of first contact [s]
   double waited = Metrics::unset;        ///< 95th percentile over the devices of the time until contact by FreeTime::figure [s]

@@ -401,7 +401,8 @@ class RobustSearchStudy {
     }
   }
 
-  // Evaluates the offered waveforms on fresh devices; removes one that a quicker one equals in impact speed, rebound and force.
+  // Evaluates the offered waveforms on fresh devices; removes one that a quicker one equals in impact velocity, rebound and
+  // force.
   void decide_choices() {
     std::vector<DeviceChoice> all = std::exchange(result_->choices, {});
     if (result_->best.plain_step_wins) return;

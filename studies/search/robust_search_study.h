@@ -15,7 +15,7 @@
 //
 // The best waveform, if a drive can move the switch to its contact through stable equilibria (stable_approach.h): candidates
 // must not be worse than the plain step, nor leave more than 0.5 % more devices open. Of the candidates that cost at most 5 %
-// more than the least, the one with the lowest 95th percentile of impact speed is the best. Two further choices are reported:
+// more than the least, the one with the lowest 95th percentile of impact velocity is the best. Two further choices are reported:
 // "fast" is the softest whose devices wait at most half as long for a steady contact as under the plain step, "soft" the
 // softest whose devices wait at most twice as long. A choice that equals a faster choice is left out.
 //

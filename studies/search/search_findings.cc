@@ -71,7 +71,7 @@ void draw_courses(RobustSearchResult& result, const RobustnessOptions& judging, 
   result.findings.courses = {.end = end, .unit = unit, .step = courses(step), .own = courses(own)};
 }
 
-// Finds the Pareto front of the candidate waveforms in time of first contact and impact speed, and evaluates the candidates of
+// Finds the Pareto front of the candidate waveforms in time of first contact and impact velocity, and evaluates the candidates of
 // the front on the fresh devices (new to the search).
 void judge_front(RobustSearchResult& result, RobustSearch& search, const Progress& progress) {
   std::vector<const ChosenFrom*> kept;

@@ -25,8 +25,8 @@ constexpr double latest_touch = 2.5;  // latest permitted time of first contact,
 constexpr double driven_touch = 1.5, braked_touch = 2.0;
 constexpr double search_tolerance = 1e-6;  // relative tolerance of the integrator in a search, which gives costs to about 1e-4
 constexpr double most_broken = 10;         // largest relative violation of a condition that counts in the cost
-// Weight of the impact speed in the cost of a search over several numbers of modes. The impact speed hardly counts in the cost
-// of bounce, but changes most with further modes.
+// Weight of the impact velocity in the cost of a search over several numbers of modes. The impact velocity hardly counts in the
+// cost of bounce, but changes most with further modes.
 constexpr double weight_of_speed = 0.04;
 // Cost of bounce from which on a candidate waveform is not simulated with more modes; plain step: about 1.
 constexpr double hopeless = 0.25;

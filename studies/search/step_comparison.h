@@ -1,6 +1,6 @@
 // Compares drive waveforms with the plain step on varied devices.
 //
-// The compared figures are the largest impact speed, the highest rebound and the peak force. The waveform is worse in a figure
+// The compared figures are the largest impact velocity, the highest rebound and the peak force. The waveform is worse in a figure
 // if the 95th percentile is above that under the step on the same devices, and the 95 % interval of the difference, by a
 // bootstrap over devices, does not contain 0. Rebounds that are not significant are equal. A device that does not close has the
 // worst value of every figure.

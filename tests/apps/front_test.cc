@@ -99,7 +99,7 @@ TEST_F(Front, OfAGridIsMarkedInItsReportBesideAMap) {
                               "initial_contact_time,impact_velocity", "--quiet"});
   ASSERT_EQ(o.status, 0) << o.err;
   EXPECT_THAT(read(here.path() / "page/report.html"), HasSubstr("id=\"map\""));
-  EXPECT_THAT(read(here.path() / "page/map.svg"), HasSubstr("Impact speed over waveform.main.level and gap.contact"));
+  EXPECT_THAT(read(here.path() / "page/map.svg"), HasSubstr("Impact velocity over waveform.main.level and gap.contact"));
   const Outcome bad = here.run({"report", "map.sqlite", "--map", "beauty"});
   EXPECT_EQ(bad.status, 2);
   EXPECT_THAT(bad.err, HasSubstr("--map beauty: must be a figure of this exploration: "));

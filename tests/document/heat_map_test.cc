@@ -37,7 +37,7 @@ HeatMap map_of(std::vector<double> values, std::size_t columns) {
   const std::size_t rows = values.size() / columns;
   HeatMap map{.x = {"structure.length", "m", {}},
               .y = {"gap.contact", "m", {}},
-              .label = "Impact speed",
+              .label = "Impact velocity",
               .unit = "m/s",
               .values = std::move(values),
               .missing = {},

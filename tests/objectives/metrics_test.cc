@@ -83,7 +83,7 @@ TEST(Metrics, BouncingBallHasTheHeightsOfAGeometricSeries) {
       EXPECT_NEAR(rebound.height, ball.height(n), kRounding * kGap) << "flight " << n;
       EXPECT_NEAR(rebound.begin, ball.impact(n), kRounding * ball.impact(n)) << "flight " << n;
       EXPECT_NEAR(rebound.end, ball.impact(n + 1), kRounding * ball.impact(n)) << "flight " << n;
-      // The top is flat: its time is the root of a velocity with a rounding of 1e-16 of the impact speed, times the flight.
+      // The top is flat: its time is the root of a velocity with a rounding of 1e-16 of the impact velocity, times the flight.
       EXPECT_NEAR(rebound.time_of_height, 0.5 * (rebound.begin + rebound.end), kRounding * ball.impact(n)) << "flight " << n;
     }
   }

@@ -174,7 +174,7 @@ inline Landing land(std::span<const double> levels, std::span<const double> dura
 /// Returns impact energy and rebound relative to those of a step, plus a cost of slowness; 2 or more if the contact is not
 /// touched.
 inline double landing_cost(const Landing& landing) {
-  constexpr double kStepSpeed = 0.43;  // impact speed of a step to 0.5
+  constexpr double kStepSpeed = 0.43;  // impact velocity of a step to 0.5
   constexpr double kPatience = 4.5;
   if (landing.missed_by > 0) return 2 + landing.missed_by;
   const double speed = landing.impact_speed / kStepSpeed;

@@ -60,7 +60,7 @@ def sees_planted_mistakes(record):
     planted(step + "files/simulate.json", r'("impact_velocity_m_s": 0\.14\d*)\d', r"\g<1>7", "metrics.impact_velocity_m_s")
     planted(step + "files/out/report.html", r'("charts":.*?\d\.\d+)(\d)', lambda m: m[1] + str((int(m[2]) + 1) % 10), "data ")
     planted(step + "files/out/trajectory.csv", r"(\n[^,]+,[^,]*)(\d),", lambda m: m[1] + str((int(m[2]) + 1) % 10) + ",", "row 1, ")
-    planted(step + "stdout", r"(Impact speed .*\d)(\d)\.", lambda m: m[1] + str((int(m[2]) + 1) % 10) + ".", "Impact speed")
+    planted(step + "stdout", r"(Impact velocity .*\d)(\d)\.", lambda m: m[1] + str((int(m[2]) + 1) % 10) + ".", "Impact velocity")
     planted(step + "stdout", r"\n\n", "\n", "line ")
     planted(step + "stdout", r"$", "one more line\n", "one more line")
     planted(step + "run", "status 0", "status 3", "status")

@@ -155,7 +155,7 @@ TEST(DevicesReport, SaysInWhichFigureNothingIsAsGoodAsThePlainStep) {
       words,
       HasSubstr(
           "(assumed, because the scene has no [spread]: gaps ± 2 %), no waveform that was found is as good as the plain step"));
-  EXPECT_THAT(words, HasSubstr("the best one is worse in its largest impact speed. best.toml is the plain step."));
+  EXPECT_THAT(words, HasSubstr("the best one is worse in its largest impact velocity. best.toml is the plain step."));
 }
 
 TEST(DevicesReport, ComesBackFromJsonAsItWas) {

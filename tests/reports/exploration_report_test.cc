@@ -56,7 +56,7 @@ TEST(ExploredAims, AreRefusedWithTheFiguresThereAre) {
                         "initial_contact_time_s, "));
   EXPECT_THAT(aims_refusal("impact_velocity,structure_length"), HasSubstr("not among the figures")) << "it is a variable";
   EXPECT_THAT(aims_refusal("impact_velocity,"), HasSubstr("not among the figures"));
-  EXPECT_THAT(aims_refusal("impact_velocity,Impact speed"), HasSubstr("twice"));
+  EXPECT_THAT(aims_refusal("impact_velocity,Impact velocity"), HasSubstr("twice"));
   EXPECT_THAT(aims_refusal("impact_velocity"), HasSubstr("at least two"));
 }
 
@@ -243,7 +243,7 @@ TEST(ExplorationJson, HoldsTheFrontAndHowPointsEnded) {
 TEST(ExplorationMap, IsAPictureOfItsOwn) {
   const std::string svg = exploration_map_svg(sample_grid(60, 40), 0, 1, 6);
   EXPECT_EQ(test::xml_fault(svg), "");
-  EXPECT_THAT(svg, HasSubstr("Impact speed over structure.length and gap.contact"));
+  EXPECT_THAT(svg, HasSubstr("Impact velocity over structure.length and gap.contact"));
   EXPECT_THROW(static_cast<void>(exploration_map_svg(sample_cloud(50), 0, 1, 6)), InvalidInput);
 }
 

@@ -14,7 +14,7 @@ ExplorationReport sample_grid(std::size_t columns, std::size_t rows) {
                     {"permanent_contact_time_s", "Permanent contact", "s", false},
                     {"bounce_count", "Rebounds", "", false},
                     {"major_bounce_height_m", "Highest rebound", "m", false},
-                    {"impact_velocity_m_s", "Impact speed", "m/s", false},
+                    {"impact_velocity_m_s", "Impact velocity", "m/s", false},
                     {"peak_voltage_V", "Peak voltage", "V", false}};
   report.planned = static_cast<std::int64_t>(columns * rows);
   for (std::size_t i = 0; i < columns; ++i) {
@@ -55,7 +55,7 @@ ExplorationReport sample_cloud(std::size_t points) {
                     {"waveform_main_levels_1_V", "waveform.main.levels[1]", "V", true},
                     {"waveform_main_times_1_s", "waveform.main.times[1]", "s", true},
                     {"initial_contact_time_s", "First contact", "s", false},
-                    {"impact_velocity_m_s", "Impact speed", "m/s", false},
+                    {"impact_velocity_m_s", "Impact velocity", "m/s", false},
                     {"impact_energy_J", "Impact energy", "J", false},
                     {"bounce_count", "Rebounds", "", false},
                     {"peak_voltage_V", "Peak voltage", "V", false}};

@@ -20,7 +20,7 @@ inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   return {.text = fmt::format("grid of {} points", points),
           .points = points,
           .columns = {{.key = "gap_contact_m", .name = "gap.contact", .unit = "m", .kind = ColumnKind::variable},
-                      {.key = "impact_velocity_m_s", .name = "Impact speed", .unit = "m/s"},
+                      {.key = "impact_velocity_m_s", .name = "Impact velocity", .unit = "m/s"},
                       {.key = "bounce_count", .name = "Rebounds", .unit = ""},
                       {.key = "bounce_time_s", .name = "Bounce time", .unit = "s"}},
           .seed = 7,
