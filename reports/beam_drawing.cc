@@ -50,7 +50,7 @@ class BeamSketch {
     double widest = 0;
     for (const LocalSection& one : sections_) widest = std::max({widest, one.width, one.end_width});
     constexpr double most_height = 260;
-    const double across = std::min(scale_, most_height / widest), middle = top + 20 + widest * across / 2;
+    const double across = std::min(scale_, most_height / widest), middle = top + 34 + widest * across / 2;
     std::string out =
         label(0, top,
               fmt::format("from above{}: {} long, up to {} wide",

@@ -202,7 +202,9 @@ std::string text_of(const EffectsRecord& record) {
   }
   ReportSection left_out{.id = "left-out", .heading = "Each effect left out", .parts = {}};
   if (effects.ablations.empty())
-    left_out.parts.emplace_back(Paragraph{"Nothing is left out: the scene has no effect that can be left out."});
+    left_out.parts.emplace_back(Paragraph{effects.interrupted
+                                              ? "Interrupted before any effect was left out."
+                                              : "Nothing is left out: the scene has no effect that can be left out."});
   left_out.parts.emplace_back(omissions_table(effects));
   left_out.parts.emplace_back(
       Paragraph{"The columns have the change of the figures when one effect is left out under the same voltages; rhs is the time "
