@@ -233,8 +233,8 @@ HEADLINES = {
     f"SciPy runs {NUMBER} of {NUMBER} searched waveforms without a rebound; with two more modes {NUMBER} stay so": of_searches,
     f"Of {NUMBER} figures on random scenes {NUMBER} % are within": of_accuracy,
     f"One closing takes {NUMBER} ms, {NUMBER} times less than SciPy": of_speed,
-    f"land at most {NUMBER} % of the gold cantilevers": of_devices,
-    f"closes all of them softly, at {NUMBER} mm/s at the 99th percentile": of_choices,
+    f"close at most {NUMBER} % of the devices of `scenes/mem-gold.toml` bounce-free": of_devices,
+    f"With `--actuator both` 99 % close at no more than {NUMBER} mm/s": of_choices,
 }
 
 
