@@ -21,7 +21,7 @@ int drawn(const std::string& text, std::string_view what) {
   return found;
 }
 
-constexpr std::string_view beam = "fill=\"#c9a227\"", layer = "fill=\"#7a5cc4\"", electrode = "fill=\"#2b6cb0\"",
+constexpr std::string_view beam = "fill=\"#c9a227\"", layer = "fill=\"#7a5cc4\"", electrode = " fill=\"#2b6cb0\"",
                            hole = "fill=\"#fff\"/";
 
 TEST(BeamDrawing, ShowsEveryPartFromAboveAndFromTheSide) {
