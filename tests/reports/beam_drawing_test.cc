@@ -28,6 +28,7 @@ TEST(BeamDrawing, ShowsEveryPartFromAboveAndFromTheSide) {
   Device d = test::gold_cantilever();
   const std::string plain = beam_drawing("plain <beam>", d);
   EXPECT_THAT(plain, HasSubstr("plain &lt;beam&gt;"));
+  EXPECT_THAT(plain, HasSubstr("(prefers-color-scheme:dark){[fill=\"#fff\"]{fill:#131416}"));
   EXPECT_EQ(drawn(plain, beam), 2) << "from above and from the side";
   EXPECT_EQ(drawn(plain, electrode), 2) << "an outline from above, a body from the side";
   Beam& parts = part_of<Beam>(d.structure);
