@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <cstddef>
 #include <cstdio>
 #include <limits>
 #include <string>
@@ -159,6 +161,38 @@ void print_kinds() {
   }
 }
 
+// Returns the heading of a section, without the marks of a heading.
+std::string title_of(const Section& section) {
+  if (section.name.empty()) return "Above the first section";
+  if (section.is_named) return fmt::format("[{}.{}]", section.name, section.entry.empty() ? "NAME" : section.entry);
+  return section.may_be_named ? fmt::format("[{0}] or [{0}.NAME]", section.name) : fmt::format("[{}]", section.name);
+}
+
+// Returns a link to a heading of the same page, whose anchor has its letters in lower case and hyphens for blanks.
+std::string link_to(std::string_view title) {
+  std::string anchor;
+  for (const unsigned char c : title) {
+    if (c == ' ') anchor += '-';
+    if (std::isalnum(c) != 0 || c == '-' || c == '_') anchor += static_cast<char>(std::tolower(c));
+  }
+  return fmt::format("[{}](#{})", title.starts_with('[') ? code(title) : std::string(title), anchor);
+}
+
+// Prints links in lines of at most 130 columns.
+void print_links(const std::vector<std::string>& titles) {
+  std::string line = "Sections:";
+  for (std::size_t i = 0; i < titles.size(); ++i) {
+    const std::string link = link_to(titles[i]) + (i + 1 < titles.size() ? "," : ".");
+    if (line.size() + 1 + link.size() > 130) {
+      fmt::print("{}\n", line);
+      line = link;
+    } else {
+      line += " " + link;
+    }
+  }
+  fmt::print("{}\n", line);
+}
+
 void print_keys() {
   fmt::print(
       "# Keys of a scene\n\n"
@@ -166,16 +200,16 @@ void print_keys() {
       "This page is made from the table by which softland reads scenes. A section that is absent is an effect that is not simulated. A\n"
       "quantity is a text with its unit, such as \"2 um\"; [the scene file](../scene.md) says how it is written and which rules join\n"
       "several keys. A default is written as TOML; a key without default may be left out. \"Required\" means within the section.\n");
+  std::vector<std::string> titles;
+  for (const Section& section : internal::schema()) titles.push_back(title_of(section));
+  titles.emplace_back("Kinds of quantities");
+  fmt::print("\n");
+  print_links(titles);
   for (const Section& section : internal::schema()) {
-    const std::string name = section.name.empty() ? std::string("Above the first section")
-                             : section.is_named
-                                 ? fmt::format("[{}.{}]", section.name, section.entry.empty() ? "NAME" : section.entry)
-                             : section.may_be_named ? fmt::format("[{0}] or [{0}.NAME]", section.name)
-                                                    : fmt::format("[{}]", section.name);
     const std::string rule = section.required          ? ". The section is required."
                              : section.always_in_force ? ". Its defaults apply without the section."
                                                        : ".";
-    print_section(section, name, 2, rule);
+    print_section(section, title_of(section), 2, rule);
   }
   print_kinds();
 }
