@@ -43,7 +43,7 @@ template <class Law>
 [[nodiscard]] consteval auto film_fields() {
   return std::to_array<Field<Law>>({
       {.key = "viscosity", .unit = "Pa s", .about = "dynamic viscosity; absent: that of air at the temperature", .in = reach<Law, &Law::film, &FilmState::viscosity>},
-      {.key = "pressure", .unit = "Pa", .about = "ambient", .in = reach<Law, &Law::film, &FilmState::pressure>, .fallback = "'101325 Pa'"},
+      {.key = "pressure", .unit = "Pa", .about = "ambient; strip and strip-slit: changes only their warnings, not their damping", .in = reach<Law, &Law::film, &FilmState::pressure>, .fallback = "'101325 Pa'"},
       {.key = "temperature", .unit = "K", .about = "of the gas", .in = reach<Law, &Law::film, &FilmState::temperature>, .fallback = "'300 K'"},
       {.key = "mean_free_path", .unit = "m", .about = "at the ambient pressure; absent: from viscosity, pressure and temperature", .in = reach<Law, &Law::film, &FilmState::mean_free_path>, .range = {.least = 0, .most = 1e9, .least_open = true}, .such_as = "65 nm"},
   });
