@@ -1,5 +1,5 @@
-// reference_pages PAGE: prints a page of the reference from the tables of the code. PAGE is `keys`, the keys of a scene, or
-// `figures`, the figures of merit.
+// reference_pages PAGE: prints a page of the reference from the tables of the code. PAGE is `keys`, the keys of a scene,
+// `figures`, the figures of merit, or `targets`, the targets of a search.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -16,6 +16,7 @@
 
 #include "base/engineering.h"
 #include "config/schema.h"
+#include "objectives/cost.h"
 #include "objectives/figures.h"
 
 namespace softland {
@@ -127,7 +128,7 @@ void print_section(const Section& section, const std::string& title, int depth, 
     group->second.push_back(&key);
   }
   for (const auto& [choices, keys] : groups) {
-    if (!choices.empty()) fmt::print("\nWith {} = {}:\n\n", code(section.selector), codes(choices));
+    if (!choices.empty()) fmt::print("\nThese keys exist with {} = {}:\n\n", code(section.selector), codes(choices));
     if (!keys.empty()) print_table(keys);
   }
   if (!section.beside.empty())
@@ -282,6 +283,24 @@ void print_figures() {
   print_figure_table([](const Figure& f) { return !f.of_devices && !f.of_results; });
 }
 
+void print_targets() {
+  fmt::print(
+      "# Targets of a search\n\n"
+      "*For everyone who searches: which targets are there, and which figure does each improve?*\n\n"
+      "This page is made from the table of targets. `softland optimize --target NAME` chooses one, and `--target \"0.7 bounce + 0.3 "
+      "energy\"`\na weighted sum. [Costs](../figures.md#costs) says how a target is searched, and which goal it has.\n\n"
+      "| target | figure | key in JSON | searched |\n|---|---|---|---|\n");
+  for (const TargetRow& row : targets) {
+    const Figure& figure = figure_of(row.figure);
+    fmt::print("| {} | {} | {} | {} |\n", code(row.name), figure.label(), code(figure.key),
+               row.has_own_cost ? "by its own cost, after that of `bounce`" : "by the smooth cost of `bounce` alone");
+  }
+  fmt::print("\nThese targets have no exact gradients:\n\n");
+  for (const TargetRow& row : targets) {
+    if (!row.no_gradient.empty()) fmt::print("- {}: {}.\n", code(row.name), row.no_gradient);
+  }
+}
+
 }  // namespace
 }  // namespace softland
 
@@ -291,8 +310,10 @@ int main(int count, char** arguments) {
     softland::print_keys();
   } else if (page == "figures") {
     softland::print_figures();
+  } else if (page == "targets") {
+    softland::print_targets();
   } else {
-    std::fputs("usage: reference_pages keys|figures\n", stderr);
+    std::fputs("usage: reference_pages keys|figures|targets\n", stderr);
     return 2;
   }
   return 0;

@@ -107,7 +107,7 @@ def about_the_clock(name, verb, text, at, line):
     after = text[at:at + 60]
     if verb == "accuracy":
         if name.endswith((".svg", ".html")):
-            in_svg = before.rfind("<svg") > before.rfind("</svg>") or re.match(r"<(svg|rect|g|line|path|circle|text|title|polyline)\b", line)
+            in_svg = before.rfind("<svg") > before.rfind("</svg>") or re.match(r"<(svg|style|rect|g|line|path|circle|text|title|polyline)\b", line)
             last_cell = re.match(r"[\d.]*\s[nµm]?s</td></tr>", after)
             if in_svg or last_cell or re.match(r'<h1>|<tr><th scope="row">1e-\d+</th><td>[a-z]|<script type="application/json"', line):
                 return True
