@@ -47,7 +47,7 @@ struct Point {
   // Sums over the modes that give the local gap in contact gaps (of Y), and the local velocity (of U).
   std::string gap, velocity;
   std::string load;           // load at a quadrature point of the beam times its quadrature weight, acting on the first mode
-  std::vector<double> share;  // by mode: load on the mode divided by the load on the first mode
+  std::vector<double> share;  // load on each mode divided by the load on the first mode
 };
 
 // The parts of the switch as formulas in one circuit language.

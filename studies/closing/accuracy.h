@@ -90,7 +90,7 @@ struct AccuracyStudy {
   /// Ranges of the figures in studied_figures over runs with imperceptibly perturbed drives.
   std::array<Spread, studied_figures.size()> cloud;
   Spread permanent_contact_time, bounce_count;  ///< ranges of the two named figures over the same perturbed runs as `cloud`
-  std::array<bool, studied_figures.size()> conditioned;  ///< for each of studied_figures, true if it is well-conditioned, so
+  std::array<bool, studied_figures.size()> conditioned;  ///< true for each of studied_figures that is well-conditioned, so
                                                          ///< that its error is meaningful
   std::vector<Recommendation> recommendations;
 

@@ -1,4 +1,4 @@
-// Whether the states before and after a closing depend on the number of modes.
+// Judges whether the states before and after a closing depend on the number of modes.
 #pragma once
 
 #include <vector>
