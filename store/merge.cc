@@ -64,7 +64,8 @@ Parts opened(const std::vector<fs::path>& paths) {
     parts.push_back(std::make_unique<StorePart>(path));
     require(seen.insert(fs::canonical(path)).second, fmt::format("{}: must not be given twice", path.string()));
     const StoredPlan &first = parts.front()->plan(), &plan = parts.back()->plan();
-    require(plan.text == first.text && plan.columns == first.columns && plan.points == first.points,
+    require(plan.text == first.text && std::ranges::equal(plan.columns, first.columns, &StoredColumn::holds_as) &&
+                plan.points == first.points,
             fmt::format("{}: must have the same plan as {}", path.string(), paths.front().string()));
   }
   return parts;

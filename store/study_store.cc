@@ -85,7 +85,7 @@ void require_same_columns(const Database& database, const StoredPlan& there, con
   for (std::size_t i = 0; i < std::max(there.columns.size(), plan.columns.size()) && other.empty(); ++i) {
     if (i >= there.columns.size()) other = fmt::format("it lacks {}", plan.columns[i].key);
     if (i >= plan.columns.size()) other = fmt::format("it also has {}", there.columns[i].key);
-    if (other.empty() && there.columns[i] != plan.columns[i])
+    if (other.empty() && !there.columns[i].holds_as(plan.columns[i]))
       other = fmt::format("it has {} where this study has {}", there.columns[i].key, plan.columns[i].key);
   }
   require(other.empty(), fmt::format("{}: holds a study with other columns ({}); name another file", database.shown(), other));

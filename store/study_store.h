@@ -46,6 +46,10 @@ struct StoredColumn {
   std::string unit;  ///< SI unit of a column, such as "m/s"; empty for a count, a ratio, yes or no
   ColumnKind kind = ColumnKind::figure;
   bool operator==(const StoredColumn&) const = default;
+  /// Returns true when both columns hold the same quantity. Two versions of softland may word the name of a figure differently.
+  [[nodiscard]] bool holds_as(const StoredColumn& other) const {
+    return key == other.key && unit == other.unit && kind == other.kind && (kind == ColumnKind::figure || name == other.name);
+  }
 };
 
 /// Returns the name of a database column from name and unit: ("gap.contact", "m") gives "gap_contact_m".

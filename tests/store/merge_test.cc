@@ -46,6 +46,15 @@ TEST_F(Merge, OfAllPartsHasTheBitsOfTheUnsharedStudy) {
   EXPECT_EQ(StudyStore(file, plan_of(5003), origin(), Opening::resume).done(), std::vector<bool>(5003, true));
 }
 
+TEST_F(Merge, TakesPartsWhoseFiguresTwoVersionsNamedDifferently) {
+  const std::vector<fs::path> parts = parts_of(10, 1);
+  StoredPlan renamed = plan_of(10);
+  renamed.columns[1].name = "Speed at first contact";
+  const fs::path other = path("other.sqlite");
+  StudyStore(other, renamed, origin(), Opening::fresh).close();
+  EXPECT_EQ(merge_studies({parts[0], other}, file, origin()).rows, 10);
+}
+
 TEST_F(Merge, TellsWhatIsMissing) {
   std::vector<fs::path> parts = parts_of(100, 4);
   parts.erase(parts.begin() + 1);

@@ -164,6 +164,16 @@ TEST_F(Store, FindsTheRowsOfACoarserGridForAFinerOne) {
   EXPECT_EQ(again.done(), std::vector<bool>(5, true));
 }
 
+TEST_F(Store, GoesOnWithAStudyWhoseFiguresAnotherVersionNamedDifferently) {
+  make_store(file, 10);
+  StoredPlan renamed = plan_of(10);
+  renamed.columns[1].name = "Speed at first contact";
+  EXPECT_EQ(StudyStore(file, renamed, origin(), Opening::resume).done(), std::vector<bool>(10, true));
+  renamed.columns[0].name = "gap.electrode";
+  EXPECT_THAT([&] { StudyStore(file, renamed, origin(), Opening::resume); },
+              ThrowsMessage<InvalidInput>(HasSubstr("with other columns")));
+}
+
 TEST_F(Store, RefusesAStudyOfOtherColumnsOrOfAnotherPart) {
   make_store(file, 10, {.index = 1, .count = 2});
   StoredPlan other = plan_of(10, {.index = 1, .count = 2});
