@@ -106,7 +106,7 @@ class StudyStore::Implementation {
   void close();
 
   const fs::path path_;
-  const StoredPlan plan_;
+  StoredPlan plan_;
   std::unique_ptr<const LockFile> lock_;
   std::unique_ptr<Database> database_;
   std::int64_t number_ = 0;
@@ -197,6 +197,7 @@ void StudyStore::Implementation::open() {
 void StudyStore::Implementation::start_session(const StoredOrigin& origin, bool resumed) {
   const NumberedPlan there = current_plan(*database_);
   require_same_columns(*database_, there.plan, plan_);
+  plan_.columns = there.plan.columns;  // all plans of a store share its table of columns, with the names of the first version
   number_ = number_of_plan(*database_, plan_.text);
   read_done();
   database_->run(fmt::format("PRAGMA journal_mode = {}; PRAGMA synchronous = FULL", journal_at(path_)));

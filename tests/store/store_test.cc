@@ -169,6 +169,10 @@ TEST_F(Store, GoesOnWithAStudyWhoseFiguresAnotherVersionNamedDifferently) {
   StoredPlan renamed = plan_of(10);
   renamed.columns[1].name = "Speed at first contact";
   EXPECT_EQ(StudyStore(file, renamed, origin(), Opening::resume).done(), std::vector<bool>(10, true));
+  renamed.text = "the same study with more points";
+  renamed.points = 20;
+  EXPECT_EQ(StudyStore(file, renamed, origin(), Opening::resume).done(), std::vector<bool>(20, false));
+  EXPECT_EQ(StudyStore(file, renamed, origin(), Opening::resume).done(), std::vector<bool>(20, false));
   renamed.columns[0].name = "gap.electrode";
   EXPECT_THAT([&] { StudyStore(file, renamed, origin(), Opening::resume); },
               ThrowsMessage<InvalidInput>(HasSubstr("with other columns")));
