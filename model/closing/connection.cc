@@ -27,8 +27,8 @@ void ConnectionCourse::Followed::touch(const Touch& touch) {
   if (connects_) connection_.touches_.take(touch);
 }
 
-// The position of a contact between two knots (points of the simulated motion) is that of the quintic through both knots; the
-// force is linear in time.
+// Returns the motion of a contact at a time between two knots (points of the simulated motion). The position is the quintic
+// with the positions, velocities and accelerations of both knots; the force is linear in time.
 TrajectoryPoint ConnectionCourse::Followed::at(double time) const {
   const TrajectoryPoint* from = &*last;
   for (const TrajectoryPoint& to : fresh) {
@@ -61,7 +61,8 @@ std::size_t ConnectionCourse::decides(double time, std::size_t present) const {
 void ConnectionCourse::hand_over() {
   const Followed& any = followed_[deciding_];
   if (any.fresh.empty()) return;
-  // Handle a jump of the motion that all contacts have at this time, or the start of the run.
+  // Pass on the start of the run, and points at which velocity or acceleration jumps: every contact has two points of equal
+  // time.
   while (!any.fresh.empty() && (!any.last || any.fresh.front().time == any.last->time)) {
     for (Followed& c : followed_) {
       if (!c.connects()) continue;
@@ -100,7 +101,7 @@ void ConnectionCourse::follow_to(double time) {
 }
 
 void ConnectionCourse::tell(double time) {
-  constexpr double on_the_plane = 1e-12;  // distance from the contact plane that counts as contact, relative to the contact gap
+  constexpr double on_the_plane = 1e-12;  // separation below which the connection counts as closed, relative to the contact gap
   const Followed& decisive = followed_[deciding_];
   TrajectoryPoint point = decisive.at(time);
   const double separation = decisive.gap() - point.position;

@@ -1,11 +1,12 @@
-// The connection that several contacts of a switch make, which an observer receives like a single contact.
+// Connection: the electrical path through several contacts of a switch, which an observer receives like a single contact.
 //
-// The connection is closed while all of the contacts that make it are closed, or while any of them is (Device::connection). Its
-// separation is the largest of their separations, or the smallest; its position is that of the first contact's plane less this
-// separation. Between two knots (points of the simulated motion) of any contact the contact with the largest (or smallest)
-// separation at both ends decides; where the deciding contact changes there is a knot at which both have the same separation.
-// The force of the connection is the least force of a contact that makes it, or the largest. A touch of the connection has the
-// largest force and impact velocity, and the sum of energies, of the touches of its contacts.
+// The connection is closed while all of its contacts are closed, or while any of them is (Device::connection). Its separation
+// is the largest separation of its contacts, or the smallest; its position is the distance of the first contact from its plane
+// at rest less this separation. Between two knots (points of the simulated motion) of any contact, the separation is that of
+// the contact with the largest (or smallest) separation at both ends. Where this contact changes, a knot is added at the time
+// at which both contacts have the same separation. The force of the connection is the least force of its contacts, or the
+// largest. A touch (interval in contact) of the connection has the largest force and impact velocity of the touches of its
+// contacts, and the sum of their energies.
 #pragma once
 
 #include <cstddef>
@@ -19,20 +20,20 @@
 
 namespace softland {
 
-/// The touches of a connection of several contacts, which combine the touches of its contacts.
+/// The touches (intervals in contact) of a connection, which combine the touches of its contacts.
 class ConnectionTouches {
  public:
-  /// Adds a touch of one contact that makes the connection.
+  /// Adds a touch (interval in contact) of one contact of the connection.
   void take(const Touch& touch);
-  /// Begins a touch of the connection at this time [s] with this impact velocity [m/s]; returns the connection's previous
-  /// touch, if any.
+  /// Begins a touch of the connection: the connection closes at this time [s] with this impact velocity [m/s]. Returns the
+  /// previous touch of the connection, if any.
   [[nodiscard]] std::optional<Touch> close(double time, double speed);
-  /// Ends the current touch of the connection at this time [s].
+  /// Ends the current touch of the connection, which opens at this time [s].
   void open(double time) { touch_->end = time; }
-  /// Returns the last touch of the connection, after all touches of contacts have been added.
+  /// Returns the last touch of the connection. Call it after the touches of all contacts have been added.
   [[nodiscard]] std::optional<Touch> finish();
 
-  /// Returns the first touch of any contact that makes the connection.
+  /// Returns time and impact velocity of the first touch of any contact of the connection.
   [[nodiscard]] const FirstTouch& first_touch() const { return first_touch_; }
 
  private:
@@ -41,12 +42,13 @@ class ConnectionTouches {
   FirstTouch first_touch_;
 };
 
-/// The time from which the contact force is steady [s], and the least force after the first touch [N]; see Trajectory.
+/// Contact force of a closing: the time from which the force stays above ClosingOptions::steady_force [s], and the least force
+/// after its first maximum [N]; see Trajectory.
 struct ForceOutcome {
   double steady_force_time = std::numeric_limits<double>::quiet_NaN();
   double least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
 };
-/// Computes the outcome of the connection from the outcomes of all contacts of the device, in order.
+/// Computes the force figures of the connection from those of all contacts of the device, in the order of the device.
 [[nodiscard]] ForceOutcome force_of_connection(const Device& device, std::span<const ForceOutcome> contacts);
 
 class ConnectionCourse {
@@ -61,10 +63,11 @@ class ConnectionCourse {
   [[nodiscard]] ClosingObserver& contact(std::size_t c) { return followed_[c]; }
   /// Passes the motion of the connection to its observer, up to the latest time for which the motion of every contact is known.
   void hand_over();
-  /// Passes the last touch of the connection to its observer, after every contact has passed on its last touch.
+  /// Passes the last touch (interval in contact) of the connection to its observer. Call it after the last touch of every
+  /// contact.
   void finish();
 
-  /// Returns the first touch of any contact that makes the connection.
+  /// Returns time and impact velocity of the first touch of any contact of the connection.
   [[nodiscard]] const FirstTouch& first_touch() const { return touches_.first_touch(); }
 
  private:
@@ -80,7 +83,7 @@ class ConnectionCourse {
     [[nodiscard]] double separation(double time) const { return gap_ - at(time).position; }
     [[nodiscard]] double gap() const { return gap_; }
 
-    std::optional<TrajectoryPoint> last;  ///< last point of the connection's motion
+    std::optional<TrajectoryPoint> last;  ///< point of this contact's motion up to which the connection's motion is known
     std::vector<TrajectoryPoint> fresh;
 
    private:
@@ -90,8 +93,8 @@ class ConnectionCourse {
     bool connects_;
   };
 
-  /// Returns the contact whose separation is that of the connection at a time; `present`, the contact so far, when several
-  /// contacts tie.
+  /// Returns the contact whose separation is that of the connection at this time: the contact with the largest (or smallest)
+  /// separation. When several contacts have the same separation, the contact `present` is preferred.
   [[nodiscard]] std::size_t decides(double time, std::size_t present) const;
   void follow_to(double time);
   void tell(double time);
@@ -104,7 +107,7 @@ class ConnectionCourse {
   double here_ = 0;  // time up to which the connection's motion has been passed to the observer [s]
   ConnectionTouches touches_;
   bool is_closed_ = false;
-  double last_closed_ = 0;  // last time at which the connection was closed [s]
+  double last_closed_ = 0;  // latest time passed to the observer at which the connection was closed [s]
 };
 
 }  // namespace softland

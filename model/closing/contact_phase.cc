@@ -28,8 +28,8 @@ void ContactPhase::turn(double deepest) {
 }
 
 void ContactPhase::begin_closed(double interference) {
-  // Load the contact law a little deeper (relative) than the contact rests, so that rounding errors at rest do not load the law
-  // further.
+  // Begin the unloading curve at a slightly larger interference (by this share) than that at rest. Rounding errors of the
+  // position at rest then cause no further loading.
   constexpr double rounding = 1e-9;
   if (model_.rigid_contact() != nullptr) return enter(Phase::rest);
   if (!(interference > 0)) return enter(interference > -reach_ ? above() : Phase::flight);

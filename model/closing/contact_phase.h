@@ -1,15 +1,16 @@
 // Phase of a contact: the branch of the contact law that acts on the contact point during a closing, and the end of this phase.
 //
-//   flight     above the plane of first touch, and above the reach of a law that acts beyond it
-//   near       above the plane, within the reach of the law                    (adhesive_repulsive.h)
-//   loading    in contact; throughout a touch for a law without memory
-//   unloading  on the way back along the elastic curve of a law with memory    (memory.h)
-//   dent       below the plane, in the dent that a law with memory has left, where there is no contact force
+//   flight     above the contact plane, where no contact force acts
+//   near       above the contact plane, within the reach of a law that acts before contact (adhesive_repulsive.h)
+//   loading    in contact, on the curve of first loading; a law without memory has no other curve
+//   unloading  in contact, on the elastic curve of a law that remembers its deepest interference (memory.h)
+//   dent       below the contact plane, in the dent (residual deformation) of a law with memory: no contact force
 //   rest       a plate at rest on a rigid contact                              (rigid.h)
 //
-// An edge is the position at which a phase ends. A phase is entered at an edge of another phase or, from loading to unloading,
-// at the deepest point. A law that is not smooth at some interferences has an edge there from loading to loading. The
-// integrator is restarted at every edge, so that it only ever integrates smooth right-hand sides.
+// An edge is the position of the contact point at which a phase ends. A phase is entered at an edge of another phase or, from
+// loading to unloading, at the deepest point. A law with kinks (interferences at which its force is not smooth) has an edge
+// from loading to loading at each kink. The integrator is restarted at every edge, so that it only ever integrates smooth
+// right-hand sides.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +31,7 @@ struct Edge {
   double level = 0;  ///< position of the contact point at which this branch of the contact law ends [m]
   double side = 0;   ///< 1: this branch of the contact law acts beyond the level, towards the contact; -1: before the level
   Phase next = Phase::flight;
-  std::size_t zone = 0;  ///< zone of the next phase: the number of the contact law's kinks at smaller interferences
+  std::size_t zone = 0;  ///< number of kinks of the contact law below the interferences of the next phase
 };
 
 class ContactPhase {
@@ -39,17 +40,17 @@ class ContactPhase {
   explicit ContactPhase(const Switch& model, std::size_t contact = 0);
 
   [[nodiscard]] Phase phase() const { return phase_; }
-  /// Returns true when the contact point is at or below the plane of first touch.
+  /// Returns true when the contact point is at or below the contact plane.
   [[nodiscard]] bool in_contact() const { return phase_ != Phase::flight && phase_ != Phase::near; }
-  /// Returns the state of the contact law in the current phase (branch of the law).
+  /// Returns what the force law needs to know in the current phase: whether the law acts, and the past of a law with memory.
   [[nodiscard]] const ContactState& law() const { return law_; }
   [[nodiscard]] std::span<const Edge> edges() const { return {edges_.data(), edge_count_}; }
-  /// Returns the phase (branch of the contact law) just above the plane of first touch.
+  /// Returns the phase (branch of the contact law) just above the contact plane.
   [[nodiscard]] Phase above() const { return reach_ > 0 ? Phase::near : Phase::flight; }
-  /// Returns true when the current phase (branch of the contact law) ends where the contact point turns back: loading of a law
-  /// with memory.
+  /// Returns true when the current phase ends where the contact point turns back: a contact law with memory changes there from
+  /// loading to unloading.
   [[nodiscard]] bool ends_at_turn() const { return remembers_ && phase_ == Phase::loading; }
-  /// Returns the state of a contact law without memory at this position of the contact point [m].
+  /// Returns whether a contact law without memory acts at this position of the contact point [m].
   [[nodiscard]] ContactState law_at(double position) const {
     return acts_along_pad_ || (has_contact_ && position > plane_ - reach_);
   }
@@ -66,16 +67,16 @@ class ContactPhase {
  private:
   const Switch& model_;
   std::size_t contact_;
-  double plane_;  // position of the contact plane (plane of first touch) [m]
+  double plane_;  // position of the contact plane [m]
   double reach_;  // distance above the contact plane at which the contact law begins to act [m]
   bool has_contact_, acts_along_pad_, remembers_;
-  std::vector<double> kinks_;  // interferences at which the contact law is not smooth [m]
+  std::vector<double> kinks_;  // interferences at which the force of the contact law is not smooth [m]
   Phase phase_ = Phase::flight;
   ContactState law_;
   std::array<Edge, 2> edges_;
   std::size_t edge_count_ = 0;
-  double deepest_ = 0;  // deepest interference, which a contact law with memory remembers [m]
-  Dent dent_;           // dent that a contact law with memory has left
+  double deepest_ = 0;  // deepest interference so far of a contact law with memory [m]
+  Dent dent_;           // residual deformation (dent) that a contact law with memory has left
   double healed_ = 0;   // energy lost to dents that have since vanished [J]
 };
 
@@ -94,14 +95,15 @@ class ContactPhases {
   [[nodiscard]] ContactPhase& operator[](std::size_t c) { return phases_[c]; }
   [[nodiscard]] const ContactPhase& operator[](std::size_t c) const { return phases_[c]; }
   [[nodiscard]] const ContactPhase& first() const { return phases_.front(); }
-  /// Returns the states of all contact laws in their current phases (branches); valid until the next call.
+  /// Returns for all contact laws whether they act in their current phases, with the past of laws with memory; valid until the
+  /// next call.
   [[nodiscard]] ContactStates states() {
     for (std::size_t c = 1; c < size(); ++c) further_[c - 1] = phases_[c].law();
     return {phases_.front().law(), further_};
   }
-  /// Returns states of the contact laws in which no contact acts.
+  /// Returns states in which no contact law acts, to compute energies of the switch without its contacts.
   [[nodiscard]] ContactStates apart() const { return {false, apart_}; }
-  /// Returns true when the contact point of any contact is at or below its plane of first touch.
+  /// Returns true when the contact point of any contact is at or below its contact plane.
   [[nodiscard]] bool in_contact() const { return std::ranges::any_of(phases_, &ContactPhase::in_contact); }
 
  private:

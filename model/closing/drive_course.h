@@ -1,5 +1,5 @@
-// The drive voltages of a closing between signal breakpoints. In such an interval (stretch) every drive is on one smooth piece
-// of its signal.
+// The drive voltages of a closing, interval by interval. Between two breakpoints of the drives (an interval or stretch) every
+// drive is on one smooth piece of its signal.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +19,8 @@ class DriveCourse {
   [[nodiscard]] std::size_t size() const { return signals_.size(); }
   /// Returns the voltages of all drives before t = 0.
   [[nodiscard]] std::vector<double> before() const { return values_before(signals_); }
-  /// Returns begin and end of every interval between breakpoints of the drives within [0, duration], in order. An interval also
-  /// begins at the time `also` [s] if this time is within [0, duration].
+  /// Returns the times in [0, duration] that bound the intervals between breakpoints of the drives, in order. The time `also`
+  /// [s] bounds an interval, too, if it is within [0, duration].
   [[nodiscard]] std::vector<double> stretches(double duration, double also = std::numeric_limits<double>::infinity()) const {
     std::vector<double> stops{0, duration};
     if (also > 0 && also < duration) stops.push_back(also);
@@ -40,7 +40,7 @@ class DriveCourse {
   /// Returns the voltage of drive k by the formula of its current signal piece, which is extrapolated before and after the
   /// piece.
   [[nodiscard]] double value(std::size_t k, double t) const { return piece(k).voltage(t); }
-  /// Returns the voltages of all drives; valid until the next call.
+  /// Returns the voltages of all drives at time t [V]; valid until the next call.
   std::span<const double> values(double t) {
     for (std::size_t k = 0; k < size(); ++k) values_[k] = value(k, t);
     return values_;

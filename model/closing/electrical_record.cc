@@ -25,8 +25,7 @@ ElectricalRecord::Instant ElectricalRecord::instant(std::size_t c, const Contact
     const double length = contact.to.time - contact.from.time, share = length > 0 ? (time - contact.from.time) / length : 1;
     now.force = std::lerp(contact.from.contact_force, contact.to.contact_force, share);
   } else {
-    // Within a step a contact law without memory may begin and end to act; the state of such a law depends on the position
-    // alone.
+    // Within a step a contact law without memory may start or stop acting. The position alone decides about it.
     const ContactState state = has_memory(law) ? contact.law : ContactState(now.interference > -model_.contact_reach(c));
     if (state.active) now.force = contact_force(law, now.interference, state, tip.velocity(time));
   }
@@ -50,7 +49,8 @@ ElectricalRecord::Instant ElectricalRecord::connected(std::span<const Instant> c
   return all;
 }
 
-// Returns the margin, a number that is positive while the connection is electrically closed; only the sign matters.
+// Returns how far the connection is from electrical opening: a number that is positive while it is electrically closed. Only
+// the sign has a meaning.
 double ElectricalRecord::margin(const Instant& now) const {
   double least = std::numeric_limits<double>::infinity();
   if (closing_.force >= 0) least = now.force - closing_.force;
@@ -101,12 +101,12 @@ void ElectricalRecord::take_rest(double begin, double end, const std::function<d
   follow(followed_.front(), at, begin, end);
 }
 
-// The margin, positive while electrically closed, has an extremum within the step when its magnitude falls from both ends
-// inwards.
+// `at` is the margin to electrical opening, positive while closed. When it has the same sign at both ends of the interval, but
+// its slopes there point towards zero, search for its extremum: the sign may change twice.
 template <class Margin>
 void ElectricalRecord::follow(Followed& followed, const Margin& at, double begin, double end) const {
-  // Share of the step's time at which the slope at an end is measured. Closer to the end, rounding would hide the change of a
-  // force that grows with a high power of the distance.
+  // Share of the interval over which the slope at an end is measured. Closer to the end, rounding would hide the change of a
+  // force that grows with a high power of the interference.
   constexpr double beside = 1e-3;
   constexpr int bits = 30;
   const double from = at(begin), to = at(end);
@@ -114,7 +114,7 @@ void ElectricalRecord::follow(Followed& followed, const Margin& at, double begin
     const double towards = from > 0 ? 1 : -1;
     const double after = at(begin + beside * (end - begin)) - from, before = at(end - beside * (end - begin)) - to;
     if (towards * after < 0 && towards * before < 0) {
-      // Shares instead of times, since the search expects arguments of order one.
+      // The minimiser needs arguments of order one: shares of the interval instead of times.
       const auto time = [&](double share) { return std::lerp(begin, end, share); };
       const double turn = time(
           boost::math::tools::brent_find_minima([&](double share) { return towards * at(time(share)); }, 0.0, 1.0, bits).first);
@@ -126,7 +126,8 @@ void ElectricalRecord::follow(Followed& followed, const Margin& at, double begin
   follow_path(followed, at, begin, from, end, to);
 }
 
-// Records an interval in which the margin of electrical contact, positive while closed, changes sign at most once.
+// Records an interval without an inner extremum of `at`, the margin to electrical opening: the margin changes sign at most
+// once.
 template <class Margin>
 void ElectricalRecord::follow_path(Followed& followed, const Margin& at, double begin, double from, double end, double to) const {
   set(followed, from > 0, begin);
@@ -157,7 +158,7 @@ void ElectricalRecord::tell(const Followed& followed, double time) const {
 }
 
 bool ElectricalRecord::counts(const Followed& followed, double until) const {
-  constexpr double rounding = 1e-12;  // relative error of the time at which two steps join
+  constexpr double rounding = 1e-12;  // relative rounding error of the time at which one step ends and the next begins
   return until - followed.opened_at > std::max(closing_.shortest_opening(), rounding * until);
 }
 

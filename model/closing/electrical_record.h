@@ -2,10 +2,11 @@
 // resistance below a bound, or both (Device::electrical); while in contact when neither bound is given.
 //
 // The force of the connection is the least force of its contacts, or with Connection::any the largest. Its resistance is that
-// of the contacts in series, or in parallel (model/contact/resistance.h). The margin to the bounds, positive while the
-// connection is closed, is a continuous function of the motion within a step. The changes of sign of the margin are located
-// like contact events. The margin is evaluated after every piece of the step, where a contact turns back, and at an extremum in
-// between that the slopes at both ends reveal. Along a pad the force is taken as linear between these times.
+// of the contacts in series, or in parallel (model/contact/resistance.h). The margin is the distance of force and resistance
+// from their bounds, positive while the connection is electrically closed, and continuous within a step. Its changes of sign
+// are found by bracketing. It is evaluated after every piece of the step, where a contact point turns back, and at an extremum
+// in between when the slopes at both ends indicate an extremum. The force of a contact that acts along a pad is taken as linear
+// between these times.
 //
 // An opening counts when it is longer than ElectricalClosing::after; a shorter opening is ignored.
 #pragma once
@@ -25,8 +26,8 @@
 
 namespace softland {
 
-/// A contact in an integration step: its motion, its position at the start of the step's last piece and at the end, the state
-/// of its contact law, and whether the contact point is at or below the plane of first touch.
+/// A contact in an integration step: its motion, its points at the start of the step's last piece and at the end of the step,
+/// and the state of its contact law. `is_in_contact` is true when the contact point is at or below the contact plane.
 struct ContactInStep {
   StepMotion& motion;
   const TrajectoryPoint& from;
@@ -41,16 +42,18 @@ class ElectricalRecord {
   /// opening.
   ElectricalRecord(const Switch& model, ClosingObserver& observer);
 
-  /// Adds a step between two times [s] in which the state of every contact law stays the same.
+  /// Adds an integration step between two times [s], during which every contact stays on one branch of its law.
   void take(double begin, double end, std::span<const ContactInStep> contacts);
   /// Adds an interval of time [s] in which the rigid plate rests on its rigid contact, under a force [N] that is a function of
   /// time.
   void take_rest(double begin, double end, const std::function<double(double)>& force);
-  /// Ends the closing at this time [s]: electrical closings and openings after this time affect no outcome.
+  /// Ends the recording of the closing at this time [s]. Later electrical closings and openings do not change connection() and
+  /// contact(), but the observer still receives them.
   void finish(double time);
 
   [[nodiscard]] const ElectricalOutcome& connection() const { return followed_.front().outcome; }
-  /// Returns the times of electrical closing of contact c; for a single contact those of the connection.
+  /// Returns the electrical times of contact c: first closing, final closing, number of openings. For a single contact they are
+  /// those of the connection.
   [[nodiscard]] const ElectricalOutcome& contact(std::size_t c) const {
     return followed_[followed_.size() > 1 ? c + 1 : 0].outcome;
   }

@@ -6,7 +6,8 @@
 namespace softland {
 namespace {
 
-// Residual of the energy balance, as a share of the bending energy, above which dissipation is integrated with more points.
+// Residual of the energy balance above which dissipation is integrated with more points, as a share of the energy that bends
+// the beam by the contact gap.
 constexpr double worth_care = 1e-4;
 
 }  // namespace
@@ -38,7 +39,7 @@ void EnergyAudit::enter_stretch(const Knot& here, bool first) {
     if (before == after) continue;
     const double potential = model_.law_potential(k, here.state.data(), equations_.workspace());
     if (holds_charge(k)) {
-      // Work is the integral of V dQ = C V dV, whatever the charge on a dielectric.
+      // The source delivers the integral of V dQ = C V dV: a fixed charge on the dielectric does not change dQ.
       source_work_ -= (after * after - before * before) * potential;
     } else {
       source_work_ += (model_.strength(k, after) - model_.strength(k, before)) * potential;
@@ -92,9 +93,9 @@ void EnergyAudit::step(const Knot& here, const Knot& next, double dissipation_at
   }
 }
 
-// Returns the mean dissipated power over a step, at the end of which the power is `at_end`. Within a step the phases of the
-// modes may advance by two radians, and those of the power by four. Simpson's rule is used when the motion within the step is
-// not that of the modes, as with a compressible film.
+// Returns the mean dissipated power over a step, at the end of which the power is `at_end`. Within a step the phase of a mode
+// may advance by two radians, and the phase of the dissipated power by four. Simpson's rule is used when the modes do not
+// describe the motion within the step, as with a compressible film.
 double EnergyAudit::mean_dissipation(double at_end, StepMotion& motion, bool implicit) {
   const auto power = [&](const std::vector<double>& state) {
     return equations_.dissipation(state.data()) + contact_dissipation(state.data());
@@ -126,7 +127,7 @@ double EnergyAudit::above_rest(const Knot& here) {
          impacts_ + model_.film_energy(q, equations_.workspace());
 }
 
-// The stored energy is the potential plus V Q for each charge Q that a source keeps at its voltage V.
+// The field of an electrode with charge Q at the voltage V of its source stores its potential at constant voltage plus V Q.
 void EnergyAudit::settle(const Knot& here) {
   const double* q = here.state.data();
   const std::span<const double> values = drives_.values(here.time);
@@ -143,7 +144,7 @@ void EnergyAudit::settle(const Knot& here) {
   }
   balance_.stored += stored_in_contacts(q);
   balance_.dissipated += lost_in_contacts(q);
-  // Written so that the error becomes NaN when the residual is NaN.
+  // This form makes the error NaN when the residual is NaN.
   if (!(std::abs(balance_.residual()) <= error_)) error_ = std::abs(balance_.residual());
   careful_ = careful_ || error_ > worth_care * model_.bending_energy();
 }

@@ -1,15 +1,16 @@
 // The energy balance of a closing: work of the sources, stored energy and dissipation. An integrator that loses the contact
 // between two steps, or a tolerance too loose for a stiff contact, shows as a residual of the balance.
 //
-//   work of the sources = integral of V dQ = [V Q] - integral of Q dV     dissipated = integral of the power taken out
+//   work of the sources = integral of V dQ = [V Q] - integral of Q dV     dissipated = integral of the dissipated power
 //
-// Q = C (V - V0) is the charge of an electrode, V0 the voltage of a charge on its dielectric; its field stores C (V - V0)^2/2 +
-// V0 Q.
+// Q = C (V - V0) is the charge of an electrode at the voltage V, C its capacitance, V0 the voltage of a fixed charge on its
+// dielectric. The field of the electrode stores C (V - V0)^2/2 + V0 Q.
 //
-// [V Q] is taken over each interval between breakpoints of the drives, the integral of Q dV by Simpson's rule where a voltage
-// changes. A change of a force factor moves no charge: its work is the integral alone. Dissipation is integrated by Simpson's
-// rule over each step. Once the residual exceeds 1e-4 of the bending energy, Lobatto's rule with four points integrates it over
-// a motion that is exact for the modes.
+// [V Q] is the difference of V Q between the ends of each interval between breakpoints of the drives. The integral of Q dV is
+// computed by Simpson's rule over steps in which the voltage changes. The drive of a dispersion force has no charge: its work
+// has no term [V Q]. Dissipation is integrated by Simpson's rule over each step. When the residual has exceeded 1e-4 of the
+// energy that bends the beam by the contact gap, Lobatto's rule with four points replaces Simpson's rule, with the exact motion
+// of the modes between the points.
 #pragma once
 
 #include "model/closing/contact_phase.h"
@@ -26,8 +27,9 @@ class EnergyAudit {
   /// 0 or closed on its contact, and the electrodes carry the charge of this state.
   EnergyAudit(const Switch& model, DriveCourse& drives, ContactPhases& phases, ClosingEquations& equations, const Knot& start);
 
-  /// Changes all drives to the signal pieces that are valid after the state `here`. A jump of the voltage charges the electrode
-  /// at fixed deflection, as an infinitely steep ramp does.
+  /// Moves all drives to the signal pieces that are valid after the time of `here`; `first` is true at the start of the run,
+  /// when the drives have their voltages before t = 0. A voltage jump charges an electrode at fixed deflection, like an
+  /// infinitely steep ramp.
   void enter_stretch(const Knot& here, bool first);
   /// Adds an integration step between two states to the energy balance.
   void step(const Knot& here, const Knot& next, double dissipation_at_end, StepMotion& motion, bool implicit);
@@ -37,13 +39,14 @@ class EnergyAudit {
   /// [W].
   void impact(double lost, double dissipation);
 
-  /// Computes the residual of the energy balance at a state of the switch.
+  /// Computes the residual of the energy balance (work of the sources less stored and dissipated energy) at a state of the
+  /// switch.
   void settle(const Knot& here);
   [[nodiscard]] const EnergyBalance& balance() const { return balance_; }
   /// Returns the largest residual that settle() has found [J]; NaN if any residual was NaN.
   [[nodiscard]] double error() const { return error_; }
   /// Returns kinetic plus potential energy of the switch at a state, plus the energy that impacts on a rigid contact have
-  /// dissipated [J].
+  /// dissipated [J]. Its excess over the closed equilibrium is Trajectory::landing_excess.
   [[nodiscard]] double above_rest(const Knot& here);
 
  private:
@@ -52,7 +55,7 @@ class EnergyAudit {
     return model_.charge(k, value, q, equations_.workspace());
   }
   [[nodiscard]] double contact_dissipation(const double* state) const;
-  /// Returns the energy stored in the contacts that act [J].
+  /// Returns the energy stored in the contacts on which a contact law acts now [J].
   [[nodiscard]] double stored_in_contacts(const double* q) const;
   /// Returns the energy lost to residual deformation of the contacts (dents) so far [J].
   [[nodiscard]] double lost_in_contacts(const double* q) const;
@@ -65,11 +68,11 @@ class EnergyAudit {
   ClosingEquations& equations_;
   std::size_t modes_;
   double rest_energy_;      // energy of the switch at the start of the run [J]
-  double source_work_ = 0;  // work of the sources, without V Q of the charges now on the electrodes [J]
+  double source_work_ = 0;  // work of the sources, without the term V Q of the electrodes' present charges [J]
   double dissipated_ = 0;   // energy that gas, film, modal damping and contacts have dissipated [J]
-  double dissipation_ = 0;  // dissipated power at the last state [W]
+  double dissipation_ = 0;  // dissipated power at the end of the last step [W]
   double impacts_ = 0;      // energy lost in impacts on a rigid contact [J]
-  bool careful_ = false;    // true when dissipated_ is integrated with more points
+  bool careful_ = false;    // true when Lobatto's rule with four points integrates the dissipation
   double error_ = 0;
   EnergyBalance balance_;
 };

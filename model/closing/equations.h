@@ -1,5 +1,5 @@
-// The equations of motion of the switch under its drives, with each contact law in its current phase (branch), for an
-// integrator.
+// The equations of motion of the switch under its drives, as the right-hand side for an integrator. Each contact law is on the
+// branch of its current phase (contact_phase.h).
 #pragma once
 
 #include "integrators/stepper.h"
@@ -12,25 +12,28 @@ namespace softland {
 
 class ClosingEquations {
  public:
-  /// Keeps references to its arguments. If `phase_decides`, the state of a contact law follows from the phase (branch) of the
-  /// contact, otherwise from the position of the contact point alone.
+  /// Keeps references to its arguments. When `phase_decides` is true, the branch of a contact law is that of its current phase,
+  /// and the integrator must be restarted where the phase changes. Otherwise the position of the contact point selects the
+  /// branch.
   ClosingEquations(const Switch& model, DriveCourse& drives, ContactPhases& phases, bool phase_decides);
   ClosingEquations(const ClosingEquations&) = delete;
   ClosingEquations& operator=(const ClosingEquations&) = delete;
 
   [[nodiscard]] const OdeSystem& system() const { return system_; }
-  /// Computes the time derivatives of a state, except q', at time t, with every contact law in the branch of its current phase.
+  /// Computes the time derivatives of velocities and film pressures in a state at time t, with every contact law on the branch
+  /// of its current phase. The derivatives of the modal coordinates are the velocities and are not part of the result.
   void rates(double t, const double* state, double* result) { rates(t, state, phases_.states(), result); }
   void rates(Knot& knot) { rates(knot.time, knot.state.data(), knot.rates.data()); }
-  /// Returns figures of the gap between beam and electrode (gap field) from the last evaluation of rates(), whose state must
-  /// equal `state` up to rounding.
+  /// Returns the smallest gap, far-side contact and dissipation along the beam from the last evaluation of rates(). That
+  /// evaluation must have had this `state`, up to rounding.
   [[nodiscard]] FieldFigures field(const double* state);
-  /// Returns the power that gas, film and modal damping dissipate in any state [W]; overwrites the gap field.
+  /// Returns the power that gas, film and modal damping dissipate in any state [W]. The call overwrites the gaps that field()
+  /// uses.
   [[nodiscard]] double dissipation(const double* state) {
     return model_.dissipated_power(state, state + modes_, work_, film_of(state));
   }
-  /// Returns the workspace in which electrical and elastic energies of a state are computed; their computation overwrites its
-  /// gap field.
+  /// Returns the workspace for computing electrical and elastic energies of a state. Such a computation overwrites the gaps
+  /// that field() uses.
   [[nodiscard]] Switch::Workspace& workspace() { return work_; }
   [[nodiscard]] long evaluations() const { return evaluations_; }
 

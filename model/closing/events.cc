@@ -3,9 +3,9 @@
 namespace softland {
 namespace {
 
-// Returns the time in [from, to] at which the contact point first crosses an edge (the position at which the current branch of
-// the contact law ends) outwards. The motion is monotone between its turning points, so at most one crossing is between two
-// turning points.
+// Returns the time in [from, to] at which the contact point first leaves the current branch of the contact law across `edge`,
+// the position at which the branch ends. The motion is monotone between its turning points, so at most one crossing is between
+// two of them.
 std::optional<double> crossing(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to, const Edge& edge) {
   const double side = edge.side;
   const Quintic::Bounds reached = tip.bounds();
@@ -17,8 +17,8 @@ std::optional<double> crossing(const TipMotion& tip, const TrajectoryPoint& from
     return at < 0;
   };
   const auto found = [&](double outside) {
-    // Just after an event the contact point is on the edge, where the contact law changes its branch. When the motion is
-    // nowhere inside the branch, the branch ends at once.
+    // Just after an event the contact point is on the edge of the new branch of the contact law. When no part of the motion is
+    // inside the new branch, this branch ends at once.
     return depth(inside) > 0 ? bracketed_zero(depth, inside, outside) : inside;
   };
   for (const double turn : tip.turns()) {
@@ -41,7 +41,7 @@ std::optional<Event> first_event(const TipMotion& tip, const TrajectoryPoint& fr
     const double time = from.velocity > 0 ? tip.turn() : from.time;
     if (!(first && first->time < time)) first = Event{.time = time, .edge = std::nullopt};
   }
-  // A change of the contact law at time 0 does not count: nothing has moved yet.
+  // Ignore a change of the contact law at time 0: nothing has moved yet.
   return first && first->time > 0 ? first : std::nullopt;
 }
 

@@ -8,15 +8,16 @@
 
 namespace softland {
 
-/// A change of a contact law's branch (phase): the contact point crosses the edge of the phase, or, without an edge, turns back
-/// while loading a contact with memory.
+/// A change of a contact law's branch (phase): the contact point crosses an edge (the position at which the branch ends), or
+/// turns back while it loads a contact with memory; in the latter case `edge` is empty.
 struct Event {
   double time = 0;  ///< time of the change of the contact law [s]
   std::optional<Edge> edge;
   std::size_t contact = 0;  ///< number of the contact whose law changes
 };
 
-/// Returns the first change of a contact law's branch in (from, to], a piece of an integration step.
+/// Returns the first change of a contact law's branch in (from, to]; none without a change. Both points bound a piece of an
+/// integration step.
 [[nodiscard]] std::optional<Event> first_event(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to,
                                                const ContactPhase& phase);
 

@@ -26,16 +26,17 @@ bool rises_with_depth(const Switch& model, std::size_t contact) {
 ForceRecord::ForceRecord(const Switch& model, double threshold, std::size_t contact)
     : model_(model), contact_(contact), threshold_(threshold), rises_with_depth_(rises_with_depth(model, contact)) {}
 
-// The contact force has an extremum within the interval when it rises from both ends inwards, or falls from both ends.
+// Records an interval for any contact law. The contact force has an extremum within the interval when it rises from both ends
+// towards the middle, or falls from both ends.
 template <class Force>
 void ForceRecord::follow_path(const Force& force, double begin, double from, double end, double to) {
-  constexpr double beside = 1e-6;  // share of the interval's time at which the slope at an end is measured
+  constexpr double beside = 1e-6;  // share of the interval over which the slope at an end is measured
   constexpr int bits = 30;
   if (rises_with_depth_) return follow(force, begin, from, end, to);
   const double after = force(begin + beside * (end - begin)) - from, before = force(end - beside * (end - begin)) - to;
   if (!(after * before > 0)) return follow(force, begin, from, end, to);
   const double sign = after < 0 ? 1 : -1;
-  // Shares instead of times, since the search expects arguments of order one.
+  // The minimiser needs arguments of order one: shares of the interval instead of times.
   const auto at = [&](double share) { return std::lerp(begin, end, share); };
   const double turn =
       at(boost::math::tools::brent_find_minima([&](double share) { return sign * force(at(share)); }, 0.0, 1.0, bits).first);
@@ -60,7 +61,8 @@ void ForceRecord::follow(const Force& force, double begin, double from, double e
   }
 }
 
-// Returns the least contact force, which is 0 up to the rounding error of the position at which a contact opens.
+// Returns the least contact force after its first maximum. A force below the rounding error of the position at which a contact
+// opens counts as 0.
 double ForceRecord::least() const {
   constexpr double rounding = 1e-12;
   const double least = has_fallen_ ? least_ : last_;

@@ -1,11 +1,11 @@
-// The contact force of a closing after the first touch: the time from which it stays above a threshold, and its least value
-// afterwards.
+// The contact force of a closing after first contact: the time from which the force stays above a threshold, and its least
+// value after its first maximum.
 //
 // Between knots (points of the simulated motion) the force is that of the contact law along the motion of the contact point.
-// Along a pad, and for a plate at rest on a rigid contact, the force is taken as linear in time. Out of contact the force is 0,
-// except for a law that acts beyond the plane. Extremes are located at knots and where the contact point turns back, which
-// suffices for laws whose force grows with depth. For laws that pull or are damped, extremes are located between these times
-// too.
+// For a contact that acts along a pad, and for a plate at rest on a rigid contact, the force is taken as linear in time. Out of
+// contact the force is 0, except for a law that acts before contact. Extremes of the force are found at knots and where the
+// contact point turns back, which suffices for laws whose force grows with depth. For adhesive or damped laws, extremes between
+// these times are searched as well.
 #pragma once
 
 #include <limits>
@@ -18,27 +18,28 @@ namespace softland {
 
 class ForceRecord {
  public:
-  /// Records the force of one contact. Keeps a reference to `model`. `threshold` is the force that counts as steady [N], or
-  /// NaN.
+  /// Records the force of one contact. Keeps a reference to `model`. The contact counts as settled while its force is at least
+  /// `threshold` [N]; with NaN no settling time is computed.
   ForceRecord(const Switch& model, double threshold, std::size_t contact = 0);
 
-  /// Adds a piece of an integration step after the first touch, in which the contact law stays in this state.
+  /// Adds a piece of an integration step after first contact, in which the contact stays on one branch of its law.
   void take(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to, const ContactState& law);
-  /// Adds an interval after the first touch over which the contact force changes linearly.
+  /// Adds an interval after first contact over which the contact force is taken as linear in time, as along a pad.
   void take_line(const TrajectoryPoint& from, const TrajectoryPoint& to);
 
-  /// Records that a maximum of the contact force has passed: the contact has opened, or an impact on a rigid contact is over.
+  /// Records that the contact force has passed a maximum, after which least() counts: the contact has opened, or an impact on a
+  /// rigid contact is over.
   void pass_maximum() { has_fallen_ = true; }
 
-  /// Returns the time from which the contact force is steady, Trajectory::steady_force_time [s].
+  /// Returns the time from which the contact force stays at or above the threshold, Trajectory::steady_force_time [s].
   [[nodiscard]] double steady_from() const { return steady_from_; }
-  /// Returns the least contact force after the first touch, Trajectory::least_force_after_touch [N].
+  /// Returns the least contact force after its first maximum, Trajectory::least_force_after_touch [N].
   [[nodiscard]] double least() const;
 
  private:
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-  /// Adds an interval in which the contact point moves in one direction.
+  /// Adds an interval in which the velocity of the contact point keeps its sign.
   template <class Force>
   void follow_path(const Force& force, double begin, double from, double end, double to);
   template <class Force>
@@ -46,7 +47,7 @@ class ForceRecord {
 
   const Switch& model_;
   std::size_t contact_;
-  double threshold_;  // contact force that counts as steady [N]
+  double threshold_;  // contact force from which the contact counts as settled [N]
   bool rises_with_depth_;
   bool has_risen_ = false, has_fallen_ = false;
   double steady_from_ = none, least_ = std::numeric_limits<double>::infinity(), last_ = 0;

@@ -10,7 +10,8 @@ namespace softland {
 struct Knot {
   double time = 0;            ///< time of this point of the motion [s]
   std::vector<double> state;  ///< coordinates and velocities of the modes, then pressures of a compressible gas film
-  std::vector<double> rates;  ///< rates of all states but the coordinates: accelerations of the modes, then rates of the film
+  /// Time derivatives of the velocities (accelerations of the modes), then those of the film pressures.
+  std::vector<double> rates;
 };
 
 /// Figures of the gap field (gap between beam and electrode along the beam) at one point of the motion. They are read from the

@@ -1,5 +1,5 @@
-// The interface through which a simulated closing passes on its motion: its knots (points of the motion) and touches, and more
-// at an observer's request.
+// The interface through which a simulated closing passes its motion on to an observer: knots (points of the motion) and touches
+// (intervals in contact), and more at the observer's request.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace softland {
 
-/// A change of the branch of the contact law (phase) that acts on the contact point, between two integration steps.
+/// A change of the contact law's branch (phase) between two integration steps, with the states of the law before and after.
 struct PhaseChange {
   enum class Kind {
     edge,    ///< the contact point crosses `level`, where the contact law changes
@@ -30,26 +30,29 @@ class ClosingObserver {
   virtual ~ClosingObserver() = default;
   /// Receives the next point of the motion (knot), in order of time. The point is final: no event can change it afterwards.
   virtual void knot(const TrajectoryPoint&) {}
-  /// Receives a touch of the contact that is over, or, at the end of the run, a touch that has not ended, whose end is NaN.
+  /// Receives a touch (interval in contact) of the contact when the contact has opened. A touch that has not ended at the end
+  /// of the run is passed on then; its end is NaN.
   virtual void touch(const Touch&) {}
-  /// Returns the observer that receives motion and touches of one contact of several; null for none. This observer itself
-  /// receives motion and touches of the connection that the contacts make. Not called for a switch with one contact.
+  /// Returns the observer that receives motion and touches of contact `number` of a switch with several contacts; null for
+  /// none. This observer itself receives those of the connection (electrical path) that the contacts form. Not called for one
+  /// contact.
   [[nodiscard]] virtual ClosingObserver* contact(std::size_t /*number*/) { return nullptr; }
-  /// Returns true when the observer needs to know when the switch is electrically closed (model/closing/electrical_record.h).
+  /// Returns true when the observer needs the times at which contacts close and open electrically
+  /// (model/closing/electrical_record.h).
   [[nodiscard]] virtual bool follows_state() const { return false; }
-  /// Receives a change of the electrical state to closed or open at this time [s]: of the contact of this number, or of the
-  /// connection when no number is given. Every contact is open before its first call. Calls for one contact are in order of
-  /// time and continue after ClosingOptions::opens_at.
+  /// Receives the electrical closing or opening, at this time [s], of the contact of this number, or of the connection when no
+  /// number is given. Every contact is open before its first call. Calls for one contact are in order of time and continue
+  /// after the command to open (ClosingOptions::opens_at).
   virtual void state(std::optional<std::size_t> /*contact*/, bool /*is_closed*/, double /*time*/) {}
   /// Returns true when the observer needs the motion of all modes. The observer then receives every integration step and the
-  /// changes of the contact law between steps, in order of time. step() then has the state of the first contact law only, which
-  /// does not describe all forces of several contacts.
+  /// changes of the contact law between steps, in order of time. With several contacts, step() has the state of the first
+  /// contact law only, so that the forces of the other contacts cannot be computed from it.
   [[nodiscard]] virtual bool follows_motion() const { return false; }
   /// Receives an integration step from one point of the motion to the next, with the state of the contact law during the step.
   virtual void step(const Knot& /*begin*/, const Knot& /*end*/, const ContactState& /*contact*/) {}
   /// Returns true when the observer needs the energy balance at each breakpoint of the drives.
   [[nodiscard]] virtual bool takes_energies() const { return false; }
-  /// Receives the time of a breakpoint of the drives [s], and the energy balance of the run just before this breakpoint.
+  /// Receives the time of a breakpoint of the drives [s], and the energy balance from the start of the run to this breakpoint.
   virtual void energies(double /*time*/, const EnergyBalance& /*balance*/) {}
   /// Receives a change of the contact law's branch (such as the beginning of contact), and the point of the motion from which
   /// the next step starts.

@@ -1,5 +1,5 @@
-// The motion of one contact point during a run: points (knots) of the current integration step, held back while an event can
-// still change them.
+// The motion of one contact point during a run. The points (knots) of the current integration step are kept until no event
+// (change of a contact law) can change them any more, and are then passed to the observer.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace softland {
 
 class PendingKnots {
  public:
-  /// Keeps references to `device` and `observer`.
+  /// Keeps references to `device` and `observer`; `contact` is the number of the contact.
   PendingKnots(const Device& device, std::size_t contact, ClosingObserver& observer)
       : device_(device),
         rest_gap_(device.gap.electrode + device.rest_offset(device.contact_position(contact))),
@@ -22,9 +22,10 @@ class PendingKnots {
   void push(const TrajectoryPoint& point) { waiting_.push_back(point); }
   /// Returns the last point of the contact point's motion, whether or not the observer has received it.
   [[nodiscard]] const TrajectoryPoint& last() const { return waiting_.empty() ? handed_over_ : waiting_.back(); }
-  /// Returns the last point of the motion that the observer has not received, for the caller to correct.
+  /// Returns the last point of the motion that the observer has not received. The caller may correct its rounding errors.
   [[nodiscard]] TrajectoryPoint& last_waiting() { return waiting_.back(); }
-  /// Removes the points of the motion from the time `from` [s] on, which the observer has not received.
+  /// Removes the points of the motion that the observer has not received, from the time `from` [s] on; points at or before
+  /// `step_begin` [s] remain.
   void take_back(double from, double step_begin) {
     while (!waiting_.empty() && waiting_.back().time >= from && waiting_.back().time > step_begin) waiting_.pop_back();
   }
@@ -36,7 +37,8 @@ class PendingKnots {
     if (!waiting_.empty()) handed_over_ = waiting_.back();
     waiting_.clear();
   }
-  /// Returns the largest squeeze number of the gas film at the contact point so far; 0 when the gas law sets no limit.
+  /// Returns the largest squeeze number of the gas film at the contact point so far; 0 when the gas law has no limit of the
+  /// squeeze number.
   [[nodiscard]] double largest_squeeze() const { return largest_squeeze_; }
 
  private:

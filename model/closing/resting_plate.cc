@@ -34,7 +34,7 @@ RestingPlate::Impact RestingPlate::strike(Knot& here) {
 }
 
 void RestingPlate::begin(Knot& here, double stretch_end) {
-  constexpr double looks = 32;  // number of evaluations of the drives between two breakpoints, unless a drive oscillates
+  constexpr double looks = 32;  // number of evaluations of the force between two breakpoints, unless a voltage oscillates
   force_ = here.rates[0] / model_.basis().contact_shape()[0];
   here.rates[0] = 0;
   look_ = std::min((stretch_end - here.time) / looks, drives_.resolving_step(here.time));
@@ -46,7 +46,8 @@ RestingPlate::Stay RestingPlate::stay(const Knot& here, double stretch_end) {
   if (pressed && next < 0) {
     const double last = t;
     t = bracketed_zero([&](double at) { return load(here, at); }, here.time, last);
-    // End the rest of the plate where the force already pulls: at the zero of the force the plate would begin to rest again.
+    // End the rest at a time at which the force pulls the plate off. Exactly at the zero of the force the plate would rest
+    // again.
     for (double more = 1e-15 * last; (next = load(here, t)) >= 0; more *= 2) t = std::min(last, t + more);
   }
   force_ = next;

@@ -11,7 +11,7 @@ namespace softland {
 
 class RestingPlate {
  public:
-  /// Keeps references to its arguments. Without a rigid contact, force() is the only function that may be called.
+  /// Keeps references to its arguments. When the switch has no rigid contact, call only force().
   RestingPlate(const Switch& model, DriveCourse& drives, ClosingEquations& equations);
 
   struct Impact {
@@ -19,21 +19,21 @@ class RestingPlate {
     double lost = 0;    ///< energy of the plate lost in the impact [J]
     bool rests = false;
   };
-  /// Computes the impact of a plate that reaches the plane of first touch. Afterwards the plate is on the plane with its
+  /// Computes the impact of a plate that reaches the contact plane. Afterwards the plate is on the contact plane with its
   /// rebound velocity, or at rest when the rebound would be lower than RigidContact::rest_height.
   Impact strike(Knot& here);
 
-  /// Begins a rest of the plate in this state, whose accelerations have been computed. The rest ends at `stretch_end`, the next
-  /// breakpoint of the drives, at the latest.
+  /// Begins a rest of the plate on its contact in the state `here`, whose accelerations must have been computed. The rest lasts
+  /// at most until `stretch_end` [s], the next breakpoint of the drives.
   void begin(Knot& here, double stretch_end);
   struct Stay {
     double until = 0;     ///< end of this interval in which the plate rests [s]
     bool leaves = false;  ///< true when the drives pull the plate off at `until`
   };
-  /// Continues the rest of the plate on its contact by one interval, which ends early when no force presses the plate on the
-  /// contact any more.
+  /// Continues the rest of the plate on its contact by one short interval. The interval ends early when the force changes sign
+  /// and pulls the plate off.
   Stay stay(const Knot& here, double stretch_end);
-  /// Returns the force of the plate on the contact while the plate rests [N].
+  /// Returns the force with which the resting plate presses on its contact at the end of the last interval [N].
   [[nodiscard]] double force() const { return force_ > 0 ? force_ : 0; }
   /// Returns the force with which the plate at rest at `here` presses on the contact under the drives of time t [N]; negative
   /// when the drives pull the plate off.
@@ -44,7 +44,7 @@ class RestingPlate {
   DriveCourse& drives_;
   ClosingEquations& equations_;
   double force_ = 0;  // force that presses the plate on the contact at the end of the last interval [N]
-  double look_ = 0;   // longest time between two evaluations of the drives while the plate rests [s]
+  double look_ = 0;   // longest time between two evaluations of the force on the resting plate [s]
   std::vector<double> rates_;
 };
 

@@ -33,7 +33,8 @@ void StepMotion::set(const Knot& begin, const Knot& end_knot, const TrajectoryPo
   motion_known_ = false;
 }
 
-// Many integration steps are so short that one quintic piece suffices, which needs only the ends of the step.
+// Computes the pieces of the step at the first call: many steps have only one quintic piece, which needs the ends of the step
+// alone.
 const ModalMotion& StepMotion::motion() {
   if (!motion_known_) {
     const double* q = begin_->state.data();
@@ -59,8 +60,8 @@ const std::vector<double>& StepMotion::halfway() {
     between_[modes_ + i] = 15.0 / 8 * (p1 - p0) / h - 7.0 / 16 * (v0 + v1) + h / 32 * (a1 - a0);
   }
   for (std::size_t i = 0; i < film_; ++i) {
-    // The rates of a gas film that quickly adapts to the motion may be errors times a large stiffness: limit the effect of the
-    // rates on the interpolant.
+    // The pressures of a thin gas film adapt to the motion quickly. Their computed rates may be small errors multiplied by a
+    // large stiffness, so limit the effect of the rates on the interpolated pressures.
     const double p0 = from[2 * modes_ + i], p1 = to[2 * modes_ + i];
     const double far = std::abs(p1 - p0) + std::max(std::abs(p0), std::abs(p1)) / 20;
     between_[2 * modes_ + i] =

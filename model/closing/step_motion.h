@@ -1,9 +1,9 @@
-// Motion of the switch within one step of the integrator: of the contact point, in pieces short enough for one quintic each,
-// and of all coordinates at single instants.
+// Motion of the switch within one step of the integrator: the motion of the contact point, divided into pieces so short that a
+// quintic describes each, and all modal coordinates at single times.
 //
-// Explicit methods take steps of up to two radians of the fastest mode: within a step the modes move freely and a quintic adds
-// the effect of the change of the force (integrators/modal_motion.h). Longer steps come from an implicit method: one Hermite
-// polynomial covers each such step.
+// Explicit methods take steps of up to two radians of the fastest mode. Within such a step the motion is the free motion of the
+// modes under the force at the start, plus a quintic for the change of the force (integrators/modal_motion.h). Longer steps
+// come from an implicit method; one Hermite polynomial covers each such step.
 #pragma once
 
 #include <vector>
@@ -18,13 +18,13 @@ namespace softland {
 
 class StepMotion {
  public:
-  /// `tolerance` is that of the integrator. The quintic of a piece of the step has an error of `tolerance`, at most 1e-5,
-  /// relative to the fastest mode's amplitude. The place of the contact number `contact` is the contact point.
+  /// `tolerance` is that of the integrator: each quintic piece has an error of `tolerance`, at most 1e-5, relative to the
+  /// amplitude of the fastest mode. The motion is that of contact number `contact`.
   StepMotion(const Switch& model, double tolerance, std::size_t contact = 0);
 
   /// Sets the step between two points of the motion (knots); `end` is the contact point at the end of the step. Keeps
-  /// references to the knots. `accurate_rates` is true when accelerations at the knots may be used: an implicit method may
-  /// leave errors in the accelerations that the stiffness magnifies.
+  /// references to the knots. `accurate_rates` is true when the accelerations at the knots may be used for interpolation; those
+  /// of an implicit method may contain small errors multiplied by a large stiffness.
   void set(const Knot& begin, const Knot& end_knot, const TrajectoryPoint& end, bool accurate_rates);
 
   [[nodiscard]] bool moves_by_modes() const { return moves_by_modes_; }
@@ -48,7 +48,7 @@ class StepMotion {
 
   std::size_t modes_, film_;
   double fastest_;             // angular frequency of the fastest mode [rad/s]
-  double knot_phase_;          // largest phase of the fastest mode in a piece of the step [rad]
+  double knot_phase_;          // largest advance of the fastest mode's phase in a piece of the step [rad]
   std::vector<double> omega_;  // angular frequencies of the modes, padded to a multiple of the SIMD lanes [rad/s]
   ModalMotion motion_;
   bool motion_known_ = false;
@@ -71,7 +71,7 @@ class TipMotion : public Quintic {
   [[nodiscard]] double acceleration(double t) const {
     return step_.moves_by_modes() ? step_.at(t).acceleration : Quintic::acceleration(t);
   }
-  /// Returns the time in the piece of the step at which the velocity of the contact point changes sign [s].
+  /// Returns the time in this piece of the step at which the contact point turns back (its velocity changes sign) [s].
   [[nodiscard]] double turn() const {
     return bracketed_zero([&](double t) { return velocity(t); }, begin(), end());
   }

@@ -13,21 +13,23 @@
 namespace softland {
 namespace {
 
-// An explicit integration method is replaced by an implicit method when stability limits its steps in many checks in a row. A
-// thick film in a gap that is nearly closed limits every step. In other closings stability limits at most a dozen checks in a
-// row. A damped contact that rattles may reach ninety, so that some such runs change the method without need.
-constexpr double held_back = 2;  // stiffness by Stepper::stiffness() above which stability limits a step
+// An explicit integration method is replaced by an implicit method when stability limits the step length in many checks in a
+// row (one check per 100 steps). A thick film in a nearly closed gap limits every step. In most other closings stability limits
+// at most a dozen checks in a row. A damped contact with many short rebounds may reach ninety, so that the method changes
+// without need.
+constexpr double held_back = 2;  // value of Stepper::stiffness() above which stability limits the step length
 constexpr long steps_to_look = 100;
 // The conditions under which an implicit integration method replaces the explicit method.
 struct TakeOver {
-  int looks = 50;  // number of checks in a row, with steps limited by stability, after which the method changes
-  // Share of the tolerance that the implicit method gets: the explicit method, with a hundred times the steps, had errors far
-  // below its tolerance.
+  int looks = 50;  // number of checks in a row that find steps limited by stability, before the method changes
+  // Factor on the tolerance for the implicit method. The explicit method, limited by stability, took a hundred times the steps,
+  // so its errors were far below its tolerance; the implicit method's should be as small.
   double tolerance = 0.01;
 };
 
 // Returns when an implicit method replaces the explicit one. A film that is squeezed out along the face of a dielectric remains
-// stiff; the steps are then limited not by the tolerance, but by kinks of the contact pressure, at one point after the other.
+// stiff. The implicit steps are then limited by kinks of the contact pressure, as one point of the beam after the other touches
+// the face, so a tighter tolerance would not help.
 TakeOver take_over(const Device& device) {
   return device.lands_along_face() && device.gas ? TakeOver{.looks = 2, .tolerance = 1} : TakeOver{};
 }
@@ -101,8 +103,8 @@ bool Stepping::fail(const std::string& why) {
   return false;
 }
 
-// Within the reach of a contact law that acts before touch the tolerances are those of contact: the law changes over lengths as
-// short as a penetration.
+// Tolerances for contact also hold within the reach of a contact law that acts before contact: its force changes over lengths
+// as short as a penetration.
 const std::vector<double>& Stepping::tolerances() const {
   const bool touching = !parts_.options.restart_at_contact || std::ranges::any_of(parts_.contacts, [](const FollowedContact& c) {
     return c.phase.in_contact() || c.phase.phase() == Phase::near;
@@ -153,7 +155,7 @@ std::optional<Stepping::Step> Stepping::advance(double stop, EnergyAudit& audit)
   if (step.event) {
     if (!step_again(*step.event)) return std::nullopt;
     consider_step();
-    // The event may be before points of this step's motion that have been added already.
+    // The event may precede points of this step's motion that have been added already.
     for (FollowedContact& c : parts_.contacts) c.pending_knots.take_back(next_.time, here_.time);
   }
   step.field = parts_.equations.field(next_.state.data());
@@ -166,14 +168,14 @@ std::optional<Stepping::Step> Stepping::advance(double stop, EnergyAudit& audit)
   return step;
 }
 
-// Reads the integrator's state into next_, the end of the step.
+// Copies time, state and rates of the integrator into next_, the end of the step.
 void Stepping::take_state() {
   next_.time = stepper_->time();
   std::copy_n(stepper_->state(), next_.state.size(), next_.state.begin());
   std::copy_n(stepper_->rates(), next_.rates.size(), next_.rates.begin());
 }
 
-// Sets next_ as the end of the step from here_ for all contacts.
+// Sets up the motion of all contacts between here_ and next_, the start and the end of the step.
 void Stepping::consider_step() {
   for (FollowedContact& c : parts_.contacts) {
     c.end = parts_.point(c, next_);
@@ -181,7 +183,7 @@ void Stepping::consider_step() {
   }
 }
 
-// Records peak forces and energies over the step from here_ to next_; `field` are the figures of the gap field at next_.
+// Records peak forces, electrical state and energies over the step from here_ to next_; `field` has the gaps at next_.
 void Stepping::account(const FieldFigures& field, EnergyAudit& audit) {
   if (here_.time == next_.time) return;
   for (FollowedContact& c : parts_.contacts) {
@@ -198,8 +200,8 @@ void Stepping::account(const FieldFigures& field, EnergyAudit& audit) {
   audit.step(here_, next_, field.dissipation, parts_.first().motion, implicit());
 }
 
-// Returns the point of a contact's motion after k pieces of the step. The force along a pad depends on more than the contact
-// point; this force is taken as linear in time.
+// Returns the point of a contact's motion after k pieces of the step. The force of a contact along a pad depends on more than
+// the position of the contact point, so this force is taken as linear in time.
 TrajectoryPoint Stepping::knot(FollowedContact& contact, int k) {
   StepMotion& motion = contact.motion;
   if (k == motion.pieces()) return contact.end;
@@ -222,14 +224,15 @@ double Stepping::force_on_line(const FollowedContact& contact, double time) {
   return std::lerp(from.contact_force, to.contact_force, (time - from.time) / (to.time - from.time));
 }
 
-// Moves the contacts through the step from here_ to next_, up to the first change of a contact law that needs a restart of the
-// integrator. Returns false when the step failed.
+// Records the motion of all contacts from here_ to next_, up to the first change of a contact law that needs a restart of the
+// integrator. Sets `event` to this change. Returns false when the step failed.
 bool Stepping::follow(std::optional<Event>& event) {
   const double until = parts_.contacts.size() > 1 ? first_event_time() : next_.time;
   return std::ranges::all_of(parts_.contacts, [&](FollowedContact& c) { return follow(c, until, event); });
 }
 
-// Returns the time of the first change of a contact law among several contacts; the record of every contact ends at this time.
+// Returns the time of the first change of any contact law in the step, or the end of the step. Later points of the motion are
+// not recorded.
 double Stepping::first_event_time() {
   double first = next_.time;
   for (FollowedContact& c : parts_.contacts) {
@@ -246,8 +249,8 @@ double Stepping::first_event_time() {
   return first;
 }
 
-// Records the motion of one contact through the step: adds points where the interpolant needs them, up to the first event of
-// any contact.
+// Records the motion of one contact through the step, up to the time `until` of the first event of any contact. Adds points of
+// the motion at the ends of the quintic pieces.
 bool Stepping::follow(FollowedContact& contact, double until, std::optional<Event>& event) {
   StepMotion& motion = contact.motion;
   for (int k = 1; k <= motion.pieces(); ++k) {
@@ -272,7 +275,8 @@ bool Stepping::follow(FollowedContact& contact, double until, std::optional<Even
   return true;
 }
 
-// Handles a change of the contact law at which the integrator is not restarted. Returns false after too many touches.
+// Handles a change of the contact law when the integrator is not restarted at contact (ClosingOptions::restart_at_contact).
+// Returns false after too many touches.
 bool Stepping::go_through(FollowedContact& contact, const Event& event, const TipMotion& tip) {
   const TrajectoryPoint from = contact.pending_knots.last();
   TrajectoryPoint at{.time = event.time,
@@ -284,14 +288,14 @@ bool Stepping::go_through(FollowedContact& contact, const Event& event, const Ti
   contact.pending_knots.push(at);
   contact.touches.note(event, at);
   contact.phase.enter(event.edge->next, event.edge->zone);
-  contact.end = parts_.point(contact, next_);  // end of the step, with the contact force of the new branch of the contact law
+  contact.end = parts_.point(contact, next_);  // end point with the force of the contact law's new branch
   return contact.touches.count() <= parts_.options.max_steps ||
          fail(fmt::format("more than {} steps needed", parts_.options.max_steps));
 }
 
-// Repeats the last step so that it ends at the event: interpolated velocities would cost an order of accuracy at every touch.
-// The interpolant's error of position exceeds the depth of a stiff contact, so the touch would begin or end with an error of
-// energy. Taylor's series corrects the position, or Newton's method where the error is large.
+// Repeats the last step so that it ends at the event (change of a contact law). An interpolated velocity would lower the order
+// of accuracy at every touch. The interpolated position may err by more than the interference of a stiff contact, so contact
+// would begin or end with a wrong energy. Taylor's series corrects a small error of the position, Newton's method a large one.
 bool Stepping::step_again(const Event& event) {
   constexpr int most_corrections = 8;
   const Switch& model = parts_.model;
@@ -320,12 +324,12 @@ bool Stepping::step_again(const Event& event) {
     time -= off / model.contact_deflection(next_.state.data() + n_, event.contact);
   }
   if (!(time > here_.time)) next_ = here_;
-  parts_.equations.rates(next_);  // call to compute the gap field at next_ again
+  parts_.equations.rates(next_);  // computes the gap field at next_ again
   return true;
 }
 
-// Moves the state next_ onto the edge (position at which the contact law changes) if the fastest mode reaches it within a
-// thousandth of a radian. Returns false for a larger distance.
+// Moves the state next_ onto the edge of the event (the position at which the contact law changes) when the fastest mode needs
+// less than a thousandth of a radian for this. Returns false when the edge is farther away.
 bool Stepping::meet(const Event& event) {
   constexpr double short_of_a_radian = 1e-3;
   const double* v = next_.state.data() + n_;
@@ -333,7 +337,7 @@ bool Stepping::meet(const Event& event) {
   double later = (event.edge->level - model.contact_deflection(next_.state.data(), event.contact)) /
                  model.contact_deflection(v, event.contact);
   if (!(std::abs(later) * fastest_ < short_of_a_radian)) return false;
-  // When rounding put the start of the step beyond the edge, the step ends at its start.
+  // Rounding may have put the start of the step beyond the edge: the step must not end before its start.
   later = std::max(later, here_.time - next_.time);
   for (std::size_t i = 0; i < n_; ++i) next_.state[i] += later * (v[i] + later / 2 * next_.rates[i]);
   for (std::size_t i = n_; i < next_.state.size(); ++i) next_.state[i] += later * next_.rates[i - n_];

@@ -1,4 +1,4 @@
-// Steps of the integrator through a closing; each step ends at the next change of a contact law at the latest.
+// Integration of a closing step by step; each step ends at the next change of a contact law at the latest.
 #pragma once
 
 #include <cmath>
@@ -31,7 +31,8 @@ namespace softland {
 [[nodiscard]] std::optional<Eigen::VectorXd> start_of(const Switch& model, std::span<const Signal> signals,
                                                       const ClosingOptions& options);
 
-/// The record of one contact of a closing, or of the contact point of a switch without contact.
+/// Records of one contact of a closing: phase, touches, force and motion. A switch without contact has one for its contact
+/// point.
 struct FollowedContact {
   FollowedContact(const Switch& model, std::size_t contact, ContactPhase& contact_phase, const ClosingOptions& options,
                   ClosingObserver& observer)
@@ -44,7 +45,7 @@ struct FollowedContact {
         motion(model, options.tolerance, contact) {}
 
   std::size_t number;
-  double plane;  ///< position of the contact plane (plane of first touch) [m]
+  double plane;  ///< position of the contact plane [m]
   ContactPhase& phase;
   TouchRecord touches;
   ForceRecord force;
@@ -97,19 +98,19 @@ struct ClosingParts {
   ClosingParts& operator=(const ClosingParts&) = delete;
 
   [[nodiscard]] FollowedContact& first() { return contacts.front(); }
-  /// Returns true when it is computed whether the switch is electrically closed: after the command to open
-  /// (ClosingOptions::opens_at) only for an observer that needs this state.
+  /// Returns true when the electrical state (closed or open) of the contacts is computed. After the command to open
+  /// (ClosingOptions::opens_at) it is computed only for an observer that needs it.
   [[nodiscard]] bool follows_state() const { return electrical && (!closing_is_over || observer.follows_state()); }
   /// Ends the closing at this time [s]: the remaining part of the run is an opening.
   void end_closing(double time) {
     if (electrical && !closing_is_over) electrical->finish(time);
     closing_is_over = true;
   }
-  /// Records the contact force and the peaks of a touch in a piece of an integration step.
+  /// Records the contact force, and updates the peaks of the current touch, over a piece of an integration step.
   void record(FollowedContact& contact, const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to);
   /// Returns position, velocity, acceleration and force of a contact in a state of the switch.
   [[nodiscard]] TrajectoryPoint point(const FollowedContact& contact, const Knot& knot) const;
-  /// Continues the motion of every contact up to a state of the switch.
+  /// Adds a point to the motion of every contact, for a state of the switch.
   void push(const Knot& knot) {
     for (FollowedContact& c : contacts) c.pending_knots.push(point(c, knot));
   }
@@ -118,7 +119,7 @@ struct ClosingParts {
     for (FollowedContact& c : contacts) c.pending_knots.hand_over();
     if (connection) connection->hand_over();
   }
-  /// Returns the time of the first touch of any contact on the near side [s]; NaN before a touch.
+  /// Returns the time of first contact of any contact on the near side [s]; NaN before first contact.
   [[nodiscard]] double first_touch() const;
   [[nodiscard]] bool has_touched() const { return !std::isnan(first_touch()); }
 };
@@ -130,7 +131,7 @@ class Stepping {
 
   [[nodiscard]] Knot& here() { return here_; }
   [[nodiscard]] const Work& work() const { return work_; }
-  /// Counts an evaluation of the drives while a plate rests on its contact as an integration step.
+  /// Counts an interval in which a plate rests on its contact as an integration step, towards the limit of the number of steps.
   void count_step() { ++work_.steps; }
   /// Returns the reason why the last call of an integration function failed.
   [[nodiscard]] const std::string& message() const { return message_; }
@@ -174,7 +175,7 @@ class Stepping {
   Knot here_, next_;  // states at the start and the end of the current step
   Work work_;
   std::unique_ptr<Stepper> stepper_;
-  double last_step_ = 0;  // length of the last step that did not end early at a breakpoint [s]
+  double last_step_ = 0;  // length of the last step that did not end early at a breakpoint or an event [s]
   long next_look_ = 0;    // number of the step at which check_work() next checks the integration method
   int stiff_looks_ = 0;
   std::string message_;
