@@ -1,15 +1,15 @@
-// Rough contact with adhesion: asperities of uniform heights, each pulled by the DMT force from its first touch on.
+// Rough contact with adhesion: asperities of uniform heights, each pulled by the constant DMT adhesion force while in contact.
 //
 //   P = P_u(d) - 2 pi R W N(d),    N = eta An min(d, Hm) / Hm
 //   U = U_u(d) - pi R W eta An [d^2 - max(0, d - Hm)^2] / Hm
 //
 // P is the force on the beam, away from the contact [N]: negative at small d, where adhesion dominates. P_u, U_u are force [N]
-// and energy [J] of the law asperity-uniform; N summits in touch; R their radius [m]; W work of adhesion [J/m^2]; eta summits
+// and energy [J] of the law asperity-uniform; N summits in contact; R their radius [m]; W work of adhesion [J/m^2]; eta summits
 // per area [1/m^2]; An = width x pad length [m^2]; Hm [m]; d interference [m]. The law is lossless. Attraction between summits
-// that do not touch is neglected, so nothing acts before first touch and the force starts from zero; for d < 0 it is continued
-// as an odd function. W = 0 is asperity-uniform. Validity: Tabor number (R W^2 / (E*^2 z0^3))^(1/3) below about 0.1 with z0
-// some 0.2 to 0.4 nm. Beyond about 5 adhesion forms a neck (JKR) and breaking dissipates; this law does not describe that.
-// Source: Derjaguin, Muller & Toporov 1975; the sum over heights as in Greenwood & Williamson 1966.
+// that do not touch is neglected, so nothing acts before first contact and the force starts from zero. For d < 0 the force is
+// continued as an odd function. W = 0 is asperity-uniform. Validity: Tabor number (R W^2 / (E*^2 z0^3))^(1/3) below about 0.1
+// with z0 some 0.2 to 0.4 nm. Beyond about 5 adhesion forms a neck (JKR) and breaking dissipates; this law does not describe
+// that. Source: Derjaguin, Muller & Toporov 1975; the sum over heights as in Greenwood & Williamson 1966.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,8 @@
 
 namespace softland {
 
-/// The contact law. `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
+/// The law of rough contact with adhesion. `P` is the scalar type of the parameters; the scalar type of the state must be
+/// constructible from P.
 template <class P>
 struct AdhesiveAsperityContactOf {
   UniformAsperityContactOf<P> repulsion = {};

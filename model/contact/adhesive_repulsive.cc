@@ -10,8 +10,8 @@ namespace softland {
 template <>
 double AdhesiveRepulsiveContact::find_touch(const SurfacePressure& law) {
   const AdhesiveRepulsiveContact contact(law, 1, 0);
-  // Number of distances, from the reach inwards, at which the sign of the pressure is checked; at the reach itself the pressure
-  // is 0 as well.
+  // Number of distances at which the sign of the pressure is checked, from near the reach (where the pressure ends at 0)
+  // inwards.
   constexpr int looks = 4096;
   for (int i = looks - 2; i > 0; --i) {
     const double x = law.reach * i / looks, further = law.reach * (i + 1) / looks;
@@ -32,7 +32,7 @@ std::vector<double> AdhesiveRepulsiveContact::kinks() const {
 template <>
 double AdhesiveRepulsiveContact::energy(double d) const {
   const double x = touch_ - d, r = law_.reach, s = law_.smoothing_distance;
-  // Returns the antiderivative of 1 / (x^3 + s^3), the attraction at distance x.
+  // Returns the antiderivative of 1 / (x^3 + s^3), to which the attraction is proportional; s is the smoothing distance.
   const auto attraction = [s](double at) {
     const double u = at / s;
     return (std::log((u + 1) / std::sqrt(u * u - u + 1)) + std::sqrt(3) * std::atan((2 * u - 1) / std::sqrt(3))) / (3 * s * s);

@@ -1,5 +1,5 @@
-// Contact of rough surfaces as a pressure between them that acts before they touch: an attraction at a distance, a soft wall,
-// and, once asperities meet, adhesion and a stiff wall.
+// Contact of rough surfaces as a pressure between them that acts before they touch: attraction and an exponential repulsion
+// (soft wall) at a distance, adhesion and a stiff repulsion where asperities meet.
 //
 //   p(x) = l(x) - l(xr) - l'(xr) (x - xr) + c1 [max(0, dc - x) / 1 nm]^1.5 - c3 max(0, dc + ta - x) / 1 nm
 //   l(x) = c2 exp(-x / tR) - A / (6 pi (x^3 + ds^3))                        for x < xr, p = 0 beyond
@@ -7,16 +7,17 @@
 //
 // p is the pressure, positive when it pushes the surfaces apart [Pa]; x distance between their mean planes [m]; P force on the
 // beam, away from the contact [N]; U stored energy, 0 beyond reach [J]; An = width x pad length [m^2]; d interference [m]; c1,
-// c2, c3 pressures of asperities, soft wall and adhesion [Pa]; dc distance at which asperities meet [m]; ta further reach of
-// adhesion [m]; tR range of the soft wall [m]; A Hamaker constant [J]; ds distance that keeps the attraction finite [m]; xr
-// reach [m]. The plane of first touch, d = 0, is the outermost distance x0 at which p vanishes: above it the law only attracts.
+// c2, c3 factors of the pressures of asperities, soft wall and adhesion [Pa]; dc distance at which asperities meet [m]; ta
+// distance beyond dc at which adhesion begins [m]; tR decay length of the soft wall [m]; A Hamaker constant [J]; ds distance
+// that keeps the attraction finite [m]; xr reach, the distance beyond which no pressure acts [m]. The contact plane, d = 0, is
+// at the outermost distance x0 within reach at which p vanishes: at larger distances the law only attracts.
 //
-// The published law has no reach. The straight line that is subtracted makes force and slope end continuously at xr (with the
-// default, 1 um, the line is 1.2 % of the attraction at 150 nm). The law is lossless: jumping into contact and off it takes
-// energy through the motion that follows. The force is continuous; its slope jumps at x = dc + ta, its second derivative at dc:
-// the integrator restarts at both distances, where they lie beyond touch. Validity: x > 0, and the pair of surfaces to which
-// the law was fitted; the defaults are nickel on a dielectric. Source: the contact model of MEMOSA, Purdue's PRISM centre
-// (public code of its force models); attraction: Hamaker 1937.
+// The published pressure l(x) extends to infinity. Subtracting its tangent at xr makes force and slope end continuously there
+// (with the default, 1 um, the tangent is 1.2 % of the attraction at 150 nm). The law is lossless: jumping into contact and off
+// it takes energy through the motion that follows. The force is continuous; its slope jumps at x = dc + ta, its second
+// derivative at dc: the integrator restarts at both distances, if they are below x0. Validity: x > 0, and the pair of surfaces
+// to which the law was fitted; the defaults are nickel on a dielectric. Source: the contact model of MEMOSA, Purdue's PRISM
+// centre (public code of its force models); attraction: Hamaker 1937.
 #pragma once
 
 #include <algorithm>
@@ -35,8 +36,8 @@ template <class P>
 class AdhesiveRepulsiveContactOf {
  public:
   AdhesiveRepulsiveContactOf() = default;
-  /// `area` is that of the pad [m^2], `touch` the distance x0 of the surfaces at first touch [m]. A step of Newton's method
-  /// improves x0 for scalars other than double, so that x0 has their derivatives.
+  /// `area` is that of the pad [m^2], `touch` the distance x0 of the surfaces at first contact [m]. For scalars with
+  /// derivatives, a step of Newton's method gives x0 its derivatives.
   AdhesiveRepulsiveContactOf(const SurfacePressureOf<P>& law, const P& area, const P& touch)
       : law_(law), area_(area), end_(far(DualOf<P>(law.reach, 1))), touch_(touch) {
     if constexpr (!std::same_as<P, double>) {
@@ -70,11 +71,11 @@ class AdhesiveRepulsiveContactOf {
   }
   [[nodiscard]] double energy(double d) const;
 
-  /// Returns the outermost distance of the surfaces at which the pressure vanishes [m].
+  /// Returns the distance x0 of the surfaces' mean planes at first contact, where the pressure vanishes [m].
   [[nodiscard]] const P& touch_distance() const { return touch_; }
-  /// Returns the height above the plane of first touch at which the contact law begins to act [m].
+  /// Returns the height above the contact plane at which the contact law begins to act [m].
   [[nodiscard]] double reach() const { return law_.reach - touch_; }
-  /// Returns the interferences beyond touch at which adhesion begins and asperities meet [m]: the integrator restarts there.
+  /// Returns the interferences above 0 at which adhesion begins and asperities meet [m]: the integrator restarts there.
   [[nodiscard]] std::vector<double> kinks() const;
 
  private:
@@ -92,8 +93,8 @@ class AdhesiveRepulsiveContactOf {
 
   SurfacePressureOf<P> law_ = {};
   P area_ = 0;
-  DualOf<P> end_ = P(0);  // published pressure at the reach [Pa], with its slope [Pa/m]
-  P touch_ = 0;           // distance of the surfaces at first touch [m]
+  DualOf<P> end_ = P(0);  // published pressure l at the reach xr [Pa], with its slope [Pa/m]
+  P touch_ = 0;           // distance x0 of the surfaces at first contact [m]
 };
 using AdhesiveRepulsiveContact = AdhesiveRepulsiveContactOf<double>;
 

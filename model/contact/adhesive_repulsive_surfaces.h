@@ -11,18 +11,18 @@ namespace softland {
 template <class P>
 class AdhesiveRepulsiveContactOf;
 
-/// Pressure between two surfaces by their distance. The pressures of asperities and adhesion are those at a nanometre of
-/// approach.
+/// Parameters of the pressure between two surfaces as a function of their distance (formula in
+/// model/contact/adhesive_repulsive.h).
 template <class P>
 struct SurfacePressureOf {
-  P asperity_pressure = 1.2e3;     ///< pressure c1 of the asperities at a nanometre of approach [Pa]
-  P asperity_distance = 110e-9;    ///< distance dc at which asperities meet [m]
-  P wall_pressure = 0.5e9;         ///< pressure c2 of the soft wall [Pa]
-  P wall_range = 8.5e-9;           ///< decay length tR of the soft wall's pressure [m]
-  P adhesion_pressure = 1e3;       ///< pressure c3 of the adhesion at a nanometre of approach [Pa]
-  P adhesion_range = 2e-9;         ///< distance ta beyond dc at which adhesion begins [m]
+  P asperity_pressure = 1.2e3;     ///< pressure c1 of the asperities a nanometre below dc [Pa]
+  P asperity_distance = 110e-9;    ///< distance dc of the mean planes at which asperities meet [m]
+  P wall_pressure = 0.5e9;         ///< pressure c2 of the exponential repulsion at distance 0 [Pa]
+  P wall_range = 8.5e-9;           ///< decay length tR of the exponential repulsion [m]
+  P adhesion_pressure = 1e3;       ///< pressure c3 of the adhesion a nanometre below dc + ta [Pa]
+  P adhesion_range = 2e-9;         ///< distance ta above dc at which adhesion begins [m]
   P hamaker_constant = 0.215e-18;  ///< Hamaker constant A of the attraction [J]
-  P smoothing_distance = 30e-9;    ///< distance ds that keeps the attraction finite [m]
+  P smoothing_distance = 30e-9;    ///< distance ds that keeps the attraction finite at distance 0 [m]
   P reach = 1e-6;                  ///< distance xr beyond which the surfaces exert no pressure [m]
 };
 using SurfacePressure = SurfacePressureOf<double>;
@@ -52,7 +52,7 @@ struct AdhesiveRepulsiveSurfaces {
   [[nodiscard]] static constexpr AdhesiveRepulsiveSurfaces example() { return {}; }
   /// Returns the interference at which the mean planes of the surfaces meet [m].
   [[nodiscard]] double largest_interference() const;
-  /// Returns the rule that the parameters of the pressure break at this contact gap [m]; empty when they break none.
+  /// Returns a message that names the rule violated by the parameters, for this contact gap [m]; empty when they violate none.
   [[nodiscard]] std::string why_invalid(double contact_gap) const;
   [[nodiscard]] AdhesiveRepulsiveContactOf<double> law(const ContactPad& pad) const;
 };

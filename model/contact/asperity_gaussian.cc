@@ -13,7 +13,8 @@ GaussianTail::GaussianTail() {
   constexpr double order = 1.5, start = 14;
   constexpr std::size_t terms = 24;
   std::array<double, terms> c{};
-  // Computes the Taylor series about h of the solution of y'' + h y' - n y = 0 with value c[0] and slope c[1].
+  // Computes the coefficients c of the Taylor series about h of a solution of y'' + h y' - n y = 0, where n is `order`, from
+  // its value c[0] and slope c[1].
   const auto expand = [&](double h) {
     for (std::size_t k = 0; k + 2 < terms; ++k) {
       const auto j = static_cast<double>(k);
@@ -21,7 +22,8 @@ GaussianTail::GaussianTail() {
     }
   };
   c[0] = 1;
-  c[1] = -(start + (order + 1) / start);  // asymptotic slope of the integral for large h; its error decays downwards
+  // Start from the asymptotic slope of F_n at large h, for value 1; the error of this start decays towards smaller h.
+  c[1] = -(start + (order + 1) / start);
   constexpr auto above = static_cast<std::size_t>((start - last) / spacing);
   for (std::size_t i = nodes + above; i-- > 0;) {
     expand(first + spacing * static_cast<double>(i));

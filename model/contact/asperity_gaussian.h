@@ -8,14 +8,15 @@
 // [m]; R radius [m]; eta summits per area [1/m^2]; An = width x pad length [m^2]; E* effective modulus [Pa]; U stored energy
 // [J]. The law is lossless.
 //
-// The tail of the heights is unbounded: some summit is always in touch in this law. Contact begins, by definition, where the
-// mean of the summits is four standard deviations away (three summits in 100 000 are higher). The force there, 1e-5 of the
-// force at the mean, is subtracted, so that the force starts from zero. For d < 0 the formula is its own smooth continuation,
-// bounded by the subtracted force. Validity: elastic asperities that do not touch each other, many of them in touch, separation
-// above the mean of the summits: d < 4 sigma. Source: Greenwood & Williamson 1966, eq. 15; the constant h0 is our choice.
-// F_1.5 is tabulated as Taylor series about nodes an eighth apart, from the equation y'' + h y' - n y = 0 that F_n obeys. The
-// series are computed from h = 14 downwards, where the other solution decays, and scaled by the closed form at 0. The relative
-// error is below 1e-11 on [-8, 8] (checked against quadrature); a power series in |h| continues below this range, and 0 above.
+// The tail of the heights is unbounded: some summit is always in contact. Contact begins, by definition, where the mean of the
+// summits is four standard deviations away (three summits in 100 000 are higher). The force there, 1e-5 of the force at the
+// mean, is subtracted, so that the force starts from zero. For d < 0 the same formula continues smoothly; it is at least minus
+// the subtracted force. Validity: elastic asperities that do not touch each other, many of them in contact, separation above
+// the mean of the summits: d < 4 sigma. Source: Greenwood & Williamson 1966, eq. 15; the constant h0 is our choice. F_1.5 is
+// tabulated as Taylor series about nodes an eighth apart, from the equation y'' + h y' - n y = 0 that F_n obeys. The series are
+// computed from h = 14 towards smaller h, a direction in which the other solution of the equation decays, and scaled by the
+// closed form of F_1.5(0). The relative error is below 1e-11 on [-8, 8] (checked against quadrature); below this range a series
+// in 1/h^2 is used, and above it 0.
 #pragma once
 
 #include <array>
@@ -28,12 +29,12 @@
 namespace softland {
 namespace internal {
 
-/// The integral F_1.5 of Gaussian heights, with its derivative and functions derived from them.
+/// The integral F_1.5(h) of (s - h)^1.5 times the Gaussian density over s > h, as a table of Taylor series.
 class GaussianTail {
  public:
   static const GaussianTail& instance();
 
-  /// Returns F_1.5(h), the integral of (s - h)^1.5 times the Gaussian density over s > h.
+  /// Returns F_1.5(h), for a number, a number with derivatives or a SIMD vector.
   template <class S>
   S operator()(S h) const {
     return one_by_one(h, [this](const auto& one) { return this->of_one(one); });
@@ -45,7 +46,7 @@ class GaussianTail {
     using std::sqrt;
     if (h > last) return S(0);
     if (h < first) {
-      // F_1.5 of a very negative h, the mean of (s + |h|)^1.5 over the Gaussian density, as a series in 1/h^2.
+      // Series in 1/h^2 for h far below 0: F_1.5 is then nearly the mean of (s + |h|)^1.5 over the Gaussian density.
       const S m = -h, x = S(1) / (m * m);
       S sum(0);
       for (std::size_t k = moments.size(); k-- > 0;) sum = sum * x + S(moments[k]);
@@ -63,7 +64,7 @@ class GaussianTail {
   static constexpr std::size_t degree = 11;
   static constexpr std::size_t nodes = static_cast<std::size_t>((last - first) / spacing) + 1;
   using Series = std::array<double, degree + 1>;
-  // Coefficients of the series: element k is binom(1.5, 2k) (2k - 1)!!.
+  // Coefficients of h^(-2k) in the series of F_1.5 for h far below 0: binom(1.5, 2k) (2k - 1)!!.
   static constexpr std::array<double, 10> moments = [] {
     std::array<double, 10> m{1};
     for (std::size_t k = 1; k < m.size(); ++k) {
@@ -92,18 +93,18 @@ class GaussianTail {
 /// constructible from P.
 template <class P>
 struct GaussianAsperityContactOf {
-  P strength = 0;   ///< factor of the contact force [N]
+  P strength = 0;   ///< factor C of the contact force [N] in the header's formula
   P deviation = 0;  ///< standard deviation of the asperity heights [m]
 
-  /// Distance from the mean of the summits to the plane of first touch, in standard deviations.
+  /// Distance h0 from the mean of the summits to the contact plane, in standard deviations.
   static constexpr double first_touch = 4;
 
-  /// Returns F_1.5(h), the integral of (s - h)^1.5 times the Gaussian density over s > h.
+  /// Returns F_1.5(h) of the formula above, the integral of (s - h)^1.5 times the Gaussian density over s > h.
   template <class S>
   static S tail(S h) {
     return internal::GaussianTail::instance()(h);
   }
-  /// Returns F_2.5(h) = 1.5 F_0.5(h) - h F_1.5(h), with F_1.5' = -1.5 F_0.5.
+  /// Returns F_2.5(h) for the energy, computed as 1.5 F_0.5(h) - h F_1.5(h) with F_0.5 = -F_1.5' / 1.5.
   static double next_tail(double h);
 
   static constexpr bool grows_with_depth = true;  ///< the contact force is largest where the contact is deepest

@@ -5,9 +5,10 @@
 //
 // P is the force on the beam, away from the contact [N]; d interference [m]; R radius [m]; eta summits per area [1/m^2]; An =
 // width x pad length [m^2]; E* effective modulus [Pa]; U stored energy [J]. The law is lossless. The force is zero at d = 0
-// with two continuous derivatives. For d < 0 it is continued as an odd function: the right-hand side stays smooth past the
-// event that ends contact. Validity: elastic asperities that do not touch each other: d well below Hm and R. Source: Greenwood
-// & Williamson 1966 with the uniform heights of Wang et al. 2009 (closed form: integral of the Hertz law over heights).
+// with two continuous derivatives. For d < 0 it is continued as an odd function: the equations of motion stay smooth beyond the
+// contact plane, where an integrator evaluates them before it locates the end of contact. Validity: elastic asperities that do
+// not touch each other: d well below Hm and R. Source: Greenwood & Williamson 1966 with the uniform heights of Wang et al. 2009
+// (closed form: integral of the Hertz law over heights).
 #pragma once
 
 #include <cmath>
@@ -21,7 +22,7 @@ namespace softland {
 /// must be constructible from P.
 template <class P>
 struct UniformAsperityContactOf {
-  P strength = 0;  ///< factor of the contact force [N / m^2.5]
+  P strength = 0;  ///< factor eta An E* sqrt(R) / Hm of the contact force [N / m^2.5]
   P height = 0;    ///< greatest height of the asperities [m]
 
   static constexpr bool grows_with_depth = true;  ///< the contact force is largest where the contact is deepest
@@ -46,11 +47,11 @@ struct UniformAsperityContactOf {
     const auto power = [](double x) { return x > 0 ? x * x * x * std::sqrt(x) : 0; };
     return strength * 16 / 105 * (power(m) - power(m - height));
   }
-  /// Returns the interference at which the asperities carry a force >= 0 [m].
+  /// Returns the interference at which the contact force is `load` >= 0 [m].
   [[nodiscard]] double interference(double load) const {
     double d = std::pow(load / (strength * 8 / 15), 0.4);
     if (d <= height) return d;
-    // Newton's method for a convex force, from the left: the first step overshoots, and later steps descend to the zero.
+    // Newton's method from below the solution: as the force is convex, the first step overshoots and later steps descend to it.
     for (int i = 0; i < 50; ++i) {
       const Dual at = force(Dual(d, 1));
       const double step = (at.value - load) / at.slope;
@@ -61,7 +62,7 @@ struct UniformAsperityContactOf {
   }
 };
 
-/// Returns the contact law of the asperities `summits` with heights up to `height` [m].
+/// Returns the contact law of all asperities `summits` under the pad, with heights uniform up to `height` [m].
 [[nodiscard]] inline UniformAsperityContact uniform_contact(const Summits& summits, double height, const ContactPad& pad) {
   return {.strength = summits.hertz(pad) / height, .height = height};
 }

@@ -1,5 +1,5 @@
-// A contact of a device: the parameters of one of its laws, and its pad. A new law needs a header and an entry in ContactModel;
-// contact_law.h includes the header of a long force function.
+// A contact of a device: the parameters of its force law, and its pad. To add a law, write a header with its parameters and add
+// these to ContactModel. A long force function belongs in a second header, which contact_law.h includes.
 #pragma once
 
 #include <limits>
@@ -23,7 +23,7 @@
 
 namespace softland {
 
-/// The contact laws, in the order in which messages and tables list them.
+/// The parameters of one contact law, of any kind. Messages and tables list the laws in this order.
 using ContactModel = std::variant<LinearSpring, UniformAsperities, GaussianAsperities, AdhesiveAsperities, HystereticSpring,
                                   PlasticAsperities, RigidStop, AdhesiveRepulsiveSurfaces, OwnContact>;
 
@@ -33,14 +33,13 @@ inline constexpr auto contact_distributions =
     std::to_array<Named<ContactDistribution>>({{ContactDistribution::centre, "centre"}, {ContactDistribution::pad, "pad"}});
 static_assert(is_complete<contact_distributions>());
 
-/// Rule for the electrical connection of several contacts: closed while all of its contacts are closed, or while any of them
-/// is.
+/// Rule for the connection (electrical path) through several contacts: closed while all of them are closed, or while any is.
 enum class Connection { all, any };
 inline constexpr auto connections = std::to_array<Named<Connection>>({{Connection::all, "all"}, {Connection::any, "any"}});
 static_assert(is_complete<connections>());
 
-/// The electrical properties of a closed contact: see model/contact/resistance.h. The resistance of a contact without a given
-/// resistivity is unknown.
+/// The electrical properties of a closed contact: see model/contact/resistance.h. Without a resistivity (NaN) the resistance of
+/// the contact is not computed.
 struct Conduction {
   double resistivity = std::numeric_limits<double>::quiet_NaN();  ///< resistivity of the contact metals [Ohm m]
   /// Hardness H of the softer metal; by default the hardness of the contact law, if the law has one [Pa].
@@ -55,20 +54,21 @@ struct Contact {
   ContactModel model = UniformAsperities{};
   ContactDistribution distribution = ContactDistribution::centre;
   double pad_length = 0;  ///< length of the contact pad along the beam [m]: see Device::contact_position()
-  /// Width of the contact pad [m]; NaN: the width of the moving part.
+  /// Width of the contact pad [m]; NaN for a pad as wide as the moving part.
   double pad_width = std::numeric_limits<double>::quiet_NaN();
   std::string name = {};         ///< name of the contact; empty for the only contact
-  std::optional<Place> at = {};  ///< centre of the contact pad along the beam; none: see Device::contact_position()
-  /// Distance of the contact from its plane at rest [m]; for the first contact the value of Device::gap is used.
+  std::optional<Place> at = {};  ///< centre of the contact pad along the beam; if empty, see Device::contact_position()
+  /// Distance of the contact point from its contact plane at rest [m]; not used for the first contact, see Device::gap.
   double gap = std::numeric_limits<double>::quiet_NaN();
   Side side = Side::near;   ///< side of the beam; `far` for a back stop
-  bool along_face = false;  ///< true for a contact at all points of a dielectric's face, whose law is per area
+  bool along_face = false;  ///< true for a contact along the whole face of a dielectric; its force law is per area
   double count = 1;         ///< number of equal contacts beside each other across the beam
   bool connects = true;     ///< true when the contact is part of the electrical connection
   Conduction conduction = {};
 };
 
-/// Returns true when the contact law acts per area of the pad, so that a plate needs a width and a length of the pad.
+/// Returns true when the force of the contact law is proportional to the pad's area, so that pad width and length must be
+/// known.
 [[nodiscard]] inline bool acts_per_area(const ContactModel& model) {
   return std::visit(
       [](const auto& law) {
@@ -76,7 +76,7 @@ struct Contact {
       },
       model);
 }
-/// Returns true when the contact may remain closed without any voltage, by adhesion.
+/// Returns true when the contact law is adhesive, so that the contact may remain closed without any voltage.
 [[nodiscard]] inline bool may_stick(const ContactModel& model) {
   return std::visit(
       [](const auto& law) {
@@ -85,7 +85,7 @@ struct Contact {
       },
       model);
 }
-/// Returns the reason why the contact law cannot act along the pad; empty when it can.
+/// Returns the reason why the contact law cannot act along the pad (ContactDistribution::pad); empty when it can.
 [[nodiscard]] inline std::string_view why_not_along_pad(const ContactModel& model) {
   return std::visit(
       [](const auto& law) -> std::string_view {
@@ -94,8 +94,8 @@ struct Contact {
       },
       model);
 }
-/// Returns the largest interference at which the contact law is physical [m]: all asperities touch, or for Gaussian heights the
-/// plane has come down by four standard deviations. For a spring the result is infinite.
+/// Returns the largest interference at which the contact law is valid [m]: all asperities are in contact, or for Gaussian
+/// heights the contact plane has reached the mean of the summits. Infinite for a spring.
 [[nodiscard]] inline double largest_interference(const ContactModel& model) {
   return std::visit(
       [](const auto& law) {

@@ -1,6 +1,6 @@
-// The contact laws of a switch: the force that pushes the contact point away, as a function of the interference (position of
-// the contact point less the contact gap) and, for some laws, of its rate or its past. Each law is a value type with its own
-// file.
+// The contact laws of a switch. A contact law is the force that pushes the contact point away, as a function of the
+// interference (position of the contact point less the contact gap). Some laws also depend on the rate of the interference, or
+// remember its largest value. Each law is a value type with its own file.
 #pragma once
 
 #include <cstddef>
@@ -46,18 +46,19 @@ struct KernelsOf<std::variant<Models...>>
     : WithKernels<std::variant<>, decltype(std::declval<const Models&>().law(std::declval<const ContactPad&>()))...> {};
 }  // namespace internal
 
-/// A contact law of any kind: the variant of all types that the parameters of ContactModel return by law(pad).
+/// A contact law of any kind: a variant of all types that the alternatives of ContactModel return by their function law(pad).
 struct ContactLaw : internal::KernelsOf<ContactModel>::Type {
   using variant::variant;
 };
 
-/// Returns the pads of a contact, whose moving part has this width [m].
+/// Returns the pad size of a contact, all its equal pads together; `width` is that of the moving part [m].
 [[nodiscard]] inline ContactPad pad_of(const Contact& contact, double width) {
   const double one = contact.pad_width > 0 ? contact.pad_width : width;
   return {.width = one * contact.count, .length = contact.pad_length, .count = contact.count};
 }
 
-/// Returns the law of a valid device's contact, whose moving part has this width [m]: the force of all its pads together.
+/// Returns the force law of a contact, all its equal pads together; `width` is that of the moving part [m]. The device must be
+/// valid.
 [[nodiscard]] inline ContactLaw contact_law(const Contact& contact, double width) {
   const auto as_law = [](auto kernel) -> ContactLaw {
     if constexpr (requires { kernel.valueless_by_exception(); }) {
@@ -70,8 +71,8 @@ struct ContactLaw : internal::KernelsOf<ContactModel>::Type {
   return std::visit([&](const auto& model) { return as_law(model.law(pad)); }, contact.model);
 }
 
-/// Calls f with the contact law, as std::visit does, on the hot path: with more than eleven laws std::visit calls through a
-/// table, which the compiler cannot inline.
+/// Calls f with the contact law like std::visit, but inlined. Use it where speed matters: with more than eleven alternatives
+/// std::visit calls through a table, which the compiler cannot inline.
 template <std::size_t I = 0, class F>
 decltype(auto) visit_inline(F&& f, const ContactLaw& law) {
   if constexpr (I + 1 < std::variant_size_v<ContactLaw::variant>) {
@@ -85,8 +86,8 @@ concept HasMemory = requires(const Law& law) {
   law.shift(0.0);
 };
 
-/// Returns the force [N] of a contact law at interference d, in a state in which the law acts. `rate()` returns the rate of d
-/// [m/s] and is called only if the law depends on the rate.
+/// Returns the contact force [N] at interference d. `state` is that of a contact on which the law acts (ContactState::active).
+/// `rate()` returns the rate of d [m/s] and is called only if the law depends on the rate.
 template <class Law, class S, class Rate>
 S force_of(const Law& law, S d, const ContactState& state, Rate&& rate) {
   if constexpr (HasMemory<Law>) {
@@ -98,19 +99,22 @@ S force_of(const Law& law, S d, const ContactState& state, Rate&& rate) {
   }
 }
 
-/// Returns the contact force at an interference at rest, on first loading [N].
+/// Returns the static contact force on first loading at an interference [N].
 [[nodiscard]] inline double contact_force(const ContactLaw& law, double interference) {
   return std::visit([&](const auto& l) { return l.force(interference); }, law);
 }
-/// Returns the contact force in a state in which the law acts [N].
+/// Returns the contact force [N] at an interference [m] and its rate [m/s], for a `state` in which the law acts
+/// (ContactState::active).
 [[nodiscard]] inline double contact_force(const ContactLaw& law, double interference, const ContactState& state, double rate) {
   return std::visit([&](const auto& l) { return force_of(l, interference, state, [&] { return rate; }); }, law);
 }
-/// Returns the potential of the static force on first loading [J]; laws without memory store this energy.
+/// Returns the integral of the static contact force on first loading from 0 to the interference [J]: the stored energy of a law
+/// without memory.
 [[nodiscard]] inline double contact_energy(const ContactLaw& law, double interference) {
   return std::visit([&](const auto& l) { return l.energy(interference); }, law);
 }
-/// Returns the energy that the contact stores in a state in which the law acts [J].
+/// Returns the energy that the contact stores at an interference [J], for a `state` in which the law acts
+/// (ContactState::active).
 [[nodiscard]] inline double stored_energy(const ContactLaw& law, double interference, const ContactState& state) {
   return std::visit(
       [&](const auto& l) {
@@ -122,11 +126,12 @@ S force_of(const Law& law, S d, const ContactState& state, Rate&& rate) {
       },
       law);
 }
-/// The residual deformation (dent) of a contact after unloading from the deepest interference; zero for laws without memory.
+/// The residual deformation (dent) that a contact keeps after unloading from its deepest interference; zero for laws without
+/// memory.
 struct Dent {
   double shift = 0;    ///< residual interference, at which the contact force vanishes [m]
-  double lost = 0;     ///< energy that is lost when the dent is made [J]
-  bool heals = false;  ///< true when the dent of the contact vanishes at the end of the touch
+  double lost = 0;     ///< energy that loading to the deepest interference dissipates [J]
+  bool heals = false;  ///< true when the dent vanishes as soon as the contact opens
 };
 [[nodiscard]] inline Dent dent(const ContactLaw& law, double deepest) {
   return std::visit(
@@ -154,7 +159,7 @@ struct Dent {
       },
       law);
 }
-/// Returns the height above the plane of first touch at which a contact law begins to act [m]; 0 for most laws.
+/// Returns the height above the contact plane at which a contact law begins to act [m]; 0 for most laws.
 [[nodiscard]] inline double contact_reach(const ContactLaw& law) {
   return std::visit(
       [](const auto& l) {
@@ -163,8 +168,8 @@ struct Dent {
       },
       law);
 }
-/// Returns the interferences at which the force of a contact law is continuous, but not smooth, in order [m]; none for most
-/// laws.
+/// Returns the interferences at which the force of a contact law is continuous, but not smooth, in rising order [m]; empty for
+/// most laws.
 [[nodiscard]] inline std::vector<double> contact_kinks(const ContactLaw& law) {
   return std::visit(
       [](const auto& l) {
@@ -173,7 +178,7 @@ struct Dent {
       },
       law);
 }
-/// Returns true for a user's own law, which has no exact derivatives.
+/// Returns true for a user's own contact law (OwnContact), which has no exact derivatives.
 [[nodiscard]] inline bool is_own(const ContactLaw& law) {
   return std::visit(
       [](const auto& l) {

@@ -1,4 +1,5 @@
-// Contact of a beam along the face of the dielectric on its electrodes.
+// Contact of a beam along the whole face of the dielectric on its electrodes: laws `wall`, `linear` (springs) and
+// `asperity-uniform`.
 //
 //   wall, linear       p = k max(0, d)        U = a k d^2 / 2        d = b - h
 //   asperity-uniform   p and U of model/contact/asperity_uniform.h with An = 1 m^2, and with An / m = a; b = Hm
@@ -8,19 +9,19 @@
 // Source: textbook, a bed of springs (Winkler), and for asperities the source of their law. The asperities stand on the face,
 // with heights up to Hm above it: the beam touches the highest asperity at h = Hm.
 //
-// The field below the face of a wall does not grow. The k of a wall is such that the field of the voltage 2 V1 presses the beam
-// in by a fiftieth of H = t / eps_r + roughness, the smallest gap of the field; this is our choice. V1^2 = 8 K g^3 / (27 eps0
-// A) closes parallel plates. K is the stiffness of the beam at the contact point [N/m], g the rest gap of the field, A the area
-// of the faces [m^2].
+// For a `wall`, the electric field does not grow when the beam sinks below the face. The k of a wall is such that the field of
+// the voltage 2 V1 presses the beam in by a fiftieth of H = t / eps_r + roughness (dielectric thickness t), the smallest
+// effective gap of the field; this is our choice. V1^2 = 8 K g^3 / (27 eps0 A) closes parallel plates. K is the stiffness of
+// the beam at the contact point [N/m], g the rest gap of the field, A the area of the faces [m^2].
 //
-// The field keeps growing below the face of a linear bed. A beam on a bed softer than 27 eps0 V^2 / (8 (H + b)^3) collapses
-// onto the electrode, like parallel plates whose springs are relaxed where the pressure begins. Asperities keep the plates off
-// up to a voltage V:
+// For `linear`, the field keeps growing when the beam sinks in. The beam collapses onto the electrode if k is below 27 eps0 V^2
+// / (8 (H + b)^3): the limit of parallel plates whose springs are relaxed where the pressure begins. Asperities keep such
+// plates off the electrode up to a voltage V:
 //
 //   eps0 V^2 / 2 = max over d of p(d) (H + b - d)^2
 //
-// This product has one maximum: p / p' is two thirds of the mean depth of the summits in touch, weighted with the root of the
-// depth, and grows with d, while H + b - d falls. Derived here.
+// The product p(d) (H + b - d)^2 has one maximum: p / p' is two thirds of the mean depth of the summits in contact, weighted
+// with the root of the depth, and grows with d, while H + b - d falls. Derived here.
 #pragma once
 
 #include <algorithm>
@@ -33,24 +34,24 @@
 
 namespace softland {
 
-/// Returns the stiffness per area of a wall's face [Pa/m] from the stiffness of the beam [N/m], the rest gap [m] and area [m^2]
-/// of the field, and the smallest gap `depth` of the field [m].
+/// Returns the stiffness per area of a dielectric's face with the law `wall` [Pa/m]. `stiffness` is that of the beam at the
+/// contact point [N/m]. `gap` is the rest gap of the field [m], `area` its area [m^2], `depth` its smallest effective gap [m].
 [[nodiscard]] constexpr double wall_stiffness(double stiffness, double gap, double area, double depth) {
   constexpr double voltages = 2, sinks = 1.0 / 50;
-  // Vacuum permittivity times the square of the voltage [N].
+  // Vacuum permittivity times the square of twice the voltage that closes parallel plates [N].
   const double eps0_square = 8.0 / 27 * stiffness * gap * gap * gap / area * voltages * voltages;
   return eps0_square / (2 * sinks * depth * depth * depth);
 }
 
-/// Returns the least stiffness per area at which a linear bed on the dielectric keeps a beam off the electrode [Pa/m]; `depth`
-/// [m] is the height at which the bed begins plus the least gap of the field.
+/// Returns the least stiffness per area at which springs on the dielectric (law `linear`) keep a beam off the electrode [Pa/m].
+/// `depth` is the height at which the springs begin plus the smallest effective gap of the field [m].
 [[nodiscard]] constexpr double least_face_stiffness(double voltage, double depth) {
   return 27.0 / 8 * vacuum_permittivity * voltage * voltage / (depth * depth * depth);
 }
 
-/// Returns the voltage up to which the dielectric's face keeps parallel plates apart, if the springs of the plates are relaxed
-/// where the pressure begins [V]. `pressure` is a law of elastic contact per area, `depth` [m] is the height at which the
-/// pressure begins plus the least gap of the field.
+/// Returns the voltage up to which the dielectric's face keeps parallel plates apart whose springs are relaxed where the
+/// pressure begins [V]. `pressure` is a law of elastic contact per area. `depth` [m] is the sum of the height at which the
+/// pressure begins and the smallest effective gap of the field.
 template <class Law>
 [[nodiscard]] double most_face_voltage(const Law& pressure, double depth) {
   double low = 0, high = depth;  // bounds of the depth at which pressure times squared gap is largest [m]
@@ -62,7 +63,7 @@ template <class Law>
   return (depth - low) * std::sqrt(2 * pressure.force(low) / vacuum_permittivity);
 }
 
-/// The pressure of a dielectric's face with asperities on a beam of constant width.
+/// The force law of a dielectric's face with asperities, which presses on a beam of constant width.
 struct RoughFacePressure {
   UniformAsperityContact asperities;  ///< law of the face's asperities, per length of the beam
   static constexpr bool drive_depends = false;
@@ -77,9 +78,9 @@ struct RoughFacePressure {
   [[nodiscard]] double potential(double gap) const { return asperities.energy(std::max(0.0, asperities.height - gap)); }
 };
 
-/// The pressure of a dielectric's face, a wall or a linear bed, on a beam of constant width.
+/// The force law of a dielectric's face as springs (`wall` or `linear`), which press on a beam of constant width.
 struct FacePressure {
-  double stiffness = 0;  ///< stiffness of the face per length of the beam [N/m^2]
+  double stiffness = 0;  ///< stiffness of the face per area, times the beam's width [N/m^2]
   double from = 0;       ///< height above the dielectric's face at which the pressure begins [m]
   static constexpr bool drive_depends = false;
 
@@ -96,7 +97,8 @@ struct FacePressure {
   }
 };
 
-/// A force law of an electrode whose field stays constant below the dielectric's face, where a wall carries the beam.
+/// An electrode's force law above a dielectric with the contact law `wall`: once the beam is below the face, the electric field
+/// is that at the face.
 template <class Law>
 struct StopsAtFace {
   Law law;

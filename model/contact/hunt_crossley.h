@@ -39,19 +39,21 @@ struct HuntCrossley {
   [[nodiscard]] double energy(double d) const { return elastic.energy(d); }
 };
 
-/// Returns the contact law with damping; the law itself when the damping is 0.
+/// Returns the contact law `elastic` with damping [s/m] added; `elastic` itself when the damping is 0.
 template <class Elastic>
 [[nodiscard]] std::variant<Elastic, HuntCrossley<Elastic>> damped(const Elastic& elastic, double damping) {
   if (damping > 0) return HuntCrossley<Elastic>{.elastic = elastic, .damping = damping};
   return elastic;
 }
 
-// clang-format off
-// Returns the scene-file key of a contact law's member `damping`; 0 means no damping.
+// clang-format off Returns the scene-file key that sets a contact law's member `damping`; 0 means no damping.
 template <class Law>
 [[nodiscard]] consteval auto damping_fields() {
   return std::to_array<Field<Law>>({
-      {.key = "damping", .unit = "s/m", .about = "of Hunt and Crossley: restitution about 1 over 1 + damping times impact velocity; absent: none", .in = reach<Law, &Law::damping>},
+      {.key = "damping",
+       .unit = "s/m",
+       .about = "of Hunt and Crossley: restitution about 1 over 1 + damping times impact velocity; absent: none",
+       .in = reach<Law, &Law::damping>},
   });
 }
 // clang-format on

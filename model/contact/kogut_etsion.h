@@ -8,8 +8,8 @@
 //
 // w is the interference; w1 and P1 are those of first yield (plastic_asperity.h); K = 0.454 + 0.41 nu = 0.577, for Poisson's
 // ratio 0.3. As published the load jumps up by 3 % at w1, by 1.7 % at 6 w1 and by 8 % at 110 w1, where the fully plastic load 2
-// pi R w H takes over; an integrator of motion would take or give energy there. So every fit is scaled to begin where the fit
-// below ends: Hertz stays exact, and the fully plastic load is 0.885 of 2 pi R w H. Kinks remain at the three limits.
+// pi R w H takes over; at such a jump an integrator of motion would gain or lose energy. So every fit is scaled to begin where
+// the fit below ends: Hertz stays exact, and the fully plastic load is 0.885 of 2 pi R w H. Kinks remain at the three limits.
 // Validity: the fits are those of a frictionless elastic, perfectly plastic hemisphere on a rigid flat. Source: Kogut & Etsion
 // 2002, J. Appl. Mech. 69, 657; K: Chang, Etsion & Bogy 1987; the scaling is ours.
 #pragma once
@@ -26,9 +26,11 @@ namespace softland {
 
 class KogutEtsionAsperity {
  public:
-  static constexpr double pressure_factor = 0.577;  ///< largest pressure of an asperity at first yield over hardness
+  /// Largest pressure in an asperity at first yield, over hardness (K of the formula above).
+  static constexpr double pressure_factor = 0.577;
 
-  /// Returns the integral of the load of an asperity from 0 to u; all in units of first yield.
+  /// Returns the work of loading one asperity: the integral of its load from interference 0 to u. Both are in units of first
+  /// yield.
   template <class S>
   static S first_integral(S u) {
     using std::sqrt;
@@ -41,7 +43,7 @@ class KogutEtsionAsperity {
     return select(
         u > 1, [&] { return select(u > fits[2].begin, by(2), yielding); }, elastic);
   }
-  /// Returns the integral of first_integral() from 0 to u, for the load of an asperity.
+  /// Returns the integral of first_integral() from interference 0 to u, for the work of loading all asperities.
   static double second_integral(double u) {
     if (!(u > 1)) return u * u * u * std::sqrt(u) / 8.75;
     const Fit& fit = at(u);
@@ -49,8 +51,8 @@ class KogutEtsionAsperity {
   }
 
  private:
-  // A fit of the load of an asperity, from u = `begin` on: the load is factor u^exponent; `first` and `second` are the
-  // constants of its antiderivatives.
+  // A fit of the load of an asperity, valid from the interference `begin` on (in units of first yield): the load is factor
+  // u^exponent; `first` and `second` are the constants of its first and second antiderivative.
   struct Fit {
     double begin, exponent, factor, first, second;
   };
@@ -64,7 +66,7 @@ class KogutEtsionAsperity {
       const double u = fit.begin;
       const auto load = [u](const Fit& f) { return f.factor * std::pow(u, f.exponent); };
       fit.factor = load(below) / std::pow(u, fit.exponent);
-      // The constants make the integrals of this fit and of the fit for smaller u equal at u, where both loads are equal.
+      // Choose the constants so that the antiderivatives of this fit continue those of the fit for smaller u.
       fit.first = below.first + u * load(fit) * (1 / (below.exponent + 1) - 1 / (fit.exponent + 1));
       const auto second = [&](const Fit& f) { return f.first * u + u * u * load(f) / ((f.exponent + 1) * (f.exponent + 2)); };
       fit.second = below.second + second(below) - second(fit);

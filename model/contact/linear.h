@@ -3,8 +3,8 @@
 //   P = k d        U = k d^2 / 2
 //
 // P is the force on the beam, away from the contact [N]; d interference [m]; k stiffness [N/m]; U stored energy [J]. The law is
-// lossless. Validity: any d; for d < 0 the law is its own smooth continuation past the event that ends contact. Source:
-// McCarthy et al. 2002.
+// lossless. Validity: any d; for d < 0 the same formula continues smoothly, where an integrator evaluates it before it locates
+// the end of contact. Source: McCarthy et al. 2002.
 #pragma once
 
 #include <array>

@@ -2,21 +2,21 @@
 // surfaces, shifted so that it passes through the turning point.
 //
 //   loading        P = L(d)                          d deeper than ever before
-//   unloading      P = Pe(d - s),  s = d_m - d_e,  Pe(d_e) = L(d_m)       between s and the deepest interference d_m
+//   unloading      P = Pe(d - s),  s = d_m - d_e,  Pe(d_e) = L(d_m)       s < d < d_m, the deepest interference so far
 //   dent           P = 0                             d < s
 //
 // P is the force on the beam, away from the contact [N]; d interference [m]; L and Pe loading and elastic law, L <= Pe; s
 // residual interference [m]. Stored energy is Ue(d_e) while loading, Ue(d - s) after; the energy lost is the work of loading
 // less Ue(d_e), at d_m. P and both energies are continuous. Reloading follows the unloading curve up to d_m. Each curve is
-// continued smoothly past its end; the integrator restarts at that end. Statics (pull-in, release, closed equilibrium) are
-// those of first loading.
+// continued smoothly past its end, where the integrator restarts. Statics (pull-in, release, closed equilibrium) are those of
+// first loading.
 //
 //   hysteretic        L = k_l d, Pe = k_u d: a mass rebounds with e^2 = k_l / k_u. The dent heals when contact ends: every touch
 //                     loses the same share. Source: Tung et al. 2014 (loading and unloading stiffness).
 //   elastic-plastic   L of plastic_asperity.h, Pe the law asperity-uniform. The dent stays for the rest of the run, so that
 //                     later and lighter impacts are elastic. Source of elastic unloading: Johnson 1985, sec. 6.4; the shift of
-//                     the whole curve is ours. It leaves the summits as sharp as they were; flattened ones are stiffer and
-//                     lose more.
+//                     the whole curve is ours. The shift leaves the summits as sharp as before; flattened summits would be
+//                     stiffer and lose more energy.
 #pragma once
 
 #include <type_traits>
@@ -37,10 +37,10 @@ struct ContactWithMemory {
   Loading loading = {};
   Elastic elastic = {};
 
-  static constexpr bool heals = Heals;              ///< true when the dent of the contact vanishes at the end of the touch
-  static constexpr bool grows_with_depth = !Heals;  ///< the contact force is largest at the deepest interference of all touches
+  static constexpr bool heals = Heals;              ///< true when the residual deformation vanishes as the contact opens
+  static constexpr bool grows_with_depth = !Heals;  ///< true: the contact force is largest at the deepest interference so far
 
-  /// Returns the contact force of first loading; energy() returns the work of loading.
+  /// Returns the contact force on first loading [N]; energy() returns the work of loading [J].
   template <class S>
   S force(S d) const {
     return loading.force(d);

@@ -19,7 +19,7 @@ template <class Asperity>
 using PlasticAsperityContact =
     ContactWithMemory<PlasticAsperityLoading<Asperity, double>, UniformAsperityContactOf<double>, false>;
 
-/// Reason why a contact law with memory does not act along the pad.
+/// Reason in messages why a contact law with memory cannot act along the pad.
 inline constexpr std::string_view many_dents = "every point of the pad would keep a dent of its own";
 
 }  // namespace softland

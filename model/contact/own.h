@@ -3,7 +3,7 @@
 //   P = force(d, d')        U = energy(d), the integral of force(., 0) from 0 to d
 //
 // P is the force on the moving part, away from the contact [N]; d interference [m]: how far the contact point is beyond the
-// plane of first touch; d' its rate [m/s], positive into the contact; U stored energy [J].
+// contact plane; d' its rate [m/s], positive into the contact; U stored energy [J].
 //
 //   struct Cubic final : OwnContactLaw {
 //     std::string_view name() const override { return "cubic spring"; }
@@ -15,9 +15,9 @@
 //
 // Rules, which the laws of softland obey as well: force(0, d') = 0. For d > 0 the force is continuous with two continuous
 // derivatives. The force continues smoothly to d < 0, where an integrator evaluates it on its way to the event that ends
-// contact. The law has no memory, and nothing acts before first touch. A law that depends on the rate dissipates energy:
-// (force(d, d') - force(d, 0)) d' >= 0. Several threads call the functions at once, and often: some hundred times in a touch.
-// The functions must not throw an exception.
+// contact. The law has no memory, and no force acts before first contact. A law that depends on the rate dissipates energy:
+// (force(d, d') - force(d, 0)) d' >= 0. Several threads call the functions at once, and often: some hundred times during one
+// contact. The functions must not throw an exception.
 //
 // Such a switch is simulated, searched and evaluated under process variation (prepare(), optimize(), robustness()) like any
 // other, one closing at a time instead of several at once with SIMD instructions. Tangents for implicit steps and for statics
@@ -58,7 +58,8 @@ class OwnContactLaw {
 
 namespace internal {
 
-/// Returns the derivative of a contact force by one of its arguments, a finite difference over a millionth of this argument.
+/// Returns the derivative of a contact force by its interference or its rate, as a central difference over a millionth of this
+/// argument's value `at` plus `least_step`.
 template <class F>
 [[nodiscard]] double slope_by_differences(F&& force, double at, double least_step) {
   const double step = 1e-6 * std::abs(at) + least_step;
@@ -95,7 +96,7 @@ struct OwnContactForce {
   [[nodiscard]] double energy(double d) const { return own->energy(d); }
 
  private:
-  // Step of a finite difference at interference 0 [m], at rate 0 [m/s].
+  // Smallest step of a finite difference: of the interference [m], of its rate [m/s].
   static constexpr double least_depth = 1e-15, least_speed = 1e-5;
 };
 
@@ -109,7 +110,7 @@ struct OwnContact {
 
   static consteval auto fields() { return std::array<Field<OwnContact>, 0>{}; }
   [[nodiscard]] bool sticks() const { return own->pulls(); }
-  /// Returns the rule that the contact's parameters violate; empty when they violate none.
+  /// Returns a message that names the violated rule; empty when the parameters of the contact are valid.
   [[nodiscard]] std::string why_invalid(double) const { return own ? std::string() : "contact: the own law must not be null"; }
   [[nodiscard]] std::variant<internal::OwnContactForce<false>, internal::OwnContactForce<true>> law(const ContactPad&) const {
     if (own->depends_on_rate()) return internal::OwnContactForce<true>{own};

@@ -9,11 +9,11 @@
 // interference. Every mode leaves the free end without curvature and shear, so the pad is taken as straight: over the pad mode
 // i, of wave number k, departs from its tangent by (k lt)^4 / 24 of its deflection.
 //
-// Gauss points cover the part in contact, whose edge moves with the beam, in the root of the distance from that edge. The
-// half-integer powers of the laws become polynomials, exact while the pad is partly in touch. Measured errors, relative to the
-// force: 2e-12 when the whole pad is in touch, 3e-10 for Gaussian summits, 3e-5 where summits are crushed (d > Hm: the law has
-// a corner there). Limits: laws without memory whose force starts from zero; a law with memory would keep a dent at every
-// point. Validity: pad much shorter than the beam. Source: textbook.
+// Gauss points cover the part in contact, whose edge moves with the beam, in the root of the distance from that edge. In this
+// variable the half-integer powers of the contact laws are polynomials, so the rule is exact while part of the pad is in
+// contact. Measured errors, relative to the force: 2e-12 when the whole pad is in contact, 3e-10 for Gaussian summits, 3e-5
+// where summits are crushed (d > Hm: the law has a corner there). Limits: laws without memory whose force starts from zero; a
+// law with memory would keep a dent at every point. Validity: pad much shorter than the beam. Source: textbook.
 #pragma once
 
 #include <algorithm>
@@ -36,8 +36,8 @@ class PadQuadrature {
     }
   }
 
-  /// Calls f(xi, share, interference) for points in the part of the pad that is beyond the contact plane; xi is the distance
-  /// from the free end [m]. The shares add up to the length of this part over the pad's length.
+  /// Calls f(xi, share, interference) for each Gauss point in the part of the pad that is beyond the contact plane; xi is the
+  /// distance from the free end [m]. The weights `share` add up to the length of this part over the pad's length.
   template <class F>
   void over_contact(double end, double slope, F&& f) const {
     const double inner = end - slope * length_, deep = std::max(end, inner);
@@ -54,9 +54,9 @@ class PadQuadrature {
  private:
   static constexpr std::size_t count = 12;
   double length_;  // length of the contact pad [m]
-  // Gauss points in (0, 1), from the shallow end of the touching part of the pad to its deep end.
+  // Positions of the Gauss points in (0, 1), from the shallow end of the pad's part in contact to its deep end.
   std::array<double, count> places_{};
-  std::array<double, count> shares_{};  // weights of the pad's Gauss points, with sum 1
+  std::array<double, count> shares_{};  // weights of the Gauss points, with sum 1
 };
 
 }  // namespace softland

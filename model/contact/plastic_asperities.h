@@ -13,7 +13,7 @@ namespace softland {
 class ZmcAsperity;
 class KogutEtsionAsperity;
 
-/// Law by which one asperity yields.
+/// Law of the load of one yielding asperity: Zhao, Maietta and Chang (zmc.h), or Kogut and Etsion (kogut_etsion.h).
 enum class Plasticity { zmc, kogut_etsion };
 inline constexpr auto plasticities =
     std::to_array<Named<Plasticity>>({{Plasticity::zmc, "zmc"}, {Plasticity::kogut_etsion, "ke"}});

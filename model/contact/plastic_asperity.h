@@ -9,7 +9,7 @@
 //
 // p is Hertz's load for w < w1. R is the summit radius [m]; H hardness of the softer surface [Pa]; K the law's factor between
 // largest pressure and hardness at first yield; E* effective modulus [Pa]; eta summits per area [1/m^2]; An = width x pad
-// length [m^2]; W [J]. The integrals are in closed form. Below w1 it is the law asperity-uniform. One asperity's load is
+// length [m^2]; W [J]. The integrals are in closed form. For d < w1 the law equals asperity-uniform. One asperity's load is
 // continuous with kinks; the sum has a continuous slope. The law is odd in d (P(-d) = -P(d)). Validity: asperities that do not
 // touch each other; quasi-static yield. Unloading is not part of this law: see memory.h. Source: the laws of one asperity as
 // named there; the sum over heights as in Greenwood & Williamson 1966.
@@ -49,7 +49,7 @@ class PlasticAsperityLoading {
     return select(
         d < 0, [&]() -> S { return -(S(strength_) * sum); }, [&]() -> S { return S(strength_) * sum; });
   }
-  /// Returns the work of loading the contact from first touch to the interference d [J].
+  /// Returns the work of loading the contact from first contact to the interference d [J].
   [[nodiscard]] double energy(double d) const {
     const double m = std::abs(d);
     const double beyond = m > height_ ? Asperity::second_integral((m - height_) / yield_) : 0;

@@ -11,10 +11,10 @@
 // Such a spot is elastic while its mean pressure is below the hardness; the larger radius decides this. Without hardness a spot
 // is elastic at any load. A law without summits has one plastic spot for each contact.
 //
-// Summits in touch at the interference d, of N in all: N min(d, Hm) / Hm for uniform heights, N Q(4 - d / sigma) for Gaussian
-// ones, at least one for each contact. A dented summit stays in touch until its force vanishes. The load is the contact force;
-// the law "adhesive" adds 2 pi R W for each summit in touch, so that a contact held by adhesion conducts. A contact without
-// load is open: its conductance is 0.
+// Number n of summits in contact at the interference d, of N in all: N min(d, Hm) / Hm for uniform heights, N Q(4 - d / sigma)
+// for Gaussian ones, at least one for each contact. A dented summit stays in contact until its force vanishes. The load is the
+// contact force; the law "adhesive" adds 2 pi R W for each summit in touch, so that a contact held by adhesion conducts. A
+// contact without load is open: its conductance is 0.
 //
 // Limits: for l << a Holm's constriction rho / (2a) between two half spaces; for l >> a Sharvin's ballistic resistance, which
 // plastic spots have whatever their number. Spots do not interact: the distance between them exceeds their size. Heating,
@@ -35,7 +35,7 @@ class ContactResistance {
   /// Takes a valid contact; `width` is that of the moving part at the contact [m].
   ContactResistance(const Contact& contact, double width);
 
-  /// Returns true when the contact has a resistivity. Otherwise conductance and resistance must not be requested.
+  /// Returns true when the contact has a resistivity. Otherwise conductance() and resistance() must not be called.
   [[nodiscard]] bool is_known() const { return is_known_; }
   /// Returns the conductance of the contact [S] at an interference [m] under a contact force [N]; 0 when open.
   [[nodiscard]] double conductance(double interference, double force) const;
@@ -60,9 +60,8 @@ class ContactResistance {
 /// Returns the resistance of one contact of a device, for the width of the moving part at the contact.
 [[nodiscard]] ContactResistance contact_resistance(const Device& device, std::size_t contact);
 
-/// Returns the conductance of an electrical connection [S] from the conductances of its contacts, in the order of the device.
-/// The contacts are in series when all of them are needed, otherwise in parallel. Returns NaN when a conductance is NaN, which
-/// means unknown.
+/// Returns the conductance of the connection (electrical path) through several contacts [S], from their conductances in the
+/// order of the device: in series if all contacts are needed, otherwise in parallel. NaN when a conductance is NaN (unknown).
 [[nodiscard]] double connection_conductance(const Device& device, std::span<const double> conductances);
 
 /// Returns the resistance [Ohm] of a conductance [S]; NaN for 0, since an open contact has no resistance.

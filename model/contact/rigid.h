@@ -1,4 +1,4 @@
-// A rigid stop under a rigid plate: the velocity at the plane of first touch is reversed at once.
+// A rigid stop under a rigid plate: the velocity at the contact plane is reversed at once.
 //
 //   v+ = -e v-        lost: (1 - e^2) m v-^2 / 2        rest: e v- < sqrt(2 a h_r), a > 0        N = m a at rest
 //
@@ -8,8 +8,8 @@
 //
 // Under a constant force the rebounds are a geometric series: infinitely many in the finite time (1 + e) / (1 - e) v / a. So a
 // rebound that would rise less than h_r = 1e-6 of the contact gap, u^2 / (2 a) under that force, is not simulated. The plate
-// loses the remaining velocity and rests on the plane, held there by N, until N would have to pull. An impact has an impulse
-// (1 + e) m v- but no force. Validity: the impact lasts much shorter than anything else, and e is a property of the pair of
+// loses the remaining velocity and rests on the plane, held there by N, until N would have to pull. An impact has an impulse (1
+// + e) m v- but no force. Validity: the impact lasts much shorter than anything else, and e is a property of the pair of
 // bodies; for a beam, whose other modes take up energy at every impact, it is not. Source: Newton's law of impact; e.g.
 // Brogliato, Nonsmooth Mechanics, 2016, secs. 1.3 and 4.1.
 #pragma once
@@ -28,16 +28,17 @@ template <class P>
 struct RigidContactOf {
   P restitution = 0;  ///< coefficient of restitution of an impact
 
-  static constexpr double rest_height = 1e-6;  ///< height of a rebound, over the contact gap, below which it is not simulated
+  /// Height of a rebound below which the plate rests at once, over the contact gap.
+  static constexpr double rest_height = 1e-6;
 
-  /// Returns true when the rebound of a plate that leaves the stop at `speed` [m/s] against `acceleration` [m/s^2] would rise
-  /// less than rest_height.
+  /// Returns true when a plate that leaves the stop at `speed` [m/s] against `acceleration` [m/s^2] would rebound less than
+  /// rest_height times the contact gap, so that it counts as resting.
   [[nodiscard]] static bool rests(double speed, double acceleration, double contact_gap) {
     return acceleration > 0 && speed * speed < 2 * acceleration * rest_height * contact_gap;
   }
 
-  /// Returns 0: a rigid stop does not yield, so the contact has no force as a function of the interference and stores no
-  /// energy. closing.cc and pull_in.cc keep the plate at the stop.
+  /// Returns 0: a rigid stop has no force as a function of the interference, and stores no energy. The plate is kept at the
+  /// stop by closing.cc in a simulation and by pull_in.cc in equilibria.
   template <class S>
   S force(S) const {
     return S(0);

@@ -3,7 +3,7 @@
 //   p / H = 4 E* / (3 pi H) sqrt(d / R)
 //
 // p is the mean pressure of an elastic spot [Pa]; H hardness [Pa]; E* effective modulus [Pa]; d interference of the contact,
-// which the highest summit has from first touch on [m]; R radius of the summits [m]. Source: Hertz 1882.
+// which is that of its highest summit [m]; R radius of the summits [m]. Source: Hertz 1882.
 //
 // Limits: a summit yields from p / H = 0.4 on (Chang, Etsion & Bogy 1987, with their K = 0.6), and its pressure is the hardness
 // from about 1 on. The number above 0.4 indicates the depth of the dent, in proportion to the square root of d.
@@ -18,8 +18,8 @@
 
 namespace softland {
 
-/// Returns the pressure of the highest summit over the hardness, divided by the square root of the interference [1/m^0.5]; NaN
-/// for a law without summits, or without a given hardness.
+/// Returns the factor of sqrt(d) in p / H of the formula above [1/m^0.5], for the pressure of a contact's highest summit at the
+/// interference d; NaN for a law without summits, or without a given hardness.
 [[nodiscard]] inline double summit_pressure_scale(const Contact& contact) {
   return std::visit(
       [&]<class Law>(const Law& law) {

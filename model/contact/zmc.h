@@ -6,9 +6,9 @@
 //   u >= 54        2 u / k                                                  fully plastic
 //
 // w is the interference; w1 and P1 are those of first yield (plastic_asperity.h); k = 0.4 is the mean pressure at first yield
-// over hardness, so that K = 1.5 k = 0.6. The middle part is contact area times mean pressure, A p, as published: A = pi R w
-// a(s), p = H - H (1 - k) (ln w2 - ln w) / (ln w2 - ln w1), w2 = 54 w1. It is continuous, with kinks at both ends. Source:
-// Zhao, Maietta & Chang 2000, eqs. 11, 20 and 24.
+// over hardness, so that K = 1.5 k = 0.6. The load for 1 < u < 54 is contact area times mean pressure, A p, as published: A =
+// pi R w a(s), p = H - H (1 - k) (ln w2 - ln w) / (ln w2 - ln w1), w2 = 54 w1. The load is continuous, with kinks at u = 1 and
+// u = 54. Source: Zhao, Maietta & Chang 2000, eqs. 11, 20 and 24.
 #pragma once
 
 #include <array>
@@ -21,9 +21,11 @@ namespace softland {
 
 class ZmcAsperity {
  public:
-  static constexpr double pressure_factor = 0.6;  ///< largest pressure of an asperity at first yield over hardness
+  /// Largest pressure in an asperity at first yield, over hardness (K of the formula above).
+  static constexpr double pressure_factor = 0.6;
 
-  /// Returns the integral of the load of an asperity from 0 to u; all in units of first yield.
+  /// Returns the work of loading one asperity: the integral of its load from interference 0 to u. Both are in units of first
+  /// yield.
   template <class S>
   static S first_integral(S u) {
     using std::sqrt;
@@ -33,7 +35,7 @@ class ZmcAsperity {
     return select(
         u > 1, [&] { return select(u > ratio, plastic, yielding); }, elastic);
   }
-  /// Returns the integral of first_integral() from 0 to u, for the load of an asperity.
+  /// Returns the integral of first_integral() from interference 0 to u, for the work of loading all asperities.
   static double second_integral(double u) {
     if (!(u > 1)) return u * u * u * std::sqrt(u) / 8.75;
     if (!(u > ratio)) return 1 / 8.75 + (u - 1) * (0.4 - middle<1>(1.0)) + middle<2>(u) - middle<2>(1.0);
@@ -45,8 +47,8 @@ class ZmcAsperity {
   static constexpr double k = 0.4;     // mean pressure of an asperity at first yield over hardness
   static constexpr double ratio = 54;  // interference of an asperity at full plasticity over that at first yield
 
-  // The load of the middle part (1 < u < 54) is the sum of a_j u^j (1 + beta ln u), j = 1 ... 4. Return its first or second
-  // antiderivative.
+  // Returns the first or second antiderivative of the load for 1 < u < 54, which is a sum of a_j u^j (1 + beta ln u), j = 1 ...
+  // 4.
   template <int Times, class S>
   static S middle(S u) {
     using std::log;
