@@ -67,10 +67,11 @@ std::optional<simd::LaneDispersion> lane_dispersion(const std::optional<Dispersi
   return force->model == DispersionModel::casimir ? simd::LaneDispersion::casimir : simd::LaneDispersion::smaller;
 }
 
-/// A contact law for SIMD lanes (one lane per switch): its elastic law, damping [s/m] and unloading stiffness.
+/// A contact law as numbers for SIMD lanes (one lane per switch): its elastic law, damping [s/m] and unloading stiffness.
 struct ElasticContact {
   simd::LaneContact law = simd::LaneContact::linear;
-  // strength: factor of the contact force, for law `linear` the stiffness [N/m]; height of the asperities [m].
+  // `strength` is the factor of the contact force, for the law `linear` its stiffness [N/m]; `height` is the asperities'
+  // greatest height [m].
   double strength = 0, height = 0;
   double damping = 0;
   double unloading = 0;  // unloading stiffness of a contact with memory [N/m]; 0 without memory
@@ -90,29 +91,29 @@ std::optional<ElasticContact> lane_contact(const ContactLaw& law) {
   return std::nullopt;
 }
 
-/// Returns true when the switch has contacts and SIMD lanes support the laws of all of them.
+/// Returns true when the switch has contacts, and closings in SIMD lanes support the force laws of all of them.
 bool knows_contacts(const Switch& model) {
   for (std::size_t c = 0; c < model.contacts(); ++c)
     if (model.has_spread_contact(c) || !lane_contact(model.contact(c))) return false;
   return model.has_contact();
 }
 
-/// Returns true when the laws of the switch are those of simd::UsualLaws, the fast common set of force laws.
+/// Returns true when simd::UsualLaws, the fast code for common force laws, supports all force laws of the switch.
 bool is_usual(const Switch& model) {
   const Device& device = model.device();
   const std::vector<Electrode>& all = device.electrodes;
   const auto alike = [&](const Electrode& e) { return e.side == Side::near && e.fringing == all.front().fringing; };
-  const bool is_plate = device.structure.is_rigid();  // electrodes of a plate share quadrature points
+  const bool is_plate = device.structure.is_rigid();  // all electrodes act on the same quadrature points
   const bool film = !device.gas || (std::holds_alternative<StripGas>(*device.gas) && std::isnan(far_gap(*device.gas)));
   const bool usual_field = model.modes() <= simd::usual_modes && !device.dispersion && !model.stretching() && film &&
                            std::ranges::all_of(all, alike) && !(is_plate && all.size() > 1) &&
                            !electrode_conflict(device.structure, all);
-  // simd::UsualLaws have several contacts only in one combination of electric field and gas film.
+  // The only simd::UsualLaws for several contacts have this fringing law and a gas film.
   if (model.contacts() > 1) return usual_field && device.gas && !all.empty() && all.front().fringing == Fringing::meijs_fokkema;
   return usual_field && !device.structure.is_built() && std::holds_alternative<UniformAsperityContact>(model.contact());
 }
 
-/// Returns the pads of all electrodes, each with the number of its electrode.
+/// Returns the pads (ranges along the beam) of all electrodes, each with the number of its electrode.
 std::vector<std::pair<Stretch, int>> pads_of(const Device& device) {
   std::vector<std::pair<Stretch, int>> pads;
   for (const Electrode& e : device.electrodes) {
@@ -121,7 +122,8 @@ std::vector<std::pair<Stretch, int>> pads_of(const Device& device) {
   return pads;
 }
 
-/// Returns segments of quadrature points, each within one width and thickness and over one electrode, or over none.
+/// Divides the quadrature points into segments. Within a segment the beam has one width and thickness, and the points are over
+/// the same electrode, or all over none.
 std::vector<Segment> segments_between(const Switch& model, const LaneLayout& layout) {
   const std::vector<std::pair<Stretch, int>> pads = pads_of(model.device());
   const auto over = [&](double x) {
@@ -140,8 +142,8 @@ std::vector<Segment> segments_between(const Switch& model, const LaneLayout& lay
   return segments;
 }
 
-/// Returns the segments of quadrature points under every electrode pad: one for each side of the moving part that the electrode
-/// faces.
+/// Returns the ranges of quadrature points over every electrode pad; an electrode on both sides of the beam has a range for
+/// each side.
 std::vector<Segment> faces_of(const Switch& model) {
   const Eigen::ArrayXd& x = model.quadrature().positions();
   const auto first_at = [&](double place) { return to_int(std::lower_bound(x.begin(), x.end(), place) - x.begin()); };
@@ -160,7 +162,7 @@ std::vector<Segment> faces_of(const Switch& model) {
   return faces;
 }
 
-/// Range of quadrature points with equal width and thickness of the beam; the width is that beside the holes.
+/// Range of quadrature points with equal width and thickness of the beam; holes reduce the width by their share of the area.
 struct LaneStretch {
   simd::PointStretch points;
   double width, thickness;
@@ -217,15 +219,15 @@ LaneLayout layout_of(const Switch& model, bool measures_work) {
   return layout;
 }
 
-// Returns the interference at which the contact stores this energy [m]; the energy is small against that with all asperities in
-// contact.
+// Returns the interference at which the contact stores this energy [m]. The energy must be small compared to that with all
+// asperities in contact.
 double depth_of_energy(const ElasticContact& contact, double energy) {
   if (contact.law == simd::LaneContact::linear) return std::sqrt(2 * energy / contact.strength);
   const UniformAsperityContact law{.strength = contact.strength, .height = contact.height};
   return law.height * std::pow(energy / law.energy(law.height), 2.0 / 7);
 }
 
-/// Sets the gaps, and the smallest valid gaps, of electrodes and film on the far side of the moving part.
+/// Sets the limits of gaps on the far side of the moving part, for the electrodes and the gas film there.
 void set_far_side(LaneSwitch& s, const Device& device) {
   s.most_gap = std::numeric_limits<double>::infinity();
   const auto set = [&](double gap, double& both, double& floor) {
@@ -279,7 +281,7 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
   const std::vector<LaneStretch> stretches = stretches_of(model);
   for (std::size_t k = 0; k < stretches.size(); ++k) {
     s.width[k] = stretches[k].width, s.thickness[k] = stretches[k].thickness;
-    // The viscosity differs along a film with open ends: more gas leaves through the ends where the film is wide.
+    // The effective viscosity of a film with open ends depends on the width: more gas leaves through the ends of a wide film.
     if (!device.structure.is_built() || !device.gas) continue;
     std::visit(
         [&](const auto& film) {
@@ -307,7 +309,7 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
   return s;
 }
 
-/// Returns the depth at which a contact carries the force that counts as steady, without damping [m].
+/// Returns the interference at which the static force of a contact is EnsembleClosing::steady_force [m]; infinite if not given.
 double steady_depth(const EnsembleClosing& closing, std::size_t c) {
   if (!(closing.steady_force > 0)) return std::numeric_limits<double>::infinity();
   const ElasticContact contact = *lane_contact(closing.model->contact(c));
@@ -315,8 +317,8 @@ double steady_depth(const EnsembleClosing& closing, std::size_t c) {
   return UniformAsperityContact{.strength = contact.strength, .height = contact.height}.interference(closing.steady_force);
 }
 
-/// Passes the touches of a closing in a SIMD lane to an observer, with force and energy of the contact law; for several
-/// contacts these are the touches of their connection.
+/// Adds forces and energies to the touches (intervals in contact) of a closing in a SIMD lane, and passes them to an observer.
+/// The observer receives the touches of the connection when there are several contacts.
 class ContactAdapter final : public simd::LaneObserver {
  public:
   explicit ContactAdapter(const EnsembleClosing& closing) : model_(closing.model), observer_(closing.observer) {}
@@ -365,14 +367,14 @@ class ContactAdapter final : public simd::LaneObserver {
   ConnectionTouches touches_;
 };
 
-/// Returns true when a switch of several contacts touches any contact after the first at rest, at the start of a run.
+/// Returns true when any contact but the first is closed at the start of a run, in the open equilibrium `rest`.
 bool rests_on_contact(const Switch& model, const Eigen::VectorXd& rest) {
   for (std::size_t c = 1; c < model.contacts(); ++c)
     if (model.contact_deflection(rest.data(), c) > model.contact_gap(c)) return true;
   return false;
 }
 
-/// Returns true when the factor of the dispersion force changes in the run; the work of this drive is not that of a charge.
+/// Returns true when a drive changes the dispersion force in the run. drive_energy() cannot compute the work of such a drive.
 bool drives_dispersion(const EnsembleClosing& c) {
   for (std::size_t k = 0; k < c.drives.size(); ++k) {
     if (c.model->drive_kind(k) == DriveKind::dispersion && !c.drives[k].is_zero()) return true;
@@ -388,8 +390,9 @@ double field_energy(const Switch& model, std::span<const double> volts, const do
   return energy;
 }
 
-/// Returns the work V dQ of the drives [J]: the energy that the fields gain, the work on the modes, and the charging of a piezo
-/// layer. The charge that a piezo's motion moves depends on the modes alone.
+/// Returns the energy that the sources deliver, the integral of V dQ over all drives [J]: the gain of the electric fields'
+/// energy, the work on the modes, and the charging of a piezo layer at rest. The charge that motion moves in a piezo layer is
+/// part of the work on the modes.
 double drive_energy(const EnsembleClosing& c, const LaneClosing& lane) {
   std::vector<double> at_end;
   for (std::size_t k = 0; k < c.drives.size(); ++k) at_end.push_back(lane.gain[k] * c.drives[k].voltage(lane.end));

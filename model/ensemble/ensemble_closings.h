@@ -1,15 +1,15 @@
 // Closings of many switches at once, one in each lane of the processor's vector (SIMD) registers: the devices of an ensemble
-// have different parameters and almost the same operations. Every lane has its own parameters, drives, time step and events,
-// and receives the next switch when its closing has ended. The method is that of one closing (integrators/lawson.h,
+// have different parameters, but need almost the same operations. Every lane has its own parameters, drives, time step and
+// events, and receives the next switch when its closing has ended. The method is that of one closing (integrators/lawson.h,
 // model/closing.h), so the figures agree within the tolerance.
 //
-// All lanes attempt one step in every round: six right-hand sides for as many switches as there are lanes. A lane whose step
-// crosses the contact plane repeats this step up to the crossing in the next round. A lane whose drives enter new pieces spends
-// a round on a step of no length, which computes its new accelerations. So no lane waits for another, and no lane depends on
-// the others: results have the same bits whatever the order and the number of lanes.
+// In every round all lanes attempt one step: six evaluations of the equations of motion, each for as many switches as there are
+// lanes. A lane whose step crosses the contact plane repeats this step up to the crossing in the next round. A lane whose
+// drives enter new pieces spends a round on a step of no length, which computes its new accelerations. So no lane waits for
+// another, and no lane depends on the others: results have the same bits whatever the order and the number of lanes.
 //
-// Limits: some laws are not written for lanes (why_not_in_lanes()), energies are not audited, and a closing with a numerical
-// problem ends early. simulate_closing() handles all of these closings, one at a time.
+// Limits: some laws are not written for lanes (why_not_in_lanes()), the energy balance is not audited, and a closing with a
+// numerical problem ends early. simulate_closing() handles all of these closings, one at a time.
 #pragma once
 
 #include <array>
@@ -44,12 +44,12 @@ static_assert(is_complete<vector_instructions>());
 /// instructions.
 [[nodiscard]] Vectors vectors_in_use();
 
-/// Receives touches and rebounds of a closing that is simulated in one SIMD lane.
+/// Receives touches (intervals in contact) and rebounds of a closing that is simulated in one SIMD lane.
 class LandingObserver {
  public:
-  /// Receives a touch that is over, or, at the end of the run, a touch that has not ended, whose end is NaN. For several
-  /// contacts the touch is one of their connection (model/closing/connection.h), and arrives when the next touch begins, or at
-  /// the end.
+  /// Receives a touch (interval in contact) when the contact has opened; a touch that has not ended at the end of the run has
+  /// the end NaN. For several contacts the touch is one of their connection (model/closing/connection.h), and is passed on when
+  /// the next touch begins, or at the end of the run.
   virtual void touch(const Touch& touch) = 0;
   /// Receives a separation of the contact after the first touch: begin [s], end [s] and height [m]. The end is NaN for a
   /// separation that has not ended at the end of the run.
@@ -62,7 +62,7 @@ class LandingObserver {
   LandingObserver& operator=(const LandingObserver&) = default;
 };
 
-/// A closing to be simulated in a SIMD lane; the limits have the meaning of those in ClosingOptions.
+/// A closing to be simulated in a SIMD lane. Limits of time and the contact force for settling are as in ClosingOptions.
 struct EnsembleClosing {
   const Switch* model = nullptr;
   std::span<const Signal> drives;
@@ -70,29 +70,32 @@ struct EnsembleClosing {
   double duration = 0;                 ///< length of the simulated time window [s]
   double after_contact = std::numeric_limits<double>::infinity(), no_end_before = 0;
   double no_contact_before = std::numeric_limits<double>::infinity();
-  double steady_force = std::numeric_limits<double>::quiet_NaN();  ///< contact force that counts as steady [N]
+  /// Contact force from which the contact counts as settled [N].
+  double steady_force = std::numeric_limits<double>::quiet_NaN();
   bool measures_drive_energy = false;
   LandingObserver* observer = nullptr;
 };
 
-/// The result of a closing in a SIMD lane. A closing that was not simulated to its end has to be run by simulate_closing(),
-/// although its observer has received the events up to the failure.
+/// The result of a closing in a SIMD lane. When `followed` is false, the closing was not simulated to its end: simulate it with
+/// simulate_closing(). Its observer may have received events up to the failure.
 struct EnsembleEnd {
   bool followed = false;
   double time = 0;  ///< time at which the simulation ended [s]
-  /// Time from which the contact force is steady [s] and least force after the first touch [N], as the members of Trajectory.
+  /// Time from which the contact force stays at or above EnsembleClosing::steady_force [s], and least contact force after its
+  /// first maximum [N]; see Trajectory.
   double steady_force_time = std::numeric_limits<double>::quiet_NaN(),
          least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
-  double drive_energy = std::numeric_limits<double>::quiet_NaN();  ///< energy that the drives give; NaN if not computed [J]
-  FirstTouch first_touch = {};  ///< first touch of any contact, for a switch with several contacts
+  /// Energy that the sources deliver to the drives; NaN if not computed [J].
+  double drive_energy = std::numeric_limits<double>::quiet_NaN();
+  FirstTouch first_touch = {};  ///< first touch of any contact of the connection, for several contacts
 };
 
 /// Returns the reason why closings of this switch cannot be simulated several at once in SIMD lanes; empty when they can.
 [[nodiscard]] std::string why_not_in_lanes(const Switch& model);
 
-/// Simulates all closings in SIMD lanes and returns their results in order; `tolerance` as in ClosingOptions. With
-/// Vectors::none no closing is simulated. A closing is also left out when its switch differs from the first switch in
-/// quadrature points or drives.
+/// Simulates all closings in SIMD lanes and returns their results in order; `tolerance` as in ClosingOptions. Closings that are
+/// not simulated have EnsembleEnd::followed = false: all closings with Vectors::none, closings that SIMD lanes do not support,
+/// and closings whose switch differs from the first switch in its LaneLayout.
 [[nodiscard]] std::vector<EnsembleEnd> close_in_lanes(std::span<const EnsembleClosing> closings, double tolerance,
                                                       Vectors vectors);
 

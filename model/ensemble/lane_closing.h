@@ -1,6 +1,6 @@
-// The data for closings in SIMD lanes that ensemble_closings.cc passes to the code compiled for each set of vector
-// instructions: numbers only. This code must leave no function behind that the linker could use for the rest of the program,
-// since not every processor can run it.
+// The data that ensemble_closings.cc passes to the simulation of closings in SIMD lanes, as plain numbers. This simulation is
+// compiled once for each set of vector instructions. Its code must contain no inline function that the linker could use for the
+// rest of the program, since not every processor can run it.
 #pragma once
 
 #include <cstddef>
@@ -13,20 +13,20 @@ namespace softland::simd {
 
 inline constexpr int most_modes = 8, most_points = 48, most_drives = 6, most_segments = most_points;
 inline constexpr int most_contacts = 4;
-inline constexpr int usual_modes = 4;  ///< largest number of modes for UsualLaws
+inline constexpr int usual_modes = 4;  ///< largest number of modes for UsualLaws (lane_laws.h)
 
 enum class LaneFringing { none, linear, meijs_fokkema };
 enum class LaneFilm { none, strip, strip_slit, veijola, gallis_torczynski, near_contact, guo_alexeenko, linear };
 enum class LaneDispersion { none, van_der_waals, casimir, smaller };
 enum class LaneContact { asperity_uniform, linear };
 
-/// Quadrature points from `begin` up to `end` under the same electrode, or under none.
+/// Quadrature points from `begin` up to `end` that are over the same electrode, or all over none.
 struct Segment {
   int begin = 0, end = 0;
   int electrode = -1;  ///< number of the electrode; -1 without an electrode
   LaneFringing fringing = LaneFringing::none;
   bool far = false;  ///< true for an electrode on the far side
-  int stretch = 0;   ///< index of the PointStretch (range of equal beam size) that contains these points; only for UsualLaws
+  int stretch = 0;   ///< index of the PointStretch that contains these points; only for UsualLaws
   [[nodiscard]] bool operator==(const Segment&) const = default;
 };
 
@@ -36,7 +36,7 @@ struct PointStretch {
   [[nodiscard]] bool operator==(const PointStretch&) const = default;
 };
 
-/// The properties of a contact that all SIMD lanes of a run share.
+/// The kind of one contact, equal for all switches that are simulated together in SIMD lanes.
 struct LaneContactKind {
   LaneContact law = LaneContact::asperity_uniform;
   bool damped = false;
@@ -46,9 +46,11 @@ struct LaneContactKind {
   [[nodiscard]] bool operator==(const LaneContactKind&) const = default;
 };
 
-/// The properties of the switches that all SIMD lanes of a run share.
+/// The structure of the switches (kinds of laws, numbers of parts), equal for all switches that are simulated together in SIMD
+/// lanes.
 struct LaneLayout {
-  /// True for UsualLaws, with segments in sequence; otherwise segments are electrode pads, which may share points.
+  /// True when UsualLaws computes the forces; the segments then follow each other along the beam. Otherwise each segment is an
+  /// electrode pad, and pads may share points.
   bool usual = true;
   int modes = 0, points = 0, segments = 0, electrodes = 0, drives = 0;
   bool piezo = false, stretching = false;
@@ -58,10 +60,10 @@ struct LaneLayout {
   LaneDispersion dispersion = LaneDispersion::none;
   int contacts = 1;
   LaneContactKind contact[most_contacts];
-  bool needs_all = true;  ///< true when the electrical connection needs all of its contacts; false when any of them closes it
-  bool measures_work = false;  ///< true when the work of the drives is computed, which UsualLaws cannot
+  bool needs_all = true;       ///< true when the connection is closed while all of its contacts are closed; false: while any is
+  bool measures_work = false;  ///< true when the work of the drives is computed; not with UsualLaws
   Segment segment[most_segments];
-  int stretches = 1;  ///< number of point ranges of equal beam size; one per point for a width that changes everywhere
+  int stretches = 1;  ///< number of elements of `stretch`; one per quadrature point where the width changes linearly
   PointStretch stretch[most_points];
   [[nodiscard]] bool operator==(const LaneLayout&) const = default;
 };
@@ -70,16 +72,17 @@ struct LaneLayout {
 struct LaneContactNumbers {
   double plane = 0;                 // distance of the contact from its plane at rest [m]
   double shape[most_modes] = {};    // mode shapes at the contact, positive towards its plane [kg^(-1/2)]
-  double strength = 0, height = 0;  // parameters of the contact law; strength of a linear law is its stiffness [N/m]
+  double strength = 0, height = 0;  // factor of the contact force (`linear`: stiffness [N/m]), height of asperities [m]
   double damping = 0;               // damping constant of the contact [s/m]
-  double unloading_stiffness = 0;   // unloading stiffness of a contact law with memory; `strength` is that of loading [N/m]
-  double negligible_depth = 0;      // distance from the contact plane at which a step counts as ending on the plane [m]
+  // Unloading stiffness of a contact law with memory; `strength` is its loading stiffness [N/m].
+  double unloading_stiffness = 0;
+  double negligible_depth = 0;  // distance from the contact plane at which a step counts as ending on the plane [m]
 };
 
 /// One switch in a SIMD lane, as plain numbers. Entries of modes that the switch does not have are 0.
 struct LaneSwitch {
   int modes = 0;
-  double open = 0, floor = 0;     // largest gap at rest; least gap, at which a run ends [m]
+  double open = 0, floor = 0;     // largest gap at rest; smallest valid gap, below which a run fails [m]
   double omega[most_modes] = {};  // angular frequencies of the modes [rad/s]
   // Piezo force per volt [N kg^(-1/2) / V] and damping [1/s] of each mode.
   double piezo[most_modes] = {}, friction[most_modes] = {};
@@ -87,35 +90,34 @@ struct LaneSwitch {
   double rest_gap[most_points] = {};                                     // gap to the electrode at rest [m]
   // Absolute tolerances of modal coordinates in flight and in contact.
   double flying[most_modes] = {}, touching[most_modes] = {};
-  double speed[most_modes] = {};                                // absolute tolerances of the modes' velocities
-  double width[most_points] = {}, thickness[most_points] = {};  // width and thickness of the beam by range of points [m]
-  double viscosity[most_points] = {};                           // gas viscosity by range of points [Pa s]
+  double speed[most_modes] = {};                                // absolute tolerances of the modal velocities
+  double width[most_points] = {}, thickness[most_points] = {};  // size of the beam in each PointStretch [m]
+  double viscosity[most_points] = {};                           // effective viscosity of the gas in each PointStretch [Pa s]
   // Mean free path of the gas, height and length of the slit under the film [m].
   double mean_free_path = 0, slit_height = 0, slit_length = 0;
   double damping = 0;  // damping per length of the gas law `linear` [N s/m^2]
-  // Sum of the gaps on both sides, of each electrode and of the gas film [m].
+  // Near gap plus far gap [m], for each electrode on the far side, and for a gas film there.
   double electrode_gaps[most_drives] = {}, film_gaps = 0;
-  // Least valid gap on the far side, of each electrode and of the gas film [m].
+  // Smallest valid gap on the far side [m], for each electrode and for the gas film.
   double electrode_floor[most_drives] = {}, film_floor = 0;
-  double most_gap = 0;  // largest valid gap on the near side [m]
-  // Hamaker constant [J], distance without force [m], crossover to the Casimir law [m].
+  double most_gap = 0;  // largest near gap at which all far gaps are still valid [m]
+  // Dispersion force: Hamaker constant [J], equilibrium distance [m], gap at which the Casimir law takes over [m].
   double hamaker_constant = 0, equilibrium_distance = 0, crossover = 0;
-  double tension = 0;  // tension of mid-plane stretching [N/m]
-  // Matrix of mid-plane stretching, integrals of products of mode slopes [1/(kg m)].
+  double tension = 0;  // stiffness of mid-plane stretching [N/m]
+  // Integrals of the products of mode slopes, for mid-plane stretching [1/(kg m)].
   double slopes[most_modes][most_modes] = {};
   LaneContactNumbers contact[most_contacts];
 };
 
-/// Receives the touches and rebounds of a closing in a SIMD lane.
+/// Receives the touches (intervals in contact) and rebounds of a closing in a SIMD lane.
 class LaneObserver {
  public:
-  /// Receives a touch of a contact: begin and end [s], impact velocity [m/s], depth [m]; of a damped contact also the largest
-  /// force [N].
+  /// Receives a touch of a contact when it has ended: begin and end [s], impact velocity [m/s], largest interference [m]; for a
+  /// damped contact also the largest force [N].
   virtual void touch(int contact, double begin, double end, double speed, double depth, double force) = 0;
-  /// Receives an electrical closing of the connection of several contacts: time [s], speed of the contact that causes the
-  /// closing [m/s].
+  /// Receives a closing of the connection of several contacts: time [s], speed of the contact that closes it [m/s].
   virtual void closes(double time, double speed) = 0;
-  /// Receives an electrical opening of the connection of several contacts: time [s].
+  /// Receives an opening of the connection of several contacts: time [s].
   virtual void opens(double time) = 0;
   /// Receives a rebound of the contact, or of the connection of several contacts: begin [s], end [s], height [m].
   virtual void rebound(double begin, double end, double height) = 0;
@@ -127,7 +129,7 @@ class LaneObserver {
   LaneObserver& operator=(const LaneObserver&) = default;
 };
 
-/// A piece of a drive's voltage signal (waveforms/pieces.h); its terms are a cubic polynomial and exponentials:
+/// A piece of a drive's voltage signal, as waveforms/pieces.h, but with a cubic polynomial and exponentials as its only terms:
 ///   value + slope s + square s^2 + cube s^3 + sum over tails of tail exp(-decay s)
 ///     + [amplitude + amplitude_slope s] sin(angular_frequency t + phase),  s = t - begin
 struct LanePiece {
@@ -139,7 +141,8 @@ struct LanePiece {
   // sine: amplitude [V], its rate [V/s], frequency [rad/s], phase [rad].
   double amplitude = 0, amplitude_slope = 0, angular_frequency = 0, phase = 0;
   double longest_step = 0;  // longest integration step that resolves the piece [s]
-  // True when the piece continues the one before smoothly, so that an integration step may cross its beginning.
+  // True when the piece continues the previous one with equal voltage and slope, so that an integration step may cross its
+  // beginning.
   bool joins = false;
 };
 
@@ -152,13 +155,13 @@ struct LaneClosing {
   int piece_count[most_drives] = {};
   double gain[most_drives] = {};  // factor on the voltages of each drive
   double duration = 0, after_contact = 0, no_end_before = 0, no_contact_before = 0;
-  // Depth at which each contact carries the steady force [m]; infinite if no such force is given.
+  // Interference at which each contact's static force is EnsembleClosing::steady_force [m]; infinite if that is not given.
   double steady_depth[most_contacts] = {};
   LaneObserver* observer = nullptr;
   bool followed = false;
   double end = 0;
-  /// Time from which the contact force is steady [s] and least depth [m] of each contact; NaN when the contact has not touched,
-  /// or its force is not steady at the end.
+  /// Time from which the force of each contact stays at or above EnsembleClosing::steady_force [s], NaN if the force is below
+  /// it at the end; least interference after the first maximum of the force [m], NaN without a touch.
   double steady_from[most_contacts] = {}, least_depth[most_contacts] = {};
 };
 

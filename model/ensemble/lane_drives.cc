@@ -15,7 +15,7 @@ bool is_tail(const SignalTerm& term) {
          std::all_of(term.cosine.begin() + 1, term.cosine.end(), [](double c) { return c == 0; });
 }
 
-/// A sequence (run) of short pieces of a drive signal, with the integral of the voltage up to each piece.
+/// A sequence of short pieces of a drive signal, with the integral of the voltage up to the beginning of each piece.
 class PieceRun {
  public:
   PieceRun(std::span<const LanePiece> pieces, double end) : pieces_(pieces), end_(end) {
@@ -43,7 +43,8 @@ class PieceRun {
   /// Returns the integral of the voltage from the beginning of the sequence to `time` [V s].
   [[nodiscard]] double integral(double time) const { return integral_to(time, piece_at(time)); }
 
-  /// Returns the median duration of two consecutive pieces of the sequence [s]: one sample of the signal, or two.
+  /// Returns the median duration of two consecutive pieces of the sequence [s]: the window of the moving average. A sample of
+  /// the signal has one piece or two, so the window is two samples or one.
   [[nodiscard]] double window() const {
     std::vector<double> lengths;
     for (std::size_t i = 0; i + 2 < pieces_.size(); ++i) lengths.push_back(pieces_[i + 2].begin - pieces_[i].begin);
@@ -70,12 +71,12 @@ class PieceRun {
   std::span<const LanePiece> pieces_;
   double end_;
   std::vector<double> integrals_;
-  // Index of the piece used last; the search begins there, since times increase from call to call.
+  // Index of the piece used last, from which piece_at() searches: the times increase from call to call.
   mutable std::size_t near_ = 0;
 };
 
 struct Knot {
-  double time = 0, value = 0, rate = 0;  // time [s], voltage [V] and its rate [V/s] at an end of a smooth piece
+  double time = 0, value = 0, rate = 0;  // time [s], voltage [V] and its rate [V/s] at an end of a cubic piece
 };
 
 /// Returns the mean voltage over a window about a time, and the rate of change of this mean. Near an end of the sequence of
@@ -91,7 +92,7 @@ Knot mean_about(double time, const PieceRun& run, double window) {
   return {time, mean, (run.voltage(time + half) - run.voltage(time - half)) / (2 * half)};
 }
 
-/// Returns the cubic polynomial through voltages and rates at two times.
+/// Returns the cubic polynomial that has the given voltages and rates at the times of `a` and `b`.
 LanePiece between(const Knot& a, const Knot& b) {
   const double h = b.time - a.time, rise = (b.value - a.value) / h;
   return {.begin = a.time,
@@ -102,19 +103,19 @@ LanePiece between(const Knot& a, const Knot& b) {
           .longest_step = infinite};
 }
 
-/// Returns the integral of the original voltage between two times, `integral`, less that of the cubic polynomial between them
-/// [V s].
+/// Returns the integral of the original voltage between the times of `a` and `b`, `integral`, less that of the cubic polynomial
+/// between them [V s].
 double missing(const Knot& a, const Knot& b, double integral) {
   const double h = b.time - a.time;
   return integral - h * ((a.value + b.value) / 2 + h * (a.rate - b.rate) / 12);
 }
 
-/// Restores the integral of the voltage, which a moving average changes at corners: the voltage at each time between the ends
-/// is corrected by the integral that the cubics on both sides lack.
+/// Restores the integral of the voltage, which the moving average changes at corners. Each knot (end of a cubic) between the
+/// first and the last is corrected by the integral that the cubics on both sides lack.
 void restore_integral(std::vector<Knot>& knots, const PieceRun& run) {
   const std::size_t last = knots.size() - 1;
-  double until = run.integral(knots.front().time);  // integral of the original voltage up to the knot (end of a cubic) [V s]
-  std::vector<double> more(knots.size(), 0);        // correction of the voltage at each knot (end of a cubic) [V]
+  double until = run.integral(knots.front().time);  // integral of the original voltage up to this knot [V s]
+  std::vector<double> more(knots.size(), 0);        // correction of the voltage at each knot [V]
   const double step = (run.end() - run.begin()) / static_cast<double>(last);
   for (std::size_t k = 0; k < last; ++k) {
     const double next = run.integral(knots[k + 1].time), lost = missing(knots[k], knots[k + 1], next - until) / step;
@@ -152,8 +153,8 @@ bool goes_in_lanes(const Signal& drive) {
 
 namespace {
 
-/// Returns the longest step that resolves a signal piece, Signal::resolving_step(); without oscillations this is the shortest
-/// time constant.
+/// Returns the longest integration step that resolves a signal piece [s]: as Signal::resolving_step() for a sine, otherwise the
+/// shortest time constant.
 double longest_step(const Signal& drive, const SignalPiece& piece) {
   if (piece.oscillates()) return drive.resolving_step(piece.begin);
   double step = infinite;
@@ -191,7 +192,7 @@ std::vector<LanePiece> pieces_of(const Signal& drive) {
 }
 
 SmoothedDrive smoothed(std::vector<LanePiece> exact) {
-  constexpr std::size_t fewest = 8;  // least number of short pieces in succession that a moving average replaces
+  constexpr std::size_t fewest = 8;  // a moving average replaces only sequences of at least as many short pieces
   const auto is_short = [&](std::size_t i) {
     const LanePiece& p = exact[i];
     const double fastest = std::max(p.decay[0], p.decay[1]);

@@ -1,5 +1,5 @@
-// Converts the signals of drives to pieces for closings in SIMD lanes; a smooth signal replaces a finely sampled and filtered
-// signal.
+// Converts the signals of drives to pieces for closings in SIMD lanes. A signal that was finely sampled and then filtered is
+// replaced by a smooth signal with fewer breakpoints.
 #pragma once
 
 #include <limits>
@@ -12,28 +12,29 @@
 
 namespace softland::simd {
 
-/// Returns true when SIMD lanes support a signal: it consists of straight lines, steady sines, cubic polynomials and a few
-/// exponentials.
+/// Returns true when closings in SIMD lanes support a signal: its pieces have straight lines, sines whose amplitude is constant
+/// or changes linearly, cubic polynomials, and at most LanePiece::most_tails exponentials.
 [[nodiscard]] bool goes_in_lanes(const Signal& drive);
 
-/// Returns the pieces, for SIMD lanes, of a signal for which goes_in_lanes() is true.
+/// Returns the pieces of a drive signal in the form for SIMD lanes; goes_in_lanes() must be true for the signal.
 [[nodiscard]] std::vector<LanePiece> pieces_of(const Signal& drive);
 
-/// Pieces of a drive signal in which a moving average replaces each sequence of short pieces. Such a sequence arises when a
-/// filter with a time constant longer than a sample smooths a sampled signal. A switch of lower frequencies cannot follow the
-/// ripple of the samples, yet each piece has a breakpoint. The average preserves the integral of the voltage, and its pieces
-/// join with their slopes, so that integration steps pass over their ends.
+/// Pieces of a drive signal in which a moving average replaces each sequence of short pieces. A sampled signal has such
+/// sequences after a filter with a time constant longer than a sample. A switch whose modes are slow compared to the samples
+/// cannot follow their ripple, but each piece would cost a breakpoint. The average preserves the integral of the voltage. Its
+/// pieces join with equal slopes, so that integration steps may cross their ends.
 struct SmoothedDrive {
   std::vector<LanePiece> pieces = {};
-  double window = 0;  ///< longest window of a moving average, the duration of two samples [s]; 0 without an average
+  double window = 0;  ///< longest window of a moving average [s]; 0 without an average
 };
 [[nodiscard]] SmoothedDrive smoothed(std::vector<LanePiece> exact);
 
-/// The signal pieces of drives for closings in SIMD lanes, computed once however many switches a drive closes.
+/// The signal pieces of drives for closings in SIMD lanes, computed once for all switches with the same drive signals.
 class LaneDrives {
  public:
   [[nodiscard]] bool go_in_lanes(std::span<const Signal> drives);
-  /// Returns the signal pieces of a drive for a switch whose modes have angular frequencies up to `fastest` [rad/s].
+  /// Returns the signal pieces of a drive for a switch whose modes have angular frequencies up to `fastest` [rad/s]: smoothed
+  /// pieces when the window of the moving average is shorter than 1 / `fastest`, exact pieces otherwise.
   [[nodiscard]] const std::vector<LanePiece>& of(const Signal& drive, double fastest);
 
  private:

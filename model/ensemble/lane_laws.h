@@ -1,12 +1,13 @@
-// The force laws of closings in SIMD lanes, in two variants that compute forces from coordinates and velocities.
+// The force laws of closings in SIMD lanes. Two classes compute the modal forces from modal coordinates and velocities.
 //
 // UsualLaws: up to four modes, electrodes on the near side that do not overlap, a strip film or none, an undamped contact of
-// asperities. The laws are chosen at compile time, and each point is visited once, in registers. UsualLaws with a capacity for
-// several widths and thicknesses cover a beam of sections with several contacts of any law.
+// asperities. The laws are chosen at compile time. For each quadrature point all loads are computed at once, in registers. The
+// class covers a beam of several widths and thicknesses, and several contacts of any law, if `most_stretches` is above 1.
 //
-// AnyLaws: more modes, other laws and several contacts, chosen by the layout. The points are visited law by law.
+// AnyLaws: more modes, other laws and several contacts, chosen at run time by the LaneLayout. Each law is computed for all
+// quadrature points before the next law.
 //
-// Each of the two variants has its own class for the law of a contact.
+// UsualContact and AnyContact are the corresponding laws of a contact.
 //
 // All code here depends on the type of the SIMD vectors: see simd_closings.h.
 #pragma once
@@ -37,13 +38,13 @@ class UsualContact {
  public:
   static constexpr bool has_damping = false, has_memory = false;
 
-  /// Sets the numbers of this contact for the switch in SIMD lane `l`.
+  /// Sets the parameters of this contact in SIMD lane `l`.
   void take(const LaneContactKind&, const LaneContactNumbers& numbers, std::size_t l) {
     strength_[l] = numbers.strength, height_[l] = numbers.height;
     law_ = {.strength = strength_, .height = height_};
   }
 
-  /// Returns the contact force at a depth beyond the contact plane [N]; `rate()` gives the speed into the contact [m/s].
+  /// Returns the contact force at an interference `depth` [N]; `rate()` would return its rate [m/s].
   template <class Rate>
   [[gnu::always_inline]] V push(V depth, Rate&&) const {
     return law_.force(depth);
@@ -57,7 +58,7 @@ class UsualContact {
 template <class V>
 class AnyContact {
  public:
-  // Damping and memory are used only for a kind of contact that has them.
+  // The code for damping and memory exists; whether a contact uses it depends on its LaneContactKind.
   static constexpr bool has_damping = true, has_memory = true;
 
   void take(const LaneContactKind& kind, const LaneContactNumbers& numbers, std::size_t l) {
@@ -71,7 +72,8 @@ class AnyContact {
     if (kind_.law == LaneContact::linear) return push_of(LinearContactOf<V>{.stiffness = strength_}, depth, rate);
     return push_of(UniformAsperityContactOf<V>{.strength = strength_, .height = height_}, depth, rate);
   }
-  /// Returns the force of a contact with memory while unloading [N]; `depth` counts from the position at which the force is 0.
+  /// Returns the force of a contact with memory while unloading [N]; `depth` is the interference less the residual
+  /// interference.
   V pull_back(V depth) const { return LinearContactOf<V>{.stiffness = unloading_}.force(depth); }
 
  private:
@@ -89,7 +91,7 @@ template <class V, template <class> class FringingOf, bool has_film, int most_st
 class UsualLaws {
   using Force = ElectrostaticForce<FringingOf<V>>;
   using Film = StripSqueezeFilmOf<V>;
-  /// True when the fringing law is written in powers of h^(-1/4) of the gap h, which the law of a gas film can reuse.
+  /// True when the fringing law is computed from h^(-1/4) of the gap h; the law of the gas film then uses this root, too.
   static constexpr bool has_root = requires(const FringingOf<V>& law, V h) { law.factor_over_square(h); };
 
  public:
@@ -100,7 +102,7 @@ class UsualLaws {
 
   explicit UsualLaws(const LaneLayout& layout) : layout_(layout) {}
 
-  /// Sets the numbers of this switch for SIMD lane `l`.
+  /// Sets the parameters of the switch in SIMD lane `l`.
   void take(const LaneSwitch& s, std::size_t l) {
     for (int p = 0; p < layout_.points; ++p) {
       weight_[p][l] = s.weight[p], rest_gap_[p][l] = s.rest_gap[p];
@@ -120,7 +122,7 @@ class UsualLaws {
 
   [[nodiscard]] const V& floor() const { return floor_; }
 
-  /// Adds the modal forces of electric fields and gas film; sets `least` to the smallest gap along the beam.
+  /// Adds the modal forces of electric fields and gas film to `sum`, and sets `least` to the smallest gap along the beam.
   [[gnu::always_inline]] void add(const V* __restrict q, const V* __restrict v, const V* volts, V* sum, V& least) {
     V smallest = open_;
     const auto field = [&](int p, V& gap, V& velocity) __attribute__((always_inline)) {
@@ -171,7 +173,7 @@ class UsualLaws {
     least = smallest;
   }
 
-  /// Returns the power of the electrodes on the modes [W]; UsualLaws do not measure power.
+  /// Returns 0, since UsualLaws do not compute the power of the electrodes on the modes [W].
   [[nodiscard]] V power() const { return 0; }
 
  private:
@@ -203,7 +205,7 @@ class AnyLaws {
     open_[l] = s.open, floor_[l] = s.floor, most_gap_[l] = s.most_gap;
     for (int k = 0; k < layout_.stretches; ++k) {
       width_[k][l] = s.width[k], thickness_[k][l] = s.thickness[k], viscosity_[k][l] = s.viscosity[k];
-      // Roots of the width are computed once here, and not at every call.
+      // Construct the fringing law once per switch, since its constructor computes roots of the width.
       if (has_meijs_fokkema_) meijs_fokkema_[k] = {.width = width_[k], .thickness = thickness_[k]};
     }
     mean_free_path_[l] = s.mean_free_path;
@@ -238,8 +240,7 @@ class AnyLaws {
   [[nodiscard]] const V& power() const { return power_; }
 
  private:
-  // Calls f.operator()<n>() with the number of modes as a compile-time constant, so that the data of the modes stays in
-  // registers.
+  // Calls f.operator()<n>() with the number of modes n as a compile-time constant, so that the modes' data stays in registers.
   template <int n = 1, class F>
   [[gnu::always_inline]] void with_modes(F&& f) const {
     if constexpr (n < capacity) {
@@ -264,7 +265,8 @@ class AnyLaws {
       smallest = min(smallest, gap), largest = max(largest, gap);
       gap_[p] = max(gap, floor), velocity_[p] = velocity, load_[p] = 0;
     }
-    // The second argument is below the least valid gap when the beam is near the far side.
+    // A run fails when `least` is below `floor`. The second argument of min() makes this happen when a far gap is too small as
+    // well.
     least = min(smallest, floor + (most_gap_ - largest));
   }
 
@@ -286,7 +288,8 @@ class AnyLaws {
     }
   }
 
-  // Calls f(first, last, k) for every range k of points with equal beam size, with the part of the range in [begin, end).
+  // Calls f(first, last, k) for every PointStretch k (points with equal beam size): first and last bound its part in [begin,
+  // end).
   template <class F>
   [[gnu::always_inline]] void on_stretches(int begin, int end, F&& f) const {
     for (int k = 0; k < layout_.stretches; ++k) {
@@ -296,7 +299,8 @@ class AnyLaws {
     }
   }
 
-  // Adds the load of a gas film. A film on the far side has the opposite velocity and the opposite force.
+  // Adds the load of a gas film. For a film on the far side, velocity and force both have the opposite sign, so the load is the
+  // same function of its gap.
   void add_film(const V* gap) {
     on_stretches(0, layout_.points, [&](int begin, int end, int k) { add_film(gap, begin, end, k); });
   }
@@ -386,7 +390,7 @@ class AnyLaws {
     for (int i = 0; i < n; ++i) sum[i] += part[i];
   }
 
-  // Adds the modal forces of mid-plane stretching as model/stretching.h defines this force.
+  // Adds the modal forces of mid-plane stretching (model/stretching.h).
   void stretch(const V* q, V* sum) const {
     V pull[capacity], strain = 0;
     for (int i = 0; i < modes_; ++i) {

@@ -1,15 +1,15 @@
-// The simulation of several closings at once (ensemble_closings.h), one per lane of SIMD vectors of a given width: this header
-// is included once for every set of vector instructions.
+// The simulation of several closings at once (ensemble_closings.h), one per lane of a SIMD vector. This header is included once
+// for every set of vector instructions.
 //
-// The lanes are std::experimental::simd, and the laws of a closing are those of a single closing, over lanes of parameters. All
-// code here depends on the type of the lanes or belongs to a class that does, so that each set of vector instructions has its
-// own names.
+// The vectors are std::experimental::simd. The force laws are the same templates as for a single closing, with vectors of
+// parameters. All code here depends on the type of the vectors or belongs to a class that does, so that the linker never merges
+// code for different instructions.
 //
-// Inlining is forced, or prevented, since the compiler fuses products and sums depending on their neighbours: the last bits of
-// a closing must not depend on how many callers a function has.
+// Inlining is forced, or prevented, because inlined code decides which products and sums the compiler fuses: the last bits of a
+// closing must not depend on how many callers a function has.
 //
-// Width matters: with two registers per lane GCC spills registers and the code is several times slower. A force law that is not
-// inlined has the same effect, since its sums over points stay in memory.
+// A vector must fit into one register: with two registers per vector GCC spills registers and the code is several times slower.
+// A force law that is not inlined has the same effect, since its sums over points stay in memory.
 #pragma once
 
 #include <cmath>
@@ -25,15 +25,15 @@
 
 namespace softland::simd {
 
-/// Simulates closings of switches with up to `room` contacts in SIMD lanes. At room = 1 the code for several contacts is left
-/// out at compile time.
+/// Simulates closings of switches with up to `room` contacts in SIMD lanes. For room = 1, code for several contacts is not
+/// compiled.
 template <class V, class Laws, int room = 1>
 class SimdClosings {
   using M = typename V::mask_type;
   static constexpr std::size_t width = V::size();
   static constexpr int capacity = Laws::capacity;
-  // Number of pieces in which the contact point's motion is followed over a step of two radians of the fastest mode, as in
-  // StepMotion at tolerances from 1e-5 on.
+  // Number of quintic pieces of the contact point's motion in a step of up to two radians of the fastest mode: the number that
+  // StepMotion uses for such a step at tolerances of 1e-5 and larger.
   static constexpr int pieces = 3;
   static constexpr double most_rounds = 100'000;
   static constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -56,10 +56,10 @@ class SimdClosings {
   }
 
  private:
-  // Type of a contact's number; a compile-time constant when a switch has only one contact.
+  // Type of the number of a contact: a compile-time constant 0 when switches have only one contact.
   using Number = std::conditional_t<has_several, int, std::integral_constant<int, 0>>;
 
-  // Calls f(c) for the number of every contact.
+  // Calls f(c) for every contact number c.
   template <class F>
   [[gnu::always_inline]] void for_contacts(F&& f) const {
     if constexpr (has_several) {
@@ -73,22 +73,23 @@ class SimdClosings {
   struct Followed {
     bool touched = false, touching = false;
     double begin = 0, left = 0, speed = 0;  // begin and end of the touch [s], impact velocity [m/s]
-    double extreme = 0;                     // deepest or highest position since the contact law last changed [m]
-    double hardest = 0;                     // largest force of a damped contact since its law last changed [N]
-    // Phase (branch of the contact law that acts) of a contact with memory: see model/closing/contact_phase.h.
+    double extreme = 0;                     // largest depth in this touch, or largest height since the last touch [m]
+    double hardest = 0;                     // largest force of a damped contact in this touch [N]
+    // Branch of the law of a contact with memory: unloading, or in the dent that it has left (else loading); see
+    // contact_phase.h.
     bool unloading = false, in_dent = false;
-    bool to_turn = false;  // true while the lane's step should end at the deepest point of the contact
-    double level = 0;      // other position at which the contact law changes and the lane's step should end [m]
-    // Positions between which the branch of the contact law acts; deepest position of the touch [m].
+    bool to_turn = false;  // true while the step should end where the contact point turns back
+    double level = 0;      // otherwise the position at which the step should end, a change of the contact law [m]
+    // Positions between which the present branch of the contact law acts; deepest interference of the contact [m].
     double low = 0, high = 0, deepest = 0;
-    double steady = nothing;  // time since which the contact has carried the force that counts as steady [s]
-    double least = infinite;  // least depth after the first maximum of the contact force [m]
+    double steady = nothing;  // time from which the force has been at or above EnsembleClosing::steady_force [s]
+    double least = infinite;  // least interference after the first maximum of the contact force [m]
   };
-  // The state of the electrical connection that several contacts make.
+  // The state of the connection (electrical path) through several contacts.
   struct Connected {
-    int touching = 0;  // number of closed contacts of the connection
+    int touching = 0;  // number of the connection's contacts that are closed
     bool closed = false, was_closed = false;
-    double left = 0, highest = 0;  // start [s] and largest separation [m] of the connection's current opening
+    double left = 0, highest = 0;  // begin [s] and largest separation [m] of the connection's present opening
   };
 
   // The state of the closing in one SIMD lane.
@@ -97,14 +98,14 @@ class SimdClosings {
     const LanePiece* drive[most_drives] = {};
     int count[most_drives] = {};    // number of signal pieces of each drive
     int piece[most_drives] = {};    // index of the current signal piece of each drive
-    bool runs[most_drives] = {};    // true over signal pieces that join, so that steps may cross their ends
-    bool curves[most_drives] = {};  // true for parts of the voltage beyond a cubic polynomial, and for pieces that join
-    int corrections = 0;            // number of corrections of a step that should end at a change of the contact law
+    bool runs[most_drives] = {};    // true within signal pieces that join smoothly, so that steps may cross their ends
+    bool curves[most_drives] = {};  // true when the voltage has exponentials, a sine, or pieces that join
+    int corrections = 0;            // how often the end of a step was corrected to meet a change of a contact law
     double stop = 0;                // next breakpoint of the drives, or the end of the simulated window [s]
     double longest = 0;             // longest step that resolves the drive voltages [s]
     double gain[most_drives] = {};  // factors on the voltages of the drives
-    bool landed = false;            // true after the first touch of a contact on the near side
-    int at = 0;                     // number of the contact at whose change of law the lane's step ends
+    bool landed = false;            // true after first contact of any contact on the near side
+    int at = 0;                     // number of the contact whose change of law ends the lane's step
     Followed contact[room];
     Connected connected;
   };
@@ -116,7 +117,7 @@ class SimdClosings {
     }
   }
 
-  // Adds the parts of a drive's voltage other than straight lines.
+  // Adds to the voltage of drive k the parts beyond a straight line: cubic polynomial, exponentials and sine.
   void add_curves(int k, V time) {
     const V s = time - begin_[k];
     volts_[k] += s * s * (bend_[k] + s * twist_[k]);
@@ -136,7 +137,7 @@ class SimdClosings {
     }
   }
 
-  // Finds the signal piece of drive k at time t, near the previous piece.
+  // Sets the lane's signal piece of drive k to the piece at time t. Searches from the previous piece.
   static void find_piece(Lane& lane, int k, double t) {
     const LanePiece* const all = lane.drive[k];
     int& at = lane.piece[k];
@@ -148,7 +149,7 @@ class SimdClosings {
     if (piece.tail[1] != 0) sum += piece.tail[1] * std::exp(-piece.decay[1] * elapsed);
     return sum;
   }
-  // Returns the voltage of drive k at a time within pieces that join smoothly, whose ends a step may cross.
+  // Returns the voltage of drive k, without its gain, within signal pieces that join smoothly [V].
   [[nodiscard]] double running(int k, std::size_t l, double t) {
     find_piece(lane_[l], k, t);
     const LanePiece& piece = lane_[l].drive[k][lane_[l].piece[k]];
@@ -163,7 +164,7 @@ class SimdClosings {
     return power * volts_[layout_.drives - 1];
   }
 
-  // Computes modal accelerations; sets `least` to the smallest gap along the beam.
+  // Computes modal accelerations `a`, and sets `least` to the smallest gap along the beam.
   [[gnu::always_inline]] void rates(const V* __restrict q, const V* __restrict v, V* __restrict a, V& least) {
     V sum[capacity];
     for (int i = 0; i < modes; ++i) sum[i] = -(square_[i] * q[i]) - friction_[i] * v[i];
@@ -191,7 +192,7 @@ class SimdClosings {
     for (int i = 0; i < modes; ++i) a[i] = sum[i];
   }
 
-  // Returns the force of a contact with memory [N]; `loading` is the force on the loading curve at this depth.
+  // Returns the force of a contact with memory at this interference [N]; `loading` is the force on the curve of first loading.
   [[nodiscard]] V remembered(Number c, V loading, V depth) const {
     where(unloading_[c], loading) = contact_[c].pull_back(depth - shift_[c]);
     where(in_dent_[c], loading) = V(0);
@@ -296,8 +297,8 @@ class SimdClosings {
     settle(h, end, error);
   }
 
-  // Finds points of a contact point's motion between the ends of the step, as integrators/modal_motion.h does. Marks SIMD lanes
-  // whose contact point may cross the contact plane, or turns.
+  // Computes the contact point's motion at the ends of the step's quintic pieces, as integrators/modal_motion.h does. Marks
+  // SIMD lanes whose contact law may change in the step (suspect_), and lanes whose contact point turns back (turns_).
   [[gnu::always_inline]] void follow(Number at, V h) {
     constexpr double share = 1.0 / pieces;
     V* const knot_p = knot_p_[at];
@@ -346,8 +347,8 @@ class SimdClosings {
   struct Reach {
     V least, most;
   };
-  // Returns bounds of the contact point's position in a piece of the step, from the control points of its quintic in Bernstein
-  // form; `g` is the duration of the piece.
+  // Returns bounds of the contact point's position in a piece of the step of duration `g`: the smallest and the largest of the
+  // quintic's Bernstein coefficients.
   [[nodiscard]] [[gnu::always_inline]] Reach reach(Number c, int k, V g) const {
     const V b0 = knot_p_[c][k], b5 = knot_p_[c][k + 1], s0 = g * knot_s_[c][k], s1 = g * knot_s_[c][k + 1];
     const V c0 = g * g * knot_c_[c][k], c1 = g * g * knot_c_[c][k + 1];
@@ -355,8 +356,8 @@ class SimdClosings {
     return {.least = min(min(min(b0, b1), min(b2, b3)), min(b4, b5)), .most = max(max(max(b0, b1), max(b2, b3)), max(b4, b5))};
   }
 
-  // Returns the SIMD lanes in which a contact with memory may change the branch of its law; loading ends where the contact
-  // point turns.
+  // Returns the SIMD lanes in which a contact with memory may leave the present branch of its law in the step: its point may
+  // cross an end of the branch, or turns back while loading.
   [[nodiscard]] M leaves_phase(Number c, V h) const {
     constexpr double share = 1.0 / pieces;
     const V g = h * share;
@@ -368,14 +369,14 @@ class SimdClosings {
     return suspect;
   }
 
-  // The quintic motion of one contact in one piece of one SIMD lane's step, as a function of the share of the piece.
+  // The motion of one contact in one SIMD lane and one piece of the step: a quintic in the share s of the piece, from 0 to 1.
   struct QuinticPath {
     double c[6];
     [[nodiscard]] double position(double s) const { return c[0] + s * (c[1] + s * (c[2] + s * (c[3] + s * (c[4] + s * c[5])))); }
     [[nodiscard]] double speed(double s) const { return c[1] + s * (2 * c[2] + s * (3 * c[3] + s * (4 * c[4] + s * 5 * c[5]))); }
     [[nodiscard]] double bend(double s) const { return 2 * c[2] + s * (6 * c[3] + s * (12 * c[4] + s * 20 * c[5])); }
 
-    // Finds a zero of f by Newton's method kept inside the interval [low, high].
+    // Finds a zero of f in [low, high] by Newton's method, with bisection where a Newton step would leave the interval.
     template <class F, class D>
     [[gnu::always_inline]] static double zero(F f, D slope, double low, double high) {
       const bool rising = f(high) > 0;
@@ -411,26 +412,25 @@ class SimdClosings {
              6 * d - 3 * (v0 + v1) - 0.5 * (a0 - a1)}};
   }
 
-  // Returns the share of the step at which a SIMD lane's contact point crosses the contact plane; above 1 when the point does
-  // not.
+  // Returns when a SIMD lane's contact point crosses its contact plane, as a share of the step; above 1 when it does not cross.
   [[nodiscard]] double crossing(Number c, std::size_t l, double length) const {
     return crossing(c, l, length, lane_[l].contact[c].touching ? 1 : -1, plane_[c][l]);
   }
-  // Returns the share of the step at which a SIMD lane's contact point leaves the region side * (position - level) > 0; above 1
-  // when the point stays inside.
+  // Returns when a SIMD lane's contact point leaves the region side * (position - level) > 0, as a share of the step; above 1
+  // when it does not leave.
   [[nodiscard]] double crossing(Number c, std::size_t l, double length, double side, double level) const {
     bool inside = side * (position_[c][l] - level) > 0;
     for (int k = 0; k < pieces; ++k) {
       const double p1 = knot_p_[c][k + 1][l], v0 = knot_s_[c][k][l], v1 = knot_s_[c][k + 1][l];
       const bool ends_inside = side * (p1 - level) >= 0;
-      if (side * v0 < 0 && side * v1 > 0 && inside) {  // the motion leaves the region and returns
+      if (side * v0 < 0 && side * v1 > 0 && inside) {  // the motion turns back in this piece
         const QuinticPath path = quintic_path(c, k, l, length);
         const double turn = path.turn();
         if (side * (path.position(turn) - level) < 0) return (k + path.meets(level, 0, turn)) / pieces;
       } else if (!ends_inside) {
         const QuinticPath path = quintic_path(c, k, l, length);
         if (inside) return (k + path.meets(level, 0, 1)) / pieces;
-        if (side * v0 > 0 && side * v1 < 0) {  // the motion begins on its boundary, enters the region and returns
+        if (side * v0 > 0 && side * v1 < 0) {  // the motion starts on the boundary and turns back
           const double turn = path.turn();
           if (side * (path.position(turn) - level) > 0) return (k + path.meets(level, turn, 1)) / pieces;
         }
@@ -441,8 +441,8 @@ class SimdClosings {
     return 2;
   }
 
-  // Returns the share of the step at which a contact with memory changes the branch of its law in a SIMD lane, and sets
-  // Followed::level; above 1 when the branch does not change.
+  // Returns when a contact with memory leaves the present branch of its law in a SIMD lane, as a share of the step; above 1
+  // when it does not leave. Sets Followed::to_turn and Followed::level.
   [[nodiscard]] double phase_end(Number c, std::size_t l, double length) {
     Followed& one = lane_[l].contact[c];
     const double by_low = one.low > -infinite ? crossing(c, l, length, 1, one.low) : 2;
@@ -453,7 +453,8 @@ class SimdClosings {
     const double edge = by_low < by_high ? by_low : by_high;
     return edge < by_turn ? edge : by_turn;
   }
-  // Returns the share of the step at which a SIMD lane's contact point turns back; above 1 when it does not turn.
+  // Returns when a SIMD lane's contact point turns back from its deepest point, as a share of the step; above 1 when it does
+  // not turn.
   [[nodiscard]] double turning(Number c, std::size_t l, double length) const {
     for (int k = 0; k < pieces; ++k) {
       if (!(knot_s_[c][k + 1][l] < 0)) continue;
@@ -462,7 +463,9 @@ class SimdClosings {
     return 2;
   }
 
-  // Updates the deepest, or highest, position of a SIMD lane's contact point in the step.
+  // Updates Followed::extreme where the contact point turns back within the step: the largest interference in contact, the
+  // largest height out of contact. A turn towards deeper positions in contact also updates Followed::least and
+  // Followed::steady.
   [[gnu::noinline]] void update_plastic_depth(Number c, std::size_t l, double length) {
     Lane& lane = lane_[l];
     Followed& one = lane.contact[c];
@@ -485,7 +488,7 @@ class SimdClosings {
     }
   }
 
-  // Returns the depth on the loading curve at which the force equals the contact's current force at `depth`.
+  // Returns the interference at which the curve of first loading has the same force as the contact now has at `depth` [m].
   [[nodiscard]] double depth_of_force([[maybe_unused]] Number c, [[maybe_unused]] std::size_t l, double depth) const {
     if constexpr (Contact::has_memory) {
       const Followed& one = lane_[l].contact[c];
@@ -499,7 +502,7 @@ class SimdClosings {
     return depth;
   }
 
-  // Finds the last time in the current step at which a contact reaches the depth of the steady contact force.
+  // Sets Followed::steady to the last time in the step at which the contact force rises to EnsembleClosing::steady_force.
   [[gnu::noinline]] void rise(Number c, std::size_t l, double length) {
     const double level = steady_[c][l];
     const auto reach = [&](int k, double share) {
@@ -522,7 +525,7 @@ class SimdClosings {
     if (separation > lane.connected.highest) lane.connected.highest = separation;
   }
 
-  // Updates the largest separation, over the step, of an open connection that any contact closes. The separation of the
+  // Updates the largest separation of an open connection over the step, for Connection::any. The separation of such a
   // connection is that of the contact nearest to its plane.
   void climb(std::size_t l, double length) {
     Lane& lane = lane_[l];
@@ -536,7 +539,7 @@ class SimdClosings {
         QuinticPath ahead = path;
         for (int i = 0; i < 6; ++i) ahead.c[i] -= other.c[i];
         at = ahead.meets(plane_[first][l] - plane_[last][l], 0, 1);
-        if (other.speed(at) < 0) {  // the nearest contact still moves away from its plane when it becomes the nearest
+        if (other.speed(at) < 0) {  // `last` becomes the nearest contact while it still moves away
           rise_to(lane, plane_[last][l] - other.position(other.turn_between(at, 1)));
           continue;
         }
@@ -546,8 +549,8 @@ class SimdClosings {
     }
   }
 
-  // Returns which of the contacts that make the electrical connection has the smallest separation at the end of piece k of the
-  // step.
+  // Returns the contact of the connection with the smallest separation at the beginning of piece k of the step (k = pieces: at
+  // the end of the step).
   [[nodiscard]] int nearest_contact(int k, std::size_t l) const {
     int best = -1;
     double least = infinite;
@@ -558,7 +561,8 @@ class SimdClosings {
     return best;
   }
 
-  // Updates the electrical connection when one of its contacts begins or ends a touch.
+  // Opens or closes the connection, if necessary, when one of its contacts begins (`touches`) or ends a touch at this speed
+  // [m/s].
   void connect(std::size_t l, bool touches, double speed) {
     Lane& lane = lane_[l];
     Connected& all = lane.connected;
@@ -578,7 +582,7 @@ class SimdClosings {
     apart_[l] = !closed && !layout_.needs_all;
   }
 
-  // Reports the rebound of the connection that has not ended at the end of a run.
+  // Reports the rebound of the connection that has not ended by the end of a run.
   void finish_connection(std::size_t l) {
     Lane& lane = lane_[l];
     if (!lane.connected.was_closed || lane.connected.closed) return;
@@ -591,8 +595,8 @@ class SimdClosings {
     tell_rebound(lane, lane.connected.left, nothing, lane.connected.highest);
   }
 
-  // Computes binary logarithms and powers to the digits that a step size needs. The loops have no branches, so that the
-  // compiler uses vector instructions.
+  // Computes the factor of the next step size from the squared error estimate. Logarithm and power have only the digits that a
+  // step size needs, and the loops have no branches, so that the compiler uses vector instructions.
   [[gnu::always_inline]] void control(V error) {
     double squared[width];
     error.copy_to(squared, std::experimental::element_aligned);
@@ -671,7 +675,7 @@ class SimdClosings {
       if (taken[l] && !plain[l]) go_on(l, h[l]);
   }
 
-  // Integrates the work of the drives on the modes in the step, as a further unknown of the Runge-Kutta pair.
+  // Integrates the work of the drives on the modes over the step, with the weights of the Runge-Kutta pair.
   void do_work(const M& taken, V h) {
     V mean = 0;
     for (int j = 0; j < 6; ++j) mean += Pair::tableau[6][j] * powers_[j];
@@ -679,8 +683,8 @@ class SimdClosings {
     where(taken, powers_[0]) = powers_[6];
   }
 
-  // Finds the largest force of a damped contact in the step: at the top of the parabola through the forces at both ends and the
-  // middle, as model/closing/touch_record.h does.
+  // Updates the largest force of a damped contact: the peak of the parabola through the forces at both ends and the middle of
+  // the step, as in model/closing/touch_record.h.
   void update_largest_force(Number at, const M& taken, V h) {
     static_assert(pieces % 2 == 1);
     constexpr int half = pieces / 2;
@@ -701,7 +705,7 @@ class SimdClosings {
         lane_[l].contact[at].hardest = most_push[l];
   }
 
-  // Returns true when a SIMD lane accepts its step; otherwise sets the length of the lane's next attempt.
+  // Returns true when a SIMD lane that needs special treatment accepts its step; otherwise sets the length of its next attempt.
   bool consider(std::size_t l, double h, double error) {
     Lane& lane = lane_[l];
     if (lane.closing == nullptr) return false;
@@ -735,8 +739,8 @@ class SimdClosings {
     return true;
   }
 
-  // Returns the share of the step at the first change of a contact law, and sets the number of this contact; above 1 without a
-  // change.
+  // Returns when the first contact law changes in the step, as a share of the step, and stores the number of this contact in
+  // Lane::at; above 1 without a change.
   [[nodiscard]] double event(std::size_t l, double length) {
     if constexpr (!has_several) return event(Number(), l, length);
     double first = infinite;
@@ -751,12 +755,12 @@ class SimdClosings {
     }
     return crossing(c, l, length);
   }
-  // Returns the number of the contact at whose change of law a SIMD lane's step should end.
+  // Returns the number of the contact whose change of law should end the SIMD lane's step.
   [[nodiscard]] Number event_contact([[maybe_unused]] std::size_t l) const {
     if constexpr (has_several) return lane_[l].at;
     return Number();
   }
-  // Returns the position of the contact point at which its law changes and a SIMD lane's step should end [m].
+  // Returns the position of the contact point at which its law changes, where the SIMD lane's step should end [m].
   [[nodiscard]] double event_level(std::size_t l) const {
     const Number c = event_contact(l);
     return remembers(c) ? lane_[l].contact[c].level : plane_[c][l];
@@ -766,8 +770,8 @@ class SimdClosings {
     return remembers(c) && lane_[l].contact[c].to_turn;
   }
 
-  // Returns true when a step that should end at a change of the contact law does so. Moves the end of the step onto the
-  // position of the change when the end is near, and corrects the target of the step otherwise.
+  // Returns true when a step that should end at a change of a contact law does end there. If the step ends close to the change,
+  // its end is moved there; otherwise the target of the step is corrected and the result is false.
   [[gnu::always_inline]] bool arrives(std::size_t l, double h) {
     constexpr double short_of_a_radian = 1e-3;
     constexpr int most_corrections = 8;
@@ -783,7 +787,8 @@ class SimdClosings {
         const double v = trial_v_[i][l], a = trial_a_[i][l];
         trial_q_[i][l] = trial_q_[i][l] + later * (v + later / 2 * a);
         trial_v_[i][l] = v + later * a;
-        trial_a_[i][l] = a - later * square_[i][l] * v;  // forces other than the modes' stiffness hardly change within `later`
+        // Only the modes' stiffness forces change noticeably in so short a time.
+        trial_a_[i][l] = a - later * square_[i][l] * v;
       }
       moved_[l] = later;
       if constexpr (has_several) move_others(at, l);
@@ -802,7 +807,7 @@ class SimdClosings {
     return false;
   }
 
-  // Moves the other contacts of a SIMD lane to the corrected end of its step.
+  // Recomputes the motion of the contacts other than `at` at the corrected end of a SIMD lane's step.
   void move_others(int at, std::size_t l) {
     for (int c = 0; c < layout_.contacts; ++c) {
       if (c == at) continue;
@@ -815,8 +820,8 @@ class SimdClosings {
     }
   }
 
-  // Handles a SIMD lane's step that ends at a breakpoint or at a change of a contact law, ends the closing, or leaves the range
-  // of the force laws.
+  // Continues a SIMD lane after an accepted step that did not end normally: at a breakpoint of the drives, at a change of a
+  // contact law, at the end of the closing, or with an invalid gap.
   void go_on(std::size_t l, double h) {
     Lane& lane = lane_[l];
     if (smallest_[l] < laws_.floor()[l]) {
@@ -843,7 +848,7 @@ class SimdClosings {
     }
   }
 
-  // Handles a change of a contact law's branch, or a contact point that crosses the contact plane, in SIMD lane `l`.
+  // Handles the end of a step at a change of a contact law, or at a contact plane, in SIMD lane `l`.
   void on_event(std::size_t l) {
     const Number at = event_contact(l);
     on_event(at, l);
@@ -862,8 +867,8 @@ class SimdClosings {
       if (remembers(c)) enter_phase(c, l, false, false);
     }
   }
-  // Returns true when contact c, whose changes of law were not searched in the step, is outside its branch of the law at the
-  // end of the step.
+  // Returns true when contact c has left the present branch of its law by the end of a step that another contact ended; then
+  // puts the contact point onto the end of this branch.
   bool is_beyond(int c, std::size_t l) {
     Followed& one = lane_[l].contact[c];
     const double low = remembers(c) ? one.low : one.touching ? plane_[c][l] : -infinite;
@@ -876,14 +881,14 @@ class SimdClosings {
     return true;
   }
 
-  // Handles a change between two branches of a contact law within a touch; returns false at the contact plane, where a touch
-  // begins or ends.
+  // Handles a change between two branches of a contact law during a touch. Returns false when the contact point is at the
+  // contact plane, where a touch begins or ends.
   bool pass_within_touch(Number c, std::size_t l) {
     Followed& one = lane_[l].contact[c];
     if (!one.touching) return false;
     if (one.to_turn) {
       const double speed = speed_[c][l], acceleration = acceleration_[c][l];
-      // Minus the distance over which the contact point decelerates to its deepest point.
+      // Minus the distance that the decelerating contact point still moves to its deepest position.
       const double left = acceleration < 0 ? speed * speed / (2 * acceleration) : 0;
       const LaneContactNumbers& numbers = lane_[l].closing->numbers->contact[c];
       const double depth = position_[c][l] - plane_[c][l] - left;
@@ -904,8 +909,8 @@ class SimdClosings {
     return true;
   }
 
-  // Sets the positions between which a branch of the contact law acts, and the depth at which the contact carries the steady
-  // force on this branch.
+  // Selects the branch of the law of a contact with memory. Sets the positions between which this branch acts, and the position
+  // at which its force is EnsembleClosing::steady_force.
   void enter_phase(Number c, std::size_t l, bool unloading, bool in_dent) {
     Followed& one = lane_[l].contact[c];
     const LaneContactNumbers& numbers = lane_[l].closing->numbers->contact[c];
@@ -924,7 +929,7 @@ class SimdClosings {
     steady_[c][l] = unloading || in_dent ? shifted + depth * (numbers.strength / numbers.unloading_stiffness) : plane + depth;
   }
 
-  // Handles a contact point that crosses its contact plane.
+  // Begins or ends a touch of a contact whose point crosses its contact plane.
   void pass_plane(Number c, std::size_t l) {
     Lane& lane = lane_[l];
     Followed& one = lane.contact[c];
@@ -969,7 +974,7 @@ class SimdClosings {
   }
 
   static void tell_rebound(const Lane& lane, double begin, double end, double height) {
-    // Distance that counts as on the contact plane, a share of the contact gap, as in ReboundFinder.
+    // Largest height that does not count as a rebound, as a share of the contact gap; as in ReboundFinder.
     constexpr double on_the_plane = 1e-12;
     if (height > on_the_plane * lane.closing->numbers->contact[0].plane) lane.closing->observer->rebound(begin, end, height);
   }
@@ -988,7 +993,7 @@ class SimdClosings {
     limit_[l] = target - t_[l];
   }
 
-  // Moves the drives to the signal pieces that are valid from the current time on.
+  // Selects the signal pieces that are valid from the current time on, and the next breakpoint at which a step must end.
   void enter_stretch(std::size_t l) {
     Lane& lane = lane_[l];
     const double t = t_[l];
@@ -1060,7 +1065,7 @@ class SimdClosings {
     return false;
   }
 
-  // Gives a SIMD lane the next closing to simulate.
+  // Gives a SIMD lane the next closing to simulate; without a next one the lane repeats the last closing as an idle lane.
   void fill(std::size_t l) {
     Lane& lane = lane_[l];
     const bool idle = next_ == count_;
@@ -1096,10 +1101,10 @@ class SimdClosings {
     for_contacts([&](Number c) { take(s.contact[c], c, l); });
     apart_[l] = false;
     enter_stretch(l);
-    if (idle) lane.closing = nullptr;  // the bit of an idle lane in special_ remains set
+    if (idle) lane.closing = nullptr;  // special_ remains true for this lane, so that its steps are not accepted
   }
 
-  // Sets the numbers of a contact of the SIMD lane's new switch, before its first touch.
+  // Sets the parameters of a contact of the SIMD lane's new switch, and its state before first contact.
   void take(const LaneContactNumbers& numbers, Number c, std::size_t l) {
     contact_[c].take(layout_.contact[c], numbers, l);
     plane_[c][l] = numbers.plane;
@@ -1119,16 +1124,16 @@ class SimdClosings {
   [[gnu::always_inline]] static double clamped(double x, double low, double high) { return x < low ? low : x > high ? high : x; }
 
   const LaneLayout layout_;
-  [[no_unique_address]] const typename Laws::Modes modes;  // number of modes; a constant if the force laws fix it
+  [[no_unique_address]] const typename Laws::Modes modes;  // number of modes; a constant for UsualLaws
   Laws laws_;
   Contact contact_[room];
-  int connecting_ = 0;  // number of contacts that make the electrical connection
+  int connecting_ = 0;  // number of contacts of the connection
   LaneClosing* closings_;
   std::size_t count_, next_ = 0;
   int busy_ = 0;
   Lane lane_[width];
 
-  // Parameters of the switches in the SIMD lanes: angular frequencies of the modes, their inverses and squares, piezo forces,
+  // Parameters of the switches in the SIMD lanes: angular frequency of each mode with its inverse and square, piezo force,
   // damping.
   V omega_[capacity], inverse_[capacity], square_[capacity], piezo_[capacity], friction_[capacity];
   V q_weight_[capacity], v_weight_[capacity], per_unknown_, fastest_, most_turn_;
@@ -1136,7 +1141,7 @@ class SimdClosings {
   // Begin, value and slope of the drives' signal pieces in the SIMD lanes, and the voltages.
   V begin_[most_drives], value_[most_drives], slope_[most_drives], volts_[most_drives];
   V bend_[most_drives], twist_[most_drives];  // coefficients of s^2 and s^3 in a drive's signal piece
-  bool curves_[most_drives] = {};             // true once the drive has more than straight lines in any SIMD lane
+  bool curves_[most_drives] = {};             // true once the drive's voltage is not a straight line in any SIMD lane
   // Modal coordinates, velocities and accelerations at the start and the end of a step.
   V q_[capacity], v_[capacity], a_[capacity], trial_q_[capacity], trial_v_[capacity], trial_a_[capacity];
   V slope_q_[7][capacity], slope_v_[7][capacity];
@@ -1144,19 +1149,19 @@ class SimdClosings {
   V position_[room], speed_[room], acceleration_[room];
   V knot_p_[room][pieces + 1], knot_s_[room][pieces + 1], knot_c_[room][pieces + 1];
   M touching_[room]{}, touched_[room]{}, turns_[room]{}, suspect_{false};
-  M apart_{false};     // SIMD lanes whose connection, which any contact closes, is open
-  M starting_{false};  // SIMD lanes that spend a round on computing their accelerations
+  M apart_{false};     // SIMD lanes in which a connection of type Connection::any is open
+  M starting_{false};  // SIMD lanes whose next round only computes accelerations, with a step of length 0
   M to_event_{false};  // SIMD lanes whose step should end at a change of a contact law
-  M special_{false};   // SIMD lanes that compute accelerations, step to a change of a contact law, or are idle
+  M special_{false};   // SIMD lanes that are idle, or marked in starting_ or to_event_
   // SIMD lanes in which a contact with memory is loading, is unloading, or is in the dent that it has left.
   M loading_[room]{}, unloading_[room]{}, in_dent_[room]{};
-  // Positions between which the branch of a contact law acts, and depth of the dent [m].
+  // Positions between which the present branch of a contact law acts, and residual interference (depth of the dent) [m].
   V low_[room], high_[room], shift_[room];
-  V until_;      // time after which a lane's closing ends with the next step [s]
-  V last_step_;  // length of the last step that did not end early at a breakpoint [s]
+  V until_;      // a lane's closing ends with the first step that ends at or after this time [s]
+  V last_step_;  // length of the last step that ended neither at a breakpoint nor at an event [s]
   V growth_, most_growth_, rounds_;
   V power_, powers_[7], work_{0};  // power of the drives on the modes [W], at the stages of a step [W], and work until now [J]
-  // Error estimate of the current and of the last step, as binary logarithms.
+  // Error estimate of this step and of the last accepted step, as binary logarithms.
   float log_error_[width] = {}, last_error_[width] = {};
   double moved_[width] = {};
 };
