@@ -4,7 +4,8 @@
 //   f(h) = eps0 a phi(h) / (2 h^2)         [N / (m V^2)], positive towards the electrode
 //   c(h) with f = -c'(h) / 2               [F/m], the capacitance per length that belongs to this force
 //
-// h is the local gap [m], a the width [m]; phi and c follow the law of fringing (model/forces/fringing.h).
+// h is the local gap [m], a the width [m]; phi is the fringing factor; phi and c follow from the fringing law
+// (model/forces/fringing.h).
 #pragma once
 
 #include "model/constants.h"
@@ -37,12 +38,12 @@ struct ElectrostaticForce {
   [[nodiscard]] double potential(double gap) const { return -capacitance(gap) / 2; }
 };
 
-/// The electrostatic force through a dielectric on the electrode: the electric field crosses h + depth, where h is the local
-/// gap to the dielectric's face.
+/// The electrostatic force through a dielectric on the electrode. The dielectric counts as an additional air gap `depth`, so
+/// the force law is evaluated at h + depth, where h is the local gap to the dielectric's face.
 template <class Law>
 struct ThroughDielectric {
   Law law;
-  double depth = 0;  ///< air gap that is equivalent to the dielectric, Dielectric::depth() [m]
+  double depth = 0;  ///< thickness of air that is electrically equivalent to the dielectric, Dielectric::depth() [m]
   static constexpr bool drive_depends = Law::drive_depends;
 
   template <class S>

@@ -8,8 +8,8 @@
 //                   (van der Meijs & Fokkema 1984, derivative of their capacitance; force within 1.5 % of a boundary-element
 //                   solution for b <= h, within 4 % for b = 2 h)
 //   bao-2001        1 + (h / (pi a)) [ln(pi a / h) + ln(1 + 2 b/h + 2 sqrt(b/h + b^2/h^2))]
-//                   (Bao 2001 in Bognash 2019, eqs. 2.2-2.3: a capacitance correction used as a force factor; kept because the
-//                   thesis uses it, 2 to 11 % too much force). c is then the integral of the force, not Bao's capacitance.
+//                   (Bao 2001 in Bognash 2019, eqs. 2.2-2.3: a capacitance correction used as a force factor; kept because
+//                   Bognash uses it; 2 to 11 % too much force). c is then the integral of the force, not Bao's capacitance.
 // Singular at h = 0: the switch ends a run before any gap vanishes. For linear and bao-2001 the constant in c is a convention;
 // it shifts a charge, never a force. To add a law, write a struct and add an alternative of FringingLaw, an enumerator and a
 // row of fringing_laws.
@@ -70,7 +70,7 @@ struct MeijsFokkemaFringingOf {
   S factor(S h) const {
     return h * h * factor_over_square(h);
   }
-  /// Returns fringing factor / h^2 of the gap h, in powers of w = h^(-1/4) [1/m^2].
+  /// Returns the fringing factor over h^2, at the gap h [1/m^2]; computed from h^(-1/4), which a gas film law can share.
   template <class S>
   [[nodiscard, gnu::always_inline]] S factor_over_square(S h) const {
     const S w = inverse_fourth_root(h), w2 = w * w, w4 = w2 * w2;
@@ -103,11 +103,11 @@ struct Bao2001FringingOf {
     return S(1) + h / S(pi * width) * (log(S(pi * width) / h) + log(S(1) + S(2) * b + S(2) * sqrt(b + b * b)));
   }
   [[nodiscard]] double capacitance_over_eps0(double h) const {
-    // Integrate (1 + B(s)) / s^2 times the width, B the fringing correction, from h to the gap where the logarithms vanish.
-    // With 1 + 2 x + 2 sqrt(x + x^2) = exp(2 asinh sqrt x) the second logarithm leaves the integral of u coth u.
+    // Integrate (1 + B(s)) / s^2 times the width, B the fringing correction, from h to the gap where both logarithms are 0.
+    // With 1 + 2 x + 2 sqrt(x + x^2) = exp(2 asinh sqrt x), the second logarithm gives the integral of u coth u.
     const double u = std::asinh(std::sqrt(thickness / h)), l = std::log(pi * width / h);
     static const GaussRule rule = gauss_rule(30);
-    double integral = 0;  // integral of u coth u from 0 to u
+    double integral = 0;  // integral of s coth s from 0 to u
     for (std::size_t k = 0; k < rule.points.size(); ++k) {
       const double s = u / 2 * (1 + rule.points[k]);
       integral += u / 2 * rule.weights[k] * (s > 1e-8 ? s / std::tanh(s) : 1);
@@ -121,13 +121,13 @@ using FringingLaw = std::variant<NoFringing, Bao2001Fringing, MeijsFokkemaFringi
 
 enum class Fringing { none, bao_2001, meijs_fokkema, linear };
 
-/// A law of the fringing field: its name in a scene, the sizes of a plate that the law needs, and the function that makes it.
+/// A row of the table of fringing laws: name in a scene, sizes of the moving part that the law needs, and its constructor.
 struct FringingRow {
   Fringing value;
   std::string_view name;
   bool needs_width = true;
   bool needs_thickness = false;
-  FringingLaw (*make)(double width, double thickness);  ///< makes the law for the size of the moving part [m]
+  FringingLaw (*make)(double width, double thickness);  ///< creates the law for width and thickness of the moving part [m]
 };
 
 inline constexpr auto fringing_laws = std::to_array<FringingRow>({

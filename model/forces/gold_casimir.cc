@@ -12,8 +12,8 @@ struct Tabulated {
   double eta;
 };
 
-// Table of the reduction factor eta by the gap: the integral in gold_casimir.h by Gauss-Legendre quadrature, correct to all
-// digits given.
+// Table of the reduction factor eta against the gap: the integral of eta in gold_casimir.h by Gauss-Legendre quadrature, with
+// all digits correct.
 constexpr std::array<Tabulated, GoldFactor::knots> lifshitz{
     {{1, 0.00860746},     {1.259, 0.01082279}, {1.585, 0.01359945}, {1.995, 0.01707059}, {2.512, 0.02141064}, {3.162, 0.02680351},
      {3.981, 0.03349097}, {5.012, 0.04173243}, {6.31, 0.05182469},  {7.943, 0.06408202}, {10, 0.07886161},    {12.59, 0.09651393},
@@ -23,11 +23,12 @@ constexpr std::array<Tabulated, GoldFactor::knots> lifshitz{
      {1000, 0.87772074},  {1259, 0.89793589},  {1585, 0.91471774},  {1995, 0.92857685},  {2512, 0.94001828},  {3162, 0.94942426},
      {3981, 0.95717680},  {5012, 0.96357000},  {6310, 0.96885756},  {7943, 0.97324488},  {10000, 0.97690674}}};
 
-// Slopes h eta'(h) of the reduction factor at the ends of the table, by central differences of the integral for eta.
+// Slopes h eta'(h) of the reduction factor eta at both ends of the table, by central differences of the integral that defines
+// eta.
 constexpr double first_rise = 0.00856791, last_rise = 0.01452834;
 
-/// Returns the antiderivative of the Casimir pressure, casimir_strength eta / h^4, on a piece of the table [J/m^2], up to a
-/// constant.
+/// Returns the antiderivative of the Casimir pressure casimir_strength eta / h^4 at gap h, within a piece of the table of eta
+/// [J/m^2]; the constant of integration is arbitrary.
 double antiderivative(const GoldFactor::Piece& piece, double h) {
   const auto& [begin, e, energy] = piece;
   const double x = h / begin;
@@ -44,8 +45,8 @@ const GoldFactor& GoldFactor::table() {
 
 GoldFactor::GoldFactor() {
   constexpr Eigen::Index n = knots;
-  // Solve for slopes of eta at the knots (gaps of the table) [1/nm] that make the second derivative of eta continuous; the
-  // slopes at the ends are given.
+  // Cubic spline of eta: solve for the slopes at the gaps of the table [1/nm] that make the second derivative continuous. The
+  // slopes at both ends are given.
   Eigen::MatrixXd equations = Eigen::MatrixXd::Zero(n, n);
   Eigen::VectorXd right(n);
   equations(0, 0) = equations(n - 1, n - 1) = 1;
@@ -69,13 +70,14 @@ GoldFactor::GoldFactor() {
 
   pieces_[knots - 1].begin = lifshitz.back().gap * 1e-9;
   for (std::size_t k = 0; k + 1 < knots; ++k) {
-    // Rewrite the Hermite cubic in t = (x - 1) / r, with x = h / begin, as a polynomial in x.
+    // Convert each Hermite cubic of eta from t = (x - 1) / r to powers of x, with x = h / begin and r the relative length of
+    // the piece.
     const double begin = lifshitz[k].gap, r = width(k) / begin, d = lifshitz[k + 1].eta - lifshitz[k].eta;
     const double m0 = slopes[static_cast<Eigen::Index>(k)] * begin, m1 = slopes[static_cast<Eigen::Index>(k) + 1] * begin;
     const double c0 = lifshitz[k].eta, c1 = m0, c2 = (3 * d / r - 2 * m0 - m1) / r, c3 = (m0 + m1 - 2 * d / r) / (r * r);
     pieces_[k] = {.begin = begin * 1e-9, .powers = {c0 - c1 + c2 - c3, c1 - 2 * c2 + 3 * c3, c2 - 3 * c3, c3}};
   }
-  // Integrate the energy downwards, from the value of the formula beyond the table.
+  // Integrate the pressure from large to small gaps for the energy, starting with the closed formula beyond the table.
   Piece& end = pieces_[knots - 1];
   end.energy = -casimir_strength / (end.begin * end.begin * end.begin) * (1.0 / 3 - far[0] / 3.5 - far[1] / 4);
   for (std::size_t k = knots - 1; k-- > 0;) {

@@ -34,7 +34,7 @@ class GoldFactor {
     double begin = 0;  ///< gap between the plates at which the piece of the table begins [m]
     /// Coefficients of the reduction factor eta = sum of powers[n] (h / begin)^n, h the gap.
     std::array<double, 4> powers = {};
-    double energy = 0;  ///< Casimir energy per area at the gap begin [J/m^2]
+    double energy = 0;  ///< Casimir energy per area at the gap `begin` [J/m^2]
   };
 
   /// Returns the table of the reduction factor eta, computed at first use.
@@ -54,11 +54,11 @@ class GoldFactor {
   [[nodiscard]] double first() const { return pieces_.front().begin; }
   [[nodiscard]] double last() const { return pieces_.back().begin; }
 
-  std::array<double, 2> near = {}, far = {};  ///< coefficients of the reduction factor below and above the table
+  std::array<double, 2> near = {}, far = {};  ///< coefficients n of eta below the table and f above it, see the formulas above
 
  private:
   GoldFactor();
-  std::array<Piece, knots> pieces_;  // pieces between the gaps of the table; the last begins at the end and has no cubic
+  std::array<Piece, knots> pieces_;  // pieces between the gaps of the table; the last one marks its end and has no cubic
 };
 
 struct GoldCasimir {

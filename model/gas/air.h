@@ -1,15 +1,15 @@
-// State of the gas: viscosity and mean free path, one convention for every law.
+// State of the gas: viscosity and mean free path, by one convention for all gas laws.
 //
 //   mu(T) = beta T^(3/2) / (T + S)                          air, where a scene gives no viscosity
 //   lambda = (mu / p) sqrt(pi R_g T / 2)                    where a scene gives no mean free path
 //   Kn = lambda / h
 //
 // beta = 1.458e-6 kg/(s m K^(1/2)), S = 110.4 K, mu is the viscosity [Pa s], T temperature [K], p ambient pressure [Pa], R_g =
-// 287 J/(kg K) of air, lambda mean free path [m], h local gap [m], Kn Knudsen number. lambda belongs to the viscosity in use,
-// whether a scene gives the viscosity or not: 67.00 nm for air at 101325 Pa and 300 K. Other conventions (hard spheres: about
-// 53 nm) differ by 20 %; a scene for another one gives mean_free_path. Sources: W. Sutherland, Phil. Mag. 36 (1893) 507, with
-// the constants of U.S. Standard Atmosphere, 1976, eq. 51, for 100 to 1900 K; textbook definition of the viscosity-based mean
-// free path.
+// 287 J/(kg K) of air, lambda mean free path [m], h local gap [m], Kn Knudsen number. lambda follows from the viscosity in use,
+// given in the scene or not: 67.00 nm for air at 101325 Pa and 300 K. Other conventions (hard spheres: about 53 nm) differ by
+// 20 %; with another convention, give mean_free_path in the scene. Sources: W. Sutherland, Phil. Mag. 36 (1893) 507, with the
+// constants of U.S. Standard Atmosphere, 1976, eq. 51, for 100 to 1900 K; textbook definition of the viscosity-based mean free
+// path.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// The common part of the laws of a gas film: state of the gas, input of a law, limits of a law, and keys of a scene for them.
+// The common part of all gas film laws: state of the gas, parameters and limits of a law, and keys of a scene for the state.
 #pragma once
 
 #include <array>
@@ -9,30 +9,32 @@
 
 namespace softland {
 
-/// The state of the gas around the beam; see model/gas/air.h for the defaults of numbers that are not given.
+/// The state of the gas around the beam. The header model/gas/air.h has the defaults of numbers that are not given.
 struct FilmState {
-  double viscosity = not_given;       ///< viscosity of the gas [Pa s]; not given: that of air
+  double viscosity = not_given;       ///< viscosity of the gas [Pa s]; by default that of air
   double pressure = 101325;           ///< ambient pressure [Pa]
   double temperature = 300;           ///< temperature of the gas [K]
-  double mean_free_path = not_given;  ///< mean free path of the gas [m]
+  double mean_free_path = not_given;  ///< mean free path of the gas [m]; by default from viscosity, pressure, temperature
 };
 
-/// The numbers from which a gas law is made.
+/// The numbers from which the gas laws compute their parameters for a device.
 struct Film {
   double width, thickness;  ///< width and thickness of the moving part [m]
-  double viscosity;         ///< viscosity of the gas, reduced by the flow through the open ends of a film [Pa s]
+  double viscosity;         ///< viscosity of the gas, reduced as film damping is by open ends (end_flow()) [Pa s]
   double mean_free_path;    ///< mean free path of the gas [m]
   double unit_quality;      ///< damping per length at which the first mode has a quality factor of one [N s/m^2]
 };
 
-/// Largest squeeze number at which the gas film under a strip counts as incompressible; the film's cut-off is at pi^2.
+/// Largest squeeze number at which the gas film under a strip counts as incompressible; at pi^2 the damping and spring forces
+/// of the film are about equal.
 inline constexpr double incompressible = 10;
 
-/// The range in which a gas law is valid.
+/// The range in which a gas law is valid; a closing beyond this range causes a warning.
 struct FilmLimits {
   double least_knudsen = 0;
   double most_knudsen = std::numeric_limits<double>::infinity();
-  /// Largest squeeze number 12 mu a^2 omega / (p h^2) of the film.
+  /// Largest squeeze number 12 mu a^2 omega / (p h^2) of the film: viscosity mu, width a, ambient pressure p, gap h, and rate
+  /// omega.
   double most_squeeze = std::numeric_limits<double>::infinity();
   bool needs_thickness = false;  ///< true when the law needs the thickness of the moving part
 };

@@ -1,4 +1,4 @@
-// The gas of a device: the parameters of one of its laws. A new law needs a header and an entry in the variant Gas.
+// The gas of a device: the parameters of its gas law. To add a law, write a header and add its parameters to the variant Gas.
 #pragma once
 
 #include <variant>
@@ -17,7 +17,8 @@ namespace softland {
 using Gas = std::variant<StripGas, StripSlitGas, VeijolaGas, GallisTorczynskiGas, NearContactGas, GuoAlexeenkoGas, ReynoldsGas,
                          LinearGas>;
 
-/// Returns the state of the gas that a law contains; null for a law without such a state.
+/// Returns the state of the gas (viscosity, pressure, temperature) in the parameters of a gas law; null for a law without gas
+/// state.
 [[nodiscard]] inline const FilmState* film_of(const Gas& gas) {
   return std::visit(
       [](const auto& law) -> const FilmState* {
@@ -35,8 +36,7 @@ using Gas = std::variant<StripGas, StripSlitGas, VeijolaGas, GallisTorczynskiGas
       },
       gas);
 }
-/// Returns the length of a single gas film with open ends [m]; NaN when no length is given: the film is then much longer than
-/// wide.
+/// Returns the length of the gas film with open ends [m]; NaN for a film that counts as much longer than wide.
 [[nodiscard]] inline double film_length(const Gas& gas) {
   return std::visit(
       [](const auto& law) {

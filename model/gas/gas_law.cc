@@ -36,8 +36,8 @@ double squeeze_number(const FilmState& gas, double width, double gap, double rat
 
 namespace {
 
-// Returns the gap at which a film's law is evaluated: for a beam on the face of a dielectric at least a hundredth of the gap at
-// rest.
+// Returns the gap at which gas laws are evaluated: never less than a hundredth of the rest gap when the beam closes onto a
+// dielectric, where the gap vanishes.
 double gap_of_film(const Device& device, double gap) {
   return device.lands_on_dielectric() ? std::max(gap, device.gap.electrode / 100) : gap;
 }

@@ -21,7 +21,7 @@ struct LawsOf<std::variant<Laws...>> {
   using Type = std::variant<decltype(std::declval<const Laws&>().law(std::declval<const Film&>()))...>;
 };
 }  // namespace internal
-/// A gas law of any kind: the variant of all types that the parameters of Gas return by law(film).
+/// A gas law of any kind: a variant of all types that the alternatives of Gas return by their function law(film).
 struct GasLaw : internal::LawsOf<Gas>::Type {
   using variant::variant;
 };
@@ -29,13 +29,13 @@ struct GasLaw : internal::LawsOf<Gas>::Type {
 /// Returns the damping of a rectangular gas film over that of a strip of the same length with closed ends; `ratio` is width
 /// over length.
 ///   1 - (192 / pi^5) ratio sum over odd n of tanh(n pi / (2 ratio)) / n^5
-/// The share is 1 - 0.63 ratio for long films, 0.4217 for a square film. It follows from Poisson's equation of the
+/// The result is 1 - 0.63 ratio for long films, 0.4217 for a square film. The formula follows from Poisson's equation of the
 /// incompressible film on a rectangle (Griffin, Richardson & Yamanami, J. Basic Eng. 88 (1966) 451; the series is that of
 /// torsion of a rectangular bar).
 [[nodiscard]] double end_flow(double ratio);
 
-/// Returns the gas law for a structure of constant width and thickness, or for this width and thickness [m]. For a compressible
-/// film the result is the incompressible limit.
+/// Returns the gas law for constant width and thickness [m]: those of a structure, or those given. `unit_quality` as in Film.
+/// For a compressible film the result is its incompressible limit.
 [[nodiscard]] GasLaw gas_law(const Gas& gas, const Structure& structure, double unit_quality);
 [[nodiscard]] GasLaw gas_law(const Gas& gas, double width, double thickness, double unit_quality);
 
@@ -44,16 +44,16 @@ struct GasLaw : internal::LawsOf<Gas>::Type {
   return std::visit([&](const auto& l) { return -l.load(gap, 1.0); }, law);
 }
 
-/// Returns the squeeze number 12 mu a^2 rate / (p h^2) of a gas film for the relative rate [1/s] at which the gap h [m]
-/// changes.
+/// Returns the squeeze number 12 mu a^2 rate / (p h^2) of a gas film: viscosity mu, width a [m], ambient pressure p, gap h [m].
+/// `rate` is the relative rate of change of the gap [1/s].
 [[nodiscard]] double squeeze_number(const FilmState& gas, double width, double gap, double rate);
 
-/// Returns the squeeze number of the gas film at the contact point, with the relative rate |v| / h of the gap; 0 when the
-/// device's gas law has no limit for squeeze numbers.
+/// Returns the squeeze number of the gas film at the contact point, for the rate |v| / h: velocity v, gap h. Returns 0 when the
+/// device's gas law has no limit of the squeeze number.
 [[nodiscard]] double squeeze_number(const Device& device, double rest_gap, const TrajectoryPoint& point);
 
-/// Returns one line per limit of the gas law that a closing exceeded, with law, limit and value. The range of Knudsen numbers
-/// is from the rest gap to the smallest gap at any place [m].
+/// Returns a warning for each limit of the gas law that a closing exceeded, with law, limit and value. The Knudsen numbers of a
+/// closing are those from the rest gap to the smallest gap along the beam [m].
 [[nodiscard]] std::vector<std::string> gas_warnings(const Device& device, double smallest_gap, double largest_squeeze);
 
 }  // namespace softland

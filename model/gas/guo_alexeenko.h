@@ -18,15 +18,15 @@
 
 namespace softland {
 
-/// The law of the gas film. `P` is the scalar type of the parameters; the scalar type of the state must be constructible from
-/// P.
+/// The gas film law of Guo and Alexeenko. `P` is the scalar type of the parameters; the scalar type of the state must be
+/// constructible from P.
 template <class P>
 struct GuoAlexeenkoFilmOf {
   P mean_free_path = 0;            ///< mean free path of the gas [m]
   P width = 0;                     ///< width of the beam [m]
   P thickness = 0;                 ///< thickness of the beam [m]
-  P strength = 10.39 * thickness;  // factor of the damping, which depends on the thickness alone [N s/m^2]
-  // Factor of the rarefaction term, without its dependence on the gap.
+  P strength = 10.39 * thickness;  // factor A b of the damping in the header's formula [N s/m^2]
+  // Factor B (lambda/a)^e of the header's formula, for the rarefaction of the gas.
   P rarefaction = P(1.374) * raised(mean_free_path / width, 0.966);
   static constexpr bool drive_depends = false;
 
@@ -38,7 +38,7 @@ struct GuoAlexeenkoFilmOf {
   }
 
  private:
-  /// Calls the standard library's pow for doubles, so that their results stay the same to the last bit.
+  /// Returns x^exponent. The standard library's pow is used for doubles, so that results stay the same to the last bit.
   static P raised(const P& x, double exponent) {
     if constexpr (std::same_as<P, double>) {
       return std::pow(x, exponent);

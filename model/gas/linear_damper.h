@@ -5,7 +5,7 @@
 //
 // c is the damping per length [N s/m^2], v the velocity towards the electrode [m/s], omega_1, phi_1 the first mode, Q its
 // quality factor in small free vibration; on a uniform beam c acts on every mode with the same rate c/m. The law ignores the
-// gap: it is far too weak near contact, where a film would act. Regular everywhere.
+// gap: near contact its damping is far weaker than that of a gas film. Regular everywhere.
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,8 @@
 
 namespace softland {
 
-/// The damping law. `P` is the scalar type of the parameters; the scalar type of the state must be constructible from P.
+/// The law of gap-independent damping. `P` is the scalar type of the parameters; the scalar type of the state must be
+/// constructible from P.
 template <class P>
 struct LinearDamperOf {
   P damping = 0;  ///< damping per length of the beam [N s/m^2]

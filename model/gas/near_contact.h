@@ -18,16 +18,17 @@
 
 namespace softland {
 
-/// The law of the gas film. `P` is the scalar type of the parameters; the scalar type of the state must be constructible from
-/// P.
+/// The gas film law for gaps down to contact. `P` is the scalar type of the parameters; the scalar type of the state must be
+/// constructible from P.
 template <class P>
 struct NearContactFilmOf {
   P viscosity = 0;       ///< viscosity of the gas [Pa s]
   P mean_free_path = 0;  ///< mean free path of the gas [m]
   P width = 0;           ///< width of the beam [m]
   static constexpr bool drive_depends = false;
-  static constexpr double near = 0.015;  ///< gap over width below which the damping continues by its tangent
-  /// Knudsen number times this must be well above 1: the law is for rarefied gas only.
+  static constexpr double near = 0.015;  ///< gap over width below which g(x) is continued by its tangent
+  /// Coefficient of Kn in E of the header's formula. The law is for rarefied gas only: `rarefied` times Kn must be well above
+  /// 1.
   static constexpr double rarefied = 210.79;
 
   /// Returns the load of the gas film on the beam [N/m].
@@ -40,7 +41,7 @@ struct NearContactFilmOf {
   }
 
  private:
-  /// Returns the damping factor g at x = gap / width, with the coefficients z = 6 Z and e = 12 E of the file header's formula.
+  /// Returns the factor g of the header's formula at x = gap / width, with the coefficients z = 6 Z and e = 12 E.
   template <class S>
   static S shape(S x, S z, S e) {
     constexpr double r = 1 / near;
@@ -56,7 +57,7 @@ struct NearContactFilmOf {
 };
 using NearContactFilm = NearContactFilmOf<double>;
 
-/// The parameters of this gas law for gaps down to contact in a scene.
+/// The parameters of the gas law "near-contact" in a scene.
 struct NearContactGas {
   static constexpr std::string_view name = "near-contact";
   static constexpr FilmLimits limits{.least_knudsen = 1 / NearContactFilm::rarefied, .most_squeeze = incompressible};

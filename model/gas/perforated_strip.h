@@ -26,8 +26,8 @@ namespace softland {
 struct PerforatedStripFilm {
   double viscosity = 0;  ///< viscosity of the gas [Pa s]
   double width = 0;      ///< width of the strip with its holes [m]
-  double through = 0;    ///< flow resistance of the holes: mean pressure over velocity [Pa s/m]
-  double around = 0;     ///< flow resistance of the film around a hole, times the cube of the gap [Pa s m^2]
+  double through = 0;    ///< first term of R, the resistance of the holes: pressure over velocity [Pa s/m]
+  double around = 0;     ///< second term of R, the film around a hole, times the cube of the gap [Pa s m^2]
   static constexpr bool drive_depends = false;
 
   PerforatedStripFilm(double mu, double a, double thickness, const Holes& holes) : viscosity(mu), width(a) {
@@ -43,7 +43,7 @@ struct PerforatedStripFilm {
     using std::sqrt;
     const S cube = gap * gap * gap, resistance = S(through) + S(around) / cube;
     const S x = S(width / 2) / sqrt(cube * resistance / S(12 * viscosity));
-    constexpr double wide = 25;  // larger x count as infinite: exp(-2 x) is below the rounding of load and slopes
+    constexpr double wide = 25;  // tanh(x) counts as 1 for larger x: exp(-2 x) is below the rounding error
     const S decayed = select(
         x < wide, [&] { return S(exp(S(-2) * x)); }, [] { return S(0); });
     return -resistance * S(width) * (S(1) - (S(1) - decayed) / ((S(1) + decayed) * x)) * velocity;

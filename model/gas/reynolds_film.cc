@@ -8,7 +8,7 @@
 namespace softland {
 namespace {
 
-constexpr int degree = 2 * internal::StripNodes::count;  // degree of the pressure polynomials across the whole width
+constexpr int degree = 2 * internal::StripNodes::count;  // degree of the pressure polynomial across the width
 
 double legendre(double x) {
   double before = 1, last = x;
@@ -21,7 +21,7 @@ double legendre(double x) {
 }
 
 // Returns the Gauss-Lobatto points on [-1, 1] in rising order: both ends, and the zeros of the derivative of the Legendre
-// polynomial, which are the eigenvalues of a Jacobi matrix.
+// polynomial of this degree, computed as the eigenvalues of a Jacobi matrix.
 Eigen::VectorXd lobatto_points() {
   constexpr int inner = degree - 1;
   Eigen::VectorXd off(inner - 1);
@@ -31,7 +31,7 @@ Eigen::VectorXd lobatto_points() {
   return points;
 }
 
-// Returns the free energy per volume, over the ambient pressure pa, of an isothermal gas at the pressure pa (1 + p).
+// Returns the free energy per volume of an isothermal gas at the pressure pa (1 + p), divided by the ambient pressure pa.
 double free_energy(double p) { return (1 + p) * std::log1p(p) - p; }
 
 }  // namespace
@@ -50,7 +50,7 @@ StripNodes strip_nodes() {
     for (int j = 0; j <= degree; ++j) {
       if (i != j) slope(i, j) = at[i] / (at[j] * (x[i] - x[j]));
     }
-    slope(i, i) = -slope.row(i).sum();  // the slope of a constant is 0
+    slope(i, i) = -slope.row(i).sum();  // so that the derivative of a constant is 0
   }
   constexpr int count = StripNodes::count;
   Eigen::MatrixXd unfold = Eigen::MatrixXd::Zero(degree + 1, count);

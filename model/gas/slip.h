@@ -12,8 +12,8 @@
 
 namespace softland {
 
-/// The law of the gas film with slip. `P` is the scalar type of the parameters; the scalar type of the state must be
-/// constructible from P.
+/// The law of an incompressible gas film with slip. `P` is the scalar type of the parameters; the scalar type of the state must
+/// be constructible from P.
 template <class P>
 struct SlipFilmOf {
   P viscosity = 0;       ///< viscosity of the gas [Pa s]
@@ -29,8 +29,8 @@ struct SlipFilmOf {
 };
 using SlipFilm = SlipFilmOf<double>;
 
-/// The parameters of the compressible gas film in a scene. The slip film of this file is its limit for slow motion: see
-/// reynolds_film.h.
+/// The parameters of the compressible gas film in a scene (reynolds_film.h). The slip film of this file is its limit for slow
+/// motion.
 struct ReynoldsGas {
   static constexpr std::string_view name = "reynolds";
   static constexpr FilmLimits limits{.most_knudsen = 0.1, .most_squeeze = 1000};

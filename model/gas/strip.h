@@ -12,8 +12,8 @@
 
 namespace softland {
 
-/// The law of the gas film. `P` is the scalar type of the parameters; the scalar type of the state must be constructible from
-/// P.
+/// The law of an incompressible gas film under a strip. `P` is the scalar type of the parameters; the scalar type of the state
+/// must be constructible from P.
 template <class P>
 struct StripSqueezeFilmOf {
   P viscosity = 0;  ///< viscosity of the gas [Pa s]
@@ -26,7 +26,7 @@ struct StripSqueezeFilmOf {
   S load(S gap, S velocity) const {
     return S(-mu_a3) * velocity / (gap * gap * gap);
   }
-  /// Returns the load of the gas film [N/m] from `root` = h^(-1/4) of the gap h [m^(-1/4)].
+  /// Returns the load of the gas film on the beam [N/m] at the gap h, from `root` = h^(-1/4) [m^(-1/4)].
   template <class S>
   [[gnu::always_inline]] S load_by_root(S root, S velocity) const {
     const S square = root * root, inverse = square * square;

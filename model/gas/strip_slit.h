@@ -5,8 +5,8 @@
 //   f = -mu (a / h)^3 v (4 + r) / (1 + r),   r = a s^3 / (l h^3)     [N/m], positive towards the electrode
 //
 // mu is the viscosity [Pa s], a the width of the film (height of the wall) [m], h the local gap [m], s the height of the slit
-// [m], l its length up to where the pressure is ambient [m] (half the wall's width when a film on the other side of the wall is
-// sucked as this one is squeezed), v the velocity towards the electrode [m/s]. r compares the flows through slit and film: a
+// [m], l its length up to where the pressure is ambient [m] (half the thickness of the wall when the film on its other side
+// widens as this film is squeezed), v the velocity towards the electrode [m/s]. r compares the flows through slit and film: a
 // wide slit, r -> infinity, gives the strip open at both edges, a closed slit four times its damping, the strip of twice the
 // width. Derived from Reynolds' equation with p = 0 at the open edge and -dp/dx h^3 = p s^3 / l at the other; the same factor
 // as Li, Rouf & Horsley, Transducers 2013, for lateral oscillators. Continuum, incompressible, Poiseuille flow in the slit.
@@ -17,8 +17,8 @@
 
 namespace softland {
 
-/// The law of the gas film. `P` is the scalar type of the parameters; the scalar type of the state must be constructible from
-/// P.
+/// The law of a gas film between walls, with a slit under the moving wall. `P` is the scalar type of the parameters; the scalar
+/// type of the state must be constructible from P.
 template <class P>
 struct StripOverSlitOf {
   P viscosity = 0;    ///< viscosity of the gas [Pa s]
@@ -26,7 +26,7 @@ struct StripOverSlitOf {
   P slit_height = 0;  ///< height of the slit under the wall [m]
   P slit_length = 0;  ///< length of the slit, up to ambient pressure [m]
   P mu_a3 = viscosity * width * width * width;
-  /// Flow through the slit over flow through the film, times the cube of the gap [m^3].
+  /// The product r h^3 of the header's formula, where r is flow through the slit over flow through the film [m^3].
   P passing = width * slit_height * slit_height * slit_height / slit_length;
   static constexpr bool drive_depends = false;
 
@@ -39,7 +39,7 @@ struct StripOverSlitOf {
 };
 using StripOverSlit = StripOverSlitOf<double>;
 
-/// The parameters of the film over a slit in a scene.
+/// The parameters of the gas law "strip-slit" in a scene.
 struct StripSlitGas {
   static constexpr std::string_view name = "strip-slit";
   static constexpr FilmLimits limits{.most_knudsen = 0.1, .most_squeeze = incompressible};

@@ -14,8 +14,8 @@
 
 namespace softland {
 
-/// The law of the gas film. `P` is the scalar type of the parameters; the scalar type of the state must be constructible from
-/// P.
+/// The gas film law of Veijola. `P` is the scalar type of the parameters; the scalar type of the state must be constructible
+/// from P.
 template <class P>
 struct VeijolaFilmOf {
   P viscosity = 0;       ///< viscosity of the gas [Pa s]

@@ -1,5 +1,5 @@
-// Beams of rectangular section (Euler-Bernoulli), clamped at x = 0: parameters of the kinds "cantilever" and "clamped-clamped".
-// model/beam.h has their modes.
+// Beams of rectangular section (Euler-Bernoulli), supported at x = 0: the parameters of the kinds of structure "cantilever" and
+// "clamped-clamped" in a scene. model/beam.h computes their modes.
 #pragma once
 
 #include <algorithm>
@@ -14,16 +14,16 @@
 
 namespace softland {
 
-/// The numbers of a cantilever or a beam between two clamps, besides length, width and thickness.
+/// The parameters of a cantilever or a beam between two clamps, except length, width and thickness (see Structure).
 struct Beam {
-  double youngs_modulus = 0;  ///< Young's modulus E [Pa], used as given without plate_strain
+  double youngs_modulus = 0;  ///< Young's modulus E of the beam [Pa]
   double density = 0;         ///< density of the beam [kg/m^3]
-  bool plate_strain = false;  ///< true to bend with E / (1 - nu^2), nu Poisson's ratio
+  bool plate_strain = false;  ///< true: E / (1 - nu^2) replaces E in bending (wide beam), nu Poisson's ratio
   double poissons_ratio = not_given;
   std::vector<SectionPart> sections = {};  ///< sections of the beam from x = 0 on; empty for a uniform beam
   std::vector<LayerPart> layers = {};      ///< layers on the faces of the beam
-  std::optional<Anchor> anchor = {};       ///< anchor of the beam at x = 0; a rigid clamp when absent
-  std::optional<Anchor> far_anchor = {};   ///< anchor of the beam at its far end; when absent a free end or a clamp, by kind
+  std::optional<Anchor> anchor = {};       ///< compliant anchor of the beam at x = 0; a rigid clamp if empty
+  std::optional<Anchor> far_anchor = {};   ///< compliant anchor at the far end; if empty, free or clamped by kind
   std::optional<RestShape> rest_shape = {};
 
   /// Returns true when the beam has sections or layers.
@@ -72,7 +72,8 @@ struct Beam {
 struct Cantilever : Beam {
   static constexpr std::string_view name = "cantilever";
 
-  /// Gradient of the residual stress over the thickness [Pa/m]; positive: curls away from the near electrode.
+  /// Gradient of the residual stress over the thickness [Pa/m]; a positive gradient curls the beam away from the near
+  /// electrode.
   double stress_gradient = 0;
 
   template <class S>
@@ -116,8 +117,9 @@ struct Bridge : Beam {
       "line; a layer needs a cantilever";
 
   double residual_stress = 0;  ///< residual stress before the beam bends, positive in tension [Pa]
-  bool biaxial = false;        ///< true for the equal biaxial stress of a film, of which (1 - nu) remains, nu Poisson's ratio
-  bool stretches = true;       ///< true when bending stretches the beam
+  /// True: biaxial stress of a film before release, which leaves residual_stress (1 - nu) in the beam.
+  bool biaxial = false;
+  bool stretches = true;  ///< true when bending stretches the beam (cubic stiffness)
 
   template <class S>
   static consteval auto fields() {
@@ -133,7 +135,7 @@ struct Bridge : Beam {
   [[nodiscard]] static S example() {
     return {.length = 400e-6, .width = 20e-6, .thickness = 2e-6, .kind = Bridge{{.youngs_modulus = 78e9, .density = 19300}, 2e6}};
   }
-  /// Returns the stiffness of mid-plane stretching; none when bending does not stretch the beam.
+  /// Returns the stiffness of mid-plane stretching; empty when the model neglects stretching or an end of the beam is free.
   template <class Modes, class S>
   [[nodiscard]] auto stretching(const Modes& modes, const S& structure) const {
     return stretches && structure.has_far_clamp() ? std::optional(stretching_of(modes, structure)) : std::nullopt;

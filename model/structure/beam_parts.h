@@ -19,7 +19,7 @@ struct Holes {
   [[nodiscard]] bool exist() const { return size > 0; }
 };
 
-/// One section of a beam. A number that is not given is that of the whole structure.
+/// One section of a beam with sections of different size. A number that is not given is that of the whole beam.
 struct SectionPart {
   double length = 0;                  ///< length of the section along the beam [m]
   double width = not_given;           ///< width of the beam at the section's start [m]
@@ -30,8 +30,8 @@ struct SectionPart {
   Holes holes = {};
 };
 
-/// A layer on one face of the beam, as wide as the beam. When several layers cover the same part of a face, later layers lie
-/// outside.
+/// A layer on one face of the beam, as wide as the beam. Of several layers on the same part of a face, the first is next to the
+/// beam.
 struct LayerPart {
   Side face = Side::far;              ///< face of the beam that carries the layer, near or far from the electrode
   Place begin, end;                   ///< begin and end of the layer along the beam
@@ -42,18 +42,18 @@ struct LayerPart {
   double poissons_ratio = not_given;  ///< Poisson's ratio of the layer; needed with plate_strain
 };
 
-/// The shape of a released beam at rest as a table: straight lines between heights at positions along the beam.
+/// The shape of a released beam at rest, as a table of heights at positions along the beam; straight lines connect them.
 struct RestShape {
   std::vector<Place> positions;  ///< positions along the beam, rising from 0 to the far end
-  /// Heights of the beam at the positions over its straight shape, away from the near electrode [m].
+  /// Height of the beam above its straight shape at each position, positive away from the near electrode [m].
   std::vector<double> heights;
 
   /// Returns the positions of the table on a beam of this length [m].
   [[nodiscard]] std::vector<double> places(double length) const;
-  /// Returns the height of the beam at rest over its straight shape at x [m]; beyond the last position of the table the last
-  /// line continues.
+  /// Returns the height of the beam at rest above its straight shape, at the position x [m]; beyond the last position of the
+  /// table its last straight line continues.
   [[nodiscard]] double height(double x, double length) const;
-  /// Returns the least height, over its straight shape, of a beam of this length at rest [m].
+  /// Returns the least height of a beam of this length at rest above its straight shape [m].
   [[nodiscard]] double lowest(double length) const;
 };
 

@@ -3,10 +3,10 @@
 //   m x'' = -k x - 2 zeta sqrt(k m) x' + forces      phi = 1 / sqrt(m),   omega = sqrt(k / m)
 //
 // m is the moving mass [kg], k the stiffness of all springs together [N/m], x the deflection [m], zeta the damping ratio; phi
-// is the mass-normalised mode [kg^(-1/2)], the same everywhere: the plate stays flat and parallel. It has the interface of
-// BeamModes, so that laws per length act on it as on a beam: a strip as wide as the plate whose length is area / width. Valid
-// while springs are linear and tilting and bending modes lie far above omega. Source: any textbook on electrostatic actuators,
-// e.g. Senturia, Microsystem Design, 2001, ch. 6.
+// is the mass-normalised mode [kg^(-1/2)], the same everywhere: the plate stays flat and parallel. The plate has the interface
+// of BeamModes, so that force laws per length act on it as on a beam: a strip as wide as the plate whose length is area /
+// width. Valid while springs are linear and tilting and bending modes lie far above omega. Source: any textbook on
+// electrostatic actuators, e.g. Senturia, Microsystem Design, 2001, ch. 6.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,12 +26,12 @@ class RigidPlate {
   struct FlatMode {
     [[nodiscard]] Eigen::VectorXd value(double) const { return Eigen::VectorXd::Ones(1); }
     [[nodiscard]] Eigen::VectorXd slope(double) const { return Eigen::VectorXd::Zero(1); }
-    /// Returns the inverse squared frequency of the held plate. A rigid plate that is held at its contact cannot move at all;
-    /// the frequency of the free plate is used instead: a rebound takes no longer than the plate's period.
+    /// Returns the factor 1 between the inverse squared frequencies of held and free plate. A rigid plate that is held at its
+    /// contact cannot move; the free plate's frequency is used, since a rebound takes no longer than the plate's period.
     [[nodiscard]] double pinned_inverse_square(double, std::optional<double> = {}) const { return 1; }
   };
 
-  /// Takes length [m], moving mass [kg], stiffness of all springs [N/m].
+  /// Creates a plate of this length [m], moving mass [kg] and stiffness of all springs together [N/m].
   RigidPlate(double length, double mass, double stiffness)
       : length_(length), scale_(1 / std::sqrt(mass)), frequency_scale_(std::sqrt(stiffness / mass)) {}
 

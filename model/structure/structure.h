@@ -1,5 +1,5 @@
-// The moving part of a switch: one of the kinds of structures, with their common properties. A new kind needs its own header
-// (model/structure/kind.h describes the header) and an entry in StructureKind.
+// The moving part of a switch: one of the kinds of structures, with the properties that all kinds have. To add a kind, write a
+// header as model/structure/kind.h describes, and add its type to StructureKind.
 #pragma once
 
 #include <concepts>
@@ -18,24 +18,24 @@
 
 namespace softland {
 
-/// The largest number of modes of a beam at rest: see SwitchOptions::modes.
+/// Largest number of modes of a beam in static calculations, see SwitchOptions::modes.
 inline constexpr int most_static_modes = 40;
 
-/// The kinds of structures, in the order in which messages and tables list them.
+/// The parameters of a structure of any kind. Messages and tables list the kinds in this order.
 using StructureKind = std::variant<Cantilever, Bridge, Plate, ModalStructure>;
 
 struct Structure {
-  /// The largest number of modes of a beam that moves.
+  /// The largest number of modes of a beam in simulations of its motion.
   static constexpr int most_modes = 20;
 
   double length = 0;  ///< length of the structure [m]; area over width for a plate; length of the table for a table of modes
   double width = 0;   ///< width of the structure [m]
   double thickness = not_given;  ///< thickness of the structure [m]
-  int modes = 4;                 ///< number of modes in the simulation; a plate has one mode, whatever this number is
+  int modes = 4;                 ///< number of modes in the simulation; a plate always has one
   double damping_ratio = 0;      ///< ratio of the modal damping to critical damping, for every mode
   StructureKind kind = Cantilever{};
 
-  /// Returns the kind that the structure holds if its type is `Part`, or derives from `Part`; null otherwise.
+  /// Returns the parameters of the structure's kind if their type is `Part` or derives from `Part`; null otherwise.
   template <class Part>
   [[nodiscard]] constexpr Part* find() {
     return std::visit(
@@ -52,22 +52,21 @@ struct Structure {
   /// Returns the scene-file key of the damping ratio, which every kind of structure has.
   [[nodiscard]] static consteval Field<Structure> damping();
 
-  /// Returns true when the structure moves as a rigid body: the structure has one mode, and all places along it are equal.
+  /// Returns true for a rigid body with one mode, which moves equally at all places.
   [[nodiscard]] bool is_rigid() const;
   /// Returns true when the far end of the structure is held, by a clamp or by a compliant anchor.
   [[nodiscard]] bool has_far_clamp() const;
-  /// Returns the stiffnesses of the support at the clamped end; far_hold() returns those at the far end. They are those of the
-  /// beam's anchors if given, otherwise those of the kind of structure.
+  /// Return the stiffnesses of the supports at x = 0 and at the far end: those of the beam's anchors if given, otherwise a
+  /// rigid clamp or, at the far end, what the kind of structure has.
   [[nodiscard]] Anchor near_hold() const;
   [[nodiscard]] Anchor far_hold() const;
   /// Returns true when the size changes along the structure: a beam with sections or layers, or a table of modes with widths.
   [[nodiscard]] bool is_built() const;
-  /// Returns the reason why the structure cannot have a piezo layer; empty when it can. The next function does so for surface
-  /// skins.
+  /// Return the reason why the structure cannot have a piezo layer, or surface skins; empty when it can.
   [[nodiscard]] std::string_view why_no_layer() const;
   [[nodiscard]] std::string_view why_no_skins() const;
-  /// Returns the last words of the message about a number that this kind of structure requires, such as "on a plate". Empty
-  /// when every number has a default.
+  /// Returns the last words of messages about a number that this kind of structure requires, such as "on a plate". Empty when
+  /// the kind requires no number.
   [[nodiscard]] std::string_view whose() const;
 };
 
@@ -87,7 +86,7 @@ consteval Field<Structure> Structure::damping() {
 /// The scene-file keys of a kind of structure, computed at compile time.
 template <class Kind>
 inline constexpr auto structure_fields = Kind::template fields<Structure>();
-/// Returns the scene-file keys of the kind that the structure holds.
+/// Returns the scene-file keys that are valid for the structure's kind.
 [[nodiscard]] inline std::span<const Field<Structure>> fields_in_force(const Structure& s) {
   return std::visit([]<class Kind>(const Kind&) -> std::span<const Field<Structure>> { return structure_fields<Kind>; }, s.kind);
 }
@@ -146,7 +145,8 @@ inline std::string_view Structure::whose() const {
       kind);
 }
 
-/// Returns the largest number of modes of a structure: 1 for a plate, the number of modes of the table for a table.
+/// Returns the largest number of modes that a structure may have: 1 for a plate, at most the number in the table for a table of
+/// modes.
 [[nodiscard]] inline int most_modes_of(const Structure& structure) {
   return std::visit(
       []<class Kind>(const Kind& kind) {

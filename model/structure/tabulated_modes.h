@@ -3,13 +3,14 @@
 //
 //   q_i'' = -(f omega_i)^2 q_i + Q_i + ...      y(x) = sum over i of phi_i(x) q_i
 //
-// phi are mass-normalised modes [kg^(-1/2)], given by one row per place, omega angular frequencies [rad/s], f a factor by which
-// a device is stiffer than the table. Between the places a cubic that is clamped at x = 0 interpolates (base/clamped_spline.h):
-// value and slope are 0 there. Q is the force of stretching between two clamps (model/stretching.h): the slopes are those of
-// the cubics, and EA/L is the axial stiffness that a scene gives. The table has the interface of BeamModes, so that laws per
-// length act on it as on a beam. Without an axial stiffness it is valid while deflections are small against the thickness,
-// since the modes are linear. Source: modal superposition, any textbook on structural dynamics, e.g. Meirovitch, Fundamentals
-// of Vibrations, 2001, ch. 7.
+// phi are mass-normalised modes [kg^(-1/2)], given by one row per place, omega angular frequencies [rad/s], f the factor of a
+// device's frequencies over those of the table. Between the places a cubic that is clamped at x = 0 interpolates
+// (base/clamped_spline.h): value and slope are 0 there. Q_i is the modal force of stretching between two clamps, to which the
+// other modal forces are added (model/stretching.h): the slopes are those of the cubics, and EA/L is the axial stiffness that a
+// scene gives. The modes have the interface of BeamModes, so that force laws per length act on the structure as on a beam.
+// Without an axial stiffness the model is valid while deflections are small compared to the thickness, since the modes are
+// linear. Source: modal superposition, any textbook on structural dynamics, e.g. Meirovitch, Fundamentals of Vibrations, 2001,
+// ch. 7.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,14 +28,14 @@
 
 namespace softland {
 
-/// A table of vibration modes of a structure: the same for all devices of a scene.
+/// A table of vibration modes of a structure: the same table for all devices of a scene.
 class ModalTable {
  public:
-  /// Takes at least three `positions` [m] that rise from 0, `frequencies` [Hz] that rise, and for each frequency a shape
-  /// [kg^(-1/2)] with a value per position, which is 0 at the first one. `rest_offsets` [m] are heights of the structure's face
-  /// at rest, positive towards the near electrode: one per position, or none for a straight structure. `widths` [m] are linear
-  /// between positions: one per position, or none for a structure of constant width. A clamped far end must not move in any
-  /// mode, and the first mode must have no slope there. Throws InvalidInput with the broken rule.
+  /// Creates a table from at least three `positions` [m] that rise from 0, `frequencies` [Hz] that rise, and a mode shape
+  /// [kg^(-1/2)] for each frequency. A shape has a value per position, 0 at the first position. `rest_offsets` [m] are heights
+  /// of the structure's face at rest, positive towards the near electrode; one per position, or none for a straight structure.
+  /// `widths` are linear between positions [m]: one per position, or none for a structure of constant width. A clamped far end
+  /// must not move in any mode, and must have no slope in the first mode. Throws InvalidInput with the broken rule.
   ModalTable(std::vector<double> positions, std::vector<double> frequencies, std::vector<std::vector<double>> shapes,
              std::vector<double> rest_offsets = {}, std::vector<double> widths = {}, SplineEnd far_end = SplineEnd::free);
 
@@ -50,18 +51,21 @@ class ModalTable {
   /// Returns the shape of a mode at the position x [m] along the structure [kg^(-1/2)].
   [[nodiscard]] double value(int mode, double x) const { return splines_[static_cast<std::size_t>(mode)].value(x); }
   [[nodiscard]] double slope(int mode, double x) const { return splines_[static_cast<std::size_t>(mode)].slope(x); }
-  /// Returns the heights of the structure's face at rest at the positions of the table [m].
+  /// Returns the heights of the structure's face at rest at the positions of the table, positive towards the near electrode
+  /// [m].
   [[nodiscard]] const std::vector<double>& rest_offsets() const { return rest_offsets_; }
-  [[nodiscard]] const std::vector<double>& widths() const { return widths_; }  ///< widths of the structure at the positions [m]
-  /// Returns the distance of the structure's face at rest from its height at the clamp, away from the near electrode [m]:
-  /// linear between the positions of the table.
+  /// Widths of the structure at the positions of the table [m].
+  [[nodiscard]] const std::vector<double>& widths() const { return widths_; }
+  /// Returns the distance at x [m] of the structure's face at rest from its height at the clamp, positive away from the near
+  /// electrode [m]; linear between the positions of the table.
   [[nodiscard]] double rest_offset(double x) const;
-  /// Returns the smallest distance of the structure's face at rest from its height at the clamp [m].
+  /// Returns the smallest value of rest_offset(x) along the structure [m].
   [[nodiscard]] double lowest_rest_offset() const;
-  /// Returns true when the last position of the table does not move in any mode, so that the far end is held as well.
+  /// Returns true when no mode moves the last position of the table, so that the far end must be clamped.
   [[nodiscard]] bool is_held_at_both_ends() const;
   [[nodiscard]] bool has_far_clamp() const { return far_end_ == SplineEnd::clamped; }
-  /// Returns the integrals of the products of slopes of the first modes, column by column [1/(kg m)].
+  /// Returns the integrals of the products of the first modes' slopes, for mid-plane stretching: a matrix, column by column
+  /// [1/(kg m)].
   [[nodiscard]] std::vector<double> slope_products(int modes) const;
   [[nodiscard]] bool operator==(const ModalTable& other) const {
     return positions_ == other.positions_ && frequencies_ == other.frequencies_ && shapes_ == other.shapes_ &&
@@ -85,18 +89,18 @@ class TabulatedModes {
 
     [[nodiscard]] Eigen::VectorXd value(double x) const;
     [[nodiscard]] Eigen::VectorXd slope(double x) const;
-    /// Returns omega_1^2 over the square of the first angular frequency of the structure that is also held at x, from all modes
-    /// of the table: the root of sum phi_i(x)^2 / (omega_i^2 - omega^2) between the first two frequencies. Returns 1 for a
-    /// single mode: held at x, the structure cannot move. The frequency of the free structure is used then, as a rebound takes
-    /// no longer than its period.
+    /// Returns (omega_1 / omega)^2: omega_1 is the first angular frequency of the structure, omega the first of the structure
+    /// that is also held at x, a share of the length. From all modes of the table, omega is the root of sum phi_i(x)^2 /
+    /// (omega_i^2 - omega^2) between the first two frequencies. A table with a single mode cannot move when held at x: the
+    /// result is then 1, since a rebound takes no longer than the free period. `near` is not used.
     [[nodiscard]] double pinned_inverse_square(double x, std::optional<double> near = {}) const;
     [[nodiscard]] bool operator==(const Shapes& other) const {
       return modes == other.modes && (table == other.table || (table && other.table && *table == *other.table));
     }
   };
 
-  /// Takes the first `modes` modes of a table, and a factor on their frequencies. Throws InvalidInput unless 1 <= modes <=
-  /// table->count().
+  /// Uses the first `modes` modes of a table, with `frequency_factor` on their frequencies. Throws InvalidInput unless 1 <=
+  /// modes <= table->count().
   TabulatedModes(std::shared_ptr<const ModalTable> table, int modes, double frequency_factor);
 
   /// Angular frequencies of the modes [rad/s].
@@ -111,7 +115,7 @@ class TabulatedModes {
   Eigen::VectorXd frequencies_;
 };
 
-/// The kind of structure "modes" in a scene: clamped at x = 0, and free or clamped at its far end.
+/// The parameters of the kind of structure "modes" in a scene: clamped at x = 0, and free or clamped at its far end.
 struct ModalStructure {
   static constexpr std::string_view name = "modes", whose = "beside the modes of a file",
                                     length_is = "the {} of the modes' table",
@@ -124,7 +128,7 @@ struct ModalStructure {
   double frequency_factor = 1;         ///< factor on the natural frequencies of the table
   double axial_stiffness = not_given;  ///< axial force per elongation between the clamps, E A / L of a uniform beam [N/m]
 
-  /// The scene-file keys of this kind of structure, other than those of the file with the table (config/modal_table.h).
+  /// Returns the scene-file keys of this kind of structure, except those of the file with the table (config/modal_table.h).
   template <class S>
   static consteval auto fields() {
     constexpr std::string_view follows_no_size = "the modes of a file do not follow it; vary structure.frequency_factor";
@@ -147,7 +151,7 @@ struct ModalStructure {
             .modes = 2,
             .kind = ModalStructure{.table = example_table()}};
   }
-  /// Returns a table with two modes of a beam that is as heavy as a gold cantilever.
+  /// Returns a table for tests, with two modes of a beam as heavy as a gold cantilever.
   [[nodiscard]] static std::shared_ptr<const ModalTable> example_table();
 
   template <class Device, class Known>
@@ -166,7 +170,7 @@ struct ModalStructure {
   [[nodiscard]] double lowest_rest_offset(const Device&) const {
     return table->lowest_rest_offset();
   }
-  /// Returns the law of mid-plane stretching; none when the scene gives no axial stiffness.
+  /// Returns the law of mid-plane stretching; empty when the scene gives no axial stiffness.
   template <class S>
   [[nodiscard]] std::optional<MidPlaneStretching> stretching(const TabulatedModes& modes, const S&) const {
     if (std::isnan(axial_stiffness)) return std::nullopt;
