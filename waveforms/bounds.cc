@@ -9,9 +9,10 @@
 namespace softland::internal {
 namespace {
 
-/// A term of a signal piece, prepared for up to four derivatives of its polynomials.
+/// A term of a signal piece that can be differentiated by time: polynomials times a decaying cosine and sine.
 struct Differentiated {
-  // Number of coefficients of a polynomial; a frequency sweep raises the degree by one for each derivative.
+  // Number of coefficients of each polynomial: a cubic, whose degree a frequency sweep raises by one for each of four
+  // derivatives.
   static constexpr std::size_t size = 8;
   std::array<double, size> cosine = {}, sine = {};
   double decay = 0, angular_frequency = 0, sweep = 0;
@@ -36,13 +37,14 @@ struct Differentiated {
     cosine = c, sine = s;
   }
 
-  /// Returns true if the term is a sine of constant amplitude, whose bound does not depend on time.
+  /// Returns true if the term is a cosine and sine of constant amplitude, so that bound() does not depend on time.
   [[nodiscard]] bool is_steady() const {
     bool is_constant = decay == 0;
     for (std::size_t k = 1; k < size; ++k) is_constant = is_constant && cosine[k] == 0 && sine[k] == 0;
     return is_constant;
   }
-  /// Returns a bound on the absolute value of the term for times from `first` to `last` after the piece began.
+  /// Returns a bound on the absolute value of the term between the times `first` and `last`, counted from the piece's
+  /// beginning.
   [[nodiscard]] double bound(double first, double last) const {
     const double longest = std::max(std::abs(first), std::abs(last));
     double power = 1, sum = 0;
@@ -51,7 +53,8 @@ struct Differentiated {
   }
 };
 
-/// A bound on a derivative of the voltage of a signal piece, over any interval; the terms are differentiated only once.
+/// A bound on the derivative of given order of a signal piece's voltage, for any interval. The terms are differentiated only
+/// once.
 class DerivativeBound {
  public:
   DerivativeBound(const SignalPieceOf<double>& piece, int order) : piece_(piece), order_(order) {
@@ -85,7 +88,8 @@ class DerivativeBound {
   std::vector<Differentiated> others_;
 };
 
-/// Returns the sum of the largest absolute values of all parts of a signal piece's voltage, or of its dV/dt, on [from, to].
+/// Returns the sum of the largest absolute values of all parts of a signal piece's voltage on [from, to], a scale for errors.
+/// The same for dV/dt if `of_rate` is true.
 double size_of(const SignalPieceOf<double>& piece, bool of_rate, double from, double to) {
   double sum = 0;
   for (const TermOf<double>& term : piece.terms) {
@@ -99,8 +103,8 @@ double size_of(const SignalPieceOf<double>& piece, bool of_rate, double from, do
                         : std::abs(piece.value) + std::abs(piece.slope) * longest + swing);
 }
 
-/// Returns a time in [from, to] at which the function is within `tolerance` of its maximum. `curvature(a, b)` bounds the second
-/// derivative between a and b: a chord of length h is at most h^2 / 8 times this bound below the function.
+/// Returns a time in [from, to] at which the function is within `tolerance` of its maximum. `curvature(a, b)` is a bound on
+/// |f''| between a and b. Within an interval of length h, f exceeds its larger end value by at most h^2 / 8 times this bound.
 template <typename Function, typename Curvature>
 double time_of_maximum(Function function, const Curvature& curvature, double from, double to, double tolerance) {
   struct Interval {
@@ -108,7 +112,8 @@ double time_of_maximum(Function function, const Curvature& curvature, double fro
   };
   std::vector<Interval> open{{from, to, function(from), function(to)}};
   double place = open[0].at_begin >= open[0].at_end ? from : to, best = std::max(open[0].at_begin, open[0].at_end);
-  // Limit of sampled values; with more, the angles of the waveform have no significant digit.
+  // Largest number of computed values. A piece needs more only if its times are so late that sines of them have no correct
+  // digit.
   constexpr long most_values = 10'000'000;
   for (long values = 0; !open.empty() && values < most_values; ++values) {
     const Interval i = open.back();
@@ -143,7 +148,8 @@ void append_extrema_of_terms(std::vector<double>& times, const SignalPieceOf<dou
 }
 
 double duration_of_terms(const SignalPieceOf<double>& piece) {
-  // Time constants after which a decaying term counts as 0: exp(-50) is 2e-22; a cubic polynomial grows by 1e5 meanwhile.
+  // Number of time constants after which a decaying term counts as 0: exp(-50) is 2e-22, and the factor of a cubic polynomial
+  // grows only by 1e5 in that time.
   constexpr double time_constants = 50;
   double longest = 0;
   for (const TermOf<double>& term : piece.terms) longest = std::max(longest, time_constants / term.decay);

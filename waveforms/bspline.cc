@@ -15,9 +15,10 @@ double bspline_knot(std::size_t i, std::size_t n) {
 
 std::array<std::array<double, 4>, 4> bsplines_of_span(std::size_t j, std::size_t n) {
   using Cubic = std::array<double, 4>;
-  // B-splines by Cox and de Boor: B_i,d = (u - u_i) / (u_(i+d) - u_i) B_i,d-1 + (u_(i+d+1) - u) / (u_(i+d+1) - u_(i+1))
-  // B_i+1,d-1 with u = j + w, in polynomials of w. The only spline of degree 0 that is not 0 is that of span j, number j + 3.
-  std::array<Cubic, 5> splines = {};  // B-splines number j ... j + 4
+  // Recursion of Cox and de Boor over the degree d, for knots u_i: B_i,d = (u - u_i) / (u_(i+d) - u_i) B_i,d-1 + (u_(i+d+1) -
+  // u) / (u_(i+d+1) - u_(i+1)) B_i+1,d-1. Each B-spline is a polynomial of w on span j, where u = j + w. Of degree 0 only the
+  // B-spline number j + 3 is not 0 on this span.
+  std::array<Cubic, 5> splines = {};  // the B-splines number j to j + 4 on span j
   splines[3][0] = 1;
   const auto u = static_cast<double>(j);
   for (std::size_t d = 1; d <= 3; ++d) {

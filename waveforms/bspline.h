@@ -1,11 +1,11 @@
-// B-spline waveform: a cubic spline of the voltage with continuous curvature. Its control levels need not be reached; the
-// voltage stays between the smallest and the largest level. With n levels and knots at the n - 2 times that divide the duration
-// evenly, fourfold at both ends:
+// B-spline waveform: a cubic spline of the voltage with continuous curvature. The voltage need not reach its control levels,
+// but stays between the smallest and the largest. With n levels, the knots are n - 2 evenly spaced times from 0 to the
+// duration; the first and the last count fourfold:
 //
 //   V(t) = sum over i of levels_i B_i(t) on [0, duration], B_i the cubic B-splines of these knots (de Boor, A Practical Guide to
 //   Splines, 1978, chapter IX)
 //
-// The voltage begins at the first level, which may be a jump at t = 0, and ends at the last level, which holds for ever.
+// The voltage begins at the first level, which may be a jump at t = 0, and ends at the last level, which is held without end.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ namespace softland {
 template <class P>
 struct BSplineOf {
   std::vector<P> levels = {};  ///< control levels of the voltage [V]; at least 4
-  P duration = 0;              ///< time until the last voltage level is reached [s], > 0
+  P duration = 0;              ///< time from t = 0 until the last voltage level is reached [s], > 0
 };
 using BSpline = BSplineOf<double>;
 
@@ -39,14 +39,15 @@ struct FamilyOf<BSpline> {
 
 namespace internal {
 
-/// Returns the four B-splines that are not 0 in span j (between two knots) of a spline of n levels: cubic polynomials of the
-/// share of the span that has passed, coefficients in rising order. The first B-spline belongs to level j.
+/// Returns the four B-splines of a spline of n levels that are not 0 in span j, the interval between inner knots j and j + 1.
+/// Each is a cubic polynomial of the position in the span (0 to 1), coefficients in rising order. The first one belongs to
+/// level j.
 [[nodiscard]] std::array<std::array<double, 4>, 4> bsplines_of_span(std::size_t j, std::size_t n);
 
-/// Returns true if the spline knots around span j are evenly spaced; the B-splines of all such spans are equal.
+/// Returns true if all knots that affect span j are evenly spaced; all such spans have the same four B-splines.
 [[nodiscard]] constexpr bool has_even_knots(std::size_t j, std::size_t n) { return j >= 3 && j + 7 <= n; }
 
-/// Returns knot `i` of the n + 4 knots of a spline of n levels, in units of the distance between inner knots.
+/// Returns knot `i` of the n + 4 knots of a spline of n levels, in units of the distance between two inner knots.
 [[nodiscard]] double bspline_knot(std::size_t i, std::size_t n);
 
 }  // namespace internal

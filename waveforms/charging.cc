@@ -9,7 +9,7 @@
 namespace softland {
 namespace {
 
-// Finds by bisection the sign change of `function` between two times at which it has opposite signs.
+// Finds the time at which `function` changes its sign, by bisection between two times at which it has opposite signs.
 template <class Function>
 double sign_change(const Function& function, double low, double high) {
   constexpr int halvings = 50;
@@ -21,10 +21,10 @@ double sign_change(const Function& function, double low, double high) {
   return 0.5 * (low + high);
 }
 
-// Returns times in [begin, end] between which V^2 of a signal piece is monotone: V^2 has an extremum where V or dV/dt changes
-// sign.
+// Returns times that divide [begin, end] into intervals in which V^2 of a signal piece only rises or only falls: the times at
+// which V or dV/dt changes its sign.
 std::vector<double> turning_times(const SignalPiece& piece, double begin, double end, double resolving_step) {
-  constexpr double fewest = 64, most = 1e6;  // number of samples of a signal piece that is not straight
+  constexpr double fewest = 64, most = 1e6;  // limits of the number of samples of a curved piece
   std::vector<double> times{begin, end};
   const auto voltage = [&](double t) { return piece.voltage(t); };
   const auto rate = [&](double t) { return piece.rate(t); };
@@ -49,7 +49,7 @@ double charging(const Signal& signal, double end) {
     sum += std::max(0.0, volts * volts - last * last) / 2;
     last = volts;
   };
-  // A voltage jump that crosses 0 V discharges the capacitor before it charges.
+  // A voltage jump across 0 V first discharges the capacitor, at no cost, and then charges it again from 0 V.
   const auto jump = [&](double volts) {
     if (last * volts < 0) reach(0);
     reach(volts);

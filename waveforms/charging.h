@@ -5,9 +5,9 @@
 
 namespace softland {
 
-/// Returns half the sum of all rises of V^2 of a drive voltage on [0, end], including a jump at t = 0 [V^2]. This is the energy
-/// per capacitance from a source that recovers none when the voltage falls: 1/2 V^2 for a rise from 0 V to V. The relative
-/// error is 1e-9. Throws InvalidInput unless end >= 0 is finite.
+/// Returns half the sum of all rises of V^2 of a drive voltage on [0, end], including a jump at t = 0 [V^2]: 1/2 V^2 for a rise
+/// from 0 V to V. Times the capacitance, this is the energy from a source that recovers no energy when the voltage falls. The
+/// relative error is 1e-9. Throws InvalidInput unless end >= 0 is finite.
 [[nodiscard]] double charging(const Signal& signal, double end);
 
 }  // namespace softland

@@ -67,11 +67,11 @@ struct FamilyOf<Chirp> {
   }
 };
 
-/// Returns the voltage of a valid chirp as pieces; its base rises from `before` [V].
+/// Returns the signal pieces of a valid chirp; its base rises from `before` [V].
 template <class P>
 [[nodiscard]] Pieces<P> pieces(const ChirpOf<P>& chirp, const P& before = P(0)) {
   using std::cos, std::exp, std::sin;
-  // A harmonic gives the base and the envelope; its sine becomes a term of the chirp.
+  // A harmonic waveform gives the pieces with base and envelope. Its sine is replaced by a term with sweep and decay.
   Pieces<P> all = pieces(HarmonicOf<P>{.base = chirp.base,
                                        .rise_time = chirp.rise_time,
                                        .amplitude = chirp.amplitude,

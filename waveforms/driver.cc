@@ -22,8 +22,7 @@ using Complex = std::complex<double>;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// A part Re[polynomial(s) exp(exponent s)] of a voltage signal, with the time s counted from the beginning of the signal
-/// piece.
+/// A part Re[polynomial(s) exp(exponent s)] of a voltage signal; the time s counts from the beginning of the signal piece.
 struct Exponential {
   std::array<Complex, 4> polynomial = {};
   Complex exponent = {};
@@ -37,7 +36,7 @@ Exponential exponential_of(const SignalTerm& term) {
   return e;
 }
 
-/// Returns all parts, line, sine and terms, of a signal piece without a frequency sweep.
+/// Returns all parts of a signal piece without a frequency sweep: straight line, sine and terms.
 std::vector<Exponential> exponentials_of(const SignalPiece& piece) {
   std::vector<Exponential> all{{.polynomial = {piece.value, piece.slope}}};
   if (piece.oscillates()) {
@@ -49,10 +48,10 @@ std::vector<Exponential> exponentials_of(const SignalPiece& piece) {
   return all;
 }
 
-/// Returns the steady-state solution V of the filter T dV/dt + V = input.
+/// Returns the particular solution V of the filter T dV/dt + V = input that has the exponent of the input.
 Exponential answer(const Exponential& input, double time_constant) {
-  // Relative difference below which the decay rate of the input counts as that of the filter: the response then has a factor
-  // proportional to time.
+  // Relative difference below which the input counts as decaying at the rate of the filter itself. The solution then has a
+  // factor proportional to time.
   constexpr double same = 1e-6;
   const Complex factor = 1.0 + input.exponent * time_constant;
   Exponential out{.polynomial = {}, .exponent = input.exponent};
@@ -69,7 +68,7 @@ Exponential answer(const Exponential& input, double time_constant) {
   return out;
 }
 
-/// Returns the function of `e` with the time s counted from a zero that is `by` [s] later.
+/// Returns the same function as `e`, with its time s counted from a beginning that is `by` [s] later.
 Exponential later(const Exponential& e, double by) {
   Exponential moved{.polynomial = {}, .exponent = e.exponent};
   const auto& p = e.polynomial;
@@ -102,20 +101,20 @@ SignalPiece piece_of(double begin, const std::vector<Exponential>& parts) {
   return piece;
 }
 
-/// Returns true if the voltage of a signal piece is constant, as between two samples of a converter.
+/// Returns true if the voltage of a signal piece is constant, as that of a sample held by a converter.
 bool is_held_level(const SignalPiece& piece) { return piece.slope == 0 && !piece.oscillates() && piece.terms.empty(); }
 
-/// Returns the response of the filter T dV/dt + V = input to a constant level; `left` is the output less the level at the
-/// beginning of the level [V].
+/// Returns the response of the filter T dV/dt + V = input to a constant level. `left` is the difference of output and level at
+/// the beginning of the piece [V], which decays.
 SignalPiece answer_to_level(const SignalPiece& level, double time_constant, double left) {
   SignalPiece piece{.begin = level.begin, .value = level.value};
   if (left != 0) piece.terms.push_back({.cosine = {left}, .decay = 1 / time_constant});
   return piece;
 }
 
-/// Replaces signal pieces with a frequency sweep by cubics that match the values and slopes at the pieces' ends.
+/// Replaces signal pieces with a frequency sweep by cubic pieces that have the same values and slopes at both ends.
 std::vector<SignalPiece> without_sweeps(const std::vector<SignalPiece>& pieces) {
-  constexpr double tolerance = 1e-6;  // error of the cubics that replace a sweep, relative to the size of the terms
+  constexpr double tolerance = 1e-6;  // largest error of these cubics, relative to the size of sine and terms
   std::vector<SignalPiece> all;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const SignalPiece& piece = pieces[i];
@@ -123,8 +122,8 @@ std::vector<SignalPiece> without_sweeps(const std::vector<SignalPiece>& pieces) 
       all.push_back(piece);
       continue;
     }
-    // The error of a cubic through values and slopes at both ends of an interval h is at most h^4 / 384 times the fourth
-    // derivative.
+    // A cubic with the values and slopes of f at both ends of an interval of length h differs from f by at most h^4 / 384 times
+    // the largest fourth derivative.
     const double end = pieces[i + 1].begin, size = internal::derivative_bound(piece, 0, piece.begin, end);
     const double fourth = internal::derivative_bound(piece, 4, piece.begin, end);
     const double count = std::max(1.0, std::ceil((end - piece.begin) * std::pow(fourth / (384 * tolerance * size), 0.25)));
@@ -200,13 +199,13 @@ Signal slewed(const Signal& held, double max_slew) {
 }
 
 Signal filtered(const Signal& input, double time_constant) {
-  constexpr double over = 40;  // number of time constants after which an exponential response is dropped
+  constexpr double over = 40;  // number of time constants after which a decaying response is dropped
   const std::vector<SignalPiece> pieces = without_sweeps(input.pieces());
   std::vector<SignalPiece> all;
   double output = input.before();
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const double begin = pieces[i].begin, end = i + 1 < pieces.size() ? pieces[i + 1].begin : infinite;
-    // Constant levels have a faster formula, because a sampled waveform has thousands of levels.
+    // A faster formula for constant levels, since a sampled waveform has thousands of them.
     if (is_held_level(pieces[i])) {
       const double left = begin + over * time_constant;
       const bool settles = output != pieces[i].value;
@@ -238,7 +237,7 @@ Signal filtered(const Signal& input, double time_constant) {
 }  // namespace internal
 
 DriverLimits limits_of_samples(DriverLimits limits, const DriverModel& model) {
-  constexpr double rounding = 1e-9;  // relative rounding error in differences of late times
+  constexpr double rounding = 1e-9;  // rounding error of the slew between samples at late times, relative
   if (model.sample_rate) limits.max_slew *= 1 + rounding;
   if (model.sample_rate && model.bits) limits.max_slew += internal::step_of(limits, *model.bits) * *model.sample_rate;
   return limits;

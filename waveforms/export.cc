@@ -14,8 +14,8 @@
 namespace softland {
 namespace {
 
-/// Largest distance between a sine and the straight lines that replace it, relative to the peak of the signal: less than a step
-/// of 12 bits.
+/// Largest distance between a curve and the straight lines that replace it, relative to the peak of the signal; it is smaller
+/// than a step of a 12-bit converter.
 constexpr double sine_tolerance = 1e-4;
 
 void require_signals(const std::map<std::string, Signal>& signals) {
@@ -35,7 +35,7 @@ const std::string& column_name(const std::string& drive) {
   return drive;
 }
 
-/// Returns the number of the signal's last sample, which is held without end.
+/// Returns the number of the last sample of a signal of held samples; the last sample is held without end.
 double last_sample(const Signal& held, double rate) { return std::round(held.pieces().back().begin * rate); }
 
 constexpr double most_chords = 1e7;
@@ -45,8 +45,8 @@ void require_few(double chords, double tolerance) {
                                              tolerance, chords, most_chords));
 }
 
-/// Appends the points of a polyline along a signal piece with terms. Intervals are halved until straight lines are within the
-/// tolerance, because the curvature changes along the piece.
+/// Appends the inner points of a polyline that approximates a signal piece with terms. Intervals are halved until their
+/// straight lines are within the tolerance; their lengths differ, because the curvature changes along the piece.
 void append_halved(std::vector<std::pair<double, double>>& points, const SignalPiece& piece, double begin, double end,
                    double tolerance) {
   std::vector<double> ends{end};
@@ -65,12 +65,12 @@ void append_halved(std::vector<std::pair<double, double>>& points, const SignalP
   }
 }
 
-/// Appends the points of a polyline, strictly inside (begin, end), along a signal piece that is not straight: the error of a
-/// chord of length h is at most h^2 max|V''| / 8.
+/// Appends the points inside (begin, end) of a polyline that approximates a curved signal piece within the tolerance: the error
+/// of a straight line over an interval of length h is at most h^2 max|V''| / 8.
 void append_inside(std::vector<std::pair<double, double>>& points, const SignalPiece& piece, double begin, double end,
                    double tolerance) {
   if (piece.is_straight() || !(end > begin)) return;
-  // A spline of equal levels deviates from a straight line by rounding only, so its range cannot define a tolerance.
+  // A spline of equal levels is straight but for rounding; then no inner points are needed, and a tolerance of 0 is allowed.
   constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
   const double size = std::max(std::abs(piece.voltage(begin)), std::abs(piece.voltage(end))), length = end - begin;
   if (!piece.terms.empty() && length * length / 8 * internal::derivative_bound(piece, 2, begin, end) <= rounding * size) return;
@@ -93,7 +93,7 @@ void append_inside(std::vector<std::pair<double, double>>& points, const SignalP
 std::vector<std::pair<double, double>> polyline(const Signal& signal, double end, double tolerance, double jump_time) {
   require_end(end);
   require(jump_time >= 0 && std::isfinite(jump_time), fmt::format("jump_time is {} s; it must be finite and >= 0", jump_time));
-  // A voltage jump, written as a steep ramp, must end well before the next breakpoint, which a long ramp would hide.
+  // A voltage jump becomes a steep ramp. Its duration is at most this share of the interval to the next breakpoint.
   constexpr double share_of_interval = 1e-3;
   const std::vector<SignalPiece>& pieces = signal.pieces();
   std::vector<std::pair<double, double>> points;
@@ -136,7 +136,7 @@ std::string csv(const std::map<std::string, Signal>& signals, double end, const 
   }
   text += '\n';
   const auto append = [&](double time, auto voltage) {
-    // Write the shortest text of the time that reads back to the same double.
+    // This format is the shortest text that reads back to the same double.
     fmt::format_to(std::back_inserter(text), "{}", time);
     for (const auto& [drive, signal] : signals) fmt::format_to(std::back_inserter(text), ",{}", voltage(signal));
     text += '\n';
@@ -172,7 +172,7 @@ std::string codes(const std::map<std::string, Coded>& drives) {
   return text;
 }
 
-// Names in SPICE ignore case; letters, digits and underscores are valid in all simulators.
+// SPICE ignores the case of names; letters, digits and underscores are valid in all SPICE simulators.
 std::string spice_name(const std::string& drive) {
   std::string name;
   for (const char c : drive) {
@@ -184,7 +184,7 @@ std::string spice_name(const std::string& drive) {
 
 std::string spice_pwl(const std::map<std::string, Signal>& signals, double end, std::string_view about) {
   require_signals(signals);
-  // The duration of a jump is far below any time constant of a switch, but still resolved by 17 digits at a time of 1 s.
+  // Duration of a jump in SPICE: far below any time constant of a switch, but resolved by 17 digits at a time of 1 s.
   const double jump_time = std::min(1e-12, 1e-7 * end);
   std::string text = fmt::format("* {}\n", about);
   std::set<std::string> names;
@@ -195,7 +195,7 @@ std::string spice_pwl(const std::map<std::string, Signal>& signals, double end, 
     fmt::format_to(std::back_inserter(text), ".subckt {} plus minus\nVdrive plus minus PWL(\n", name);
     double last = -1;
     for (const auto& [time, voltage] : polyline(signal, end, sine_tolerance * signal.peak(), jump_time)) {
-      // SPICE requires increasing times; only jumps within a rounding error of each other coincide here.
+      // SPICE requires increasing times. Equal times occur only where two breakpoints differ by a rounding error.
       if (!(time > last)) continue;
       fmt::format_to(std::back_inserter(text), "+ {} {}\n", time, voltage);
       last = time;

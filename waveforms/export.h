@@ -11,26 +11,26 @@
 
 namespace softland {
 
-/// Returns breakpoints (time [s], voltage [V]) whose straight connections stay within `tolerance` [V] of the signal on [0,
-/// end]; pulses and steps are exact. A jump at t becomes points at t and at t + jump_time [s], or a thousandth of the interval
-/// after t if that is shorter; with jump_time = 0 both points have the time t. If the voltage at t = 0 differs from that before
-/// t = 0, the points start with a jump. The last point is at `end`, or one jump_time later. Throws InvalidInput unless end and
-/// jump_time are finite and >= 0, the tolerance of a curve > 0, and the points of a piece at most 1e7.
+/// Returns points (time [s], voltage [V]) whose connection by straight lines stays within `tolerance` [V] of the signal on [0,
+/// end]; pulses and steps are exact. A jump at t becomes points at t and at t + jump_time [s], or at most a thousandth of the
+/// following interval after t; with jump_time = 0 both points have the time t. If the signal jumps at t = 0, the points start
+/// with this jump. The last point is at `end`, or one jump_time later. Throws InvalidInput unless end and jump_time are finite
+/// and >= 0, the tolerance of a curve is > 0, and a piece has at most 1e7 points.
 [[nodiscard]] std::vector<std::pair<double, double>> polyline(const Signal& signal, double end, double tolerance,
                                                               double jump_time);
 
-/// Writes CSV with a header `time_s,<drive>,<drive>...` on the union of all breakpoints; read_table() reads the file. A jump of
-/// any drive is two rows of the same time; sines and other curves are sampled so that straight lines stay within 1e-4 of the
-/// drive's peak. A step, pulse or table that is the only signal reads back to the same signal bit for bit; together with
-/// other drives its ramps are split at their breakpoints, to rounding. Throws InvalidInput when there is no signal, a name does
-/// not fit into a header, or `end` is not finite and >= 0.
+/// Writes CSV with a header `time_s,<drive>,<drive>...` and a row for each breakpoint of any drive; read_table() reads the
+/// file. A jump of any drive is two rows of the same time; sines and other curves are sampled so that straight lines stay
+/// within 1e-4 of the drive's peak. A step, pulse or table that is the only signal reads back to the same signal bit for bit;
+/// together with other drives its ramps are split at their breakpoints, to rounding. Throws InvalidInput when there is no
+/// signal, a name does not fit into a header, or `end` is not finite and >= 0.
 ///
-/// `sample_rates` are the sample rates of the drives that consist of held samples [Hz]. Each sample at k / rate has a row, up to
-/// the last one, which is held without end. Reading the file gives the same samples.
+/// `sample_rates` are the sample rates of the drives that consist of held samples [Hz]. Each sample at k / rate has a row, up
+/// to the last one, which is held without end. Reading the file gives the same samples.
 [[nodiscard]] std::string csv(const std::map<std::string, Signal>& signals, double end,
                               const std::map<std::string, double>& sample_rates = {});
 
-/// Samples of a drive waveform that are written as integer codes of a converter.
+/// A drive waveform of held samples, to be written as integer codes of a converter.
 struct Coded {
   Signal held;                      ///< voltage samples of a drive, each held until the next sample
   double sample_rate = 0;           ///< sample rate of the drive [Hz]

@@ -1,7 +1,7 @@
 // Harmonic: a drive voltage with a sine on a step,  V(t) = b(t) + amplitude e(t) sin(angular_frequency t + phase)  for t in
 // [start, end], b(t) elsewhere (t >= 0). b rises linearly to base on [0, rise_time], from the voltage before t = 0. The
-// envelope e rises linearly from 0 to 1 on [start, start + fade] and falls from 1 to 0 on [end - fade, end]; fade = 0 is a hard
-// switch.
+// envelope e rises linearly from 0 to 1 on [start, start + fade] and falls from 1 to 0 on [end - fade, end]; with fade = 0 the
+// sine starts and ends abruptly.
 #pragma once
 
 #include <algorithm>
@@ -52,7 +52,7 @@ struct FamilyOf<Harmonic> {
 
 namespace internal {
 
-/// Returns the envelope of the sine, which rises from 0 to 1 and falls back to 0, as linear parts.
+/// Returns the envelope of the sine (rise from 0 to 1, constant, fall to 0) as a piecewise linear function of time.
 template <class P>
 [[nodiscard]] std::vector<Stretch<P>> envelope(const HarmonicOf<P>& h) {
   const bool ends = decided(h.end < std::numeric_limits<double>::infinity());
@@ -72,14 +72,14 @@ template <class P>
 
 }  // namespace internal
 
-/// Returns the voltage of a valid harmonic waveform as pieces; its base rises from `before` [V].
+/// Returns the signal pieces of a valid harmonic waveform; its base rises from `before` [V].
 template <class P>
 [[nodiscard]] Pieces<P> pieces(const HarmonicOf<P>& h, const P& before = P(0)) {
   const std::vector<internal::Stretch<P>> envelope = internal::envelope(h);
   std::vector<P> begins;
   for (const internal::Stretch<P>& stretch : envelope) begins.push_back(stretch.begin);
-  // Compute the ramp of the base in volts with one division: a ramp whose slope is rounded twice does not end on the base,
-  // which would count as a jump.
+  // Compute the ramp of the base in volts with one division. A slope that is rounded twice would not end exactly on the base
+  // voltage, and the difference would count as a jump.
   std::vector<internal::Stretch<P>> straight_line{{.begin = P(0), .value = h.base}};
   if (!(internal::vanishes(h.base) && internal::vanishes(before)) && internal::decided(h.rise_time > 0)) {
     const auto same = std::find_if(begins.begin(), begins.end(), [&](const P& t) { return internal::coincide(t, h.rise_time); });
@@ -93,7 +93,7 @@ template <class P>
     const internal::Stretch<P>& straight = internal::stretch_at(straight_line, begin);
     const internal::Stretch<P>& swing = internal::stretch_at(envelope, begin);
     all.push_back({.begin = begin, .value = straight.at(begin), .slope = straight.slope});
-    // The signal has no sine in an interval in which the envelope is 0.
+    // Leave out the sine where its envelope is 0.
     if (!internal::decided(swing.value > 0) && !internal::decided(swing.slope > 0)) continue;
     all.back().amplitude = h.amplitude * swing.at(begin);
     all.back().amplitude_slope = h.amplitude * swing.slope;
@@ -107,8 +107,8 @@ template <class P>
 
 namespace internal {
 
-/// Checks the parameters of a harmonic waveform; `what` is its name in messages. Throws InvalidParameter for an invalid
-/// parameter.
+/// Checks the parameters of a waveform that is a sine on a step; `what` is the waveform's name in messages. Throws
+/// InvalidParameter for an invalid parameter.
 void require_dither(std::string_view what, const Harmonic& harmonic);
 
 }  // namespace internal

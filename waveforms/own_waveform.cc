@@ -12,13 +12,13 @@ namespace softland {
 namespace {
 
 constexpr int most_halvings = 40;
-// Points of a signal piece as shares of its length. A cubic interpolates the user's waveform at `nodes`, the extreme points of
-// the Chebyshev polynomial of degree 3; its error is checked at `checks`.
+// Points within a signal piece, from 0 at its beginning to 1 at its end. A cubic interpolates the user's waveform at `nodes`,
+// the extreme points of the Chebyshev polynomial of degree 3; the error of the cubic is checked at `checks`.
 constexpr std::array nodes{0.0, 0.25, 0.75, 1.0};
 constexpr std::array checks{0.1, 0.5, 0.9};
 
-// Returns the coefficients of the cubic through four voltages at the nodes, in rising order of powers of the share of the
-// signal piece.
+// Returns the coefficients, in rising order, of the cubic that has four voltages at the `nodes`. Its argument is the position
+// in the signal piece, from 0 to 1.
 std::array<double, 4> cubic_through(std::array<double, 4> values) {
   for (std::size_t order = 1; order < 4; ++order) {
     for (std::size_t k = 3; k >= order; --k) values[k] = (values[k] - values[k - 1]) / (nodes[k] - nodes[k - order]);
@@ -33,7 +33,7 @@ std::array<double, 4> cubic_through(std::array<double, 4> values) {
 
 double at(const std::array<double, 4>& c, double part) { return c[0] + part * (c[1] + part * (c[2] + part * c[3])); }
 
-// Approximates a user's own waveform by cubic pieces.
+// Converts a user's own waveform to a signal: cubic pieces that approximate its voltage.
 class Following {
  public:
   explicit Following(const Own& own) : own_(own) {}
@@ -44,7 +44,7 @@ class Following {
     const double held = voltage(times.back());
     largest_ = std::max(largest_, std::abs(held));
     for (std::size_t k = 0; k + 1 < times.size(); ++k) {
-      // If the user's waveform jumps at a breakpoint, the interval before ends with the voltage before the jump.
+      // Where the user's waveform jumps, voltage() returns the voltage after the jump; the interval before must end before it.
       constexpr double rounding = 1e-12;
       const double end = times[k + 1], before = voltage(std::nextafter(end, times[k])), after = voltage(end);
       const double ends_on = std::abs(after - before) > rounding * largest_ ? before : after;
@@ -81,7 +81,7 @@ class Following {
 
   // Checks a user's waveform without breakpoints: its voltage must be constant and not 0 V.
   void check_constant() const {
-    constexpr double first = 1e-12, last = 1e3;  // range of times at which the constancy of the voltage is checked [s]
+    constexpr double first = 1e-12, last = 1e3;  // range of times at which the voltage is compared to that at t = 0 [s]
     constexpr int looks = 300;
     const double begin = voltage(0);
     double when = 0;
@@ -97,7 +97,7 @@ class Following {
     });
   }
 
-  // Samples the user's waveform in an interval to find its largest absolute voltage, to which the accuracy is relative.
+  // Updates the largest absolute voltage of the user's waveform, the scale of the accuracy, by samples in an interval.
   void see(double begin, double end) {
     constexpr int instants = 64;
     for (int k = 0; k < instants; ++k)

@@ -29,7 +29,7 @@ inline constexpr std::size_t most_own_pieces = 20'000;
 struct OwnParameter {
   std::string name;  ///< name of the parameter: letters, digits, '_'; by convention the unit is last: "rise_s", "level_V"
   double lower = 0, upper = 0;
-  double start = 0;  ///< value of the parameter at which a search begins, within the bounds
+  double start = 0;  ///< value at which a search begins, within the bounds
 };
 
 /// Base class of waveforms that the user's program defines. All functions are called from several threads at once: they must
@@ -56,28 +56,28 @@ class OwnWaveform {
   [[nodiscard]] virtual double voltage(double time, std::span<const double> x) const = 0;
 };
 
-/// A user's own waveform f with values x of its parameters, scaled: V(t) = volts f(t / time).
+/// A user's own waveform f with values x of its parameters, and factors on voltages and times: V(t) = volts f(t / time).
 struct Own {
   std::shared_ptr<const OwnWaveform> waveform;
   std::vector<double> x = {};
   double volts = 1, time = 1;
 };
 
-/// A user's own waveform has no table of parameters, because no scene file can hold it.
+/// A user's own waveform has no table of parameters for scene files, since no scene file can contain the waveform.
 template <>
 struct FamilyOf<Own> {
   static constexpr std::string_view name = "own";
   static constexpr std::array<Parameter<Own>, 0> parameters = {};
 };
 
-/// Returns the user's own waveform with the parameters at which a search begins. Throws InvalidInput if `waveform` is null, or
-/// a parameter has no name, or bounds that are not finite and in order about its start.
+/// Returns a user's own waveform with the parameter values at which a search begins. Throws InvalidInput if `waveform` is null,
+/// a parameter has no name, its bounds are not finite, or its start is not between them.
 [[nodiscard]] Own own(std::shared_ptr<const OwnWaveform> waveform);
-/// Compiles the user's own waveform to a voltage signal. Throws InvalidInput with the name of the waveform if the waveform is
-/// null or has other parameters than `own`. Throws InvalidInput also if breakpoints are not in order, or missing and the
-/// voltage is not constant; and if a voltage is not finite, or not smooth between two breakpoints.
+/// Compiles a user's own waveform to a voltage signal. Throws InvalidInput if the waveform is null or has another number of
+/// parameters than `own`. Throws InvalidInput also if breakpoints are not in order or missing, or if a voltage is not finite or
+/// not smooth between two breakpoints. Messages have the name of the waveform.
 [[nodiscard]] Signal signal(const Own& own, double before = 0);
-/// Returns "the own waveform 'NAME'", as messages name it.
+/// Returns the phrase "the own waveform 'NAME'" for messages.
 [[nodiscard]] std::string described(const Own& own);
 
 }  // namespace softland

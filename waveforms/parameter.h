@@ -1,4 +1,4 @@
-// Names of a waveform family, such as "pulse", and of its parameters: a scene reads, checks and writes a waveform by these
+// Names of a waveform family, such as "pulse", and of its parameters. Scene files are read, checked and written by these
 // tables.
 #pragma once
 
@@ -10,7 +10,8 @@
 
 namespace softland {
 
-/// The role of a waveform parameter in the signal. The role decides the unit, and how a scene may give the parameter.
+/// The kind of quantity that a waveform parameter is. It determines the unit, and the forms in which a scene may give the
+/// value.
 enum class ParameterKind {
   level,              ///< the parameter is a voltage level [V]
   swing,              ///< a voltage difference from a level [V]; a scene may give a percentage of the level
@@ -32,8 +33,8 @@ struct Parameter {
   std::string_view about = {};
 };
 
-/// Traits of a waveform family, specialised in its header: its `name`, its `parameters`, and an `example` for the tests of all
-/// families; `from_file` when a file may hold its rows.
+/// Traits of a waveform family, specialised in the family's header: its `name`, its `parameters`, and an `example` for tests.
+/// The trait `from_file` is present if a scene may give the waveform as a file of rows.
 template <class Family>
 struct FamilyOf;
 

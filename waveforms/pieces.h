@@ -1,10 +1,10 @@
-// The smooth pieces that a voltage signal is made of, templated over the scalar of its levels and times: a double, a dual
-// number with derivatives by the parameters of a waveform, or a SIMD vector with one number per device.
+// The smooth pieces that a voltage signal is made of. They are templates over the scalar type P of voltages and times: a
+// double, a dual number with derivatives by the parameters of a waveform, or a SIMD vector with one number per device.
 //
 //   V(t) = value + slope s + [amplitude + amplitude_slope s] sin(angular_frequency t + phase) + terms,  s = t - begin
 //
-// on [begin, begin of the next piece); the last piece lasts for ever. Few pieces have terms: polynomials, exponentials, sines
-// that decay or whose frequency changes.
+// on [begin, begin of the next piece); the last piece has no end. Few pieces have terms: polynomials, exponentials, sines that
+// decay or whose frequency changes.
 #pragma once
 
 #include <algorithm>
@@ -88,8 +88,8 @@ struct SignalPieceOf {
   P angular_frequency = 0;            ///< angular frequency of the sine [rad/s]
   P phase = 0;                        ///< phase of sin(angular_frequency t + phase) [rad], with t from 0, not from begin
   std::vector<TermOf<P>> terms = {};  ///< further parts of the voltage, whose time s counts from begin
-  /// True if the terms are a Fourier series: sines and cosines of constant amplitude, with angular frequencies of 1, 2, 3 ...
-  /// times that of the first term. They are then evaluated by rotation from a single sine and cosine.
+  /// True if the terms are a Fourier series: sines and cosines of constant amplitude, whose angular frequencies are 1, 2, 3 ...
+  /// times that of the first term. Their values are then computed from those of the first by addition theorems.
   bool is_series = false;
 
   [[nodiscard]] bool oscillates() const { return !internal::vanishes(amplitude) || !internal::vanishes(amplitude_slope); }
@@ -137,7 +137,7 @@ struct SignalPieceOf {
   bool operator==(const SignalPieceOf&) const = default;
 
  private:
-  // Calls see(term, cosine, sine) for every term of a Fourier series, with cosine and sine of the term's angle.
+  // Calls see(term, cosine, sine) for every term of a Fourier series, with the cosine and the sine of the term's phase angle.
   template <class See>
   void turn_on(const P& elapsed, See&& see) const {
     using std::cos, std::sin;
@@ -156,8 +156,8 @@ using Pieces = std::vector<SignalPieceOf<P>>;
 
 namespace internal {
 
-/// Returns true if a condition on the times of a waveform holds. Throws InvalidInput if the condition holds for only some of
-/// the devices in a SIMD vector, because their signals then have different pieces.
+/// Returns true if a comparison of a waveform's times holds. For SIMD vectors, throws InvalidInput if it holds for some devices
+/// only, because the signals of the devices would then have different pieces.
 template <class Condition>
 [[nodiscard]] bool decided(const Condition& condition) {
   if constexpr (std::is_same_v<Condition, bool>) {
@@ -168,9 +168,8 @@ template <class Condition>
   }
 }
 
-/// Returns true for two times [s] that differ only by rounding, of a sum or of their decimal text. Such times are meant to be
-/// equal, as where one voltage ramp ends and the next begins. A signal piece between two such times would be too short for any
-/// integrator.
+/// Returns true for two times [s] that differ only by rounding, of a sum or of decimal text. Such times count as equal, as
+/// where one voltage ramp ends and the next begins: a signal piece between them would be too short for any integrator.
 template <class P>
 [[nodiscard]] bool coincide(const P& time, const P& other) {
   using std::abs;
@@ -193,7 +192,7 @@ template <class P>
   return pieces;
 }
 
-/// One straight part of a piecewise linear function of time; it ends where the next part begins.
+/// One straight part of a piecewise linear function of time. It ends where the next part begins; the last one has no end.
 template <class P>
 struct Stretch {
   P begin = 0;  ///< time at which the straight part begins [s]
@@ -203,7 +202,7 @@ struct Stretch {
   [[nodiscard]] P at(const P& time) const { return value + slope * (time - begin); }
 };
 
-/// Returns the straight part that contains `time`, at a boundary the later part; the first part begins at 0.
+/// Returns the straight part of the piecewise linear function `line` at `time`; at a boundary the later part.
 template <class P>
 [[nodiscard]] const Stretch<P>& stretch_at(const std::vector<Stretch<P>>& line, const P& time) {
   std::size_t found = 0;

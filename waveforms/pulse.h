@@ -1,5 +1,5 @@
 // Pulse waveform: n voltage levels, n - 1 switching times, linear edges. The first edge runs on [0, edge] from the voltage
-// before t = 0; the edge from level k to level k + 1 runs on [t_k, t_k + edge]. The last level holds for ever.
+// before t = 0; the edge from level k to level k + 1 runs on [t_k, t_k + edge]. The last level is held without end.
 #pragma once
 
 #include <array>
@@ -59,7 +59,7 @@ template <class P>
 
 namespace internal {
 
-/// Checks the parameters of a waveform of n levels, n - 1 switching times and one duration of all edges; `what` is the
+/// Checks the parameters of a waveform of n levels, n - 1 switching times and a common duration of the edges; `what` is the
 /// waveform's name in messages. Throws InvalidParameter for an invalid parameter.
 void require_levels_and_edges(std::string_view what, const std::vector<double>& levels, const std::vector<double>& times,
                               double edge);

@@ -4,7 +4,7 @@
 //
 //   V(t) = (V_k + V_(k+1)) / 2 - (V_(k+1) - V_k) / 2 cos(pi (t - t_k) / edge)
 //
-// The last level holds for ever. A curve of one level is a smooth rise.
+// The last level is held without end. An S-curve with one level is a single smooth rise.
 #pragma once
 
 #include <array>

@@ -13,9 +13,9 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-/// Returns the end value [V] for which the straight line from (piece.begin, piece.value) has exactly the slope of the piece, if
-/// such a value exists; `favourite` is tried first. A table that jumps after a ramp, and its export, need this value, because
-/// value + slope * duration has a rounding error.
+/// Returns the voltage [V] at the end of a straight signal piece. If possible this is a value from which the slope of the piece
+/// is computed without any rounding error, since value + slope * duration has one; `favourite` is tried first. The exact value
+/// matters at a jump after a ramp, for tables and their export.
 double end_of_straight(const SignalPiece& piece, double end, double favourite) {
   const double duration = end - piece.begin;
   if (piece.slope == 0) return piece.value;
@@ -23,8 +23,8 @@ double end_of_straight(const SignalPiece& piece, double end, double favourite) {
   if (has_the_slope(favourite)) return favourite;
   const double rise = piece.slope * duration;
   const double computed = piece.value + rise;
-  // Largest distance of the exact end value of a ramp from `rise`, in units of the last digit: in 2e7 random ramps at most one
-  // unit, so try two.
+  // Largest distance in units of the last digit from `rise` or `computed` at which the exact end value is searched. In 2e7
+  // random ramps the distance was at most one unit.
   constexpr int reach = 2;
   double rise_up = rise, rise_down = rise, value_up = computed, value_down = computed;
   for (int i = 0; i <= reach; ++i) {
@@ -39,13 +39,13 @@ double end_of_straight(const SignalPiece& piece, double end, double favourite) {
   return computed;
 }
 
-/// Returns a bound of the rounding error of the voltage at the end of a signal piece [V].
+/// Returns a bound on the rounding error of the computed voltage at the end of a signal piece [V].
 double rounding_at_end(const SignalPiece& piece, double end) {
   constexpr double roundings = 16;
   const double duration = end - piece.begin;
   const double straight = std::abs(piece.value) + std::abs(piece.slope * duration);
   const double swing = std::abs(piece.amplitude) + std::abs(piece.amplitude_slope * duration);
-  double of_terms = 0;  // size of the terms that do not decay [V]: a decayed exponential is no jump
+  double of_terms = 0;  // size of the terms without their decay [V]
   double rate = std::abs(piece.slope);
   for (const SignalTerm& term : piece.terms) {
     double power = 1, before = 0, size = 0;
@@ -56,19 +56,20 @@ double rounding_at_end(const SignalPiece& piece, double end) {
     }
     of_terms += size * (1 + std::abs(term.angular_frequency) * duration + std::abs(term.sweep) * duration * duration);
   }
-  // The times of both ends of the signal piece are rounded as well; this rounding grows with time.
+  // The times at both ends of the signal piece are rounded as well; the resulting voltage error grows with time.
   return roundings * epsilon *
          (rate * end + straight + swing * (1 + piece.angular_frequency * end + std::abs(piece.phase)) + of_terms);
 }
 
-/// Appends a sign change of `function` in (low, high), found by bisection to the last bit that matters; appends nothing without
-/// a sign change.
+/// Appends the time in (low, high) at which `function` changes its sign, found by bisection; appends nothing if the signs at
+/// both ends are not opposite.
 template <typename Function>
 void append_root(std::vector<double>& times, Function function, double low, double high) {
   const double at_low = function(low);
   const double at_high = function(high);
   if (!((at_low < 0 && at_high > 0) || (at_low > 0 && at_high < 0))) return;
-  // Number of halvings of a quarter period of the sine: an extremum is flat, so its value is exact long before.
+  // Number of bisections of a quarter period of the sine. The function is flat at an extremum, so fewer would be enough for its
+  // value.
   constexpr int halvings = 40;
   for (int i = 0; i < halvings; ++i) {
     const double middle = 0.5 * (low + high);
@@ -77,19 +78,18 @@ void append_root(std::vector<double>& times, Function function, double low, doub
   times.push_back(0.5 * (low + high));
 }
 
-/// Appends times in [low, high] of a signal piece that include low, high and all extrema of the voltage and of dV/dt between
-/// them.
+/// Appends low, high and all times between at which the voltage or the dV/dt of a signal piece with a sine has an extremum.
 ///
-/// With A = amplitude + amplitude_slope (t - begin) and w = angular_frequency: V'' ~ 2 A' cos - A w sin. Inside a quarter
-/// period in which A keeps its sign this is either of one sign or monotone, so it has one root at most; between such roots V'
-/// is monotone and has one root at most.
+/// V'' is proportional to 2 A' cos - A w sin, with A = amplitude + amplitude_slope (t - begin) and w = angular_frequency.
+/// Within a quarter period of the sine in which A keeps its sign, V'' has one sign or is monotone, so it has at most one root.
+/// Between these roots V' is monotone and has at most one root.
 void append_extrema(std::vector<double>& times, const SignalPiece& piece, double low, double high) {
   const double quarter = 0.5 * std::numbers::pi;
   std::vector<double> grid{low, high};
   const double first = std::ceil((piece.angular_frequency * low + piece.phase) / quarter);
   const double last = std::floor((piece.angular_frequency * high + piece.phase) / quarter);
-  // Largest number of quarter periods between low and high: a period has four; more than a few occur only for an angle beyond
-  // 2^53, where the sine itself has no digit left.
+  // Largest number of quarter periods between low and high, which are at most a period apart. More occur only if the angle is
+  // so large (2^53) that the sine has no correct digit.
   constexpr int most_quarters = 6;
   for (int k = 0; k <= most_quarters && first + k <= last; ++k) {
     grid.push_back(((first + k) * quarter - piece.phase) / piece.angular_frequency);
@@ -113,15 +113,16 @@ void append_extrema(std::vector<double>& times, const SignalPiece& piece, double
 
 enum class Of { voltage, rate };
 
-/// Returns times in [piece.begin, end] that include those of the extreme voltages, or of the extreme dV/dt, of a signal piece.
+/// Returns times in [piece.begin, end] of a signal piece; the largest and the smallest voltage (or dV/dt) occur at some of
+/// them.
 ///
-/// At a fixed angle of the sine, V and V' are linear in the number of the period: no period between the first and the last can
-/// exceed both.
+/// Only the first and the last period of a sine are searched. V and V' at the same phase of successive periods are linear in
+/// the number of the period, since the amplitude is linear in time, so they are largest in the first or the last period.
 std::vector<double> extreme_times(const SignalPiece& piece, double end, Of what) {
   std::vector<double> times{piece.begin};
   if (std::isfinite(end)) times.push_back(end);
   if (!piece.terms.empty()) {
-    // The terms of the last signal piece decay: an undamped sine reaches its own extremes within a period.
+    // Search a last piece until its terms have decayed, and then for a period of its undamped sine.
     const double over = internal::duration_of_terms(piece);
     const double last =
         std::isfinite(end) ? end : piece.begin + over + (piece.oscillates() ? 2 * std::numbers::pi / piece.angular_frequency : 0);
@@ -135,7 +136,7 @@ std::vector<double> extreme_times(const SignalPiece& piece, double end, Of what)
   return times;
 }
 
-/// Calls `see(piece, time)` at the times of extreme voltage, or extreme dV/dt, of every signal piece on [0, end].
+/// Calls `see(piece, time)` at times on [0, end] that include those of the extreme voltage, or dV/dt, of every signal piece.
 template <typename See>
 void for_each_extreme(const std::vector<SignalPiece>& pieces, double end, Of what, See see) {
   require(end >= 0, fmt::format("the end of the time span is {} s; it must be >= 0", end));
@@ -145,7 +146,7 @@ void for_each_extreme(const std::vector<SignalPiece>& pieces, double end, Of wha
   }
 }
 
-/// Throws InvalidInput unless all numbers of the term of a signal piece are finite and the term does not grow.
+/// Throws InvalidInput unless all numbers in the term of a signal piece are finite and its decay rate is not negative.
 void check_term(const SignalTerm& term, std::size_t piece) {
   bool is_finite = std::isfinite(term.decay) && std::isfinite(term.angular_frequency) && std::isfinite(term.sweep);
   for (const double coefficient : term.cosine) is_finite = is_finite && std::isfinite(coefficient);
@@ -162,7 +163,7 @@ Signal::Signal(std::vector<SignalPiece> pieces, double before) : pieces_(std::mo
   require(!pieces_.empty(), "a signal must have at least one piece");
   require(pieces_.front().begin == 0,
           fmt::format("the first piece of a signal begins at {} s; it must begin at 0 s", pieces_.front().begin));
-  // Measured tables have very many pieces, so a message is composed only when it is needed.
+  // Compose a message only when it is needed: measured tables have very many pieces.
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     const SignalPiece& piece = pieces_[i];
     for (const auto& [name, number] :
@@ -295,8 +296,8 @@ double Signal::peak_slew(double end) const {
 }
 
 double Signal::resolving_step(double time) const {
-  // Integrator steps per period of an oscillating voltage: an integrator of order 2 or higher then resolves the oscillation,
-  // and its error test still sets the step length.
+  // Integrator steps per period of an oscillating voltage. They suffice for an integrator of order 2 or higher to notice the
+  // oscillation; its error control then chooses the step length.
   constexpr double steps_per_period = 20;
   const std::size_t at = piece_at(time);
   const SignalPiece& piece = pieces_[at];

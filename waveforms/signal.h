@@ -1,5 +1,5 @@
 // A drive voltage against time, compiled from a waveform family into pieces that are smooth inside (pieces.h). Before t = 0 the
-// voltage is constant, 0 V by default, and a simulation starts at rest under it. Time integration stops at every
+// voltage is constant, 0 V by default; a simulation starts at rest under this voltage. Time integration stops at every
 // breakpoint, so that no step crosses a corner or a jump.
 #pragma once
 
@@ -21,17 +21,17 @@ class Signal {
  public:
   /// Creates a signal of 0 V at all times.
   Signal() : pieces_{SignalPiece{}} {}
-  /// Makes a signal of voltage pieces. Throws InvalidInput unless the pieces start at 0, begins strictly increase, every number
-  /// is finite, the angular frequency is positive where there is an amplitude, and no term grows. The last piece lasts for
-  /// ever: it must have no slope, no amplitude_slope, and only terms that decay without a sweep. `before` is the voltage before
-  /// t = 0 [V].
+  /// Makes a signal of voltage pieces. Throws InvalidInput unless the first piece begins at 0, the beginnings strictly
+  /// increase, every number is finite, the angular frequency is positive where there is an amplitude, and no term grows. The
+  /// last piece has no end, so it must have no slope, no amplitude_slope, and only terms that decay without a sweep. `before`
+  /// is the voltage before t = 0 [V].
   explicit Signal(std::vector<SignalPiece> pieces, double before = 0);
   /// Returns a signal of constant voltage [V] from t = 0 on.
   static Signal constant(double voltage, double before = 0);
   /// Returns a signal of one voltage [V] at all times, before t = 0 too.
   static Signal standing(double voltage);
-  /// Returns the signal of straight lines between points (time [s], voltage [V]); the last value is held. Two points of the
-  /// same time are a jump. The breakpoints are the times of the points, less those at the end that only repeat the held value.
+  /// Returns the signal of straight lines between points (time [s], voltage [V]); the last voltage is held. Two points of equal
+  /// time are a jump. The breakpoints are the times of the points, without points at the end that only repeat the held voltage.
   /// Throws InvalidInput unless there is a point, times start at 0 and do not decrease, and every number is finite.
   static Signal piecewise_linear(const std::vector<std::pair<double, double>>& points, double before = 0);
 
@@ -42,13 +42,13 @@ class Signal {
   [[nodiscard]] std::size_t piece_at(double time) const;
   /// Returns the voltage of the signal at a time [V]; at a jump the voltage after the jump.
   [[nodiscard]] double voltage(double time) const;
-  /// Returns the limit of the signal's voltage from the left [V]. It equals voltage(time), bit for bit, where the signal does
-  /// not jump. Rounding between the end of one piece and the beginning of the next, or between before() and a sine that starts
-  /// there, does not count as a jump.
+  /// Returns the limit of the signal's voltage from the left at a time [V]. The result equals voltage(time), bit for bit, where
+  /// the signal does not jump. A difference by rounding at the joint of two pieces, or of before() and a sine that starts at t
+  /// = 0, does not count as a jump.
   [[nodiscard]] double voltage_before(double time) const;
   /// Returns the beginnings of all signal pieces, 0 included [s].
   [[nodiscard]] std::vector<double> breakpoints() const;
-  /// Returns the final value of the signal, or its limit [V]; for a sine without an end, its mean value.
+  /// Returns the voltage at which the signal ends or to which it decays [V]; for a sine without an end, its mean value.
   [[nodiscard]] double hold_level() const;
   /// Returns true if the signal is 0 V at all times.
   [[nodiscard]] bool is_zero() const;
@@ -65,12 +65,12 @@ class Signal {
   [[nodiscard]] double peak(double end = std::numeric_limits<double>::infinity()) const;
   /// Returns the largest |dV/dt| of the signal on [0, end] [V/s]; infinity if there is a jump, at t = 0 too.
   [[nodiscard]] double peak_slew(double end = std::numeric_limits<double>::infinity()) const;
-  /// Returns an integrator step length that resolves the signal after `time` [s]: a fraction of the shortest period, at most
-  /// the shortest time constant of the piece; infinity where the piece has neither.
+  /// Returns an integrator step length that resolves the signal's piece at `time` [s]: a fraction of its shortest period, and
+  /// at most its shortest time constant; infinity without periods and time constants.
   [[nodiscard]] double resolving_step(double time) const;
 
  private:
-  /// Returns the limit of the voltage from the left at the beginning of signal piece `next` [V].
+  /// Returns the limit of the voltage from the left at the beginning of piece number `next` [V]; see voltage_before().
   [[nodiscard]] double left_limit(std::size_t next) const;
 
   std::vector<SignalPiece> pieces_;
@@ -87,8 +87,8 @@ class Signal {
 /// Returns the signal until `time` [s], followed by the constant voltage that the signal has just before `time` (for 0 s, the
 /// voltage before t = 0).
 [[nodiscard]] Signal held_from(const Signal& signal, double time);
-/// Returns the part of a signal after a breakpoint [s], before which the signal must be constant. Time counts from the
-/// breakpoint, and the voltage before the breakpoint is `before` [V].
+/// Returns the part of a signal from the breakpoint `time` [s] on, with time counted from this breakpoint. The signal must be
+/// constant before `time`. `before` is the voltage of the result before its t = 0 [V].
 [[nodiscard]] Signal part_from(const Signal& signal, double time, double before = 0);
 
 /// Returns the signal with its voltage multiplied by a finite number.

@@ -17,7 +17,7 @@ bool have_same_pieces(const std::vector<Signal>& a, const std::vector<Signal>& b
   });
 }
 
-// Returns true if two times or values are equal up to rounding, as of a sum of durations.
+// Returns true if two numbers (times or voltages) are equal up to rounding errors, such as those of a sum of durations.
 bool are_equal(double a, double b) {
   constexpr double roundings = 16 * std::numeric_limits<double>::epsilon();
   return std::abs(a - b) <= roundings * std::max(std::abs(a), std::abs(b));
@@ -51,8 +51,8 @@ std::array<double, 4> cubic_about(const SignalPiece& piece, double origin) {
   return {c[0] + by * (c[1] + by * (c[2] + by * c[3])), c[1] + by * (2 * c[2] + by * 3 * c[3]), c[2] + 3 * by * c[3], c[3]};
 }
 
-// Returns the derivative of a signal piece, by central difference, as a piece if only its amplitudes change; none if its times
-// or angles change as well.
+// Returns the derivative of a signal piece by a parameter, a central difference, in the form of a signal piece. Returns null if
+// times or angles of the piece change as well as its amplitudes.
 std::shared_ptr<const SignalPiece> derivative(const SignalPiece& above, const SignalPiece& below, double step) {
   const auto turns_alike = [](const SignalTerm& a, const SignalTerm& b) {
     return a.decay == b.decay && a.angular_frequency == b.angular_frequency && a.sweep == b.sweep;
@@ -81,7 +81,7 @@ std::shared_ptr<const SignalPiece> derivative(const SignalPiece& above, const Si
   return std::make_shared<const SignalPiece>(std::move(piece));
 }
 
-// Returns a time inside a signal piece, for the last piece a time after its beginning.
+// Returns a time inside signal piece k; for the last piece, a time after its beginning.
 double inner_time(const std::vector<SignalPiece>& pieces, std::size_t k) {
   constexpr double share = 0.4;
   return k + 1 < pieces.size() ? std::lerp(pieces[k].begin, pieces[k + 1].begin, share) : pieces[k].begin * (1 + share);
@@ -89,12 +89,12 @@ double inner_time(const std::vector<SignalPiece>& pieces, std::size_t k) {
 
 }  // namespace
 
-// A point in the space of waveform parameters, with the bounds of the parameters.
+// The waveform parameters x, their bounds, and the signals of all drives for parameters near x.
 struct SignalSlopes::Neighbourhood {
   const SignalsOf& signals;
   std::span<const double> x, lower, upper;
 
-  // Returns the value of parameter k, moved by `share` of the step of the finite difference.
+  // Returns the value of parameter k after a change by `share` of the step of the finite difference, kept within the bounds.
   [[nodiscard]] double beside(std::size_t k, double share) const {
     return std::clamp(x[k] + share * share_of_range * (upper[k] - lower[k]), lower[k], upper[k]);
   }
@@ -127,8 +127,8 @@ SignalSlopes::SignalSlopes(const SignalsOf& signals, std::span<const double> x, 
   find_one_by_one(near, here);
 }
 
-// Returns true if this number of parameter groups needs fewer finite differences than single parameters do, including a
-// difference for the check.
+// Returns true if finite differences for this number of parameter groups, and one more for the check, are fewer than those for
+// all single parameters.
 bool SignalSlopes::saves(std::size_t groups) const { return groups + 1 < parameters_; }
 
 void SignalSlopes::find_one_by_one(const Neighbourhood& near, const Signals& here) {
@@ -170,7 +170,9 @@ bool SignalSlopes::find_in_groups(const Neighbourhood& near, const Signals& here
 
 bool SignalSlopes::holds_along_all(const Neighbourhood& near, const Signals& here) const {
   constexpr double tolerance =
-      1e-5;  // tolerance of the check, relative to the largest change; a parameter in a wrong group errs by its whole change
+      // Tolerance of the check relative to the largest change; a parameter in a wrong group causes an error of the size of its
+      // change.
+      1e-5;
   const auto share = [](std::size_t k) {
     const double golden = std::fmod(0.618033988749895 * static_cast<double>(k + 1), 1.0);
     return (k % 2 == 0 ? 1 : -1) * (0.5 + golden / 2);
@@ -234,7 +236,7 @@ bool SignalSlopes::add(Mover&& mover, Signals above, Signals below) {
 
 std::vector<ParameterGroup> SignalSlopes::groups() const {
   using Moved = std::vector<std::pair<std::size_t, std::size_t>>;
-  std::vector<Moved> moved(parameters_);  // (drive, piece) of the signal pieces that each parameter changes
+  std::vector<Moved> moved(parameters_);  // signal pieces (drive, piece) that each parameter changes
   ParameterGroup none;
   for (std::size_t drive = 0; drive < slopes_.size(); ++drive) {
     none.movers.emplace_back(slopes_[drive].size());

@@ -10,10 +10,10 @@ namespace softland {
 namespace {
 
 constexpr double no_bound = std::numeric_limits<double>::infinity();
-// Largest shift of a voltage edge towards the adjacent edge, as a share of the time between both.
+// Largest shift of a voltage edge towards a neighbouring edge, as a share of the time between the two edges.
 constexpr double most_of_gap = 0.49;
 
-/// A voltage edge: signal breakpoints that a delay of the edge shifts together.
+/// A voltage edge: the range of signal breakpoints (numbers of pieces) that a delay of the edge shifts together.
 struct Edge {
   std::size_t first, last;
 };
@@ -34,7 +34,8 @@ std::vector<Edge> edges_of(const Signal& signal) {
   return edges;
 }
 
-/// Returns the shifted times at which the signal pieces begin [s]. The time of a first piece that is not an edge is not used.
+/// Returns the times at which the signal pieces begin with all delays [s]. Where the signal starts without an edge, the first
+/// time is not used.
 std::vector<double> begins(const std::vector<SignalPiece>& pieces, const std::vector<Edge>& edges, const SourceErrors& errors) {
   std::vector<double> all;
   for (const SignalPiece& piece : pieces) all.push_back(piece.begin + errors.delay);
@@ -47,7 +48,7 @@ std::vector<double> begins(const std::vector<SignalPiece>& pieces, const std::ve
   return all;
 }
 
-/// Returns the signal piece between shifted times: the straight line and the envelope run from and to the same values, the sine
+/// Returns signal piece i moved to [begin, end]. Its straight line and the envelope of its sine keep their end values, the sine
 /// is delayed by `late`, and the terms are stretched with the piece.
 SignalPiece moved(const Signal& signal, std::size_t i, double begin, double end, double offset, double late) {
   const SignalPiece& piece = signal.pieces()[i];
@@ -96,7 +97,7 @@ Signal with_errors(const Signal& given, const SourceErrors& errors, double origi
   if (begin[0] > 0) all.push_back({.value = signal.before() + errors.offset});
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const double end = i + 1 < pieces.size() ? begin[i + 1] : no_bound;
-    // A signal piece whose delay is much larger than its duration may have no duration after rounding.
+    // Leave out a piece that rounding has reduced to no duration, as after a delay much longer than the piece.
     if (end > begin[i]) all.push_back(moved(signal, i, begin[i], end, errors.offset, errors.delay - origin));
   }
   return Signal(std::move(all), given.before());

@@ -1,5 +1,5 @@
-// Table waveform: measured or exported voltages, linear between rows; the last value is held. Two rows of equal time are a
-// jump.
+// Table waveform: measured or exported voltages, linear between the rows of a table; the last voltage is held. Two rows of
+// equal time are a jump.
 #pragma once
 
 #include <array>

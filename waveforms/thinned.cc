@@ -9,7 +9,7 @@
 namespace softland {
 namespace {
 
-/// Finds, from a given row of a voltage table, the last row to which a straight line may replace the rows between.
+/// Chooses the rows of a voltage table that are kept: each straight line from a kept row reaches as far as the limit permits.
 class Thinning {
  public:
   Thinning(const Table& table, double limit) : time_(table.time), voltage_(table.voltage), limit_(limit) {
@@ -18,8 +18,7 @@ class Thinning {
       area_[i] = area_[i - 1] + (voltage_[i - 1] + voltage_[i]) / 2 * (time_[i] - time_[i - 1]);
   }
 
-  /// Returns the next row of the voltage table to keep after `from`, and updates the integral of the difference between thinned
-  /// and original voltage.
+  /// Returns the row of the voltage table to keep after the row `from`. Updates the integral of thinned less original voltage.
   std::size_t next(std::size_t from) {
     constexpr std::size_t growth = 4, least_window = 8;
     const std::size_t farthest = std::min(from + growth * last_length_ + least_window, jump_after(from));
@@ -53,11 +52,11 @@ class Thinning {
   }
   bool stays_within(std::size_t i, std::size_t j) {
     const double slope = (voltage_[j] - voltage_[i]) / (time_[j] - time_[i]);
-    double before = 0, largest = 0;  // voltage difference at the previous row [V]; largest integral so far [V s]
+    double before = 0, largest = 0;  // thinned less original voltage at the previous row [V]; largest |integral| [V s]
     for (std::size_t k = i + 1; k <= j; ++k) {
       const double line = voltage_[i] + slope * (time_[k] - time_[i]), difference = line - voltage_[k];
       double excess = excess_ + (voltage_[i] + line) / 2 * (time_[k] - time_[i]) - (area_[k] - area_[i]);
-      // Between two rows the integral of the voltage difference is largest where the difference is zero.
+      // Between two rows |integral of the voltage difference| is largest where the difference changes its sign.
       double most = std::abs(excess);
       if (before * difference < 0) {
         const double share = difference / (difference - before);

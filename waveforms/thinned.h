@@ -1,9 +1,9 @@
 // Removes rows of a voltage table such that a source of a given bandwidth applies nearly the same voltage.
 //
-// Straight lines connect the rows that are not removed: the voltage stays between its extremes, and no slope increases. Take
-// two inputs of the source's filter T dV/dt + V = input whose difference has the integral E(t) from 0 on: the outputs differ by
-// at most 2 max|E| / T (integration by parts of the response). Rows are therefore removed as long as |E| permits. Noise that
-// the source averages disappears, and edges keep their times.
+// Straight lines connect the rows that are kept, so the voltage stays between its extremes and no slope increases. Let E(t) be
+// the integral from 0 on of the difference of two inputs of the source's filter T dV/dt + V = input. The outputs then differ by
+// at most 2 max|E| / T (integration by parts of the response). Rows are removed as long as this bound is within the permitted
+// error. Noise that the source averages out disappears, and edges keep their times.
 #pragma once
 
 #include "waveforms/table.h"

@@ -26,8 +26,8 @@ namespace softland {
 using Waveform = std::variant<Step, Harmonic, Pulse, Table, SCurve, Chirp, BSpline, Sines, Own>;
 /// Waveforms by the name of the drive, for some or all drives of a scene.
 using DriveWaveforms = std::map<std::string, Waveform>;
-/// Number of waveform families that a scene file can hold: all but the user's own waveform, which is the last alternative of
-/// Waveform.
+/// Number of waveform families that a scene file can contain: all alternatives of Waveform except the last, the user's own
+/// waveform.
 inline constexpr std::size_t families_of_scenes = std::variant_size_v<Waveform> - 1;
 
 /// Returns the voltage signal of a waveform from t = 0 on; `before` is the voltage before t = 0 [V], from which a first edge
