@@ -205,7 +205,7 @@ Signal filtered(const Signal& input, double time_constant) {
   double output = input.before();
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const double begin = pieces[i].begin, end = i + 1 < pieces.size() ? pieces[i + 1].begin : infinite;
-    // A faster formula for constant levels, since a sampled waveform has thousands of them.
+    // Use a faster formula for constant levels, since a sampled waveform has thousands of levels.
     if (is_held_level(pieces[i])) {
       const double left = begin + over * time_constant;
       const bool settles = output != pieces[i].value;

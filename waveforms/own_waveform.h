@@ -1,8 +1,9 @@
 // A drive waveform that the user's program defines: a class that returns voltage against time.
 //
 // Such an own waveform becomes a Signal: between two breakpoints, cubic polynomials approximate the voltage with an error of at
-// most own_waveform_accuracy times its largest voltage. It can be used wherever a signal can: in closings, in sources with
-// limits and errors, in simulations of several devices at once, in tables for generators. A scene file cannot hold it.
+// most own_waveform_accuracy times its largest voltage. An own waveform can be used wherever a signal can: in closings, in
+// sources with limits and errors, in simulations of several devices at once, in tables for generators. A scene file cannot
+// contain an own waveform.
 //
 // Between two breakpoints the voltage should have four continuous derivatives; otherwise many cubics are needed. Every kink and
 // every jump must be a breakpoint.
@@ -74,8 +75,8 @@ struct FamilyOf<Own> {
 /// a parameter has no name, its bounds are not finite, or its start is not between them.
 [[nodiscard]] Own own(std::shared_ptr<const OwnWaveform> waveform);
 /// Compiles a user's own waveform to a voltage signal. Throws InvalidInput if the waveform is null or has another number of
-/// parameters than `own`. Throws InvalidInput also if breakpoints are not in order or missing, or if a voltage is not finite or
-/// not smooth between two breakpoints. Messages have the name of the waveform.
+/// parameters than `own`. Throws InvalidInput also if breakpoints are not in order, or missing although the voltage changes, or
+/// if a voltage is not finite or not smooth between two breakpoints. Messages have the name of the waveform.
 [[nodiscard]] Signal signal(const Own& own, double before = 0);
 /// Returns the phrase "the own waveform 'NAME'" for messages.
 [[nodiscard]] std::string described(const Own& own);

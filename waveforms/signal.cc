@@ -45,7 +45,7 @@ double rounding_at_end(const SignalPiece& piece, double end) {
   const double duration = end - piece.begin;
   const double straight = std::abs(piece.value) + std::abs(piece.slope * duration);
   const double swing = std::abs(piece.amplitude) + std::abs(piece.amplitude_slope * duration);
-  double of_terms = 0;  // size of the terms without their decay [V]
+  double of_terms = 0;  // size of the terms, as if they did not decay [V]: dropping a decayed term is no jump
   double rate = std::abs(piece.slope);
   for (const SignalTerm& term : piece.terms) {
     double power = 1, before = 0, size = 0;

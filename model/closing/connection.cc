@@ -61,7 +61,7 @@ std::size_t ConnectionCourse::decides(double time, std::size_t present) const {
 void ConnectionCourse::hand_over() {
   const Followed& any = followed_[deciding_];
   if (any.fresh.empty()) return;
-  // Pass on the start of the run, and points at which velocity or acceleration jumps: every contact has two points of equal
+  // Pass on the first point of the run, and jumps of velocity or acceleration, at which every contact has two points of equal
   // time.
   while (!any.fresh.empty() && (!any.last || any.fresh.front().time == any.last->time)) {
     for (Followed& c : followed_) {

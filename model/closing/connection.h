@@ -94,7 +94,7 @@ class ConnectionCourse {
   };
 
   /// Returns the contact whose separation is that of the connection at this time: the contact with the largest (or smallest)
-  /// separation. When several contacts have the same separation, the contact `present` is preferred.
+  /// separation. Of several contacts with the same separation, `present`, the result until now, is preferred.
   [[nodiscard]] std::size_t decides(double time, std::size_t present) const;
   void follow_to(double time);
   void tell(double time);

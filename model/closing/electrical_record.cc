@@ -25,7 +25,7 @@ ElectricalRecord::Instant ElectricalRecord::instant(std::size_t c, const Contact
     const double length = contact.to.time - contact.from.time, share = length > 0 ? (time - contact.from.time) / length : 1;
     now.force = std::lerp(contact.from.contact_force, contact.to.contact_force, share);
   } else {
-    // Within a step a contact law without memory may start or stop acting. The position alone decides about it.
+    // Within a step a contact law without memory may start or stop acting, which depends on the position alone.
     const ContactState state = has_memory(law) ? contact.law : ContactState(now.interference > -model_.contact_reach(c));
     if (state.active) now.force = contact_force(law, now.interference, state, tip.velocity(time));
   }

@@ -39,7 +39,8 @@ void EnergyAudit::enter_stretch(const Knot& here, bool first) {
     if (before == after) continue;
     const double potential = model_.law_potential(k, here.state.data(), equations_.workspace());
     if (holds_charge(k)) {
-      // The source delivers the integral of V dQ = C V dV: a fixed charge on the dielectric does not change dQ.
+      // At a voltage jump the source delivers the integral of V dQ = C V dV: a fixed charge on the dielectric does not change
+      // dQ.
       source_work_ -= (after * after - before * before) * potential;
     } else {
       source_work_ += (model_.strength(k, after) - model_.strength(k, before)) * potential;

@@ -61,8 +61,8 @@ void ForceRecord::follow(const Force& force, double begin, double from, double e
   }
 }
 
-// Returns the least contact force after its first maximum. A force below the rounding error of the position at which a contact
-// opens counts as 0.
+// Returns the least contact force after its first maximum. A tiny value, which rounding of the position at which a contact
+// opens may cause, counts as 0.
 double ForceRecord::least() const {
   constexpr double rounding = 1e-12;
   const double least = has_fallen_ ? least_ : last_;

@@ -10,8 +10,7 @@ namespace softland {
 struct Knot {
   double time = 0;            ///< time of this point of the motion [s]
   std::vector<double> state;  ///< coordinates and velocities of the modes, then pressures of a compressible gas film
-  /// Time derivatives of the velocities (accelerations of the modes), then those of the film pressures.
-  std::vector<double> rates;
+  std::vector<double> rates;  ///< time derivatives of modal velocities, then of film pressures
 };
 
 /// Figures of the gap field (gap between beam and electrode along the beam) at one point of the motion. They are read from the

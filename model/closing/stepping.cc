@@ -15,8 +15,8 @@ namespace {
 
 // An explicit integration method is replaced by an implicit method when stability limits the step length in many checks in a
 // row (one check per 100 steps). A thick film in a nearly closed gap limits every step. In most other closings stability limits
-// at most a dozen checks in a row. A damped contact with many short rebounds may reach ninety, so that the method changes
-// without need.
+// at most a dozen checks in a row. A damped contact with many short rebounds may reach ninety checks, so that the method
+// changes without need.
 constexpr double held_back = 2;  // value of Stepper::stiffness() above which stability limits the step length
 constexpr long steps_to_look = 100;
 // The conditions under which an implicit integration method replaces the explicit method.

@@ -8,15 +8,15 @@
 // [m]; R radius [m]; eta summits per area [1/m^2]; An = width x pad length [m^2]; E* effective modulus [Pa]; U stored energy
 // [J]. The law is lossless.
 //
-// The tail of the heights is unbounded: some summit is always in contact. Contact begins, by definition, where the mean of the
-// summits is four standard deviations away (three summits in 100 000 are higher). The force there, 1e-5 of the force at the
-// mean, is subtracted, so that the force starts from zero. For d < 0 the same formula continues smoothly; it is at least minus
-// the subtracted force. Validity: elastic asperities that do not touch each other, many of them in contact, separation above
-// the mean of the summits: d < 4 sigma. Source: Greenwood & Williamson 1966, eq. 15; the constant h0 is our choice. F_1.5 is
-// tabulated as Taylor series about nodes an eighth apart, from the equation y'' + h y' - n y = 0 that F_n obeys. The series are
-// computed from h = 14 towards smaller h, a direction in which the other solution of the equation decays, and scaled by the
-// closed form of F_1.5(0). The relative error is below 1e-11 on [-8, 8] (checked against quadrature); below this range a series
-// in 1/h^2 is used, and above it 0.
+// The tail of the heights is unbounded: in this law some summit is always in contact. Contact begins, by definition, where the
+// mean of the summits is four standard deviations away (three summits in 100 000 are higher). The force there, 1e-5 of the
+// force at the mean, is subtracted, so that the force starts from zero. For d < 0 the same formula continues smoothly; it is at
+// least minus the subtracted force. Validity: elastic asperities that do not touch each other, many of them in contact,
+// separation above the mean of the summits: d < 4 sigma. Source: Greenwood & Williamson 1966, eq. 15; the constant h0 is our
+// choice. F_1.5 is tabulated as Taylor series about nodes an eighth apart, from the equation y'' + h y' - n y = 0 that F_n
+// obeys. The series are computed from h = 14 towards smaller h, a direction in which the other solution of the equation decays,
+// and scaled by the closed form of F_1.5(0). The relative error is below 1e-11 on [-8, 8] (checked against quadrature); below
+// this range a series in 1/h^2 is used, and above it 0.
 #pragma once
 
 #include <array>
@@ -99,7 +99,7 @@ struct GaussianAsperityContactOf {
   /// Distance h0 from the mean of the summits to the contact plane, in standard deviations.
   static constexpr double first_touch = 4;
 
-  /// Returns F_1.5(h) of the formula above, the integral of (s - h)^1.5 times the Gaussian density over s > h.
+  /// Returns F_1.5(h), the integral of (s - h)^1.5 times the Gaussian density over s > h.
   template <class S>
   static S tail(S h) {
     return internal::GaussianTail::instance()(h);

@@ -5,9 +5,9 @@
 // P is the force on the beam, away from the contact [N]; P0 force of the law without damping [N]; d interference [m] and d' its
 // rate [m/s]; c damping [s/m]; the stored energy is that of P0. Unlike a dashpot the force starts from zero and never pulls. A
 // mass that hits at v_i leaves with the restitution e given by G(v_i) = G(-e v_i), G(v) = v/g - ln(1 + g v)/g^2, g = 1.5 c,
-// whatever P0: e -> 1 - c v_i for c v_i -> 0. A single mass never reaches the cap. Other modes may pull the contact point out
-// faster than 1/(1.5 c); the force then has a corner, which the step control has to find. Validity: c v_i well below 1, where c
-// is a property of the pair. Source: Hunt & Crossley 1975, eqs. 8 to 11.
+// whatever P0: e -> 1 - c v_i for c v_i -> 0. For a single mass P0 (1 + 1.5 c d') is never negative. Other modes may pull the
+// contact point out faster than 1/(1.5 c); the force then has a corner, which the step control has to find. Validity: c v_i
+// well below 1, where c is a property of the pair. Source: Hunt & Crossley 1975, eqs. 8 to 11.
 #pragma once
 
 #include <array>
@@ -46,14 +46,12 @@ template <class Elastic>
   return elastic;
 }
 
-// clang-format off Returns the scene-file key that sets a contact law's member `damping`; 0 means no damping.
+// clang-format off
+// Returns the scene-file key of a contact law's member `damping`; 0 means no damping.
 template <class Law>
 [[nodiscard]] consteval auto damping_fields() {
   return std::to_array<Field<Law>>({
-      {.key = "damping",
-       .unit = "s/m",
-       .about = "of Hunt and Crossley: restitution about 1 over 1 + damping times impact velocity; absent: none",
-       .in = reach<Law, &Law::damping>},
+      {.key = "damping", .unit = "s/m", .about = "of Hunt and Crossley: restitution about 1 over 1 + damping times impact velocity; absent: none", .in = reach<Law, &Law::damping>},
   });
 }
 // clang-format on

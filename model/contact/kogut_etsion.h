@@ -26,8 +26,7 @@ namespace softland {
 
 class KogutEtsionAsperity {
  public:
-  /// Largest pressure in an asperity at first yield, over hardness (K of the formula above).
-  static constexpr double pressure_factor = 0.577;
+  static constexpr double pressure_factor = 0.577;  ///< largest pressure at first yield over hardness (K)
 
   /// Returns the work of loading one asperity: the integral of its load from interference 0 to u. Both are in units of first
   /// yield.

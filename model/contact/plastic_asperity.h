@@ -59,7 +59,7 @@ class PlasticAsperityLoading {
  private:
   P height_ = 1;    // greatest height of the asperity summits [m]
   P yield_ = 1;     // interference of an asperity at first yield [m]
-  P strength_ = 0;  // factor of the contact force [N]: (eta An / Hm) P1 w1 in the formula above
+  P strength_ = 0;  // factor of the contact force [N]: (eta An / Hm) P1 w1 of the header's formula
 };
 
 }  // namespace softland

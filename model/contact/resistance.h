@@ -13,7 +13,7 @@
 //
 // Number n of summits in contact at the interference d, of N in all: N min(d, Hm) / Hm for uniform heights, N Q(4 - d / sigma)
 // for Gaussian ones, at least one for each contact. A dented summit stays in contact until its force vanishes. The load is the
-// contact force; the law "adhesive" adds 2 pi R W for each summit in touch, so that a contact held by adhesion conducts. A
+// contact force; the law "adhesive" adds 2 pi R W for each summit in contact, so that a contact held by adhesion conducts. A
 // contact without load is open: its conductance is 0.
 //
 // Limits: for l << a Holm's constriction rho / (2a) between two half spaces; for l >> a Sharvin's ballistic resistance, which

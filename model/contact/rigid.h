@@ -28,8 +28,7 @@ template <class P>
 struct RigidContactOf {
   P restitution = 0;  ///< coefficient of restitution of an impact
 
-  /// Height of a rebound below which the plate rests at once, over the contact gap.
-  static constexpr double rest_height = 1e-6;
+  static constexpr double rest_height = 1e-6;  ///< rebound height below which the plate rests, over the contact gap
 
   /// Returns true when a plate that leaves the stop at `speed` [m/s] against `acceleration` [m/s^2] would rebound less than
   /// rest_height times the contact gap, so that it counts as resting.

@@ -18,8 +18,8 @@
 
 namespace softland {
 
-/// Returns the factor of sqrt(d) in p / H of the formula above [1/m^0.5], for the pressure of a contact's highest summit at the
-/// interference d; NaN for a law without summits, or without a given hardness.
+/// Returns the factor of sqrt(d) in p / H of the header's formula [1/m^0.5], for the pressure of a contact's highest summit at
+/// the interference d; NaN for a law without summits, or without a given hardness.
 [[nodiscard]] inline double summit_pressure_scale(const Contact& contact) {
   return std::visit(
       [&]<class Law>(const Law& law) {

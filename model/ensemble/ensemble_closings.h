@@ -70,8 +70,7 @@ struct EnsembleClosing {
   double duration = 0;                 ///< length of the simulated time window [s]
   double after_contact = std::numeric_limits<double>::infinity(), no_end_before = 0;
   double no_contact_before = std::numeric_limits<double>::infinity();
-  /// Contact force from which the contact counts as settled [N].
-  double steady_force = std::numeric_limits<double>::quiet_NaN();
+  double steady_force = std::numeric_limits<double>::quiet_NaN();  ///< force of a settled contact [N]
   bool measures_drive_energy = false;
   LandingObserver* observer = nullptr;
 };
@@ -85,8 +84,7 @@ struct EnsembleEnd {
   /// first maximum [N]; see Trajectory.
   double steady_force_time = std::numeric_limits<double>::quiet_NaN(),
          least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
-  /// Energy that the sources deliver to the drives; NaN if not computed [J].
-  double drive_energy = std::numeric_limits<double>::quiet_NaN();
+  double drive_energy = std::numeric_limits<double>::quiet_NaN();  ///< energy from the sources; NaN if not computed [J]
   FirstTouch first_touch = {};  ///< first touch of any contact of the connection, for several contacts
 };
 

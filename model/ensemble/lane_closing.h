@@ -74,9 +74,8 @@ struct LaneContactNumbers {
   double shape[most_modes] = {};    // mode shapes at the contact, positive towards its plane [kg^(-1/2)]
   double strength = 0, height = 0;  // factor of the contact force (`linear`: stiffness [N/m]), height of asperities [m]
   double damping = 0;               // damping constant of the contact [s/m]
-  // Unloading stiffness of a contact law with memory; `strength` is its loading stiffness [N/m].
-  double unloading_stiffness = 0;
-  double negligible_depth = 0;  // distance from the contact plane at which a step counts as ending on the plane [m]
+  double unloading_stiffness = 0;   // unloading stiffness of a law with memory; loading: `strength` [N/m]
+  double negligible_depth = 0;      // distance from the contact plane at which a step counts as ending on the plane [m]
 };
 
 /// One switch in a SIMD lane, as plain numbers. Entries of modes that the switch does not have are 0.

@@ -44,7 +44,7 @@ class UsualContact {
     law_ = {.strength = strength_, .height = height_};
   }
 
-  /// Returns the contact force at an interference `depth` [N]; `rate()` would return its rate [m/s].
+  /// Returns the contact force at the interference `depth` [N]; its rate is not needed, since there is no damping.
   template <class Rate>
   [[gnu::always_inline]] V push(V depth, Rate&&) const {
     return law_.force(depth);

@@ -787,8 +787,7 @@ class SimdClosings {
         const double v = trial_v_[i][l], a = trial_a_[i][l];
         trial_q_[i][l] = trial_q_[i][l] + later * (v + later / 2 * a);
         trial_v_[i][l] = v + later * a;
-        // Only the modes' stiffness forces change noticeably in so short a time.
-        trial_a_[i][l] = a - later * square_[i][l] * v;
+        trial_a_[i][l] = a - later * square_[i][l] * v;  // in so short a time only the stiffness forces change noticeably
       }
       moved_[l] = later;
       if constexpr (has_several) move_others(at, l);

@@ -54,7 +54,7 @@ class GoldFactor {
   [[nodiscard]] double first() const { return pieces_.front().begin; }
   [[nodiscard]] double last() const { return pieces_.back().begin; }
 
-  std::array<double, 2> near = {}, far = {};  ///< coefficients n of eta below the table and f above it, see the formulas above
+  std::array<double, 2> near = {}, far = {};  ///< coefficients n of eta below the table, f above it (see header)
 
  private:
   GoldFactor();

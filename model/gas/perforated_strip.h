@@ -26,8 +26,8 @@ namespace softland {
 struct PerforatedStripFilm {
   double viscosity = 0;  ///< viscosity of the gas [Pa s]
   double width = 0;      ///< width of the strip with its holes [m]
-  double through = 0;    ///< first term of R, the resistance of the holes: pressure over velocity [Pa s/m]
-  double around = 0;     ///< second term of R, the film around a hole, times the cube of the gap [Pa s m^2]
+  double through = 0;    ///< resistance of the holes (first term of the header's R): pressure over velocity [Pa s/m]
+  double around = 0;     ///< resistance of the film around a hole (second term of R), times the cube of the gap [Pa s m^2]
   static constexpr bool drive_depends = false;
 
   PerforatedStripFilm(double mu, double a, double thickness, const Holes& holes) : viscosity(mu), width(a) {

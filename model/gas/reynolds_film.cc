@@ -50,7 +50,7 @@ StripNodes strip_nodes() {
     for (int j = 0; j <= degree; ++j) {
       if (i != j) slope(i, j) = at[i] / (at[j] * (x[i] - x[j]));
     }
-    slope(i, i) = -slope.row(i).sum();  // so that the derivative of a constant is 0
+    slope(i, i) = -slope.row(i).sum();  // each row has the sum 0, as the derivative of a constant is 0
   }
   constexpr int count = StripNodes::count;
   Eigen::MatrixXd unfold = Eigen::MatrixXd::Zero(degree + 1, count);

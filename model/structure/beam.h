@@ -117,9 +117,8 @@ struct Bridge : Beam {
       "line; a layer needs a cantilever";
 
   double residual_stress = 0;  ///< residual stress before the beam bends, positive in tension [Pa]
-  /// True: biaxial stress of a film before release, which leaves residual_stress (1 - nu) in the beam.
-  bool biaxial = false;
-  bool stretches = true;  ///< true when bending stretches the beam (cubic stiffness)
+  bool biaxial = false;        ///< true: biaxial stress of a film, of which residual_stress (1 - nu) remains in the beam
+  bool stretches = true;       ///< true when bending stretches the beam (cubic stiffness)
 
   template <class S>
   static consteval auto fields() {

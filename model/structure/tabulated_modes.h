@@ -54,8 +54,7 @@ class ModalTable {
   /// Returns the heights of the structure's face at rest at the positions of the table, positive towards the near electrode
   /// [m].
   [[nodiscard]] const std::vector<double>& rest_offsets() const { return rest_offsets_; }
-  /// Widths of the structure at the positions of the table [m].
-  [[nodiscard]] const std::vector<double>& widths() const { return widths_; }
+  [[nodiscard]] const std::vector<double>& widths() const { return widths_; }  ///< widths at the positions of the table [m]
   /// Returns the distance at x [m] of the structure's face at rest from its height at the clamp, positive away from the near
   /// electrode [m]; linear between the positions of the table.
   [[nodiscard]] double rest_offset(double x) const;
