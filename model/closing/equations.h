@@ -1,5 +1,5 @@
-// The equations of motion of the switch under its drives, as the right-hand side for an integrator. Each contact law is on the
-// branch of its current phase (contact_phase.h).
+// The equations of motion of the switch under its drives, as the right-hand side for an integrator. Each contact law is
+// evaluated on the branch of its current phase (contact_phase.h).
 #pragma once
 
 #include "integrators/stepper.h"

@@ -27,8 +27,8 @@ class ForceRecord {
   /// Adds an interval after first contact over which the contact force is taken as linear in time, as along a pad.
   void take_line(const TrajectoryPoint& from, const TrajectoryPoint& to);
 
-  /// Records that the contact force has passed a maximum, after which least() counts: the contact has opened, or an impact on a
-  /// rigid contact is over.
+  /// Records that the contact force has passed its first maximum, so that least() includes later forces: the contact has
+  /// opened, or an impact on a rigid contact is over.
   void pass_maximum() { has_fallen_ = true; }
 
   /// Returns the time from which the contact force stays at or above the threshold, Trajectory::steady_force_time [s].

@@ -39,8 +39,8 @@ class StepMotion {
   /// Returns modal coordinates, velocities and film pressures halfway through the step by Hermite interpolation; valid until
   /// the next call of halfway() or state_at().
   const std::vector<double>& halfway();
-  /// Returns modal coordinates and velocities after a share of the step, from the free motion of the modes and a quintic. Call
-  /// the function only if moves_by_modes(), and without a compressible film.
+  /// Returns modal coordinates and velocities after a share of the step: the free motion of the modes under the force at the
+  /// start, plus a quintic. Call the function only if moves_by_modes(), and without a compressible film.
   const std::vector<double>& state_at(double share);
 
  private:

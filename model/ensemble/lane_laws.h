@@ -288,8 +288,8 @@ class AnyLaws {
     }
   }
 
-  // Calls f(first, last, k) for every PointStretch k (points with equal beam size): first and last bound its part in [begin,
-  // end).
+  // Calls f(first, last, k) for every PointStretch k (points with equal beam size), whose points in [begin, end) are [first,
+  // last).
   template <class F>
   [[gnu::always_inline]] void on_stretches(int begin, int end, F&& f) const {
     for (int k = 0; k < layout_.stretches; ++k) {
