@@ -19,7 +19,8 @@ struct Named {
   std::string_view name;
 };
 
-/// A list of at most 12 words that a constant expression can hold, as a member of a row in a table of choices.
+/// A list of at most 12 names, such as keys of a scene, for a member of a row in a table of choices. Constant expressions can
+/// hold the list, unlike std::vector.
 class Words {
  public:
   constexpr Words(std::initializer_list<std::string_view> words) {
@@ -88,7 +89,7 @@ template <class Row, std::size_t n>
   return names;
 }
 
-/// Returns the names of the rows of a table of choices as words: "bounce, count or energy".
+/// Returns the names of the rows of a table of choices as one text for a message: "bounce, count or energy".
 template <class Row, std::size_t n>
 [[nodiscard]] std::string listed(const std::array<Row, n>& rows) {
   std::string text;
@@ -96,7 +97,7 @@ template <class Row, std::size_t n>
   return text;
 }
 
-/// Returns a list of texts as words: "bounce, count and energy".
+/// Returns several texts as one text for a message: "bounce, count and energy".
 template <class Texts>
 [[nodiscard]] std::string in_words(const Texts& texts, const std::string& last = " and ") {
   std::string words;
@@ -105,7 +106,8 @@ template <class Texts>
   return words;
 }
 
-/// Returns the names of the rows in a table of choices whose member `keys` contains `key`.
+/// Returns the names of the rows in a table of choices that contain `key` in their list `keys`, such as the scene keys that go
+/// with a choice.
 template <class Row, std::size_t n>
 [[nodiscard]] std::vector<std::string_view> with_key(const std::array<Row, n>& rows, std::string_view key) {
   std::vector<std::string_view> names;

@@ -10,8 +10,8 @@
 namespace softland {
 namespace {
 
-// Returns the integral of f g from the first of the points x to the last; exact where f g is a polynomial of degree 7 at most
-// between two neighbouring points.
+// Returns the integral of the product f(x) g(x) over x from the first to the last of the points, by Gauss' rule between
+// neighbouring points. It is exact where the product is a polynomial of degree 7 at most between them.
 template <class F, class G>
 double integral_of_product(const std::vector<double>& points, F f, G g) {
   constexpr int exact = 4;
@@ -34,8 +34,8 @@ ClampedSpline::ClampedSpline(std::vector<double> x, std::vector<double> y, Splin
   require(n >= 2 && y_.size() == n, "the x and y of a spline must have the same size, at least 2");
   require(std::adjacent_find(x_.begin(), x_.end(), [](double a, double b) { return !(a < b); }) == x_.end(),
           "the x of a spline must increase from point to point");
-  // The rows of the tridiagonal system for the curvatures: the slope at the first point, continuous slopes between, and at the
-  // last point either s'' = 0 or the slope.
+  // Fill the rows of the tridiagonal system for the second derivatives s'' at the points: s' = 0 at the first point, a
+  // continuous slope at the inner points, and s'' = 0 or s' = 0 at the last point.
   std::vector<double> diagonal(n), above(n), right(n);
   const auto width = [&](std::size_t k) { return x_[k + 1] - x_[k]; };
   const auto chord = [&](std::size_t k) { return (y_[k + 1] - y_[k]) / width(k); };
@@ -80,8 +80,9 @@ double ClampedSpline::integral_of_slopes(const ClampedSpline& other) const {
 }
 
 bool is_hinged(const std::vector<double>& x, const std::vector<double>& y) {
-  // Near a hinge the deflection grows with exponent 1, near a clamp with exponent 2; near the clamp of a thick beam, where
-  // shear gives the beam a slope, with 1.4 to 1.5. The share `near` of the length counts as near the end.
+  // Near a hinge the deflection grows with the power 1 of the distance x, near a clamp with the power 2; near the clamp of a
+  // thick beam, which deflects in shear too, with the power 1.4 to 1.5. Powers below `between` mean a hinge. The power follows
+  // from the points 1 and 2, which must lie in the first fifth (`near`) of the beam.
   constexpr double near = 0.2, between = 1.2;
   if (x.size() < 4 || !(x[2] < near * x.back()) || !(y[1] * y[2] > 0)) return false;
   return std::log(y[2] / y[1]) / std::log(x[2] / x[1]) < between;

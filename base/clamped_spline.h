@@ -34,11 +34,11 @@ class ClampedSpline {
   std::vector<double> x_, y_, curvature_;  // points (x, y) of the spline s, and its second derivative s'' at the points
 };
 
-/// Returns true when the deflection y has a slope at its first place, as at a hinge. Near a clamp the deflection grows with the
-/// square of the distance, near a hinge with the distance itself. Returns false when fewer than three places lie in the first
-/// fifth of the beam.
+/// Returns true when the deflections y [m] at the positions x [m], measured from one end of the beam, show a hinge at this end:
+/// the deflection grows with the distance from a hinge, but with the square of the distance from a clamp. Returns false when
+/// fewer than three of the positions lie in the first fifth of the beam.
 [[nodiscard]] bool is_hinged(const std::vector<double>& x, const std::vector<double>& y);
-/// Returns true when the deflection y has a slope at its last place, as at a hinge; is_hinged() tests the first place.
+/// Returns true when the deflections y show a hinge at the far end of the beam; is_hinged() tests the end at x = 0.
 [[nodiscard]] bool is_hinged_at_end(std::vector<double> x, std::vector<double> y);
 
 }  // namespace softland

@@ -25,7 +25,7 @@ std::vector<std::string_view> cells(std::string_view line) {
   }
 }
 
-/// Returns the index of column `name` in the header of a CSV file, which must have it exactly once.
+/// Returns the index of the only column `name` in the header of a CSV file; throws InvalidInput unless there is exactly one.
 std::size_t column(const std::vector<std::string_view>& header, std::string_view name, const std::string& place) {
   const auto count = std::count(header.begin(), header.end(), name);
   require(count == 1, [&] {
@@ -60,7 +60,7 @@ void read_csv(std::string_view content, const std::string& file, const std::vect
     content.remove_prefix(line_end == std::string_view::npos ? content.size() : line_end + 1);
     if (text.empty() || text.starts_with('#')) continue;
 
-    // Measured files are long: the place of a row is formatted only when a message needs it.
+    // Format file name and line number only when a message needs them, since measured files have many rows.
     const CsvPlace place = [&] { return fmt::format("{}:{}", file, line_number); };
     const std::vector<std::string_view> found = cells(text);
     if (width == 0) {

@@ -10,13 +10,13 @@
 
 namespace softland {
 
-/// Returns the place of a row, "file:line", for messages about the row.
+/// Returns file name and line number of a row of a CSV file, "file:line", for messages about the row.
 using CsvPlace = std::function<std::string()>;
 
-/// Calls row(values, place) for every row with the numbers of `columns`. Messages call the content `file`; `expected` describes
-/// the header ("time_s and one column per drive"). Throws InvalidInput with file, line and rule for content without header or
-/// rows, for a header without exactly one of each of the `columns`, for a row of another length than the header, and for a cell
-/// of `columns` that is not a finite number.
+/// Calls row(values, place) for every row with the numbers of `columns`. `file` is the name of the file in messages; `expected`
+/// describes the header ("time_s and one column per drive"). Throws InvalidInput with file, line and rule for content without
+/// header or rows, for a header without exactly one of each of the `columns`, for a row of another length than the header, and
+/// for a cell of `columns` that is not a finite number.
 void read_csv(std::string_view content, const std::string& file, const std::vector<std::string>& columns,
               std::string_view expected, const std::function<void(std::span<const double>, const CsvPlace&)>& row);
 

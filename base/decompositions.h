@@ -21,7 +21,8 @@ struct SymmetricEigen {
 /// definite.
 [[nodiscard]] Eigen::VectorXd generalized_eigenvalues(const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& mass);
 
-/// Returns orthonormal columns that are orthogonal to the columns of `held`, which must be independent and fewer than its rows.
+/// Returns an orthonormal basis of all vectors that are orthogonal to the columns of `held`, as columns. The columns of `held`
+/// must be linearly independent, and fewer than its rows.
 [[nodiscard]] Eigen::MatrixXd orthogonal_complement(const Eigen::MatrixXd& held);
 
 /// Returns the lower triangular L with L L^T = matrix, which is symmetric and positive definite.
@@ -34,7 +35,8 @@ struct SymmetricEigen {
 
 /// Returns the x with matrix x = right, for a symmetric matrix that is positive definite up to rounding.
 [[nodiscard]] Eigen::VectorXd solve_semidefinite(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
-/// Returns the x that minimises |matrix x - right|^2, column by column; unknowns that the matrix does not determine are 0.
+/// Returns the least-squares solutions x of matrix x = right, one for each column of `right`. When the columns of `matrix` are
+/// linearly dependent, the components of x that the equations do not determine are 0.
 [[nodiscard]] Eigen::MatrixXd least_squares(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right);
 
 /// Returns the x with matrix x = right, by elimination with partial pivoting; not finite where the matrix is singular.

@@ -1,4 +1,4 @@
-// Numbers in messages as a scene writes them: "60 um", "78 GPa".
+// Formats numbers with unit for messages, in the notation of scene files: "60 um", "78 GPa".
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,8 @@ namespace softland {
 /// Returns `value` [unit] with the prefix, femto to giga, that leaves one to three digits before the point: 6e-05, "m" -> "60
 /// um". The text has at most `digits` significant digits; below a million it always shows all digits before the point: 2500
 /// stays 2500. Twelve digits do not show rounding errors in a number that was typed. No prefix is used for 0, for values beyond
-/// the prefixes, and for a unit that has none: "kg/m^3", "1/m^2", "m^2", "Vdp", "".
+/// the prefixes, and for a unit that takes none: "kg/m^3", "1/m^2", "m^2", "" or "Vdp" (a multiple of the dynamic pull-in
+/// voltage).
 ///
 /// A slew rate from 1 kV/s to 1 GV/us is shown in V/us, as drivers' data sheets do.
 [[nodiscard]] inline std::string engineering(double value, std::string_view unit, int digits = 12) {

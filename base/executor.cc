@@ -66,12 +66,13 @@ class Workers {
 
   void permit(int count) {
     count_ = count;
-    // oneTBB applies the lowest of several limits, so the new limit acts once the old one is removed.
+    // oneTBB applies the lowest of all limits that exist, so the new limit acts once the assignment has destroyed the old one.
     limit_ =
         std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count) + 1);
   }
 
-  // Gives every worker a task that lasts until all workers have one: to give such a task, oneTBB must start the worker.
+  // Makes oneTBB start `count` worker threads at once: every worker gets a task that ends only when all workers have begun
+  // their tasks, so that one worker cannot take two of the tasks.
   void start(int count) {
     permit(count);
     {
@@ -103,8 +104,8 @@ class Workers {
   int missing_ = 0;
 };
 
-// Makes the writes of one thread visible to the next thread. oneTBB also does this, but in a way that the thread sanitizer
-// cannot see.
+// Locks and unlocks a mutex, so that what one thread wrote before this call is visible to the thread that makes the next call.
+// oneTBB also ensures this, but in a way that the thread sanitizer cannot see.
 void hand_over() {
   static std::mutex mutex;
   const std::scoped_lock lock(mutex);
@@ -152,7 +153,8 @@ class Loop {
     hand_over();
   }
 
-  // Returns the number of tasks that were begun.
+  // Returns the number of tasks that were begun; rethrows the exception of a task, the one with the lowest index if several
+  // threw.
   [[nodiscard]] std::size_t result() const {
     if (failure_) std::rethrow_exception(failure_);
     return std::min(next_.load(), count_);
@@ -181,7 +183,8 @@ std::size_t run_tasks(std::size_t count, int jobs, const std::function<void(std:
   if (threads == 1) {
     loop.work();
   } else if (nested) {
-    // The waiting thread must not begin another task of the outer loop while it runs a task of that loop.
+    // Without isolation this thread, while it waits here in a task of the outer loop, could begin another task of the outer
+    // loop.
     tbb::this_task_arena::isolate([&] { loop.work_together(); });
   } else {
     tbb::task_arena(threads).execute([&] { loop.work_together(); });

@@ -1,6 +1,7 @@
-// A field of a parameter struct, described once for keys of scenes, their checks, written scenes, messages and tests.
+// Descriptions of the numbers, flags and words in parameter structs. The keys of scene files, the checks of their values, the
+// scenes that the program writes, messages and tests all follow from one description.
 //
-// A part of a switch, such as the contact, is a variant of the parameter structs of its laws. A law is a parameter struct with
+// A part of a switch, such as the contact, is a std::variant of parameter structs, one per law. Each of these structs has
 //
 //   static constexpr std::string_view name;      its name in a scene
 //   static consteval auto fields();              an array of Field, in the order of a written scene
@@ -24,32 +25,33 @@
 
 namespace softland {
 
-/// The value of a number that a scene does not give.
+/// Value of a number that a scene file leaves out.
 inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
 
-/// A field of the parameter struct `Owner`: a number, a flag, or an enumerator that a word chooses. A field with neither `in`,
-/// `count`, `flag` nor `words` is a number that sets no member: separate code reads it.
+/// The description of one field of the parameter struct `Owner`: a number, a flag, or an enumerator that a word chooses. A
+/// field with neither `in`, `count`, `flag` nor `words` is a number that the reader of scene files does not store in a member
+/// of `Owner`; separate code uses it.
 template <class Owner>
 struct Field {
-  std::string_view key;             ///< key of the field in a scene and in messages
+  std::string_view key;             ///< key of the field in scene files and in messages
   std::string_view unit = {};       ///< SI unit of the field; empty for a plain number and for a word
   std::string_view about = {};      ///< description of the field for people, one line
-  double& (*in)(Owner&) = nullptr;  ///< number of the struct that the field sets, see reach(); null for other fields
-  int& (*count)(Owner&) = nullptr;  ///< whole number of the struct that the field sets; null for other fields
-  bool& (*flag)(Owner&) = nullptr;  ///< flag of the struct that the field sets; null for other fields
-  std::string_view or_word = {};    ///< word that a scene may give instead of a whole number
-  bool required = false;            ///< true when a scene must give this field; an absent field has the value of an Owner{}
-  Range range = positive;           ///< allowed range of the number; in a scene, the widest range of the unit bounds open ends
-  /// Value of the field in a default Owner{} as a scene writes it; empty where an absent field means "none".
+  double& (*in)(Owner&) = nullptr;  ///< member of the struct that stores the number, see reach(); null for other fields
+  int& (*count)(Owner&) = nullptr;  ///< member of the struct that stores the whole number; null for other fields
+  bool& (*flag)(Owner&) = nullptr;  ///< member of the struct that stores the flag; null for other fields
+  std::string_view or_word = {};    ///< word that a scene file may give instead of a whole number, such as "auto"
+  bool required = false;            ///< true when a scene file must give this field; otherwise Owner{} has the default
+  Range range = positive;           ///< allowed range; for scene files, limits of the unit replace infinite ends and an open 0
+  /// Default value of the field in the notation of scene files; empty when a field that is left out has no value.
   std::string_view fallback = {};
-  std::string_view instead_of = {};  ///< key of another field of the law that excludes this field
-  std::string_view unless = {};      ///< key of another field whose presence makes this field optional
+  std::string_view instead_of = {};  ///< key of another field of the law, which must not be given together with this field
+  std::string_view unless = {};      ///< key of another field; this required field may be left out when that field is given
   std::string_view not_below = {};   ///< key of another field of the law, whose value is the lower bound of this field
-  std::string_view such_as = {};    ///< example value of the field for messages, where the usual example of the unit does not fit
-  std::string_view beyond = {};     ///< advice for a value outside the range; the range then applies to scenes only
-  std::string_view why_fixed = {};  ///< reason why process variation cannot vary this field; empty where it can
-  std::string_view if_list = {};    ///< advice in the message when a scene gives a list instead of the number
-  std::vector<std::string_view> (*words)() = nullptr;    ///< words that the field accepts
+  std::string_view such_as = {};     ///< example value in messages, where the usual example of the unit does not fit
+  std::string_view beyond = {};      ///< advice for a value outside the range; with advice, only scene files check the range
+  std::string_view why_fixed = {};   ///< reason why process variation cannot vary this field; empty where it can
+  std::string_view if_list = {};     ///< advice in the message when a scene file gives a list instead of a number
+  std::vector<std::string_view> (*words)() = nullptr;    ///< returns the words that a scene file may give; null for other fields
   void (*choose)(Owner&, std::string_view) = nullptr;    ///< sets the member of the struct to the enumerator that a word names
   std::string_view refused_word = {}, why_refused = {};  ///< word that users may expect for this field, and why it is refused
 };
@@ -73,13 +75,13 @@ template <class Law, std::size_t... n>
 template <class Law>
 inline constexpr auto fields_of = Law::fields();
 
-/// Returns true when a scene can name the law; a law that declares `is_of_scenes = false` cannot be named.
+/// Returns true when scene files can choose the law by its name; false for a law that declares `is_of_scenes = false`.
 template <class Law>
 [[nodiscard]] consteval bool is_of_scenes() {
   if constexpr (requires { Law::is_of_scenes; }) return Law::is_of_scenes;
   return true;
 }
-/// Calls f(std::type_identity<Law>()) for every law of a variant that a scene can name.
+/// Calls f(std::type_identity<Law>()) for every law of a variant that scene files can choose.
 template <class Variant, class F>
 constexpr void for_each_law(F&& f) {
   const auto call = [&]<class Law>(std::type_identity<Law> law) {
@@ -96,7 +98,7 @@ template <class... Laws>
   return names[law.index()];
 }
 
-/// Returns the law of this name with its defaults; none for an unknown name.
+/// Returns the law of this name with default parameters; none for an unknown name.
 template <class Variant>
 [[nodiscard]] std::optional<Variant> law_named(std::string_view name) {
   std::optional<Variant> found;
@@ -112,7 +114,7 @@ template <class Variant>
   for_each_law<Variant>([&]<class Law>(std::type_identity<Law>) { names.push_back(Law::name); });
   return names;
 }
-/// Returns the names of the laws of a variant as words: "strip, veijola or linear".
+/// Returns the names of the laws of a variant as one text for a message: "strip, veijola or linear".
 template <class Variant>
 [[nodiscard]] std::string listed_laws() {
   const std::vector<std::string_view> names = names_of_laws<Variant>();
@@ -122,7 +124,7 @@ template <class Variant>
   return text;
 }
 
-/// Returns the field with this key if it is a number, else null.
+/// Returns the field with this key if it describes a number, else null.
 template <class Owner>
 [[nodiscard]] constexpr const Field<Owner>* find_field(std::span<const Field<Owner>> fields, std::string_view key) {
   for (const Field<Owner>& field : fields) {
@@ -131,7 +133,7 @@ template <class Owner>
   return nullptr;
 }
 
-/// Returns a pointer to the number that a law has under this key; null when the law has no such number.
+/// Returns a pointer to the number that a law stores for this key; null when the law has no field, or no number, of this key.
 template <class Law>
 [[nodiscard]] double* number_of(Law& law, std::string_view key) {
   const Field<Law>* const field = find_field<Law>(fields_of<Law>, key);
@@ -141,14 +143,14 @@ template <class... Laws>
 [[nodiscard]] double* number_of(std::variant<Laws...>& law, std::string_view key) {
   return std::visit([&](auto& own) { return number_of(own, key); }, law);
 }
-/// Returns the number that a law has under this key; `otherwise` when the law has no such number.
+/// Returns the number that a law stores for this key; `otherwise` when the law has no field, or no number, of this key.
 template <class... Laws>
 [[nodiscard]] double number_of(std::variant<Laws...> law, std::string_view key, double otherwise) {
   const double* const number = number_of(law, key);
   return number == nullptr ? otherwise : *number;
 }
 
-/// Returns the law `other` with the numbers of the law `own`, for all keys that both laws have.
+/// Returns the law `other` after the numbers of all keys that both laws have were copied from the law `own`.
 template <class... Laws>
 [[nodiscard]] std::variant<Laws...> under(std::variant<Laws...> own, std::variant<Laws...> other) {
   std::visit(
@@ -162,7 +164,7 @@ template <class... Laws>
   return other;
 }
 
-/// Returns true when the law that the variant holds has this key.
+/// Returns true when the law that the variant holds has a field with this key.
 template <class... Laws>
 [[nodiscard]] bool has_key(const std::variant<Laws...>& law, std::string_view key) {
   return std::visit(

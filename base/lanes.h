@@ -11,7 +11,7 @@ namespace softland {
 inline constexpr std::size_t lanes = 4;
 using Lane = Eigen::Array<double, lanes, 1>;
 
-/// Returns the values, padded with `idle` to a multiple of the four numbers of a lane.
+/// Returns the values, filled up with the number `idle` to a multiple of four, the size of a lane.
 [[nodiscard]] inline std::vector<double> padded_to_lanes(std::vector<double> values, double idle) {
   values.resize((values.size() + lanes - 1) / lanes * lanes, idle);
   return values;

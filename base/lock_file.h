@@ -7,10 +7,10 @@
 
 namespace softland {
 
-/// The place that a lock protects from other runs, with the words that messages use for it.
+/// The folder or file from which a lock keeps other runs away, in the words of messages.
 struct LockedPlace {
-  std::string name;      ///< name of the place, with which messages begin: "--out run1"
-  std::string kind;      ///< kind of the place, for messages: "folder"
+  std::string name;      ///< name of the folder or file, with which messages begin: "--out run1"
+  std::string kind;      ///< "folder", or the kind of file, for messages
   std::string occupied;  ///< message when another process has the lock: "another run works in this folder"
 };
 

@@ -1,4 +1,4 @@
-// Progress reports of several threads, turned into progress that never decreases.
+// Turns progress reports from several threads into a progress that never decreases.
 #pragma once
 
 #include <algorithm>
@@ -9,13 +9,13 @@
 
 namespace softland {
 
-/// Turns the reports to a Progress (base/progress.h) into progress that only grows. A smaller part, which another thread
-/// reports late, does not change the progress. A computation that begins again is shown with a count, "closing (2)".
+/// Turns the reports to a Progress (base/progress.h) into a progress that only grows. A thread may report a smaller completed
+/// part late, which then does not change the progress. A computation that begins again is shown with a count, "closing (2)".
 class MonotoneProgress {
  public:
   /// Returns the name of the computation to show, and its completed part, 0 to 1.
   [[nodiscard]] std::pair<std::string, double> updated(std::string_view what, double part) {
-    // A reported part below this share of the shown part means that the computation began again.
+    // A completed part below this share of the part shown so far means that the computation began again.
     constexpr double begins_again = 0.5;
     Round& round = rounds_[std::string(what)];
     if (part < begins_again * round.part) {

@@ -4,16 +4,16 @@
 // The generator is SplitMix64: output n of seed s is mix(s + (n + 1) gamma) with a fixed odd gamma, so that any output is
 // computed directly. A stream is the SplitMix64 sequence whose seed is an output of the sequence of the user's seed. Each
 // sequence has a period of 2^64; the sequences of different streams overlap no more than random ones.
-// Sources: G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014, section 4 (sequence
-// and splitting); D. Stafford, "Better bit mixing", 2011, variant 13 (mix).
+// Sources: G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014, section 4
+// (sequence and splitting); D. Stafford, "Better bit mixing", 2011, variant 13 (mix).
 #pragma once
 
 #include <cstdint>
 
 namespace softland {
 
-/// The purpose of a random number. Each purpose has a code, which keeps the streams of one seed apart. A code must not change:
-/// the same seed would give other results.
+/// What a random number is used for. The number of each use keeps the streams of one seed apart. It must not change: the same
+/// seed would give other results.
 enum class Stream : std::uint64_t {
   sobol_shift = 1,
   skew = 2,
@@ -22,24 +22,24 @@ enum class Stream : std::uint64_t {
   scene = 5,
   perturbation = 6,
   spread = 7,        ///< parameters of the varied devices of an ensemble (Monte Carlo sample)
-  indices = 8,       ///< devices from which Sobol' indices are estimated
+  indices = 8,       ///< sample points from which Sobol' indices (shares of the variance) are estimated
   bootstrap = 9,     ///< indices of the values that a bootstrap sample takes
-  folds = 10,        ///< partition of devices into the parts of a cross-validation
+  folds = 10,        ///< random partition of the devices for a cross-validation
   measurement = 11,  ///< errors of the simulated measurements on a device
   fresh = 12,        ///< seeds of simulated devices that a search has not used
   jitter = 13,       ///< delays of the edges of a drive's waveform (jitter)
-  classes = 14,      ///< devices that are sorted into classes, and the starts of the search for the classes
+  classes = 14,      ///< reference devices of a calibration, and start centres of its classes (groups of devices)
   plan = 15,         ///< points of an exploration of a design space
   offspring = 16,    ///< members of an evolutionary search's population that become parents, and the variation of their child
   hop = 17,          ///< distance from the best point of a search at which a local search begins
-  /// Seeds of the rounds of a search over waveform families, in which a round is a stage that compares the families.
+  /// Seeds of the searches in every round of a comparison of waveform families.
   race = 18,
-  tuning = 19,             ///< parameter values of simulated devices that represent the current estimate of the device under test
-  practice_device = 21,    ///< parameter values of a simulated device to practise tuning on
-  practice_gain = 22,      ///< gain of the sources of the practice device, and the scatter of this gain
-  practice_edges = 23,     ///< errors of the measured times at which the contact of the practice device closes and opens
-  piezo_measurement = 24,  ///< errors of the measured deflection by a piezo
-  fit = 25,                ///< starts of the minimisations of a fit to measurements
+  tuning = 19,             ///< parameters of simulated devices like the device under test, and searches for its waveform
+  practice_device = 21,    ///< parameters of a practice device, a simulated device on which tuning is tried out
+  practice_gain = 22,      ///< gain errors of the voltage sources of a practice device: constant, and per actuation
+  practice_edges = 23,     ///< errors of the measured times at which the contact of a practice device closes and opens
+  piezo_measurement = 24,  ///< errors of the measured deflection of a device by its piezo layer
+  fit = 25,                ///< start points of the minimisations in a fit to measurements
 };
 
 /// Returns output number n, counted from 0, of SplitMix64 with this seed.

@@ -76,7 +76,7 @@ std::string look_into(const std::filesystem::path& path) {
     check(count >= 0);
     if (count == 0) break;
     content.append(block, 0, static_cast<std::size_t>(count));
-    // The size is checked while reading and not in `info`: files of /proc report none, and a file may grow.
+    // Check the size while reading: the size in `info` is 0 for files of /proc, and a file may grow.
     require(content.size() <= largest_file,
             name + ": is too large, it must have at most " + std::to_string(largest_file >> 20) + " MiB");
   }

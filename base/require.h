@@ -34,8 +34,8 @@ void require(bool rule_holds, Message&& message, std::source_location where = st
   if (!rule_holds) throw InvalidInput(message(), where);
 }
 
-/// Returns the name of a field of a request between two marks. with_fields() later replaces the marks in the message of an
-/// InvalidRequest.
+/// Returns the name of an option of a computation between two control characters. with_fields() later replaces the first by
+/// the prefix that the option has for the user, such as "--".
 [[nodiscard]] inline std::string requested(std::string_view field) { return '\x02' + std::string(field) + '\x03'; }
 
 /// Returns the text with `before` in front of each field name that requested() has marked: "--" for a command line, "" for a
@@ -49,13 +49,13 @@ void require(bool rule_holds, Message&& message, std::source_location where = st
   return text;
 }
 
-/// Thrown for a request, such as OptimizeOptions, that breaks a rule. Its message marks the names of fields by requested();
-/// what() contains the names without marks.
+/// Thrown for options of a computation, such as OptimizeOptions, that break a rule. The message marks the names of the options
+/// by requested(); what() contains the names without marks.
 class InvalidRequest : public InvalidInput {
  public:
   explicit InvalidRequest(const std::string& message, std::source_location where = std::source_location::current())
       : InvalidInput(softland::with_fields(message, ""), where), message_(message) {}
-  /// Returns the message with `before` in front of each name of a field.
+  /// Returns the message with `before` in front of each name of an option.
   [[nodiscard]] std::string with_fields(std::string_view before) const { return softland::with_fields(message_, before); }
 
  private:
@@ -68,7 +68,7 @@ void require_request(bool rule_holds, Message&& message, std::source_location wh
   if (!rule_holds) throw InvalidRequest(message(), where);
 }
 
-/// Throws InvalidRequest with the message "FIELD GIVEN: RULE" unless `rule_holds`; broken() returns the text of the rule.
+/// Throws InvalidRequest with the message "`field` `given`: " and the text of the rule, from broken(), unless `rule_holds`.
 template <std::invocable Broken>
 void require_field(bool rule_holds, std::string_view field, std::string_view given, Broken&& broken,
                    std::source_location where = std::source_location::current()) {
@@ -76,7 +76,7 @@ void require_field(bool rule_holds, std::string_view field, std::string_view giv
       rule_holds, [&] { return requested(field) + ' ' + std::string(given) + ": " + std::string(broken()); }, where);
 }
 
-/// Thrown for a parameter that breaks a rule of its waveform family or distribution.
+/// Thrown for a parameter of a waveform family or of a probability distribution that breaks a rule.
 class InvalidParameter : public InvalidInput {
  public:
   InvalidParameter(std::string_view parameter, const std::string& message, std::source_location where)

@@ -2,8 +2,9 @@
 
 namespace softland {
 
-/// The distribution function of the standard normal distribution, and its inverse on 0 < p < 1. Arguments outside these ranges
-/// throw std::domain_error; a p so near to 0 or 1 that the quantile is infinite throws std::overflow_error.
+/// The distribution function of the standard normal distribution, and its inverse, the quantile, for 0 < p < 1. Both throw
+/// std::domain_error for NaN; the quantile also for p outside of [0, 1], and std::overflow_error for p so near to 0 or 1 that it
+/// is infinite.
 [[nodiscard]] double standard_normal_cdf(double z);
 [[nodiscard]] double standard_normal_quantile(double p);
 

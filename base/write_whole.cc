@@ -77,7 +77,8 @@ std::string failure(const std::filesystem::path& path, const char* what) {
   return fmt::format("{}: cannot {}: {}", path.string(), what, std::generic_category().message(errno));
 }
 
-/// Unless `done`, throws OutputLost for a full disk or an input/output error, and InvalidInput for any other error of the path.
+/// Throws, unless the file operation `what` on the path was `done`: OutputLost for a full disk or an input/output error, and
+/// InvalidInput for any other error.
 void require_place(bool done, const std::filesystem::path& path, const char* what) {
   if (done) return;
   if (errno == ENOSPC || errno == EDQUOT || errno == EIO) throw OutputLost(failure(path, what));

@@ -23,7 +23,8 @@ void write_whole(const std::filesystem::path& path, std::string_view content);
 void write_whole(const std::filesystem::path& path,
                  const std::function<void(const std::function<void(std::string_view)>&)>& content);
 
-/// Returns the final name of a file that a killed run left under a temporary name. Other names are returned unchanged.
+/// Returns, for the temporary name of a file that a killed run left behind, the final name that write_whole() would have given
+/// to the file. Returns all other names unchanged.
 [[nodiscard]] std::string name_to_be(const std::string& name);
 
 }  // namespace softland
