@@ -34,8 +34,8 @@ class ClampedSpline {
   std::vector<double> x_, y_, curvature_;  // points (x, y) of the spline s, and its second derivative s'' at the points
 };
 
-/// Returns true when the deflections y [m] at the positions x [m], measured from one end of the beam, show a hinge at this end:
-/// the deflection grows with the distance from a hinge, but with the square of the distance from a clamp. Returns false when
+/// Returns true when the deflections y [m] show a hinge at the end of the beam from which the positions x [m] are measured. The
+/// deflection grows with the distance from a hinge, but with the square of the distance from a clamp. Returns false when
 /// fewer than three of the positions lie in the first fifth of the beam.
 [[nodiscard]] bool is_hinged(const std::vector<double>& x, const std::vector<double>& y);
 /// Returns true when the deflections y show a hinge at the far end of the beam; is_hinged() tests the end at x = 0.

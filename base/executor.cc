@@ -104,8 +104,8 @@ class Workers {
   int missing_ = 0;
 };
 
-// Locks and unlocks a mutex, so that what one thread wrote before this call is visible to the thread that makes the next call.
-// oneTBB also ensures this, but in a way that the thread sanitizer cannot see.
+// Makes what a thread wrote before this call visible to the thread that makes the next call. oneTBB also ensures this, but in a
+// way that the thread sanitizer cannot see.
 void hand_over() {
   static std::mutex mutex;
   const std::scoped_lock lock(mutex);

@@ -12,7 +12,7 @@
 
 namespace softland {
 
-/// What a random number is used for. The number of each use keeps the streams of one seed apart. It must not change: the same
+/// The uses of random numbers. The number of each use keeps the streams of one seed apart. It must not change: the same
 /// seed would give other results.
 enum class Stream : std::uint64_t {
   sobol_shift = 1,

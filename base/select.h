@@ -33,7 +33,7 @@ template <class Condition, class Then, class Otherwise>
   }
 }
 
-/// Returns f(x); for a lane, f of each number one by one. For functions that have no vector instruction, such as a table
+/// Returns f(x); for a lane, f of each number one by one: this serves functions without a vector instruction, such as a table
 /// look-up.
 template <class S, class F>
 [[nodiscard, gnu::always_inline]] constexpr S one_by_one(const S& x, F&& f) {

@@ -109,8 +109,8 @@ double cost(const Aim& aim, const Metrics& m, const CostScale& scale, const Metr
   shares.lead = 0.2 * h + 0.15 * v * v + 0.45 * k + 0.1 * s * s + 0.05 * p + 0.02 * late;
   const double excess = scale.judges_hardness && !aim.has_own_objective() ? excess_over_step(m, scale.step) : 0;
   shares.lead += excess;
-  // Cost of a contact that opens again at the end: above all closings that stay closed and below those that never reach
-  // contact.
+  // A contact that is open again at the end of the run costs more than every contact that stays closed, and less than a run
+  // without contact.
   const double reopening = m.reopened ? 5 : 0;
   if (!aim.has_own_cost() && aim.from_the_start() == nullptr) return reopening + shares.lead;
   const double own = aim.mean(m, scale.step, [&](const TargetRow& row) { return row.in(row.nominal, shares); });

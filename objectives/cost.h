@@ -5,14 +5,15 @@
 // rebound: no search minimises them directly. Every search first minimises the smooth cost of `bounce`, which leads to closings
 // without a significant rebound. There the other figures are smooth, and a search for another figure continues with that
 // figure.
-// Every cost is computed over a fixed time after first contact, so that a late first contact hides no bounce.
+// Every cost is computed over a fixed time after first contact, the score window, so that a late first contact hides no bounce.
 //
 //   H  highest rebound, over that of the step           V  largest impact velocity, over that of the step
 //   K  energy above the closed equilibrium once the switch has touched and the drives are at their hold levels, over that of
 //      the step: a squared velocity that also contains the vibration of the beam behind the contact point
 //   S  time in separation after first touch, over the score window
-//   P  h / (h + 10 h_s), h the highest rebound, h_s the significant height: it resolves rebounds of nanometres, as H does not
-//   T  first touch, over that of the step               L  T + 10 max(0, T - T_free): lateness
+//   P  h / (h + 10 h_s), h the highest rebound, h_s the least height of a significant rebound: it resolves rebounds of
+//      nanometres, as H does not
+//   T  first touch, over that of the step               L  T + 10 max(0, T - T_free): lateness, T_free = free_touch
 //
 //   bounce, rebound, count     B = 0.2 H + 0.15 V^2 + 0.45 K + 0.1 S^2 + 0.05 P + 0.02 L
 //   settling, impact, energy,  f / (1 + f) with f = F + B / 1000 where h <= h_s / 2, and 1 + (B + F) / 2 for a closing with a
@@ -20,12 +21,12 @@
 //                              settling: end of the last significant rebound, first touch if none, over first touch of the
 //                              step; impact: V; energy: root of impact energy over that of the step (for a soft touch the
 //                              ratio itself can be some 1e-4, less than B / 1000); force: largest contact force;
-//                              drive: energy that the drives give within the score; steady: time from which the contact
-//                              force is steady over first touch of the step, the end of the score where it is not steady
+//                              drive: energy that the drives give until the end of the score window; steady: time from which
+//                              the contact force is steady (end of the window if it is not) over first touch of the step
 //
-// A closing without a rebound can still hit harder than the plain step. So B and F grow by E: the largest relative excess of
-// impact velocity, peak contact force and impact energy over those of the step. E is left out when the plain step breaks a
-// condition of the search, and for an own objective.
+// A closing without a rebound can still hit harder than the plain step. So E is added to B, and to F in f: the largest relative
+// excess of impact velocity, peak contact force and impact energy over those of the step. E is 0 when the plain step breaks a
+// condition that the user sets on a figure, and for an own objective.
 //
 // A weighted sum of targets has the weighted mean of their F; the F of bounce, rebound and count is B. The F of a user's own
 // objective is its value (own_objective.h); the cost is F / (1 + F) for an own objective whose lands_first() is false.
@@ -55,14 +56,14 @@
 
 namespace softland {
 
-/// The figures of a closing and those of the plain step of the voltage, from which the cost of a target is computed.
+/// The figures of a closing, and those of the plain voltage step that divide them in the cost of a target.
 struct Shares {
   const Metrics &own, &step;
-  double lead = 0;    ///< cost of the target `bounce` for this closing
+  double lead = 0;    ///< cost of the target `bounce`, B + E above, for this closing
   double window = 0;  ///< time after the first touch over which the closing was simulated [s]
 
-  /// Returns `value` over `of_step`, a figure of the plain voltage step; stays finite when `of_step` is 0; NaN when `value` is
-  /// NaN.
+  /// Returns `value` over `of_step`, a figure of the plain voltage step. If `of_step` is 0, returns 1 for a positive value and
+  /// 0 for 0. Returns NaN when `value` is NaN.
   [[nodiscard]] static double ratio(double value, double of_step) {
     if (std::isnan(value)) return value;
     return of_step > 0 ? value / of_step : value > 0 ? 1 : 0;
@@ -70,8 +71,8 @@ struct Shares {
   /// Returns a figure of the closing over the same figure, or the figure `unit`, of the plain voltage step.
   [[nodiscard]] double of(double Metrics::*figure) const { return ratio(own.*figure, step.*figure); }
   [[nodiscard]] double of(double Metrics::*figure, double Metrics::*unit) const { return ratio(own.*figure, step.*unit); }
-  /// Returns a time of the closing over the first contact time of the plain voltage step. NaN counts as a time after the end of
-  /// the run.
+  /// Returns a time of the closing over the first contact time of the plain voltage step. NaN, a time that is never reached,
+  /// counts as twice the end of the run.
   [[nodiscard]] double of_time(double time) const {
     const double known = std::isfinite(time) ? time : 2 * (own.initial_contact_time + window);
     return ratio(known, step.initial_contact_time);
@@ -119,7 +120,7 @@ inline constexpr auto targets = std::to_array<TargetRow>({
     {.value = Target::settling,
      .name = "settling",
      .figure = &Metrics::permanent_contact_time,
-     .unit = &Metrics::initial_contact_time,  // the plain voltage step may never settle, so its first contact time divides
+     .unit = &Metrics::initial_contact_time,  // the plain step may never settle: divide by its first contact time
      .nominal = [](const Shares& s) { return s.of(&Metrics::last_rebound_end, &Metrics::initial_contact_time); },
      .robust = [](const Shares& s) { return s.of_time(s.own.permanent_contact_time); }},
     {.value = Target::rebound,
@@ -151,7 +152,7 @@ inline constexpr auto targets = std::to_array<TargetRow>({
     {.value = Target::electrical,
      .name = "electrical",
      .figure = &Metrics::electrical_settling,
-     // The plain voltage step may never close electrically, so its first contact time divides.
+     // The plain step may never close electrically: divide by its first contact time.
      .unit = &Metrics::initial_contact_time,
      .nominal = [](const Shares& s) { return internal::time_or_end(s, &Metrics::electrical_settling); },
      .robust = [](const Shares& s) { return s.of_time(s.own.electrical_settling); },
@@ -200,9 +201,9 @@ class Aim {
   [[nodiscard]] Aim in_units_of(const Metrics& step) const;
   /// Returns the aim as text, for example "bounce" or "0.7 bounce + 0.3 energy".
   [[nodiscard]] std::string text() const;
-  /// Returns the weighted mean of value(row) over the targets of the aim, each with its TargetRow. A user's own objective
-  /// contributes its value for this closing, given the plain step. Throws InvalidInput when an own objective's value is below
-  /// 0.
+  /// Returns the weighted mean over the parts of the aim. A target contributes value(row), row being its TargetRow; a user's
+  /// own objective contributes its value for this closing, given the plain step. Throws InvalidInput when the own objective's
+  /// value is below 0.
   template <class Value>
   [[nodiscard]] double mean(const Metrics& closing, const Metrics& step, const Value& value) const {
     const auto of = [&](const Part& part) {
@@ -214,8 +215,8 @@ class Aim {
     return sum / weights;
   }
 
-  /// Returns mean(), the weighted mean over the targets, for each of many closings; calls a user's own objective once for all
-  /// closings. `value` also receives the closing.
+  /// Returns mean(), the weighted mean over the parts of the aim, for each of many closings; calls a user's own objective once
+  /// for all closings. A target contributes value(row, closing).
   template <class Value>
   [[nodiscard]] std::vector<double> means(std::span<const Metrics> closings, const Metrics& step, const Value& value) const {
     std::vector<double> sums(closings.size(), 0), of_part(closings.size());
@@ -249,13 +250,13 @@ inline constexpr auto hard_figures =
 /// exceeds that of the step.
 [[nodiscard]] double excess_over_step(const Metrics& closing, const Metrics& step);
 
-/// Reference values by which the figures of a closing are scaled in the cost. The figures are those of a run that ends a fixed
-/// time after first contact.
+/// Reference values by which the cost divides the figures of a closing. The closings and the plain step are simulated until a
+/// fixed time after first contact, score_window.
 struct CostScale {
   Metrics step;                 ///< figures of the closing by the plain voltage step
   double score_window = 0;      ///< time after first contact over which the cost is computed [s]
   double contact_gap = 0;       ///< distance from the rest position to the contact plane [m]
-  double free_touch = 0;        ///< largest first contact time that costs little, over that of the plain voltage step
+  double free_touch = 0;        ///< first contact time up to which lateness costs little, over that of the plain voltage step
   bool judges_hardness = true;  ///< false: a closing that hits harder than the plain voltage step has no penalty
 };
 /// Returns the cost of a closing; infinite for a run that could not be simulated to its end.

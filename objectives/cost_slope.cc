@@ -29,7 +29,8 @@ void add(FigureSlope& to, const FigureSlope& from, double factor = 1) {
   to.by_device += factor * from.by_device;
 }
 
-// Finds touches and rebounds in the linearized motion of the contact point, by the rules of MetricsObserver.
+// Finds touches and rebounds in the linearized motion of the contact point, as MetricsObserver does in the simulated motion,
+// and collects the derivatives of the figures that they determine.
 class SlopeFinder {
  public:
   SlopeFinder(const Switch& model, std::span<const Signal> signals, const LinearizedClosing& motion,
@@ -69,7 +70,8 @@ class SlopeFinder {
   using Arc = LinearizedClosing::Arc;
 
   [[nodiscard]] const Arc& arc(std::size_t i) const { return motion_.arcs()[i]; }
-  // Collects of(slopes, j) for every parameter j that changes the switch; empty when no parameter changes the switch.
+  // Returns of(slopes, j), the derivative of a figure by device parameter j, for every j that changes the switch; empty without
+  // one.
   template <class Of>
   [[nodiscard]] VectorXd by_device(Of&& of) const {
     if (motion_.by_device() == nullptr) return {};
@@ -77,16 +79,16 @@ class SlopeFinder {
     for (Eigen::Index j = 0; j < all.size(); ++j) all[j] = of(*motion_.by_device(), static_cast<std::size_t>(j));
     return all;
   }
-  // Returns the derivative of the contact point's position over the contact plane [m], at the fixed time at which arc i of the
-  // motion ends.
+  // Returns `factor` times the derivative of the contact point's interference (position beyond the contact plane) [m], at the
+  // fixed time at which arc i of the motion ends.
   [[nodiscard]] FigureSlope position(std::size_t i, double factor) const {
     return {.weights = {{.arc = i, .by_q = factor * shape_, .by_v = zero_}},
             .moved = {},
             .by_device =
                 by_device([&](const SwitchSlopes& s, std::size_t j) { return factor * s.interference(j, arc(i).q.data()); })};
   }
-  // Returns the derivative of the contact point's speed [m/s] when it crosses the contact plane at the end of arc i of the
-  // motion.
+  // Returns the derivative of the speed [m/s] at which the contact point crosses the contact plane at the end of arc i of the
+  // motion, including the effect of the shifted crossing time.
   [[nodiscard]] FigureSlope crossing_speed(std::size_t i) const {
     FigureSlope slope = position(i, -shape_.dot(arc(i).accelerations) / shape_.dot(arc(i).v));
     slope.weights[0].by_v = shape_;
@@ -97,7 +99,8 @@ class SlopeFinder {
   // the motion.
   [[nodiscard]] FigureSlope crossing_time(std::size_t i) const { return position(i, -1 / shape_.dot(arc(i).v)); }
 
-  // Updates the smallest gap, depth and height of the motion with the position of the contact point at the end of arc i.
+  // Compares the contact point's position at the end of arc i with the extreme so far: the smallest distance before the first
+  // touch, the depth of the current touch, or the height of the current rebound.
   void consider(std::size_t i) {
     const double at = shape_.dot(arc(i).q);
     if (touches_ == 0) {
@@ -133,7 +136,8 @@ class SlopeFinder {
     force_slope_ = slope_of([&](const ContactLaw& of, double d) { return contact_force(of, d, law, 0); });
   }
 
-  // Returns true when contact begins at the end of arc (recorded step) i of the motion.
+  // Updates the derivatives when the contact point crosses the contact plane at the end of arc i, where the contact law
+  // changes. Returns true when contact begins there.
   bool cross(std::size_t i, const PhaseChange& change) {
     using Kind = PhaseChange::Kind;
     if (change.kind == Kind::turn || change.level != plane_) return false;
@@ -201,8 +205,8 @@ class SlopeFinder {
     return true;
   }
 
-  // Computes the energy above the closed equilibrium, at first contact or when the drives reach their hold levels, whichever is
-  // later.
+  // Computes the derivative of landing_excess, the energy above the closed equilibrium, at first contact or when the drives
+  // reach their hold levels, whichever is later.
   void measure_landing(std::size_t i, bool begins_to_touch) {
     if (measured_ || touches_ == 0) return;
     const Arc& at = arc(i);
@@ -280,7 +284,7 @@ std::optional<FigureSlope> cost_slope(const Aim& aim, const Metrics& figures, co
   for (const CostTerm& part : parts) {
     const double value = figures.*part.figure;
     if (!std::isfinite(value)) continue;
-    // The cost is a closed formula of the closing's figures, so that finite differences are accurate to about 1e-10.
+    // The cost is a closed formula of the figures, so that its central differences are accurate to about 1e-10.
     const double size = std::abs(value) > 0 ? std::abs(value) : part.scale;
     if (!(size > 0) || !std::isfinite(size)) continue;
     const double h = 1e-6 * size;

@@ -1,5 +1,5 @@
-// The derivative of a closing's cost: each figure of merit in the cost contributes its derivative by the motion, with its
-// weight in the cost.
+// The derivative of a closing's cost: the sum of the derivatives of the figures of merit in the cost, each weighted with the
+// derivative of the cost by this figure.
 #pragma once
 
 #include <optional>
@@ -14,9 +14,9 @@ namespace softland {
 /// A crossing of the contact plane is called grazing when its speed is below this share of the speed of the first touch.
 inline constexpr double grazing_share = 0.1;
 
-/// Derivatives of the figures that enter the cost of a closing. The time at which the contact point crosses the contact plane
-/// depends on the motion; a height or a depth belongs to a turning point, whose time does not matter. Of several heights or
-/// depths in a closing, only the largest counts.
+/// Derivatives of the figures that enter the cost of a closing. A figure taken where the contact point crosses the contact
+/// plane also changes because the time of the crossing shifts; a height or depth at a turning point does not. Of several
+/// heights or depths in a closing, only the largest counts.
 struct CostSlopes {
   PerFigure<FigureSlope> of;             ///< derivatives of the figures of merit named in Figure::slope
   PerFigure<std::string_view> why_none;  ///< reason why a figure has no derivative for this closing; empty when it has one
@@ -27,7 +27,7 @@ struct CostSlopes {
   /// ratio is small, a touch is about to begin or to vanish, and derivatives hold in a small neighbourhood only.
   double grazing = 1;
 };
-/// Returns the derivatives of the figures of a closing by its motion. The drive energy has no derivative here.
+/// Returns the derivatives of the figures of a closing, as weights of the derivative of its motion. The drive energy has none.
 [[nodiscard]] CostSlopes cost_slopes(const Switch& model, std::span<const Signal> signals, const LinearizedClosing& motion,
                                      const MetricsOptions& options);
 

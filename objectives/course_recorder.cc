@@ -79,7 +79,8 @@ void CourseRecorder::hand_over(Trajectory& run) {
   run.touches = std::move(touches_);
 }
 
-// Joins pairs of full buckets of motion points. The points after the last pair form the new incomplete bucket.
+// Merges pairs of full buckets of motion points, so that a bucket represents twice as many points. The points after the last
+// pair form the new incomplete bucket.
 void CourseRecorder::coarsen() {
   const std::vector<TrajectoryPoint> all = std::exchange(points_, {});
   const std::vector<std::size_t> ends = std::exchange(ends_, {});

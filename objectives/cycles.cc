@@ -35,7 +35,7 @@ void CycleRecorder::touch(const Touch& touch) {
   if (cycle < cycles_.size()) cycles_[cycle].metrics.touch(touch);
 }
 
-// A time span in which the contact is closed may extend over several cycles.
+// Adds a time span in which the connection is closed to every cycle over which the span extends.
 void CycleRecorder::state(std::optional<std::size_t> contact, bool is_closed, double time) {
   if (contact) return;
   for (std::size_t n = 0; closed_from_ && n < cycles_.size(); ++n) cycles_[n].on_time += closed_in(n, time);

@@ -24,7 +24,8 @@ struct CycleTimes {
 /// The figures of one cycle of closing and opening.
 struct CycleFigures {
   /// Figures of the closing until the command to open, and of the opening after it. Times count from the start of the cycle,
-  /// the drive energy is the energy from the sources in this cycle, and the first contact is that of the whole connection.
+  /// the drive energy is the energy from the sources in this cycle, and first contact is that of the connection, not of one of
+  /// its contacts.
   Metrics metrics;
   bool closes = false;  ///< true when the cycle begins open, and the contact closes before the command to open
   bool opens = false;   ///< true when the contact is open at the end of the cycle
@@ -48,8 +49,8 @@ class CycleRecorder final : public ClosingObserver {
 
   /// Returns the number of cycles of closing and opening that have ended.
   [[nodiscard]] std::size_t ended() const { return current_; }
-  /// Returns the figures of a cycle of closing and opening that has begun. `run` has the hold force and the in-contact period,
-  /// or NaN if unknown.
+  /// Returns the figures of a cycle of closing and opening that has begun. They use the hold force and the in-contact period of
+  /// `run`, which are NaN if unknown.
   [[nodiscard]] CycleFigures figures(std::size_t cycle, const Trajectory& run);
 
  private:
@@ -57,7 +58,7 @@ class CycleRecorder final : public ClosingObserver {
     MetricsObserver metrics;
     double source_work = Metrics::unset;  // energy that the drives give in the cycle [J]
     bool began_open = false;
-    // Largest distance from the open position at the end of the cycle [m]; time electrically closed [s].
+    // Largest distance of the contact point from its open position at the end of the cycle [m]; time electrically closed [s].
     double swing = 0, on_time = 0;
   };
 

@@ -23,12 +23,13 @@ enum class Better { lower, neither };
 /// different accuracy estimates the error of the figure.
 enum class Conditioning {
   first_touch,  ///< the motion until first contact: the difference between two runs estimates the figure's error
-  /// One rebound: the difference of two runs estimates the figure's error, unless they differ qualitatively before.
+  /// One rebound: the difference between two runs estimates the figure's error, unless a rebound before it differs between the
+  /// runs.
   high_rebound,
   every_touch,   ///< all touches: the difference of two runs estimates the figure's error when both have the same touches
   last_rebound,  ///< the end of a sequence of rebounds, which is chaotic: only an ensemble of runs gives the figure's range
   open,          ///< the motion of a switch that stays open: the difference between two runs estimates the figure's error
-  rest,          ///< the equilibrium under the hold levels; the only error of the figure is that of the quadrature
+  rest,          ///< the equilibrium under the hold levels; the figure's only error is that of the quadrature along the beam
   drives         ///< the drives alone, not the motion: the figure of merit has no error
 };
 
@@ -49,7 +50,7 @@ struct Figure {
   double Metrics::*slope = nullptr;
   bool of_results = true, of_devices = false;  ///< true when results show the figure for one closing, or for varied devices
   bool AskedFigures::*asked = nullptr;         ///< request without which results omit the figure; null: always shown
-  double worst = std::numeric_limits<double>::infinity();  ///< value of the figure for a device that does not close
+  double worst = std::numeric_limits<double>::infinity();  ///< value in statistics for a device that does not close
 
   [[nodiscard]] constexpr bool is_count() const { return std::holds_alternative<int Metrics::*>(member); }
   [[nodiscard]] constexpr bool is_yes_or_no() const { return std::holds_alternative<bool Metrics::*>(member); }
@@ -71,8 +72,8 @@ struct Figure {
   }
   /// Returns the value of the figure for a closing, 1 for yes and 0 for no; NaN when the figure is not known.
   [[nodiscard]] double value(const Metrics& metrics) const;
-  /// Returns the value of the figure with which closings are compared. A rebound height below the significant height counts as
-  /// that height, and a least force below the steady force as the steady force.
+  /// Returns the value with which closings are compared: a rebound height of at least the least significant height, and a least
+  /// contact force of at least the steady force, since values below these limits do not matter.
   [[nodiscard]] double counted(const Metrics& metrics, const MetricsOptions& options) const;
 };
 

@@ -29,7 +29,7 @@ void LandingFigures::rebound(const Rebound& rebound) {
   latest_ = rebound;
   if (std::isfinite(rebound.end)) separated_ += rebound.end - rebound.begin;
   if (!(rebound.height > options_.significant_rebound)) return;
-  // The duration is NaN for a first rebound that has not ended.
+  // The duration is NaN for a rebound that has not ended, because its end is NaN.
   if (++significant_ == 1) first_duration_ = rebound.end - rebound.begin;
   last_end_ = rebound.end;
 }
@@ -141,7 +141,7 @@ Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) con
   const double permanent = significant_ > 0 ? last_end_ : course.first_touch.time;
   result.last_rebound_end = std::isnan(permanent) ? course.last_time : permanent;
   const double rest = course.last_time - permanent;
-  // An unknown in-contact period is needed only after a rebound.
+  // Without a significant rebound the contact may count as settled although the in-contact period is not known.
   const bool long_enough = rest >= end.in_contact_period || (result.bounce_count == 0 && std::isnan(end.in_contact_period));
   result.settled = end.status == Status::done && end.is_held && !course.above && long_enough;
   if (!result.settled) {

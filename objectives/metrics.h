@@ -186,21 +186,22 @@ class MetricsObserver final : public ClosingObserver {
 /// points.
 [[nodiscard]] std::vector<Rebound> rebounds(const Trajectory& trajectory);
 
-/// Computes the figures of merit of a trajectory. Never throws: the status reports failures. It is the trajectory's own status
-/// if that is not `done`; else done, no_contact, not_settled, or numerical_failure when a point of the motion is not finite or
-/// goes back in time. The known figures depend on the run:
+/// Computes the figures of merit of a trajectory. Never throws: Metrics::status reports failures. This is the trajectory's own
+/// status if that is not `done`; else done, no_contact, not_settled, or numerical_failure when a point of the motion is not
+/// finite or goes back in time. The known figures depend on the run:
 ///
 /// - A run that did not reach the end of its window: initial_contact_time and impact_velocity if the switch reached contact,
 /// and no other figure.
 /// - Several contacts: initial_contact_time and impact_velocity are those of the first touch of any contact. Rebounds count
-/// from the time at which all contacts of the connection, or any of them, are closed. A connection that never closes is
-/// not_settled.
+/// from the time at which the connection closes (Device::connection: all of its contacts, or any of them). A connection that
+/// never closes is not_settled.
 /// - No contact: drive_energy and capacitance alone. This also holds for a run that began closed: such a run has no closing and
 /// is not_settled until set_open_figures() finds the switch open and at rest.
 /// - A run that ends at first contact, because the scene has no contact law: initial_contact_time, impact_velocity,
 /// drive_energy.
-/// - Not settled: less than one in_contact_period after permanent contact (first contact when there is no significant rebound),
-/// or a significant rebound and a period that is NaN.
+/// - A run that ends less than one in_contact_period after the last significant rebound (after first contact without such a
+/// rebound): not_settled, without permanent_contact_time and bounce_time. A run with a significant rebound also is not_settled
+/// when in_contact_period is NaN.
 [[nodiscard]] Metrics metrics(const Trajectory& trajectory, const MetricsOptions& options = {});
 
 }  // namespace softland

@@ -24,7 +24,7 @@ struct BandFigures {
   double settled_from = std::numeric_limits<double>::quiet_NaN();
   /// Largest excursion from the open position, away from and towards the contact [m]; 0 without one.
   double below = 0, above = 0;
-  /// Largest distance from the open position after the drives have ended [m].
+  /// Largest distance from the open position after OpeningBand::drives_end [m].
   double residual = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -66,7 +66,8 @@ struct OpeningOnCommand {
   double settling_time = std::numeric_limits<double>::quiet_NaN();
   /// Largest excursion of the contact point beyond its open position, away from the contact [m].
   double overshoot = std::numeric_limits<double>::quiet_NaN();
-  /// Smallest distance to the contact once the contact point has turned back towards it, or the last distance [m].
+  /// Smallest distance to the contact once the contact point has turned back towards it [m]; the distance at the end of the run
+  /// if it never turns back.
   double least_gap = std::numeric_limits<double>::quiet_NaN();
   /// Highest separation after the command to open that ends in a touch [m]; 0 without a bounce.
   double highest_bounce = std::numeric_limits<double>::quiet_NaN();
@@ -97,7 +98,7 @@ class CommandedOpening {
   OpeningCommand command_;
   double contact_gap_, significant_;  // distance from rest to the contact plane, and least height of a bounce that counts [m]
   BandFollower band_;
-  double nearest_ = std::numeric_limits<double>::quiet_NaN();  // position nearest to the contact after the turn back [m]
+  double nearest_ = std::numeric_limits<double>::quiet_NaN();  // nearest position to the contact after the turn towards it [m]
   double highest_ = 0, separated_ = 0;                         // height of the highest bounce, total time in separation [s]
   int bounces_ = 0;
 };

@@ -37,7 +37,7 @@ class OwnObjective {
   /// static_deflection, overshoot and open_settling_time always; landing_excess outside a search on the nominal device;
   /// hold_force, capacitance, peak_voltage and peak_slew in a search under process variation. `step` holds the figures of the
   /// plain step to the same hold levels, on the nominal device. If the plain step does not reach contact, `step` holds
-  /// estimates for a closing of this switch, and NaN.
+  /// estimates from the contact gap, the first mode and the stiffness of this switch, and NaN for all other figures.
   [[nodiscard]] virtual double value(const Metrics& closing, const Metrics& step) const = 0;
   /// Writes the values F of the closings of many devices into `values`, one per closing. A search under process variation calls
   /// values() once per candidate. This default calls value() for each closing.

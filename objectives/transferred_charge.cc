@@ -14,7 +14,7 @@ void TransferredCharge::follow(const TrajectoryPoint& from, const TrajectoryPoin
   const double middle = 0.5 * (from.position + to.position) + (from.velocity - to.velocity) * span / 8;
   if (middle < contact_gap_) return;
   // Find the part of the interval in which the contact force is below the steady force.
-  double first = 0, last = 1;  // begin and end of the low contact force, as shares of the interval
+  double first = 0, last = 1;  // begin and end of this part, as shares of the interval
   const double rise = to.contact_force - from.contact_force;
   if (rise != 0) {
     const double crossing = (options_.light_below - from.contact_force) / rise;
