@@ -21,10 +21,10 @@ namespace {
 
 constexpr int functions = element_functions;
 constexpr int shortest_count = 6;     // least number of elements over the length of a beam
-constexpr double least_pivot = 2e-3;  // smallest pivot of the elimination, whose inverse magnifies rounding errors
+constexpr double least_pivot = 2e-3;  // least pivot in the elimination of the receptance: small pivots magnify rounding
 
-// Returns combinations of the shape functions that the supports of the beam permit, orthonormal in the elastic energy of the
-// beam.
+// Returns combinations of the shape functions that the supports of the beam permit, orthonormal in the elastic energy. `end`
+// has values and slopes of the shape functions at the far end; `slopes` has the integrals of products of their slopes.
 Eigen::MatrixXd permitted(const NormalisedModes::Beam& beam, const Eigen::MatrixXd& end, const Eigen::MatrixXd& slopes) {
   Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(slopes.rows(), slopes.rows());
   if (beam.far_clamp) basis = orthogonal_complement(end);
@@ -38,8 +38,8 @@ Eigen::MatrixXd permitted(const NormalisedModes::Beam& beam, const Eigen::Matrix
   return basis;
 }
 
-// Returns the bending energy that a linear rigidity adds between the functions m and m + 1 of an element with taper 1: the
-// integral of xi and two neighbours of the normalised Legendre polynomials.
+// Returns the bending energy that a rigidity 1 + xi, xi in [-1, 1], adds between the shape functions m and m + 1 of an element:
+// the integral of xi times two neighbours of the normalised Legendre polynomials.
 double taper_coupling(int m) { return (m + 1) / std::sqrt((2 * m + 1.0) * (2 * m + 3.0)); }
 
 // The phase of a mode over the beam, as if the mode were a travelling bending wave, and the growth of the phase with omega^2.
@@ -49,7 +49,7 @@ struct WavePhase {
   WavePhase(const NormalisedModes::Beam& beam, double square) {
     for (const NormalisedModes::Beam::Section& s : beam.sections) {
       const double n = beam.axial_force / (2 * s.rigidity), root = std::sqrt(n * n + s.mass * square / s.rigidity);
-      const double number = std::sqrt(root - n);  // wave number k: EI k^4 + N k^2 = mu omega^2
+      const double number = std::sqrt(root - n);  // wave number k: EI k^4 + N k^2 = mu omega^2; n is N / (2 EI)
       value += (s.end - s.begin) * number;
       slope += (s.end - s.begin) * s.mass / (4 * s.rigidity * root * number);
     }
@@ -67,11 +67,12 @@ double carried_over(double square, const NormalisedModes::Beam& from, const Norm
   return square;
 }
 
-// Finds four poles of the receptance (squared frequencies of four modes) at once by Newton's method, with the motions there;
-// none without convergence, or where rounding may be large.
+// Finds four poles of the receptance at `place` (squared frequencies of four modes) at once by Newton's method, from the
+// estimates in `squares`; a relative change of `rounding` counts as converged. Returns none without convergence, and when
+// rounding errors may be large: at a small pivot, or when a mode hardly moves at `place`.
 std::optional<Receptance::Answer> nearest_poles(Receptance& receptance, double place, const Lane& rounding, Lane& squares) {
   constexpr int most_steps = 10;
-  constexpr double least_motion = 1e-3;  // least motion of the place in a normalised mode, whose mean square over the beam is 1
+  constexpr double least_motion = 1e-3;  // least deflection at `place` of a mode whose mean square over the beam is 1
   for (int i = 0; i < most_steps; ++i) {
     const Receptance::Answer at = receptance.at(squares, place);
     const Lane step = at.deflection / at.inertia;
@@ -84,9 +85,9 @@ std::optional<Receptance::Answer> nearest_poles(Receptance& receptance, double p
   return {};
 }
 
-// Finds 1 / omega^2 of the first mode of a beam on springs or with linear sections that is also held at a place. `deflections`
-// are the deflections r of all motions of unit elastic energy at this place. The receptance, the sum of r^2 / (1 - lambda /
-// lambda_i), grows from the first frequency to the second.
+// Finds 1 / omega^2 of the first mode of a beam on springs or with linear sections that is also held at one position. The
+// receptance at this position, the sum of r_i^2 / (1 - omega^2 / omega_i^2), grows from the first frequency of the beam to the
+// second and is 0 at the result. The r_i in `deflections` are deflections of all modes there, each with unit elastic energy.
 double general_pinned_inverse_square(const Eigen::RowVectorXd& deflections, const Eigen::VectorXd& inverse_squares) {
   constexpr int bits = 60;
   const Eigen::Index last = inverse_squares.size() - 1;
@@ -99,8 +100,8 @@ double general_pinned_inverse_square(const Eigen::RowVectorXd& deflections, cons
   return 1 / high;
 }
 
-// Returns true when both beams have the same modes. The modes of a beam on springs or with linear sections come from a full
-// search, so two such beams may differ by rounding, as when all sections become thicker by one factor.
+// Returns true when the modes of the beam `known` serve for `beam`. Beams on springs or with linear sections may differ by
+// rounding, as when all sections become thicker by one factor, since their modes always take a full search.
 bool is_known(const NormalisedModes::Beam& beam, const NormalisedModes::Beam& known) {
   if (beam == known) return true;
   if (!beam.is_general() || !known.is_general() || beam.modes != known.modes || beam.far_clamp != known.far_clamp ||
@@ -156,7 +157,8 @@ std::string why_no_beam(const Device& d) {
 }
 
 NormalisedModes::NormalisedModes(Beam beam, const NormalisedModes* near) : beam_(std::move(beam)) {
-  // A strong tension bends the beam only close to its clamps, over lengths of L / sqrt(N L^2 / EI).
+  // A strong tension bends the beam only close to its clamps, over lengths of L / sqrt(N L^2 / EI). Take an element for every
+  // five of these lengths, up to 40 elements.
   const double layers = std::sqrt(std::max(0.0, beam_.axial_force)) / 5;
   const int count = std::max({shortest_count, beam_.modes, static_cast<int>(std::min(layers, 40.0))});
   // Smallest mass over rigidity of a section; the fourth power of a section's wave number is proportional to this ratio.
@@ -168,7 +170,7 @@ NormalisedModes::NormalisedModes(Beam beam, const NormalisedModes* near) : beam_
     if (s.taper != 0) shorter *= 1.5;  // more elements: a curvature over a linear rigidity is not a polynomial
     const int parts = std::max(1, static_cast<int>(std::ceil((s.end - s.begin) * shorter * count - 1e-9)));
     for (int k = 0; k < parts; ++k) {
-      // Rigidity of the element over that in the middle of the section.
+      // Rigidity in the middle of the element over that in the middle of the section.
       const double larger = 1 + s.taper * ((2 * k + 1.0) / parts - 1);
       elements_.push_back({.begin = s.begin + (s.end - s.begin) * k / parts,
                            .end = k + 1 == parts ? s.end : s.begin + (s.end - s.begin) * (k + 1) / parts,
@@ -200,7 +202,7 @@ void NormalisedModes::search() {
     mass += gram(element.mass, element.taper, 0);
     slopes += gram(1, 0, 1);
   }
-  Eigen::MatrixXd end(total, 2);  // values and slopes of the shape functions at the far end
+  Eigen::MatrixXd end(total, 2);  // values and slopes of the shape functions at the far end of the beam
   end << shape(1, 0).transpose(), shape(1, 1).transpose();
   const bool is_general = beam_.is_general();
   const Eigen::MatrixXd basis = is_general ? permitted_motions(end, slopes) : permitted(beam_, end, slopes);
@@ -231,8 +233,8 @@ bool NormalisedModes::Beam::is_general() const {
          std::any_of(sections.begin(), sections.end(), [](const Section& s) { return s.taper != 0; });
 }
 
-// A stiff spring at the far end must not cost digits: motions that deflect the spring are separated from motions that leave the
-// end at rest, beginning with the stiffer spring.
+// A stiff spring at the far end would dominate the energy matrix and cost accuracy by rounding. So the motions that deflect the
+// spring are separated from those that leave the end at rest, beginning with the stiffer spring.
 Eigen::MatrixXd NormalisedModes::permitted_motions(const Eigen::MatrixXd& end, const Eigen::MatrixXd& slopes) const {
   const Eigen::Index total = slopes.rows();
   Eigen::MatrixXd energy = beam_.axial_force * slopes;
@@ -250,7 +252,7 @@ Eigen::MatrixXd NormalisedModes::permitted_motions(const Eigen::MatrixXd& end, c
 
   const double translation = beam_.far_clamp ? Anchor::rigid : beam_.far_translation,
                rotation = beam_.far_clamp ? Anchor::rigid : beam_.far_rotation;
-  std::vector<std::pair<double, Eigen::Index>> springs;  // springs at the far end, each with its column of `end`
+  std::vector<std::pair<double, Eigen::Index>> springs;  // springs at the far end: stiffness, and column of `end`
   std::vector<Eigen::Index> held;
   for (const auto& [stiffness, column] : {std::pair{translation, 0}, std::pair{rotation, 1}}) {
     if (std::isinf(stiffness)) held.push_back(column);
@@ -260,8 +262,8 @@ Eigen::MatrixXd NormalisedModes::permitted_motions(const Eigen::MatrixXd& end, c
   Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(total, total);
   if (!held.empty()) basis = orthogonal_complement(end(Eigen::all, held));
   const auto count = static_cast<Eigen::Index>(springs.size());
-  // The columns of `along` are orthonormal motions of the beam; those of `by_spring` are the deflections of each end spring in
-  // these motions.
+  // Column k of `along` is the motion that deflects spring k, orthonormal to the motions before it; column k of `by_spring` has
+  // the deflections of spring k in all of these motions.
   Eigen::MatrixXd along(basis.cols(), count), by_spring = Eigen::MatrixXd::Zero(count, count);
   for (Eigen::Index k = 0; k < count; ++k) {
     Eigen::VectorXd left = basis.transpose() * end.col(springs[static_cast<std::size_t>(k)].second);
@@ -297,7 +299,7 @@ Eigen::MatrixXd NormalisedModes::slope_products() const {
 
 bool NormalisedModes::follow(const NormalisedModes& near) {
   const int modes = beam_.modes;
-  // Least length of the last element, as a share of the beam's: a clamp on a shorter element costs digits.
+  // Least length of the last element, as a share of the beam's length: a clamp on a shorter element costs accuracy by rounding.
   constexpr double least_end = 0.05;
   if (beam_.is_general() || near.beam_.is_general() || near.beam_.modes != modes || near.beam_.far_clamp != beam_.far_clamp ||
       near.beam_.sections.size() != beam_.sections.size() || (beam_.far_clamp && 2 * elements_.back().half() < least_end)) {
@@ -322,8 +324,8 @@ bool NormalisedModes::follow(const NormalisedModes& near) {
   }
   orient();
 
-  // Relative differences of squared frequencies for the check that the modes found are the lowest: they differ, no mode is
-  // below the first of them, and no other mode is below the last.
+  // Relative differences of squared frequencies in the check that the modes found are the lowest. Neighbouring modes must
+  // differ by `apart`. No mode may lie `margin` below the first, and no other mode up to `margin` above the last.
   constexpr double apart = 1e-7, margin = 1e-8;
   for (int i = 1; i < modes; ++i) {
     if (!(inverse_squares_[i] * (1 + apart) < inverse_squares_[i - 1])) return false;
@@ -367,7 +369,7 @@ Eigen::RowVectorXd NormalisedModes::shape(const BeamElement& element, double xi,
     const double half = other.half();
     const bool inside = other.begin == element.begin;
     ElementRow local = (inside ? element_integrals(xi, derivative) : ends[derivative]) * (derivative == 0 ? half * half : half);
-    // Beyond the right end of its element the deflection by a shape function continues straight.
+    // Beyond the right end of its element a shape function continues as a straight line.
     if (!inside && derivative == 0) local += (x - other.end) * half * ends[1];
     row.segment<functions>(functions * static_cast<Eigen::Index>(e)) = local.array() * (orders / (half * other.rigidity)).sqrt();
   }
@@ -386,7 +388,8 @@ Eigen::RowVectorXd NormalisedModes::shape(double x, int derivative) const {
 // second. When the second mode does not move at x, a has no zero between the frequencies; the second frequency is then the
 // result. Newton's method solves (lambda_2 - lambda) a = 0, whose left side is nearly linear.
 double NormalisedModes::pinned_inverse_square(double x, std::optional<double> near) const {
-  // Changes below which Newton's method has converged: the step after one of size last_step is rounding.
+  // Relative width of the bracket that ends the search, and relative step after which the next step of Newton's method would be
+  // rounding.
   constexpr double rounding = 1e-12, last_step = 1e-8;
   constexpr int most_steps = 100;
   if (beam_.is_general()) return general_pinned_inverse_square(shape(x, 0) * all_motions_, all_inverse_squares_);

@@ -11,11 +11,11 @@
 //
 // Discretisation: the curvature is a polynomial of degree 7 on each element, written in Legendre polynomials, and integrated
 // twice from the clamped end; nodes are at every change of section. These functions are orthonormal in the bending energy, so
-// the stiffness is the unit matrix whatever the lengths of the elements, and a handful of long elements reaches 1e-9. A far
-// clamp permits only combinations of the functions without value and slope there. Under an axial force the combinations are
-// made orthonormal in the elastic energy, so that the stiffness is the unit matrix again. This fails at the buckling load in
-// compression, where the straight beam stops being stable. Springs and linear sections add their energies to the unit matrix,
-// and springs at x = 0 add the two motions of a rigid beam to the functions.
+// the stiffness is the unit matrix whatever the lengths of the elements, and a handful of long elements gives frequencies to
+// 1e-9. A far clamp permits only combinations of the functions without value and slope there. Under an axial force the
+// combinations are made orthonormal in the elastic energy, so that the stiffness is the unit matrix again. This fails at the
+// buckling load in compression, where the straight beam stops being stable. Springs and linear sections add their energies to
+// the unit matrix, and springs at x = 0 add the two motions of a rigid beam to the functions.
 //
 // Source: textbook Ritz-Galerkin; integrated Legendre shape functions: Szabo & Babuska, Finite Element Analysis, 1991, sec. 6;
 // axial force and buckling: Timoshenko & Gere, Theory of Elastic Stability, 1961, sec. 2.1.
@@ -70,7 +70,7 @@ class NormalisedModes {
   [[nodiscard]] const Beam& beam() const { return beam_; }
   /// Returns 1 / omega^2 of the modes (omega: angular frequency), in descending order.
   [[nodiscard]] const Eigen::VectorXd& inverse_squares() const { return inverse_squares_; }
-  /// Returns the values of all modes at x in [0, 1]; slope() returns their slopes.
+  /// Returns the values of all modes at x in [0, 1], in units of the beam's length; slope() returns their slopes.
   [[nodiscard]] Eigen::VectorXd value(double x) const { return (shape(x, 0) * shapes_).transpose(); }
   [[nodiscard]] Eigen::VectorXd slope(double x) const { return (shape(x, 1) * shapes_).transpose(); }
   /// Returns the integrals over the beam of the products of the modes' slopes.
@@ -82,16 +82,17 @@ class NormalisedModes {
  private:
   // Searches all modes of the beam at once by Ritz's method.
   void search();
-  // Iterates Rayleigh quotients that begin with the frequencies of `near`. Returns false when the result is not certain to be
-  // the modes of lowest frequency.
+  // Iterates Rayleigh quotients from the frequencies of the similar beam `near`. Returns false when the modes found may not be
+  // those of lowest frequency.
   [[nodiscard]] bool follow(const NormalisedModes& near);
   // Returns a position on the beam at which no mode has a node.
   [[nodiscard]] double moving_place() const;
-  // Returns the values of all shape functions, or of a derivative, at x in units of the beam's length, or at xi in [-1, 1] over
-  // an element.
+  // Returns the values (derivative 0) or slopes (derivative 1) of all shape functions, at x in units of the beam's length, or
+  // at xi in [-1, 1] over an element.
   [[nodiscard]] Eigen::RowVectorXd shape(double x, int derivative) const;
   [[nodiscard]] Eigen::RowVectorXd shape(const BeamElement& element, double xi, int derivative) const;
-  // Returns combinations of the shape functions that the supports of the beam permit, orthonormal in its elastic energy.
+  // Returns combinations of the shape functions that the supports of the beam permit, orthonormal in its elastic energy. `end`
+  // has values and slopes of the shape functions at the far end; `slopes` has the integrals of products of their slopes.
   [[nodiscard]] Eigen::MatrixXd permitted_motions(const Eigen::MatrixXd& end, const Eigen::MatrixXd& slopes) const;
   // Makes the mode shapes positive at a free end; between two clamps, positive near x = 0.
   void orient();
@@ -101,11 +102,11 @@ class NormalisedModes {
   Eigen::MatrixXd shapes_;  // coefficients of the shape functions for each mode, one column per mode
   Eigen::VectorXd inverse_squares_;
   double moving_place_ = 1;
-  // Scales of the rigid translation and rotation of the beam among the shape functions; 0 when the support at x = 0 prevents
-  // the motion.
+  // Factors of the two motions of a rigid beam, translation and rotation, which are shape functions of a beam on springs at x =
+  // 0; 0 when the support there prevents the motion.
   double shift_ = 0, turn_ = 0;
-  // All motions of a beam on springs or with linear sections, found by Ritz's method, each with unit elastic energy; 1 /
-  // omega^2 of each.
+  // Columns with the coefficients of all modes that Ritz's method finds for a beam on springs or with linear sections, each
+  // with unit elastic energy; 1 / omega^2 of each mode.
   Eigen::MatrixXd all_motions_;
   Eigen::VectorXd all_inverse_squares_;
 };
@@ -113,8 +114,8 @@ class NormalisedModes {
 class BeamModes {
  public:
   /// Finds the first `modes` modes of a beam. The normalised modes `known` are used if they belong to this beam; otherwise the
-  /// search starts from `known`. Throws InvalidInput unless sections join and are positive, modes is in [1, 40], and the axial
-  /// force is above the buckling load.
+  /// search starts from `known`. Throws InvalidInput unless every section begins where the one before ends, lengths, rigidities
+  /// and masses are positive, modes is in [1, most_static_modes], and the axial force is above the buckling load.
   BeamModes(const std::vector<BeamSection>& sections, int modes, const BeamSupport& support = {},
             std::shared_ptr<const NormalisedModes> known = {});
 
@@ -134,7 +135,7 @@ class BeamModes {
 
   [[nodiscard]] const std::shared_ptr<const NormalisedModes>& normalised() const { return normalised_; }
   [[nodiscard]] double length() const { return length_; }  ///< length of the beam [m]
-  /// Returns mode shape over normalised mode shape, a constant [kg^(-1/2)].
+  /// Returns mode shape over normalised mode shape, the same at all positions [kg^(-1/2)].
   [[nodiscard]] double scale() const { return scale_; }
   /// Angular frequency over the normalised angular frequency [rad/s].
   [[nodiscard]] double frequency_scale() const { return frequency_scale_; }

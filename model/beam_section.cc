@@ -160,7 +160,7 @@ double curl(const Device& device, double gradient, double x) {
   double offset = 0;
   for (const BeamSection& section : s.is_built() ? built_sections(device, gradient) : beam_sections(device)) {
     if (section.begin >= x) break;
-    // Distances of the position x from both ends of the section [m].
+    // Distance of the position x from the begin of the section, and from its end if x is beyond it [m].
     const double near = x - section.begin, far = std::max(0.0, x - section.end);
     offset += (s.is_built() ? section.curvature : moment / section.rigidity) * (near * near - far * far) / 2;
   }

@@ -12,14 +12,16 @@ using namespace statics;
 
 namespace {
 
-// Returns the stiffness matrix of the static forces; it is symmetric up to rounding, since contact and fields have potentials.
+// Returns the stiffness matrix: minus the derivative of the static modal forces by the modal coordinates. It is symmetric up to
+// rounding, since contact and electric fields have potentials.
 Eigen::MatrixXd stiffness_at(const Switch& model, const Eigen::VectorXd& q, std::span<const double> volts,
                              const ContactState& contact) {
   const Eigen::Index n = model.modes();
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(n);
   Eigen::MatrixXd by_q(n, n), by_v(n, n), force(n, 1);
   Switch::Workspace work = model.workspace();
-  model.accelerations(q.data(), still.data(), volts, contact, work, force.data());  // the call sets the gap field in `work`
+  // Sets the gap field in `work` for jacobian().
+  model.accelerations(q.data(), still.data(), volts, contact, work, force.data());
   model.jacobian(q.data(), still.data(), volts, contact, work, by_q, by_v);
   return -(by_q + by_q.transpose()) / 2;
 }
@@ -65,8 +67,8 @@ ClosedEquilibrium closed_at(const Switch& model, const Eigen::VectorXd& q, doubl
           .smallest_eigenvalue = smallest_closed_eigenvalue(model, q, volts)};
 }
 
-// Returns depths, one step apart, between which f, going deeper, first rises to zero. Just before a beam collapses onto the
-// electrode f may rise to zero and fall again within one step.
+// Searches deeper from `depth` for the place where f(depth) first rises to zero, and returns the depths of the steps around it.
+// Just before a beam collapses onto the electrode f may rise to zero and fall again within one step.
 template <class F>
 std::optional<Steps> first_enough(F&& f, double depth, double step) {
   auto turn = walk(f, depth, step, [](double value, double here) { return here >= 0 || here < value; });
@@ -83,14 +85,16 @@ double static_push(const Switch& model, const Eigen::VectorXd& q) {
 }
 
 // Finds how a beam rests on the face of a dielectric: on the spot of first touch, or with most of its length. Newton's method
-// descends the potential from `q`, downhill along every eigenvector. A step shortens no gap of the field by more than a given
-// share, so that the search does not jump over the maximum of the potential before a soft face.
+// descends the potential from `q`, downhill along every eigenvector. A step changes no gap (that of the air plus the
+// dielectric's equivalent depth) by more than a given share, so that the search does not jump over the maximum of the potential
+// before the face.
 std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<const double> volts, Eigen::VectorXd q) {
   constexpr int most_steps = 1000;
-  constexpr double longest = 0.05, shortest = 1e-9;  // limits of a Newton step, in shares of the gaps of the field
-  constexpr double least_gap = 0.25;                 // least gap that limits a Newton step, over the dielectric's depth
+  constexpr double longest = 0.05, shortest = 1e-9;  // limits of the largest change of a gap in a step, as shares of this gap
+  constexpr double least_gap = 0.25;                 // least gap in this limit, over the dielectric's equivalent depth
   constexpr double rounding = 1e-12;                 // relative change of the potential energy that counts as rounding
-  // Least eigenvalue over a mode's stiffness; size of a step, relative to its limit, at a saddle of the potential.
+  // Least eigenvalue of the stiffness over that of the modes alone; change of a gap over its limit below which a state is a
+  // saddle.
   constexpr double least_stiffness = 1e-9, at_saddle = 1e-2;
   Statics statics(model);
   Switch::Workspace work = model.workspace();
@@ -115,7 +119,7 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
                                       .cwiseQuotient(along.values.cwiseAbs().cwiseMax(least_stiffness));
     Eigen::VectorXd step = (along.vectors * parts).cwiseProduct(compliance);
     double reach = reach_of(step);
-    if (along.values[0] < 0 && reach < at_saddle * radius) {  // a saddle: no force indicates the descent
+    if (along.values[0] < 0 && reach < at_saddle * radius) {  // a saddle: the forces vanish
       step = along.vectors.col(0).cwiseProduct(compliance);
       step *= radius / reach_of(step);
       reach = radius;
@@ -135,7 +139,8 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
     radius = std::min(2 * radius, longest);
   }
   if (!contact_at(q).active) return std::nullopt;
-  // Newton's method may oscillate when the edge of the touching part of the beam is at a quadrature point.
+  // Improve q by Newton's method for the equilibrium. It may oscillate, and q then remains, when the edge of the touching part
+  // of the beam is at a quadrature point.
   if (const auto found = statics.closed(volts, q)) q = *found;
   const double push = static_push(model, q);
   if (!(push > 0)) return std::nullopt;
@@ -143,9 +148,9 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
   return found.smallest_eigenvalue > 0 ? std::optional(found) : std::nullopt;
 }
 
-// Find the closed equilibrium with a search that begins where a force holds the beam at the plane of the first contact. A
-// second search begins on the dielectric's face when the first contact is not the face: the beam may move from the face to this
-// contact.
+// Finds the closed equilibrium with a search that begins where a force at the first contact holds the beam on the plane of this
+// contact. A second search begins on the dielectric's face when the first contact is another one: the beam may move from the
+// face to the first contact.
 std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<const double> volts) {
   const Eigen::VectorXd squares = model.basis().angular_frequencies().cwiseAbs2();
   const auto held_at = [&](std::size_t c) {
@@ -175,8 +180,8 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::sp
     if (!held) return no_equilibrium;
     return (model.has_spread_contact() ? 0 : contact_force(model.contact(), depth)) - held->unknown;
   };
-  // At the depth of the least excess() the beam must press harder than the contact pushes back; the equilibrium is deeper,
-  // where both forces are equal.
+  // The contact can hold the beam only if the beam presses harder than the contact pushes back at the depth of the least
+  // excess(). The equilibrium is deeper, where both forces are equal.
   const auto hardest = first_minimum(excess, step);
   if (!hardest || !(hardest->value < 0)) return std::nullopt;
   const std::optional<Steps> over = first_enough(excess, hardest->depth, step);

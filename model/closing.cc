@@ -17,8 +17,8 @@
 namespace softland {
 namespace {
 
-// Residuals of the energy audit for a warning and for a failure of the run, as shares of the energy that bends the beam by the
-// contact gap.
+// Residuals of the energy audit above which a run has a warning, and above which it fails, as shares of the energy that bends
+// the beam by the contact gap.
 constexpr double worth_warning = 0.01, not_credible = 0.2;
 
 class ClosingRun {
@@ -132,8 +132,8 @@ class ClosingRun {
       c.phase.enter(event.edge->next, event.edge->zone);
     } else {
       change.kind = PhaseChange::Kind::turn;
-      // Switch the contact law to unloading; its deepest point includes the distance over which the contact point still
-      // decelerates to rest.
+      // Switch the contact law to unloading. The deepest interference, on which unloading depends, includes the small distance
+      // over which the contact point still decelerates to rest.
       c.phase.turn(p.position - c.plane - (p.acceleration < 0 ? p.velocity * p.velocity / (2 * p.acceleration) : 0));
     }
     change.after = c.phase.law();
@@ -176,8 +176,8 @@ class ClosingRun {
     check_interval(field);
   }
 
-  // Returns true when the gap over an electrode is below the smallest valid gap: a beam that closes on a dielectric's face may
-  // swing lower beside the electrode.
+  // Returns true when the beam is below the smallest valid gap over an electrode. A beam that closes on a dielectric's face may
+  // swing lower beside the electrodes; for all other devices every point counts.
   [[nodiscard]] bool is_over_electrode() {
     const Device& device = model_.device();
     if (!device.lands_along_face() || device.structure.is_rigid()) return true;

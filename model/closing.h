@@ -24,7 +24,8 @@
 // above 1 % of that bending energy is a warning; above 20 % the run is a numerical failure.
 //
 // A compressible gas film adds its pressures to the states; they diffuse within thousandths of a period. Such scenes run
-// implicitly, with an equation solver that uses that the stations of the film couple only through the beam.
+// implicitly, with an equation solver that exploits that the film pressures at two positions along the beam couple only
+// through the beam.
 #pragma once
 
 #include <array>
@@ -53,12 +54,12 @@ struct ClosingOptions {
   double tolerance = 1e-6;  ///< relative tolerance of the integrator
   Integrator integrator = Integrator::automatic;
   double after_contact = std::numeric_limits<double>::infinity();  ///< time from the first touch to the end of the run [s]
-  double no_end_before = 0;  ///< earliest end of a run after a touch, whatever after_contact is [s]
+  double no_end_before = 0;  ///< earliest end of a run with a touch, also if after_contact is over [s]
   double no_contact_before = std::numeric_limits<double>::infinity();  ///< time at which a run without a touch ends [s]
   long max_steps = 2'000'000;  ///< largest number of integration steps: a run that needs more ends as numerical_failure
   /// If false, the integrator does not stop at make and break of contact: the contact force begins within a step, and the times
-  /// of make and break are as exact as the interpolant. The tolerances of contact apply throughout. Studies set false to
-  /// measure the effect of the stops; see why_always_restarted().
+  /// of make and break are as exact as the interpolation in the step. The tolerance of motion in contact applies to the whole
+  /// run. Studies set false to measure the effect of the stops; see why_always_restarted().
   bool restart_at_contact = true;
   /// Potential of the closed equilibrium under the hold levels [J]; if given, Trajectory::landing_excess is computed relative
   /// to this potential.
@@ -90,8 +91,7 @@ struct ClosingOptions {
 /// why_always_restarted() gives a reason.
 [[nodiscard]] Trajectory simulate_closing(const Switch& model, std::span<const Signal> drives, const ClosingOptions& options);
 
-/// Simulates a closing for an observer, which receives motion and touches; the returned trajectory has neither motion nor
-/// touches.
+/// Simulates a closing and passes motion and touches to an observer; the returned trajectory has neither.
 [[nodiscard]] Trajectory observe_closing(const Switch& model, std::span<const Signal> drives, const ClosingOptions& options,
                                          ClosingObserver& observer);
 

@@ -31,8 +31,8 @@ void span(double begin, double end, double length, const std::string& name) {
   });
 }
 
-/// Checks the ranges of the numbers in `owner`, a part of the device; optional numbers may have the values that they have in
-/// `unset`.
+/// Checks the ranges of the numbers in `owner`, a part of the device. An optional number may also have its value in `unset`,
+/// which stands for an absent number.
 template <class Owner>
 void check_fields(const std::string& part, Owner owner, Owner unset, std::span<const Field<Owner>> fields) {
   for (const Field<Owner>& field : fields) {
@@ -217,7 +217,7 @@ void check_contact(const Device& d, std::size_t i) {
   require(!rigid || !d.gas || !is_compressible(*d.gas), [&] {
     return path + ".model = rigid: not with gas.model = reynolds, whose film still flows under a plate that rests";
   });
-  // A contact needs no pad size when neither the place nor the area of the pad has an effect.
+  // A contact needs no pad size when it acts along a dielectric's face, or on a rigid plate with a force that is not per area.
   const bool no_pad = c.along_face || (s.is_rigid() && !acts_per_area(c.model) && c.pad_length == 0);
   require(no_pad || (c.pad_length > 0 && c.pad_length < s.length), [&] {
     return fmt::format("{}.pad_length = {}: must be positive and below structure.length = {}", path,
@@ -360,7 +360,8 @@ std::optional<ContactConflict> contact_conflict(const Device& d) {
 }
 
 std::string why_not_along_pad(const Structure& structure, const Contact& contact) {
-  // Largest pad length, as a share of the beam's: the first mode is then straight along the pad to 5e-5.
+  // Largest pad length, as a share of the beam's. Along such a pad the first mode deviates from its tangent by 5e-5 of the
+  // deflection at the free end.
   constexpr double longest = 0.1;
   if (structure.is_rigid()) return "a plate touches with all of its pad at once, as at the centre";
   if (contact.at) return "needs a pad that ends at the free end: 'at' says another place";

@@ -41,12 +41,12 @@ struct Landing {
   [[nodiscard]] double begin() const { return asperities ? asperities->height : from; }
 };
 
-/// An insulator on an electrode, facing the moving part. The gaps of the scene end at the insulator's face; the metal lies
-/// deeper.
+/// An insulator on an electrode, facing the moving part. Gaps are measured to the face of the insulator; the electrode's metal
+/// lies deeper.
 struct Dielectric {
   double thickness = 0;     ///< thickness of the dielectric [m]
   double permittivity = 1;  ///< relative permittivity of the dielectric
-  double roughness = 0;     ///< air gap that remains when the summits of the dielectric's face touch [m]
+  double roughness = 0;     ///< air gap that remains, by roughness, when the moving part touches the face [m]
   double charge = 0;        ///< charge per area on the dielectric's face [C/m^2], of either sign
   /// Contact law of the dielectric's face. A run fails when the moving part reaches a face without this law, unless the moving
   /// part is a plate on a contact at the face.
@@ -62,7 +62,7 @@ struct Dielectric {
 /// An electrode: one or several pads at one voltage.
 struct Electrode {
   std::string name = {};
-  Place begin;  ///< begin of the first pad; on a plate only the length of the interval matters: electrode area over plate width
+  Place begin;  ///< begin of the first pad; for a plate only end - begin counts: electrode area over plate width
   Place end;
   std::vector<Span> further = {};  ///< pads of the electrode besides the first pad
   Fringing fringing = Fringing::meijs_fokkema;
@@ -124,8 +124,8 @@ struct Surface {
   ResidualLoad cantilever_load = ResidualLoad::none;  ///< effect of the residual surface stress on a cantilever
 };
 
-/// The rule by which the electrical connection (the signal path through the contacts) counts as closed. The rule has no effect
-/// when no number is given.
+/// The conditions for the electrical connection (the signal path through the contacts) to count as closed. Electrical closing
+/// is not evaluated when no number is given.
 struct ElectricalClosing {
   /// Contact force that a closed connection exceeds [N]; NaN: no bound.
   double force = std::numeric_limits<double>::quiet_NaN();
@@ -186,7 +186,7 @@ struct Device {
   /// gap.
   [[nodiscard]] bool lands_on_dielectric() const { return lands_along_face() || gap.contact > 0.99 * gap.electrode; }
   /// Returns the local gap between a closed switch and the face of its electrode, for the laws of gas films [m]. The gap is at
-  /// least a hundredth of the rest gap: below a hundredth the film laws are continued by a tangent.
+  /// least a hundredth of the rest gap, below which the film laws are continued by their tangent.
   [[nodiscard]] double closed_gap() const { return std::max(gap.electrode - gap.contact, gap.electrode / 100); }
   /// Returns the least Dielectric::depth(), the air gap equivalent to a dielectric, of the electrodes on the near side [m]; 0
   /// when an electrode has no dielectric.

@@ -1,7 +1,7 @@
 // A force law that acts along the beam, behind one virtual call per law and right-hand side. A law is a small value type with
 // load(gap, velocity), a template over the scalar type (double for runs, Dual for exact derivatives). A conservative law acts
-// by itself or is scaled by a drive (drive_depends): by V^2 of an electrode, or a force factor. A conservative law also has
-// potential(gap), whose slope is the load. All other laws dissipate energy.
+// by itself or is scaled by a drive (drive_depends): by V^2 of an electrode, or by the factor of the dispersion force. A
+// conservative law also has potential(gap), whose slope is the load. All other laws dissipate energy.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,7 +27,7 @@ struct GapField {
 class DistributedLaw {
  public:
   virtual ~DistributedLaw() = default;
-  /// Adds drive * law to the load [N/m] at the points on which the force law acts; a law that no drive scales ignores `drive`.
+  /// Adds the load of the force law [N/m], times `drive` for a law that a drive scales, at the points on which the law acts.
   /// `load` is as long as the arrays of the gap field.
   virtual void add_load(const GapField& field, double drive, double* load) const = 0;
   /// Adds derivatives of the load with respect to deflection and velocity at the points on which the force law acts. The arrays
@@ -37,7 +37,7 @@ class DistributedLaw {
   /// velocity, by velocity twice. Adds nothing at points below the smallest valid gap, where the load continues by its tangent.
   virtual void add_curvatures(const GapField& field, double drive, double* by_deflections, double* by_both,
                               double* by_velocities) const = 0;
-  /// Returns the integral of the potential per length over the points on which the force law acts, at unit drive [J]; 0 for
+  /// Returns the integral of the potential per length over the points on which the force law acts, for drive = 1 [J]; 0 for
   /// laws that dissipate.
   [[nodiscard]] virtual double potential(const GapField& field, const Eigen::ArrayXd& weights) const = 0;
 };
@@ -73,7 +73,7 @@ class DistributedLawOf final : public DistributedLaw {
       return;
     }
     for (Eigen::Index p = begin_; p < end_; ++p) {
-      if (!Law::drive_depends && gap[p] >= floor_) {  // at most a few points of a gas film are below the smallest valid gap
+      if (!Law::drive_depends && gap[p] >= floor_) {  // a film law at a valid gap needs no derivative
         load[p] += law.load(gap[p], velocity[p]);
         continue;
       }
@@ -112,7 +112,8 @@ class DistributedLawOf final : public DistributedLaw {
     for (Eigen::Index p = begin_; p < end_; ++p) {
       const double gap = field.gap[p], velocity = field.velocity[p];
       if (gap < floor_) continue;
-      // Seed the outer direction of each dual number, then the inner direction.
+      // Returns a second derivative of the load; 1 selects the gap for the outer or inner direction of the dual numbers, 0 the
+      // velocity.
       const auto mixed = [&](double gap_outer, double gap_inner) {
         return law_
             .load(DualOf<Dual>(Dual(gap, gap_inner), Dual(gap_outer)),
@@ -156,8 +157,8 @@ class DistributedLawOf final : public DistributedLaw {
         by_deflection[p] -= by_gap, by_velocity[p] += by_rate;
         continue;
       }
-      // The outer direction of the dual numbers is the gap, the inner the velocity: the slope of the load's tangent depends on
-      // the velocity too.
+      // The load is the tangent at the gap floor_, and its slope depends on the velocity too. So the outer direction of the
+      // dual numbers is the gap, and the inner direction the velocity.
       const double gap = std::max(field.gap[p], floor_);
       const auto at = law_.load(DualOf<Dual>(gap, 1), DualOf<Dual>(Dual(field.velocity[p], 1)));
       by_deflection[p] -= factor * at.slope.value;

@@ -69,7 +69,8 @@ struct DualOf {
   friend DualOf sqrt(DualOf a) {
     using std::sqrt;
     const T root = sqrt(a.value);
-    // The slope of a root at 0 counts as 0: the laws use roots only in products whose slope there has the limit 0.
+    // The slope of a root at 0 is infinite; take 0, since the laws use roots only in products whose slope there has the limit
+    // 0.
     return {root, select(
                       root > 0, [&]() -> Slope { return a.slope / (2 * root); }, [] { return Slope{}; })};
   }

@@ -43,8 +43,8 @@ class Statics {
   // Finds the equilibrium in which `drive` holds the contact point at deflection s [m] against the contact force, with the
   // other drives at `bias`.
   std::optional<Held> on_branch(std::size_t drive, std::span<const double> bias, double s, Held start) {
-    // The force at unit strength of the drive is a difference of two evaluations, at strengths near the result, so that the
-    // other forces do not dominate the difference.
+    // Compute the force of the drive at unit strength from the forces at strength `scale`, near the result, and at strength 0.
+    // At a small strength rounding of the other forces would dominate the difference.
     const double scale = start.unknown > 0 ? start.unknown : 1;
     std::vector<double> some(bias.begin(), bias.end()), none = some;
     some[drive] = model_.value_of_strength(drive, scale);
@@ -66,7 +66,7 @@ class Statics {
   }
 
   // Finds the equilibrium in which a support keeps the contact point at deflection s [m] under constant voltages. `unknown` is
-  // the force of the beam on the support, without the force that a contact along the pad carries.
+  // the force of the beam on the support; a contact along the pad carries its own force in addition.
   std::optional<Held> pinned(std::span<const double> volts, double s) {
     std::optional<Held> h = Held{.q = pushed(s)};
     std::vector<double> part(volts.begin(), volts.end());
@@ -181,8 +181,8 @@ class EquilibriumBranch {
   EquilibriumBranch(const Switch& model, std::size_t drive, Bias bias)
       : statics_(model), drive_(drive), bias_(standing(model, drive, bias)), goes_in_steps_(model.device().lands_along_face()) {}
 
-  // Returns the strength of the drive in the equilibrium at deflection s [m]; NaN without an equilibrium. The search starts
-  // from the last equilibrium found, so call this operator in small steps of s.
+  // Returns the strength (Held::unknown) of the drive in the equilibrium at deflection s [m]; NaN without an equilibrium. The
+  // search starts from the last equilibrium found, so call this operator in small steps of s.
   double operator()(double s) {
     if (start_.q.size() == 0) start_ = {.q = statics_.pushed(s)};
     if (!reaches(s) && !(goes_in_steps_ && walks(s))) return no_equilibrium;
@@ -200,8 +200,8 @@ class EquilibriumBranch {
     return true;
   }
 
-  // Finds the equilibrium at deflection s [m] in short steps: near the face of a thin dielectric the field grows so fast that
-  // Newton's method needs short steps.
+  // Finds the equilibrium at deflection s [m] in shorter steps from the last one: near the face of a thin dielectric the field
+  // grows so fast that Newton's method fails for long steps.
   bool walks(double s) {
     constexpr int most_steps = 100;
     constexpr double shortest = 1e-6;  // shortest step of the deflection, as a share of the distance to s
@@ -230,13 +230,14 @@ class EquilibriumBranch {
 
 inline constexpr int branch_steps = 64;
 
-// Three successive depths of a search beyond the contact plane [m]; at the start `before` equals `last`.
+// Three successive depths of a search beyond the contact plane [m]; `before` equals `last` if the search stops at its first
+// step.
 struct Steps {
   double before, last, next;
 };
 
-// Searches from `depth` deeper in growing steps until stop(f at a depth, f one step deeper) is true. The steps are halved where
-// f becomes NaN (the beam would reach the electrode); the function returns nothing when the search ends there.
+// Evaluates f at depths from `depth` on, deeper in growing steps, until stop(f at a depth, f one step deeper) is true. Halves
+// the step where f becomes NaN (the beam would reach the electrode); returns nothing when the step becomes too short.
 template <class F, class Stop>
 std::optional<Steps> walk(F&& f, double depth, double step, Stop&& stop) {
   constexpr double growth = 1.2;

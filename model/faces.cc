@@ -73,7 +73,7 @@ void set_face_contact(Device& d) {
   if (landing == nullptr) return;
   const double plane = d.gap.electrode - landing->begin();
   const auto set = [&](Contact& face) {
-    // The switch computes the stiffness of a wall from its modes, which replaces the value that is set here.
+    // This stiffness of a wall is a placeholder: the switch computes the stiffness from its modes.
     face.model = LinearSpring{.stiffness = landing->is_wall() ? 1 : landing->stiffness};
     if (landing->asperities) face.model = *landing->asperities, face.pad_length = length_of_faces(d);
     if (!d.structure.is_rigid()) face.at = first_touch_on(d);

@@ -19,13 +19,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double longest_angle = 2.5;  // bound of the part's duration times the norm of the linearised equations' matrix A
+constexpr double longest_angle = 2.5;  // bound of duration times norm of A (linearised equations) in a part
 constexpr int most_parts = 4096;       // largest number of parts into which an integration step is divided
-constexpr int parts_at_edge = 6;  // number of parts of an integration step that begins or ends where a contact begins or ends
+constexpr int parts_at_edge = 6;       // number of parts of an integration step at whose begin or end a contact closes or opens
 constexpr Index lane_size = lanes;
 
 // Returns the number of terms after which the Taylor series of the exponential of a matrix with this norm is accurate to
-// rounding. It is at least the number of terms that inputs quadratic in time need.
+// rounding. It is at least 3, the number of terms that inputs quadratic in time need.
 int terms_of_exponential(double norm) {
   constexpr int fewest = 3;
   constexpr double rounding = 1e-13;
@@ -51,8 +51,8 @@ double column_norm(const double* x, Index size, Index stride) {
   return largest.maxCoeff();
 }
 
-// Returns the shares of an integration step at which its parts end. A contact's stiffness grows, and falls, like the root of
-// the time from the beginning or end of contact.
+// Returns the shares of an integration step at which its parts end. Parts are shorter near the begin or end of contact, since
+// the stiffness of a contact grows like the root of the time from there.
 std::vector<double> shares_of_parts(int parts, bool after_edge, bool before_edge) {
   std::vector<double> ends;
   for (int k = 1; k <= parts; ++k) {
@@ -126,7 +126,7 @@ void LinearizedClosing::note_passage(const PhaseChange& change) {
   if (!arcs_.empty() && change.kind == PhaseChange::Kind::turn) arcs_.back().turns = true;
 }
 
-// Adds one set of indices of signal pieces for the drives that enter their next piece at time t.
+// Adds a set of signal pieces to pieces_ for every drive whose signal enters its next piece (between breakpoints) at time t.
 void LinearizedClosing::enter_pieces(double t) {
   for (std::size_t k = 0; k < signals_.size(); ++k) {
     const std::vector<SignalPiece>& all = signals_[k].pieces();
@@ -193,7 +193,7 @@ void LinearizedClosing::linearize_step() {
   add_parts(step, contact.active && after_edge, contact.active && before_edge);
 }
 
-// Computes the derivative of the rest position at the start by each parameter, such that the static forces remain 0.
+// Computes the derivative of the rest position at the start by each device parameter, at which the static forces remain 0.
 void LinearizedClosing::begin_at_rest() {
   rest_ = MatrixXd::Zero(size_, moving_);
   const std::vector<double> before = values_before(signals_);
@@ -249,8 +249,9 @@ void LinearizedClosing::set_node(Node& node, double t, const double* q, const do
   }
 }
 
-// With the matrices A = (0, fastest; K, D) of the linearised equations at begin, middle and end of a part, compute h / 6 (A0 +
-// 4 A1 + A2) - h^2 / 12 [A1, A2 - A0] of Magnus' series block by block.
+// Computes the exponent h / 6 (A0 + 4 A1 + A2) - h^2 / 12 [A1, A2 - A0] of Magnus' series, h being the duration of a part,
+// block by block. A0, A1, A2 are the matrices (0, fastest; by_q, by_v) of the linearised equations at its begin, middle and
+// end.
 void LinearizedClosing::add_transition(double begin, double end, std::size_t arc) {
   using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_modes, most_modes>;
   const std::size_t at = numbers_.size();
@@ -322,8 +323,8 @@ void LinearizedClosing::add_parts(std::size_t step, bool after_edge, bool before
   }
 }
 
-// Adds the jump of the derivative d of the state by the parameters at a breakpoint of the drives, at which the right-hand side
-// f changes.
+// Adds the jump of the derivative d of the state by the parameters at a breakpoint of the drives, which shifts with the
+// parameters and at which the right-hand side of the equations of motion changes.
 void LinearizedClosing::jump_at_pieces(const RecordedMotion::Motion& here, const ContactState& contact, std::size_t entered) {
   if (on_ == entered) return;
   Jump jump{.parts = parts_.size(), .matrix = {}, .moved = {}};
@@ -348,7 +349,8 @@ void LinearizedClosing::jump_at(const RecordedMotion::PhaseEvent& passage, const
   jumps_.back().parts = parts_.size();
 }
 
-// Returns the jump of the derivative d of the state by the parameters when a plate comes to rest on the contact plane.
+// Returns the jump of the derivative d of the state by the parameters when a plate comes to rest on the contact plane: only the
+// position of the plane still depends on parameters.
 LinearizedClosing::Jump LinearizedClosing::at_rest(const Arc& before) const {
   Jump jump{.matrix = MatrixXd::Zero(size_ + 1, size_ + 1), .moved = {}, .by_device = MatrixXd::Zero(size_ + 1, moving_)};
   for (Index j = 0; j < moving_; ++j) {
@@ -358,8 +360,8 @@ LinearizedClosing::Jump LinearizedClosing::at_rest(const Arc& before) const {
   return jump;
 }
 
-// Returns the jump of the derivative d of the state by the parameters when a contact with memory begins to unload: the dent
-// depends on the deepest interference.
+// Returns the jump of the derivative d of the state by the parameters when a contact with memory begins to unload: its residual
+// interference (dent) then follows from the deepest interference.
 LinearizedClosing::Jump LinearizedClosing::turned(const Arc& before) const {
   Jump jump{.matrix = MatrixXd::Identity(size_ + 1, size_ + 1), .moved = {}, .by_device = MatrixXd::Zero(size_ + 1, moving_)};
   const double deepest = model_.contact_deflection(before.q.data()) - model_.contact_gap(), step = 1e-5 * deepest;
@@ -375,8 +377,8 @@ LinearizedClosing::Jump LinearizedClosing::turned(const Arc& before) const {
   return jump;
 }
 
-// Returns the jump of the derivative d of the state by the parameters where the contact law changes its branch, or at an
-// impact.
+// Returns the jump of the derivative d of the state by the parameters where the contact law changes from one of its curves to
+// another, or at an impact.
 LinearizedClosing::Jump LinearizedClosing::crossed(const RecordedMotion::PhaseEvent& passage, const Arc& before) {
   const PhaseChange& change = passage.change;
   Jump jump{.matrix = MatrixXd::Identity(size_ + 1, size_ + 1), .moved = {}, .by_device = MatrixXd::Zero(size_ + 1, moving_)};
@@ -406,7 +408,7 @@ LinearizedClosing::Jump LinearizedClosing::crossed(const RecordedMotion::PhaseEv
     jump.by_device.col(j).head(size_) -=
         lost * (by_device_->interference(parameter, before.q.data()) - by_device_->edge(parameter, level));
   }
-  // The dent of the contact has vanished, and so does its derivative.
+  // The residual interference of the contact is no longer used, so its derivative is 0.
   if (change.before.shift != 0 && change.after.shift == 0) matrix.bottomRows<1>().setZero();
   return jump;
 }

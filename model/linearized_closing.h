@@ -4,9 +4,10 @@
 //
 // d = dy/dp at fixed time. Over a step, whose ends the closing's own integrator found, the transition matrix is the exponential
 // of Magnus' series to fourth order (Blanes, Casas, Oteo and Ros 2009, eq. 245). The contribution of the drives is integrated
-// exactly for inputs that are parabolas in it. When f changes at an event, at a time that the motion or the waveform decides,
-// d jumps by (f before - f after) dt/dp. At an impact the velocity's part is reflected too (saltation: Aizerman and Gantmacher
-// 1958, Hiskens and Pai 2000, eq. 26). A contact with memory adds its residual interference to the state.
+// exactly for inputs that are parabolas in time within the step. When f changes at an event, d jumps by (f before - f after)
+// dt/dp, since the time t of the event depends on the motion or the waveform. At an impact the velocity's part is reflected too
+// (saltation: Aizerman and Gantmacher 1958, Hiskens and Pai 2000, eq. 26). A contact with memory adds its residual interference
+// (the dent that it keeps) to the state.
 //
 // The motion after the last time on which any of the figures depends is not linearised.
 //
@@ -15,7 +16,7 @@
 // exponential to vectors, by its Taylor series, and never form the exponential itself.
 //
 // A parameter of the device adds F_p (model/switch_slopes.h) to the inputs of the equations. The parameter also adds the
-// derivative of the rest position at the start, and shifts the times of events at fixed q. An edge is crossed at a certain
+// derivative of the rest position at the start. It shifts the times of events at fixed q: the contact law changes at a certain
 // interference, which depends on the shape of the modes at the contact and on the contact gap.
 #pragma once
 
@@ -34,18 +35,18 @@
 namespace softland {
 
 /// The derivative of a figure of merit by a parameter p, as weights of d = dy/dp, the derivative of the state y, at the end of
-/// a step of the recorded motion (an arc), before an event at this time. A figure measured at a time that depends on when a
-/// signal piece begins also has `moved`: its derivatives by the beginnings of pieces. A figure that depends on the device at
-/// fixed q and v also has derivatives by each of SwitchSlopes::moving().
+/// an arc (step of the recorded motion), before an event at this time. A figure measured at a time at which a signal piece
+/// begins (a breakpoint) also has `moved`, its derivatives by such times. A figure that depends on the device at fixed q and v
+/// also has derivatives by each of SwitchSlopes::moving().
 struct FigureSlope {
   struct Weights {
     std::size_t arc = 0;  ///< index of an arc (step of the motion) in LinearizedClosing::arcs()
     Eigen::VectorXd by_q, by_v;
-    double by_shift = 0;  ///< weight of the derivative of the residual interference of a contact with memory
+    double by_shift = 0;  ///< weight of the derivative of a contact's residual interference (dent)
   };
   struct Moved {
     std::size_t drive = 0, piece = 0;
-    double rate = 0;  ///< derivative of the figure by the time at which a signal piece begins [1/s]
+    double rate = 0;  ///< derivative of the figure by the time at which this piece of the drive's signal begins [1/s]
   };
   std::vector<Weights> weights = {};
   std::vector<Moved> moved = {};
@@ -66,17 +67,17 @@ class LinearizedClosing {
     bool turns = false;         ///< true when the contact point's velocity changes sign at the end of the arc
     ContactState contact;
     std::size_t step = 0;            ///< index of the step of the recorded motion to which the arc belongs
-    std::size_t pieces_entered = 0;  ///< index of the set of signal pieces on which the drives are: see pieces()
+    std::size_t pieces_entered = 0;  ///< index in pieces_ of the signal pieces in use, see pieces()
   };
-  /// A change of the contact law's branch in the recorded motion, after the first `arcs` elements of arcs().
+  /// A change of the contact law from one of its curves to another, after the first `arcs` elements of arcs().
   struct PhaseEvent {
     std::size_t arcs = 0;
     PhaseChange change;
   };
 
-  /// Linearises a closing that was simulated with restart_at_contact, under these drive signals. Keeps references to its
-  /// arguments. `refinement` is the least number of parts of a step. `by_device` gives the derivatives of the switch by the
-  /// parameters, as many as those of the signals; null when the parameters do not change the switch.
+  /// Linearises a closing under these drive signals that was simulated with restart_at_contact and recorded in `tape`. Keeps
+  /// references to its arguments. `refinement` is the least number of parts of a step. `by_device` gives the derivatives of the
+  /// switch by the parameters, as many as those of the signals; null when the parameters do not change the switch.
   LinearizedClosing(const Switch& model, std::span<const Signal> signals, const RecordedMotion& tape, int refinement = 1,
                     SwitchSlopes* by_device = nullptr);
 
@@ -84,7 +85,7 @@ class LinearizedClosing {
   [[nodiscard]] static std::string refusal(const Switch& model);
 
   [[nodiscard]] const std::vector<Arc>& arcs() const { return arcs_; }
-  /// Returns the index of the signal piece on which each drive is during an arc of the recorded motion.
+  /// Returns, for each drive, the index of its signal piece (between two breakpoints) during an arc of the recorded motion.
   [[nodiscard]] const std::vector<std::size_t>& pieces(const Arc& arc) const { return pieces_[arc.pieces_entered]; }
   [[nodiscard]] const std::vector<PhaseEvent>& passages() const { return passages_; }
   /// Returns the derivatives of the switch by the parameters; null when the parameters do not change the switch.
@@ -98,11 +99,11 @@ class LinearizedClosing {
  private:
   using Index = Eigen::Index;
 
-  // The derivatives of the accelerations at one state of the motion, in units in which modal coordinates are multiplied by the
-  // fastest frequency.
+  // The derivatives of the modal accelerations at one time of the motion, by modal coordinates times the fastest frequency, by
+  // velocities and by inputs.
   struct Node {
     Eigen::MatrixXd by_q, by_v;
-    Eigen::MatrixXd inputs;  // derivatives by the inputs: drives, residual interference, device parameters
+    Eigen::MatrixXd inputs;  // derivatives by voltages of the drives, residual interference, device parameters
   };
   // A part of an integration step of the recorded motion, short enough for Magnus' series.
   struct Part {
@@ -111,19 +112,20 @@ class LinearizedClosing {
     bool ends_arc = false;
     int terms = 0;  // number of terms in the Taylor series of the matrix exponential
   };
-  // Magnus' series of a part of a step, and the inputs of drives and of the contact's dent: pointers into numbers_.
+  // The matrix of Magnus' series for a part of a step, and derivatives of the accelerations by the inputs: pointers into
+  // numbers_.
   struct Transition {
     const double* magnus;  // matrix of Magnus' series; rows are padded to whole SIMD vectors
-    const double* begin;   // inputs at the start of the part, a matrix modes x inputs
-    const double* middle;  // inputs in the middle of the part, modes x inputs
-    const double* end;     // inputs at the end of the part, modes x inputs
+    const double* begin;   // derivatives by the inputs at the start of the part, modes x inputs
+    const double* middle;  // derivatives by the inputs in the middle of the part, modes x inputs
+    const double* end;     // derivatives by the inputs at the end of the part, modes x inputs
   };
-  // The change of d = dy/dp at an event, with the derivative of the contact's residual interference as the last row: d becomes
-  // matrix * d + by_device + sum over moved pieces. Without a matrix the first term is d.
+  // The change at an event of d = dy/dp, whose last row is the derivative of the contact's residual interference: d becomes
+  // matrix * d + by_device + the terms of `moved`. Without a matrix the first term is d.
   struct Jump {
-    std::size_t parts = 0;                                              // number of parts of steps before the event
+    std::size_t parts = 0;                                              // number of parts (of all steps) before the event
     std::optional<Eigen::MatrixXd> matrix;                              // square matrix of size 2 modes + 1; none: unit matrix
-    std::vector<std::pair<FigureSlope::Moved, Eigen::VectorXd>> moved;  // adds vector * d(begin of the signal piece)/dp to d
+    std::vector<std::pair<FigureSlope::Moved, Eigen::VectorXd>> moved;  // adds vector * d(begin of this signal piece)/dp to d
     Eigen::MatrixXd by_device = {};  // derivatives by device parameters that change the switch, one column each, or none
   };
 
@@ -148,7 +150,7 @@ class LinearizedClosing {
   [[nodiscard]] Jump at_rest(const Arc& before) const;
   [[nodiscard]] Jump crossed(const RecordedMotion::PhaseEvent& passage, const Arc& before);
   [[nodiscard]] Transition transition(std::size_t part) const;
-  // Returns the column of the gradient for the device parameter number `moving`, among those that change the switch.
+  // Returns the column of the gradient for a device parameter, given by its index in SwitchSlopes::moving().
   [[nodiscard]] Index column(Index moving) const {
     return static_cast<Index>(by_device_->moving()[static_cast<std::size_t>(moving)]);
   }
@@ -163,26 +165,27 @@ class LinearizedClosing {
   Index n_, size_;  // number of modes; number of unknowns, 2 modes
   Index stride_;    // size_ rounded up to whole SIMD vectors
   SwitchSlopes* by_device_;
-  // Number of drives (index of the residual interference), of parameters that change the switch, of inputs.
+  // Number of drives, which is also the index of the residual interference among the inputs; number of device parameters that
+  // change the switch; number of inputs.
   Index dent_, moving_, inputs_;
   double fastest_;  // angular frequency of the fastest mode [rad/s]
   Switch::Workspace work_;
   int refinement_;
-  std::vector<std::vector<std::size_t>> pieces_;  // indices of the current signal pieces of all drives, a set per breakpoint
+  std::vector<std::vector<std::size_t>> pieces_;  // for every breakpoint the index of the signal piece of each drive
   std::vector<Arc> arcs_;
   std::vector<PhaseEvent> passages_;
 
   std::size_t steps_ = 0;         // number of linearised steps of the recorded motion
-  std::size_t next_arc_ = 0;      // index in arcs() of the first arc after the linearised steps
+  std::size_t next_arc_ = 0;      // index in arcs_ of the first arc after the linearised steps
   std::size_t next_passage_ = 0;  // index of the next change of the contact law in the recorded motion
-  std::size_t on_ = 0;            // index in pieces_ of the current signal pieces of the drives
+  std::size_t on_ = 0;            // index in pieces_ of the signal pieces in use
   std::vector<double> volts_;     // current voltages of the drives
   std::vector<Part> parts_;
-  std::vector<double> numbers_;  // Magnus' series and inputs of the parts of steps
+  std::vector<double> numbers_;  // matrices of Magnus' series, and derivatives by the inputs, for all parts
   std::vector<Jump> jumps_;
   Eigen::MatrixXd rest_;  // derivatives of the rest position at the start by device parameters, one column each
   Node from_, middle_, to_;
-  bool goes_on_ = false;  // true when the next part of a step begins in the state from_
+  bool goes_on_ = false;  // true when from_ is the begin of the next part
 };
 
 }  // namespace softland

@@ -15,8 +15,8 @@ using Eigen::VectorXd;
 constexpr Index row_lanes = lanes;               // rows are padded to whole SIMD vectors
 constexpr Index most_unknowns = 2 * most_modes;  // largest number of unknowns, a multiple of the SIMD lanes
 
-// Adds value += gain for very many small gains: `left` stores the part that rounding cuts off, for the next gain (Kahan 1965).
-// The sum is value - left.
+// Adds value += gain for very many small gains with compensated summation (Kahan 1965): `left` stores by how much the rounded
+// value exceeds the exact sum.
 template <class Value, class Left, class Gain>
 void add_compensated(Value&& value, Left&& left, const Gain& gain) {
   for (Index i = 0; i < gain.rows(); ++i) {
@@ -59,8 +59,8 @@ struct RowSeries {
   }
 };
 
-// Advances columns d along y' = x y + u1 + u2 s + u3 s^2 from s = 0 to 1. Rows are padded to whole SIMD vectors; u is 0 in
-// their upper half.
+// Advances the columns d of the derivatives by d' = x d + u1 + u2 s + u3 s^2 from s = 0 to 1. Rows are padded to whole SIMD
+// vectors. The vectors u are stored without their upper half, the rates of the coordinates, which is 0.
 using Columns = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 struct ColumnSeries {
   Columns gain, term, next;
@@ -122,13 +122,13 @@ void LinearizedClosing::for_inputs(const Part& part, const SignalSlopes& slopes,
   for (Index j = 0; j < moving_; ++j) add(dent_ + 1 + j, column(j), 1.0, 1.0, 1.0);
 }
 
-// Within a part of a step every input is a parabola through its values at begin, middle and end.
+// Integrates the contribution of the inputs exactly for inputs that are parabolas in time within a part of a step.
 MatrixXd LinearizedClosing::backward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes) {
   linearize_for(figures);
   const auto count = static_cast<Index>(figures.size());
   MatrixXd gradient = MatrixXd::Zero(count, static_cast<Index>(slopes.parameters()));
   MatrixXd weights = MatrixXd::Zero(count, size_ + 1), left = weights;
-  std::vector<std::pair<std::size_t, std::pair<Index, VectorXd>>> given;  // arc number; row of the figure and its weights
+  std::vector<std::pair<std::size_t, std::pair<Index, VectorXd>>> given;  // arc; row of the figure in the gradient, its weights
   for (std::size_t f = 0; f < figures.size(); ++f) {
     for (const FigureSlope::Weights& w : figures[f].weights) given.push_back({w.arc, {static_cast<Index>(f), scaled(w)}});
   }

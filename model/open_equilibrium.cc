@@ -18,8 +18,8 @@ std::optional<Eigen::VectorXd> Switch::open_equilibrium(std::span<const double> 
   return loaded_equilibrium(values);
 }
 
-// Finds the open equilibrium in one Newton iteration if possible, and otherwise in increments of the load: a beam that
-// stretches is far stiffer when bent than Newton's method predicts from the straight beam.
+// Finds the open equilibrium with one run of Newton's method if possible, otherwise with a run for each increment of the load:
+// a beam that stretches is far stiffer when bent than the first step of Newton's method predicts.
 std::optional<Eigen::VectorXd> Switch::loaded_equilibrium(std::span<const double> values) const {
   Eigen::VectorXd q = Eigen::VectorXd::Zero(modes());
   if (std::optional<Eigen::VectorXd> found = equilibrium_from(q, values)) return found;
@@ -41,7 +41,7 @@ std::optional<Eigen::VectorXd> Switch::loaded_equilibrium(std::span<const double
 // the iterates stay on the stable side, before the equilibrium. If the tangent at an iterate is not stable, no stable
 // equilibrium exists.
 std::optional<Eigen::VectorXd> Switch::equilibrium_from(Eigen::VectorXd q, std::span<const double> values) const {
-  constexpr int most_iterations = 200;  // near the pull-in voltage an iteration halves the distance at best
+  constexpr int most_iterations = 200;  // near the pull-in voltage an iteration halves the distance to the equilibrium at best
   constexpr double rounding = 1e-14;    // change of the deflection that counts as rounding, as a share of the gap
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(modes());
   Workspace work = workspace();

@@ -4,10 +4,10 @@
 //
 // C is the capacitance [F]; eps_r the relative permittivity of the layer between its electrodes; w the width of the beam and
 // the layer [m]; Lp1, Lp2 begin and end of the layer [m]; b_p its thickness [m]. On a beam of sections w (Lp2 - Lp1) is the
-// area of the layer. The formula neglects edges and holds at constant strain: ModalBasis::piezo_charge() is the charge that the
-// motion of the beam moves, and drives and energies already include it.
+// area of the layer. The formula neglects edges and holds at constant strain. The charge by the motion of the beam is
+// ModalBasis::piezo_charge(); the model of the drives and all energies already include it.
 //
-// The capacitor stores energy and dissipates none, so it has no part in the motion. It does need a source that supplies it: C
+// The capacitor stores energy and dissipates none, so it does not affect the motion. Its source has to supply the energy: C
 // V^2/2 for every rise from 0 V to V. The usual amplifier dissipates the energy that comes back when the voltage falls, so
 // nothing is subtracted.
 #pragma once

@@ -29,13 +29,13 @@ struct EvenRange {
 
 /// Returns the range of quadrature points between two positions along the structure [m].
 [[nodiscard]] PointRange points_in(const Eigen::ArrayXd& positions, double begin, double end);
-/// Returns ranges of quadrature points between two positions along the structure, each with constant sizes of the structure. A
+/// Returns ranges of quadrature points between two positions along the structure, each with constant width and thickness. A
 /// uniform structure has one range; when the width changes along the structure each point is a separate range.
 [[nodiscard]] std::vector<EvenRange> even_ranges(const Structure& structure, const Eigen::ArrayXd& positions, double begin,
                                                  double end);
 
-/// Returns a force law that acts on a range of quadrature points; `floor` is the gap below which the tangent of the law
-/// continues it [m].
+/// Returns a force law that acts on a range of quadrature points, hidden behind DistributedLaw; below the gap `floor` [m] it is
+/// continued by its tangent.
 template <class Law>
 std::shared_ptr<const DistributedLaw> erased(Law law, PointRange range, double floor) {
   return std::make_shared<const DistributedLawOf<Law>>(law, range.begin, range.end, floor);

@@ -27,7 +27,8 @@ class PointQuadrature {
   [[nodiscard]] Eigen::Index points() const { return weights_.size(); }
   [[nodiscard]] const Eigen::ArrayXd& positions() const { return positions_; }  ///< positions of the quadrature points [m]
   [[nodiscard]] const Eigen::ArrayXd& weights() const { return weights_; }      ///< weights of the quadrature points [m]
-  /// Returns the gaps at rest at the quadrature points; the idle points after them have the largest gap [m].
+  /// Returns the gaps at rest at the quadrature points [m]; the idle points after them, which fill the last block, have the
+  /// largest gap.
   [[nodiscard]] const Eigen::ArrayXd& rest_gaps() const { return rest_gaps_; }
   /// Returns the mode shapes at the quadrature points, one row per point, then rows of zero motion that fill the last block
   /// [kg^(-1/2)].
@@ -62,8 +63,8 @@ class PointQuadrature {
     }
     return (sum[0] + sum[1]) + (sum[2] + sum[3]);
   }
-  /// Computes derivatives of the modal forces by modal coordinates from the derivatives `slopes` of the load by the local
-  /// deflection of the beam. `load` is scratch memory.
+  /// Computes the derivatives of the modal forces by the modal coordinates from `slopes`, the derivatives of the load by the
+  /// deflection at each point. `load` is scratch memory.
   void project_slopes(const Eigen::ArrayXd& slopes, Eigen::ArrayXd& load, Eigen::Ref<Eigen::MatrixXd> by) const;
 
   static constexpr Eigen::Index block = lanes;  ///< number of quadrature points that are handled at once

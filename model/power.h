@@ -26,7 +26,7 @@ requires std::same_as<S, double> || LaneOfNumbers<S>
   static constexpr double shift = 6755399441055744.0;
   constexpr auto one = std::bit_cast<std::int64_t>(1.0), low_root = std::bit_cast<std::int64_t>(0.70710678118654752440);
   const S m = one_by_one(x, [](double number) {
-    // With x = 2^e m, the exponent bits of `above` hold e, the other bits the excess of m over sqrt(1/2).
+    // With x = 2^e m, the integer `above` holds e in its exponent bits, and the excess of m over sqrt(1/2) in the other bits.
     const std::int64_t above = std::bit_cast<std::int64_t>(number) - low_root;
     return std::bit_cast<double>((above & 0xFFFFFFFFFFFFF) + low_root);
   });

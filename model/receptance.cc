@@ -11,8 +11,9 @@
 namespace softland {
 namespace {
 
-// Integrals over [-1, 1] of products of a beam element's motions, and of the products of their slopes. The motions are 1, 1 +
-// xi, and the shape functions, sqrt(m + 1/2) times the integrals of the Legendre polynomials P_m.
+// Integrals over xi in [-1, 1] of products of a beam element's motions, and of products of their slopes. The motions are those
+// of the rigid element, 1 and 1 + xi, and the shape functions: sqrt(m + 1/2) times the second integrals of the Legendre
+// polynomials P_m.
 struct ElementProducts {
   static constexpr int size = 2 + element_functions;
   using Row = Eigen::Matrix<double, 1, size>;
@@ -42,12 +43,12 @@ struct ElementProducts {
   }
 };
 
-// Returns whether the product of two motions has an integral: shape functions with the right end at rest are even or odd, and
-// the integral of an even times an odd function is 0.
+// Returns false when the integral of the product of the motions i and j is 0 by symmetry: shape functions that leave the right
+// end at rest (from index 4 on) are even or odd.
 constexpr bool act_on_each_other(int i, int j) { return i < 4 || j < 4 || (i - j) % 2 == 0; }
 
-// Values at the right end of an element: 1, 2 and the factors of the first two shape functions in its deflection, and in half
-// its rotation.
+// At the right end of an element, xi = 1: deflections by the first two shape functions, and the slope by xi of the first one.
+// The slope of the second one is 0 there.
 const double first_at_end = std::sqrt(2.0), second_at_end = -std::sqrt(2.0 / 3), first_turn = std::sqrt(2.0);
 
 }  // namespace
@@ -157,8 +158,8 @@ void Receptance::load(double x) {
   }
 }
 
-// Adds the stiffness [deflection, both, slope] and the force of the beam beyond an element's right end to the element's
-// motions.
+// Adds the stiffness and force of the beam beyond an element's right end to the element's motions. `force` acts on deflection
+// and slope of this end; `stiffness` has the terms deflection-deflection, deflection-slope and slope-slope.
 void Receptance::add_beyond(Stage& stage, const ElementKind& kind, const Lane* stiffness, const Lane* force) const {
   const double deflection[kept] = {1, 2, kind.reach * first_at_end, kind.reach * second_at_end};
   const double slope[kept] = {0, 1 / kind.half, kind.reach * first_turn / kind.half, 0};
@@ -170,13 +171,13 @@ void Receptance::add_beyond(Stage& stage, const ElementKind& kind, const Lane* s
   }
 }
 
-// Holds the right end of the last element at rest: the factors of the first two shape functions then follow from the motion of
-// the left end, since these functions alone move the right end.
+// Clamps the right end of the last element. Only the first two shape functions move this end, so their factors follow from the
+// motion of the left end.
 void Receptance::fix_end(Stage& stage, const ElementKind& kind) const {
   const double first = -1 / (kind.reach * first_turn), second = -1 / (kind.reach * second_at_end);
   auto& f = stage.form;
   auto& p = stage.load;
-  // The factors of the first two shape functions are s_0 = first * rotation and s_1 = second * (deflection + rotation).
+  // Substitute the factors of the first two shape functions, s_0 = first * rotation and s_1 = second * (deflection + rotation).
   const Lane f00 = f[0][0] + 2 * second * f[3][0] + second * second * f[3][3];
   const Lane f10 = f[1][0] + first * f[2][0] + second * (f[3][0] + f[3][1] + first * f[3][2]) + second * second * f[3][3];
   const Lane f11 = f[1][1] + 2 * first * f[2][1] + 2 * second * f[3][1] + first * first * f[2][2] + 2 * first * second * f[3][2] +
@@ -200,8 +201,8 @@ void Receptance::sweep_to_clamp(Answer& answer) {
       fix_end(stage, kind);
     } else {
       add_beyond(stage, kind, stiffness, force);
-      // Eliminate two shape functions at once: one of them alone may have a zero pivot although no pole of the receptance is
-      // near.
+      // Eliminate the first two shape functions together: one of them alone may have a zero pivot at a frequency that is far
+      // from every pole of the receptance.
       auto& f = stage.form;
       const Lane determinant = f[2][2] * f[3][3] - f[3][2].square(), over = determinant.inverse();
       stage.inverse[0] = f[3][3] * over;

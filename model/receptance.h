@@ -60,22 +60,22 @@ class Receptance {
   [[nodiscard]] Eigen::VectorXd motion(Eigen::Index lane) const;
 
  private:
-  // Number of motions of an element: two of its left end, then its shape functions.
+  // Number of motions of an element: deflection and rotation with its left end, then its shape functions.
   static constexpr int size = 2 + element_functions;
   static constexpr int kept = 4;  // number of motions of an element that move its right end
-  // Elements with equal size and section share their quadratic form of elastic less kinetic energy, a lower triangle. The rows
-  // of the form beyond `kept` are eliminated.
+  // Elements of equal size and section share their quadratic form of elastic less kinetic energy, a lower triangle, from which
+  // the motions from index `kept` on are eliminated.
   struct ElementKind {
     double half = 0, rigidity = 0, mass = 0;
     double reach = 0;  // deflection of a shape function of unit energy, over that of the dimensionless function
     Lane form[size][size];
     Lane inverse[size];          // inverse pivots of the element's elimination
-    Lane negative, least_pivot;  // number of negative pivots, and smallest pivot of the elimination
+    Lane negative, least_pivot;  // number of negative pivots, and smallest pivot, in this elimination
 
     [[nodiscard]] bool holds(const BeamElement& e) const;
   };
-  // The first `kept` rows of the quadratic form (elastic less kinetic energy) and load of an element together with all elements
-  // beyond it.
+  // Quadratic form (elastic less kinetic energy) and load of an element together with all elements towards the far end, for the
+  // first `kept` motions of the element.
   struct Stage {
     std::size_t kind = 0;
     Lane form[kept][kept];
