@@ -124,8 +124,8 @@ struct Surface {
   ResidualLoad cantilever_load = ResidualLoad::none;  ///< effect of the residual surface stress on a cantilever
 };
 
-/// The conditions for the electrical connection (the signal path through the contacts) to count as closed. Electrical closing
-/// is not evaluated when no number is given.
+/// The conditions for the electrical connection (the signal path through the contacts) to count as closed. Without bounds of
+/// force and resistance the connection is closed while its contacts touch.
 struct ElectricalClosing {
   /// Contact force that a closed connection exceeds [N]; NaN: no bound.
   double force = std::numeric_limits<double>::quiet_NaN();

@@ -76,8 +76,8 @@ class LinearizedClosing {
   };
 
   /// Linearises a closing under these drive signals that was simulated with restart_at_contact and recorded in `tape`. Keeps
-  /// references to its arguments. `refinement` is the least number of parts of a step. `by_device` gives the derivatives of the
-  /// switch by the parameters, as many as those of the signals; null when the parameters do not change the switch.
+  /// references to its arguments. A step has at least `refinement` parts. `by_device` gives the derivatives of the switch by
+  /// the parameters, as many as those of the signals; null when the parameters do not change the switch.
   LinearizedClosing(const Switch& model, std::span<const Signal> signals, const RecordedMotion& tape, int refinement = 1,
                     SwitchSlopes* by_device = nullptr);
 
@@ -171,7 +171,7 @@ class LinearizedClosing {
   double fastest_;  // angular frequency of the fastest mode [rad/s]
   Switch::Workspace work_;
   int refinement_;
-  std::vector<std::vector<std::size_t>> pieces_;  // for every breakpoint the index of the signal piece of each drive
+  std::vector<std::vector<std::size_t>> pieces_;  // index of each drive's signal piece, a set per breakpoint
   std::vector<Arc> arcs_;
   std::vector<PhaseEvent> passages_;
 

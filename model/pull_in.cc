@@ -33,7 +33,7 @@ class StepTrial {
 
   [[nodiscard]] bool has_rest() const { return rest_.has_value(); }
   // Returns true when a step of the drive to `value` reaches the contact plane. Calls tell(share) from time to time with the
-  // elapsed share of the simulated time.
+  // elapsed share of the simulated time, for progress reports.
   template <class Tell>
   bool reaches(double value, const std::atomic<bool>* stop, Tell&& tell) {
     std::vector<double> all = bias_;
@@ -65,10 +65,10 @@ class StepTrial {
     double deflection, potential;
   };
 
-  // Returns the energy barrier of a step of the drive to `value`: the unstable equilibrium between rest and contact plane, or
-  // the state held at the plane if the plane comes first. Damping only reduces the energy, and no shape with this deflection of
-  // the contact point has less energy. So a run whose energy falls below the barrier before it gets there never reaches the
-  // plane.
+  // Returns energy and deflection of the barrier of a step of the drive to `value`. The barrier is the unstable equilibrium
+  // between rest and contact plane, or the state held at the plane if the plane comes first. No state with this deflection of
+  // the contact point has less energy, and damping only reduces the energy. So a run whose energy falls below that of the
+  // barrier before the contact point is there never reaches the plane.
   Pass pass(double value, std::span<const double> all) {
     const double plane = model_.contact_gap(), strength = model_.strength(drive_, value);
     if (static_.kind == StaticKind::fold && branch_(plane) < strength) {
@@ -101,7 +101,7 @@ std::string_view to_string(StaticKind kind) { return kind == StaticKind::fold ? 
 
 StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias) {
   if (!pulls_in(model.device(), drive)) return {.status = Status::no_contact};
-  // The branch of equilibria of an electrode begins at the equilibrium without the electrode's field; the branch of the
+  // The branch of equilibria of an electrode begins at its neutral voltage, where its field vanishes; the branch of the
   // dispersion force begins at force factor 0.
   std::vector<double> at_begin = standing(model, drive, bias);
   if (model.neutral_voltage(drive) != 0 && !model.open_equilibrium(at_begin)) return {.status = Status::collapsed_at_rest};
@@ -170,8 +170,7 @@ ReleasePoint release_point(const Switch& model, std::size_t drive, Bias bias) {
   follow_to_plane(branch, plane);
   if (model.rigid_contact() != nullptr) return released(branch(plane), plane);
   if (model.contact_reach() > 0) {
-    // Number of depths at which a second minimum of the voltage is sought: adhesion at larger depth may cause a minimum lower
-    // than the first.
+    // Number of depths at which a lower second minimum of the voltage is sought: adhesion at larger depth may cause one.
     constexpr int looks = 256;
     const double step = largest_interference(model.device().contacts.front().model) / looks;
     double best = branch(plane), at = 0;
@@ -185,8 +184,7 @@ ReleasePoint release_point(const Switch& model, std::size_t drive, Bias bias) {
         boost::math::tools::brent_find_minima([&](double x) { return branch(plane + x * step); }, low, at / step + 1, 30);
     return value < best ? released(value, plane + depth * step) : released(best, plane + at);
   }
-  // The contact is soft at first touch, so the strength of the drive may still fall beyond the plane before the contact force
-  // makes it rise.
+  // The contact is soft at first touch, so the least voltage may lie beyond the plane, where the contact force makes it rise.
   const auto lowest = first_minimum([&](double depth) { return branch(plane + depth); }, model.penetration_scale() / 16);
   return lowest ? released(lowest->value, plane + lowest->depth) : ReleasePoint{};
 }
@@ -201,7 +199,7 @@ std::optional<StablePath> stable_path(const Switch& model, std::size_t drive, Bi
   EquilibriumBranch branch(model, drive, bias);
   const double begin = model.contact_deflection(rest->data()), end = model.contact_gap();
   StablePath path{.deflections = {begin}, .values = {0.0}};
-  double direction = 0;  // value of the drive at the first step; all values must change in the same direction
+  double direction = 0;  // value at the first step; its sign is the direction in which all values must change
   for (int k = 1; k <= steps; ++k) {
     const double s = begin + (end - begin) * k / steps, strength = branch(s);
     if (!std::isfinite(strength) || (model.drive_kind(drive) == DriveKind::electrode && !(strength > 0))) return std::nullopt;
@@ -226,7 +224,7 @@ bool step_closes(const Switch& model, std::size_t drive, double value, Bias bias
 
 namespace {
 
-// Returns true when damping prevents oscillation of the first mode about the open position at rest.
+// Returns true when damping prevents oscillation of the first mode, linearised about the open position at rest.
 bool is_overdamped(const Switch& model) {
   if (!model.rest()) return false;
   const Eigen::Index n = model.modes();
@@ -245,12 +243,12 @@ DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const Stat
   if (static_result.status != Status::done) return {.status = static_result.status};
   StepTrial steps(model, drive, static_result, bias, tolerance);
   if (!steps.has_rest()) return {.status = Status::collapsed_at_rest};
-  // Number of simulated voltage steps: the first one, and those that halve the bracket of the dynamic pull-in voltage.
+  // Expected number of simulated voltage steps: the first one, and those that halve the bracket of the dynamic pull-in voltage.
   const double halvings = 1 + std::log2(0.5 / precision);
   double trials = halvings, done = 0, shown = 0;
   const auto reaches = [&](double value) {
     return steps.reaches(value, progress.stop, [&](double part) {
-      // A bracket of the voltage that has to be extended downwards needs more simulations than expected.
+      // Limit the progress to 1: a bracket that has to be extended downwards needs more simulations than expected.
       shown = std::max(shown, std::min(1.0, (done + part) / trials));
       progress.tell("dynamic pull-in voltage", shown);
     });

@@ -4,12 +4,13 @@
 //
 //   omega_i^2 q_i = V^2 g_i(q) + f_i(q) - phi_i(x_c) P(y(x_c) - dt)
 //
-// f is the dispersion force at factor 1. The deflection of the contact point, which keeps growing through the fold,
-// parametrises the branch of these equilibria; V^2 is an unknown. The factor of the dispersion force takes the place of V^2
-// when that force is the drive.
+// q are modal coordinates; g and f are the modal forces of the electrode at 1 V and of the dispersion force at factor 1. phi_i
+// are mode shapes, y(x_c) is the deflection of the contact point, dt the contact gap, P the contact force. The deflection of
+// the contact point, which keeps growing through the fold, parametrises the branch of these equilibria; V^2 is an unknown. The
+// factor of the dispersion force takes the place of V^2 when that force is the drive.
 //
-// A charge on the dielectric shifts all voltages by V0 = Switch::neutral_voltage(): V above is then V - V0. The functions
-// return the voltage above V0; a voltage V has the same force as 2 V0 - V.
+// A charge on the dielectric shifts all voltages by V0 = Switch::neutral_voltage(): V above is then V - V0. Of the two voltages
+// with the same force, V and 2 V0 - V, the functions return the one above V0.
 #pragma once
 
 #include <limits>
@@ -34,7 +35,7 @@ struct StaticPullIn {
   Status status = Status::not_run;
   double voltage = std::numeric_limits<double>::quiet_NaN();     ///< static pull-in voltage [V]; for dispersion its factor - 1
   double deflection = std::numeric_limits<double>::quiet_NaN();  ///< deflection of the contact point at the pull-in voltage [m]
-  /// Whether the branch of equilibria turns back (fold), or the contact plane comes before the fold.
+  /// Tells whether the branch of equilibria turns back (fold), or reaches the contact plane before it would.
   StaticKind kind = StaticKind::fold;
 };
 

@@ -17,8 +17,8 @@ namespace {
 // for the acting voltage, V - V0 for an electrode whose dielectric is charged.
 constexpr double pull_through_factor = 1.05, pull_through_range = 10;
 
-// Searches for closed equilibria at voltages upwards or downwards from `start`; each voltage is examined independently of the
-// others.
+// Returns the collapse voltage, found upwards or downwards from `start`, with an independent search for the closed equilibrium
+// at each voltage. Returns NaN if the collapse is out of range.
 double pull_through_by_walk(const Switch& model, std::size_t drive, std::vector<double> levels, double start, double precision) {
   const auto holds = [&](double v) {
     levels[drive] = model.neutral_voltage(drive) + v;
@@ -114,7 +114,7 @@ double acting_pull_through(const Switch& model, std::size_t drive, std::span<con
   const auto found =
       keeps_closed(model, closed) ? pull_through_from(model, drive, levels, start, *closed, precision) : std::nullopt;
   if (found) return *found;
-  const bool is_above = start > given;  // the given voltage may still keep the switch closed
+  const bool is_above = start > given;  // the search begins above the given voltage, near the release voltage
   if (is_above && !keeps_closed(model, closed)) {
     const double narrow = pull_through_of_narrow_window(model, drive, levels, release, precision);
     if (std::isfinite(narrow)) return narrow;

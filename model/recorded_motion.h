@@ -42,7 +42,8 @@ class RecordedMotion final : public ClosingObserver {
   void step(const Knot& begin, const Knot& end, const ContactState& contact) override {
     arcs_.push_back({begin.time, end.time, contact});
     for (const Knot* knot : {&begin, &end}) {
-      modes_ = knot->state.size() - knot->rates.size();  // size of q: state has q, v, film; rates has accelerations, film rates
+      // Number of modes; state has q, v, film; rates has accelerations, film rates.
+      modes_ = knot->state.size() - knot->rates.size();
       numbers_.insert(numbers_.end(), knot->state.data(), knot->state.data() + 2 * modes_);
       numbers_.insert(numbers_.end(), knot->rates.data(), knot->rates.data() + modes_);
     }

@@ -2,9 +2,10 @@
 //
 //   F(q, V; p) = 0                      an equilibrium, F static modal accelerations
 //   q_p = -F_q^-1 F_p                   at constant voltages, away from a fold
-//   [F_q  F_l ] [q_p]     [F_p]         at a constant interference d of the contact point, l = strength of the drive that holds
-//   it
-//   [d_q   0  ] [l_p] = - [d_p]
+//   [F_q  F_l ] [q_p]     [F_p]         at a constant interference d of the contact point;
+//   [d_q   0  ] [l_p] = - [d_p]         l is the strength of the drive that holds this point
+//
+// Subscripts are derivatives. q are modal coordinates, V the voltages of the drives, p is a parameter.
 //
 // The pull-in voltage is the largest voltage of the open branch of equilibria, or that at the contact plane; the release
 // voltage is the least of the closed branch. V as a function of the interference has no slope at such an extremum, and at the

@@ -57,7 +57,8 @@ struct MidPlaneStretchingOf {
  private:
   using Coordinates = Eigen::Map<const Eigen::VectorXd>;
 
-  // Returns element i of the matrix of slope products times q; for doubles the compiler handles several elements at once.
+  // Returns element i of G q, the product of the matrix of slope products and q; for doubles the compiler handles several terms
+  // at once.
   template <class S>
   [[nodiscard]] S pull(std::size_t i, const S* q) const {
     const P* column = slopes.data() + i * modes;

@@ -17,9 +17,9 @@
 // with EI y''' = 0 at the end, also found in papers, is a follower force: it has no energy, and is not offered.
 //
 // Valid while the rigidity stays positive. Sources: M. E. Gurtin & A. I. Murdoch 1975, Arch. Ration. Mech. Anal. 57, 291;
-// rigidity: G.-F. Wang & X.-Q. Feng 2007, Appl. Phys. Lett. 90, 231904; J. He & C. M. Lilley 2008, Nano Lett. 8, 1798; no effect
-// in a cantilever: M. E. Gurtin, X. Markenscoff & R. N. Thurston 1976, Appl. Phys. Lett. 29, 529; M. J. Lachut & J. E. Sader
-// 2007, Phys. Rev. Lett. 99, 206102; buckling: G. I. Mikhasev & E. Radi 2025, Int. J. Eng. Sci., 104356.
+// rigidity: G.-F. Wang & X.-Q. Feng 2007, Appl. Phys. Lett. 90, 231904; J. He & C. M. Lilley 2008, Nano Lett. 8, 1798; no
+// effect in a cantilever: M. E. Gurtin, X. Markenscoff & R. N. Thurston 1976, Appl. Phys. Lett. 29, 529; M. J. Lachut & J. E.
+// Sader 2007, Phys. Rev. Lett. 99, 206102; buckling: G. I. Mikhasev & E. Radi 2025, Int. J. Eng. Sci., 104356.
 #pragma once
 
 #include <string>

@@ -38,8 +38,9 @@ void for_faces(const Device& device, const Eigen::ArrayXd& positions, Visit&& vi
 
 // Returns the number of quadrature points over a beam's length that resolve the electric field when the beam first touches a
 // dielectric's face; 0 when the beam cannot close on a face. The beam bends over the face like (g / 2) (1 - cos(2 pi x / L)), g
-// gap at rest, so that the gap H of the field has doubled at a distance of L sqrt(H / g) / pi: six points lie in this distance,
-// which is our choice. Half as many points give an error of the release voltage of 7e-4, measured on one bridge.
+// being the gap at rest. So the gap of the field, least at the touching point with the value H, has doubled at a distance of L
+// sqrt(H / g) / pi from there. We choose six points in this distance; three cause an error of the release voltage of 7e-4,
+// measured on one bridge.
 double points_to_land(const Device& device) {
   if (!device.lands_along_face()) return 0;
   constexpr double points = 6;
@@ -226,7 +227,7 @@ GapField Switch::still_field(const double* q) const {
 }
 
 // Returns the interference at which the contact carries a force, by bisection, since contact forces grow with the interference.
-// The tilt of a pad is that under the same force at the contact point.
+// A contact along the pad has the tilt that the same force at the contact point causes.
 double Switch::penetration_under(double force) const {
   const double plane = contact_gap_;
   const Eigen::VectorXd pushed = basis_.contact_shape().cwiseQuotient(basis_.squares()), still = Eigen::VectorXd::Zero(modes());

@@ -1,7 +1,7 @@
 // The switch as a system of ordinary differential equations in modal coordinates.
 //
-//   q_i'' = -omega_i^2 q_i - 2 zeta omega_i q_i' + V_piezo theta_i + sum over points p of w_p phi_i(x_p) f(x_p) - phi_i(x_c) P(d)
-//           + Q_i(q)
+//   q_i'' = -omega_i^2 q_i - 2 zeta omega_i q_i' + V_piezo theta_i + sum over points p of w_p phi_i(x_p) f(x_p)
+//           - phi_i(x_c) P(d) + Q_i(q)
 //
 // q are modal coordinates [m kg^(1/2)], phi mass-normalised modes [kg^(-1/2)], f is the load per length of all distributed laws
 // [N/m], w are quadrature weights [m], theta_i = M_p [phi_i'(Lp2) - phi_i'(Lp1)] with M_p the piezo moment per volt, P is the
@@ -55,7 +55,7 @@ struct SwitchOptions {
 /// other contact then has the state of first loading while it is within the reach of its law.
 struct ContactStates {
   ContactStates(const ContactState& first_one) : first(first_one) {}  // NOLINT: implicit, as most switches have one contact
-  ContactStates(std::same_as<bool> auto acts) : first(acts) {}        // NOLINT: implicit; most laws need to know no more
+  ContactStates(std::same_as<bool> auto acts) : first(acts) {}  // NOLINT: implicit; most laws depend only on whether they act
   ContactStates(const ContactState& first_one, std::span<const ContactState> others) : first(first_one), further(others) {}
 
   ContactState first;
@@ -162,7 +162,7 @@ class Switch {
   void rates(const double* state, std::span<const double> volts, const ContactStates& contacts, Workspace& work,
              double* result) const;
   /// Computes the modal forces of the drives at unit strength (of the piezo: per volt), modes x drives, in the gap field that
-  /// was last computed with `work`, whose load this function overwrites.
+  /// was last computed with `work`. Overwrites the load in `work`.
   void drive_forces(Workspace& work, Eigen::Ref<Eigen::MatrixXd> by_strength) const;
   /// Computes the derivatives of the modal accelerations with respect to modal coordinates q and velocities v: modes x modes
   /// each.
@@ -249,8 +249,8 @@ class Switch {
   /// Computes modal basis and quadrature from the modes of the structure.
   template <class Modes>
   void set_modes(const Modes& structure, double points_per_length, int fewest_points, const Switch* like);
-  /// Calls f(xi, share, interference) for every point at which the first contact acts, with the distance xi from the contact
-  /// point towards the clamp [m].
+  /// Calls f(xi, share, interference) for every point at which the first contact acts. xi is the distance from the contact
+  /// point towards the clamp [m], `share` the quadrature weight over the pad (1 for a contact at one point).
   template <class F>
   void for_contact_points(const double* q, F&& f) const;
   /// Returns the velocity of the first contact's pad towards the contact plane, at the distance xi from the contact point
@@ -303,7 +303,7 @@ class Switch {
   std::shared_ptr<const ReynoldsFilm> film_;
   std::optional<MidPlaneStretching> stretching_;
   std::optional<Eigen::VectorXd> rest_;
-  // Largest gap to the near electrode, for a switch with an electrode or film on the far side [m].
+  // Largest valid gap to the near electrode, from which the beam is too close to an electrode or film wall on the far side [m].
   double most_gap_ = std::numeric_limits<double>::infinity();
   double contact_gap_ = 0;  // distance of the first contact from its plane at rest [m]
   double penetration_scale_ = 0;

@@ -47,8 +47,9 @@ class SwitchSlopes {
   [[nodiscard]] double interference(std::size_t j, const double* q) const;
   /// Returns the derivative by parameter j of the contact point's velocity at fixed modal velocities v [m/s per unit].
   [[nodiscard]] double velocity(std::size_t j, const double* v) const;
-  /// Returns the derivative by parameter j of the interference at which the contact law changes its branch [m per unit]: 0 for
-  /// the contact plane and for the end of a dent, where no force begins; otherwise that of the law's reach or kink.
+  /// Returns the derivative by parameter j of the interference at which the contact law changes from one of its curves to
+  /// another [m per unit]. It is 0 for the contact plane and for the end of a dent, where no force begins, and otherwise that of
+  /// the law's reach or kink.
   [[nodiscard]] double edge(std::size_t j, double interference) const;
   /// Returns the derivative by parameter j of a function f(law) of the contact law.
   template <class F>
@@ -56,8 +57,8 @@ class SwitchSlopes {
     const Neighbours& n = neighbours_[j];
     return (f(n.above.contact()) - f(n.below.contact())) / n.distance;
   }
-  /// Returns the derivative by parameter j of a figure of the whole switch, f(switch, step); `step` is the parameter of the
-  /// switch that f receives less the parameter of `model`.
+  /// Returns the derivative by parameter j of a figure of the whole switch, f(switch, step). f receives a neighbouring switch,
+  /// and the difference of its parameter to that of `model`.
   template <class F>
   [[nodiscard]] auto of_switch(std::size_t j, F&& f) const {
     const Neighbours& n = neighbours_[j];

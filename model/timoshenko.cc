@@ -77,7 +77,7 @@ std::vector<double> frequency_excess(const Structure& s) {
     return left.transpose() * weights.asDiagonal() * right;
   };
   const Eigen::Index n = functions;
-  // Matrices in units of bending stiffness E I / L and of the inertia that belongs to it.
+  // Matrices for deflection / L and rotation: stiffness in units of E I / L, mass in units of rho A L^3.
   Eigen::MatrixXd stiffness(2 * n, 2 * n), mass = Eigen::MatrixXd::Zero(2 * n, 2 * n);
   stiffness.topLeftCorner(n, n) = integral(b.slopes, b.slopes) / shear;
   stiffness.topRightCorner(n, n) = -integral(b.slopes, b.values) / shear;

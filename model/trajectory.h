@@ -97,8 +97,8 @@ struct Trajectory {
   /// True when the run began in contact (ClosingOptions::start, begins_closed), so that the drives did not cause the first
   /// touch.
   bool began_closed = false;
-  /// Position of the contact point in an equilibrium of the StartState (open or closed) that was not requested, when the
-  /// requested equilibrium does not exist [m].
+  /// Position of the contact point in the other equilibrium (closed when open was requested, and vice versa), if the requested
+  /// equilibrium does not exist but the other does [m].
   double other_start = std::numeric_limits<double>::quiet_NaN();
   bool ends_at_touch = false;  ///< true when the run ended at its first touch because the switch has no contact law
   double contact_gap = 0;      ///< distance of the contact point from the plane of first touch at rest [m]
@@ -123,8 +123,8 @@ struct Trajectory {
   /// on a rigid contact have dissipated until then.
   double landing_excess = std::numeric_limits<double>::quiet_NaN();
   double deepest_penetration = 0;  ///< largest penetration of the contact [m]
-  /// Time from which to the end of the run the contact force is not below ClosingOptions::steady_force [s]. NaN when the force
-  /// is below steady_force at the end, without a touch, and when no steady force was given.
+  /// Time from which the contact force stays at or above ClosingOptions::steady_force until the end of the run [s]. NaN when
+  /// the force is below steady_force at the end, without a touch, and when no steady force was given.
   double steady_force_time = std::numeric_limits<double>::quiet_NaN();
   /// Least contact force from its first maximum after the first touch to the end of the run; the force at the end when the
   /// force only rises [N]. NaN without a touch.
