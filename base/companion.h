@@ -1,4 +1,4 @@
-// Companions of a database: the files that SQLite has beside an open database, and the lock file of a study's database file.
+// Companions of a database: the files that SQLite has beside an open database, and the lock file that a run puts beside it.
 #pragma once
 
 #include <array>

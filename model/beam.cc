@@ -23,8 +23,8 @@ constexpr int functions = element_functions;
 constexpr int shortest_count = 6;     // least number of elements over the length of a beam
 constexpr double least_pivot = 2e-3;  // least pivot in the elimination of the receptance: small pivots magnify rounding
 
-// Returns combinations of the shape functions that the supports of the beam permit, orthonormal in the elastic energy. `end`
-// has values and slopes of the shape functions at the far end; `slopes` has the integrals of products of their slopes.
+// Returns combinations of the shape functions that the supports of the beam permit, orthonormal in the elastic energy. The
+// shape functions have the values and slopes `end` at the far end, and `slopes` has the integrals of products of their slopes.
 Eigen::MatrixXd permitted(const NormalisedModes::Beam& beam, const Eigen::MatrixXd& end, const Eigen::MatrixXd& slopes) {
   Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(slopes.rows(), slopes.rows());
   if (beam.far_clamp) basis = orthogonal_complement(end);

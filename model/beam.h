@@ -85,14 +85,14 @@ class NormalisedModes {
   // Iterates Rayleigh quotients from the frequencies of the similar beam `near`. Returns false when the modes found may not be
   // those of lowest frequency.
   [[nodiscard]] bool follow(const NormalisedModes& near);
-  // Returns a position on the beam at which no mode has a node.
+  // Returns a position on the beam at which no mode has a node, for the receptance.
   [[nodiscard]] double moving_place() const;
   // Returns the values (derivative 0) or slopes (derivative 1) of all shape functions, at x in units of the beam's length, or
   // at xi in [-1, 1] over an element.
   [[nodiscard]] Eigen::RowVectorXd shape(double x, int derivative) const;
   [[nodiscard]] Eigen::RowVectorXd shape(const BeamElement& element, double xi, int derivative) const;
-  // Returns combinations of the shape functions that the supports of the beam permit, orthonormal in its elastic energy. `end`
-  // has values and slopes of the shape functions at the far end; `slopes` has the integrals of products of their slopes.
+  // Returns combinations of the shape functions that the supports of the beam permit, orthonormal in its elastic energy. The
+  // shape functions have the values and slopes `end` at the far end; `slopes` has the integrals of products of their slopes.
   [[nodiscard]] Eigen::MatrixXd permitted_motions(const Eigen::MatrixXd& end, const Eigen::MatrixXd& slopes) const;
   // Makes the mode shapes positive at a free end; between two clamps, positive near x = 0.
   void orient();

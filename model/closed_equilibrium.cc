@@ -101,7 +101,7 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(model.modes());
   const Eigen::VectorXd compliance = model.basis().angular_frequencies().cwiseInverse();
   const double depth = model.device().dielectric_depth();
-  // A contact at a point exerts no force when the beam does not touch it.
+  // A contact at a point exerts no force while the beam does not touch the contact.
   const auto contact_at = [&](const Eigen::VectorXd& at) -> ContactState {
     return model.has_spread_contact() || model.contact_deflection(at.data()) > model.contact_gap() - model.contact_reach();
   };

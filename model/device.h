@@ -179,7 +179,7 @@ struct Device {
   /// Returns the contact law of the dielectrics' faces, which is the same for all dielectrics with a `landing`; null when none
   /// has one.
   [[nodiscard]] const Landing* landing() const;
-  /// Returns the number of the contact along the face of the electrodes' dielectric; none when no dielectric has a landing.
+  /// Returns the index of the contact along the face of the electrodes' dielectric; none when no dielectric has a landing.
   [[nodiscard]] std::optional<std::size_t> face_contact() const;
   [[nodiscard]] bool lands_along_face() const { return face_contact().has_value(); }
   /// Returns true when the moving part closes onto the dielectric of its electrodes, to within a hundredth of the electrode's
@@ -208,7 +208,7 @@ struct Device {
 
 /// An electrode that overlaps other electrodes, and the reason for the conflict.
 struct ElectrodeConflict {
-  std::size_t electrode = 0;  ///< number of the conflicting electrode
+  std::size_t electrode = 0;  ///< index of the conflicting electrode
   std::string why;
 };
 /// Returns a conflict of electrodes; none when all electrodes fit. Electrodes on one side of a beam must not overlap.
@@ -219,7 +219,7 @@ struct ElectrodeConflict {
 
 /// A contact that a device cannot have together with its other contacts, and the reason.
 struct ContactConflict {
-  std::size_t contact = 0;  ///< number of the conflicting contact
+  std::size_t contact = 0;  ///< index of the conflicting contact
   std::string why;
 };
 /// Returns a conflict of contacts; none when all contacts fit. The first contact must be on the near side, two contacts on one

@@ -18,8 +18,8 @@ std::optional<Eigen::VectorXd> Switch::open_equilibrium(std::span<const double> 
   return loaded_equilibrium(values);
 }
 
-// Finds the open equilibrium with one run of Newton's method if possible, otherwise with a run for each increment of the load:
-// a beam that stretches is far stiffer when bent than the first step of Newton's method predicts.
+// Finds the open equilibrium with one run of Newton's method if possible, otherwise with a run for each increment of the load.
+// Increments are necessary because a beam that stretches is far stiffer when bent than Newton's first step predicts.
 std::optional<Eigen::VectorXd> Switch::loaded_equilibrium(std::span<const double> values) const {
   Eigen::VectorXd q = Eigen::VectorXd::Zero(modes());
   if (std::optional<Eigen::VectorXd> found = equilibrium_from(q, values)) return found;

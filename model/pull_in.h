@@ -4,10 +4,10 @@
 //
 //   omega_i^2 q_i = V^2 g_i(q) + f_i(q) - phi_i(x_c) P(y(x_c) - dt)
 //
-// q are modal coordinates; g and f are the modal forces of the electrode at 1 V and of the dispersion force at factor 1. phi_i
-// are mode shapes, y(x_c) is the deflection of the contact point, dt the contact gap, P the contact force. The deflection of
-// the contact point, which keeps growing through the fold, parametrises the branch of these equilibria; V^2 is an unknown. The
-// factor of the dispersion force takes the place of V^2 when that force is the drive.
+// The q_i are modal coordinates, g_i modal forces of the electrode at 1 V, f_i those of the dispersion force at factor 1. The
+// phi_i are mode shapes, y(x_c) is the deflection of the contact point, dt the contact gap, P the contact force. The deflection
+// of the contact point, which keeps growing through the fold, parametrises the branch of these equilibria; V^2 is an unknown.
+// The factor of the dispersion force takes the place of V^2 when that force is the drive.
 //
 // A charge on the dielectric shifts all voltages by V0 = Switch::neutral_voltage(): V above is then V - V0. Of the two voltages
 // with the same force, V and 2 V0 - V, the functions return the one above V0.

@@ -158,8 +158,8 @@ void Receptance::load(double x) {
   }
 }
 
-// Adds the stiffness and force of the beam beyond an element's right end to the element's motions. `force` acts on deflection
-// and slope of this end; `stiffness` has the terms deflection-deflection, deflection-slope and slope-slope.
+// Adds the stiffness and force of the beam beyond an element's right end to the element's motions. The force acts on deflection
+// and slope of this end; the stiffness has the terms deflection-deflection, deflection-slope and slope-slope.
 void Receptance::add_beyond(Stage& stage, const ElementKind& kind, const Lane* stiffness, const Lane* force) const {
   const double deflection[kept] = {1, 2, kind.reach * first_at_end, kind.reach * second_at_end};
   const double slope[kept] = {0, 1 / kind.half, kind.reach * first_turn / kind.half, 0};

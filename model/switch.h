@@ -249,8 +249,8 @@ class Switch {
   /// Computes modal basis and quadrature from the modes of the structure.
   template <class Modes>
   void set_modes(const Modes& structure, double points_per_length, int fewest_points, const Switch* like);
-  /// Calls f(xi, share, interference) for every point at which the first contact acts. xi is the distance from the contact
-  /// point towards the clamp [m], `share` the quadrature weight over the pad (1 for a contact at one point).
+  /// Calls f(xi, share, interference) for every point at which the first contact acts. The distance from the contact point
+  /// towards the clamp is xi [m]; `share` is the quadrature weight over the pad (1 for a contact at one point).
   template <class F>
   void for_contact_points(const double* q, F&& f) const;
   /// Returns the velocity of the first contact's pad towards the contact plane, at the distance xi from the contact point
@@ -298,7 +298,7 @@ class Switch {
   std::shared_ptr<const PadQuadrature> pad_;  // quadrature over the contact pad; null unless the contact acts along its pad
   // Pressure of a contact along the face of a dielectric; null without such a contact.
   std::shared_ptr<const DistributedLaw> face_;
-  std::size_t face_at_ = std::numeric_limits<std::size_t>::max();  // number of the contact along the face of a dielectric
+  std::size_t face_at_ = std::numeric_limits<std::size_t>::max();  // index of the contact along the face of a dielectric
   std::shared_ptr<const GasLaw> gas_;
   std::shared_ptr<const ReynoldsFilm> film_;
   std::optional<MidPlaneStretching> stretching_;

@@ -48,8 +48,8 @@ class SwitchSlopes {
   /// Returns the derivative by parameter j of the contact point's velocity at fixed modal velocities v [m/s per unit].
   [[nodiscard]] double velocity(std::size_t j, const double* v) const;
   /// Returns the derivative by parameter j of the interference at which the contact law changes from one of its curves to
-  /// another [m per unit]. It is 0 for the contact plane and for the end of a dent, where no force begins, and otherwise that of
-  /// the law's reach or kink.
+  /// another [m per unit]. It is 0 for the contact plane and for the end of a dent, where no force begins. Otherwise it is that
+  /// of the law's reach or kink.
   [[nodiscard]] double edge(std::size_t j, double interference) const;
   /// Returns the derivative by parameter j of a function f(law) of the contact law.
   template <class F>

@@ -17,7 +17,7 @@ std::vector<Rebound> rebounds(const Trajectory& trajectory) {
 
 void LandingFigures::touch(const Touch& touch) {
   touched_ = true;
-  // The peak force must be NaN when a touch has NaN; std::max would lose it.
+  // The peak force of the run must be NaN when that of a touch is NaN (rigid contact); std::max would drop the NaN.
   if (std::isnan(touch.peak_force) || touch.peak_force > peak_force_) peak_force_ = touch.peak_force;
   impact_energy_ += touch.peak_energy;
   largest_impact_velocity_ = std::max(largest_impact_velocity_, touch.impact_velocity);
