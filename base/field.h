@@ -51,7 +51,7 @@ struct Field {
   std::string_view beyond = {};      ///< advice for a value outside the range; with advice, only scene files check the range
   std::string_view why_fixed = {};   ///< reason why process variation cannot vary this field; empty where it can
   std::string_view if_list = {};     ///< advice in the message when a scene file gives a list instead of a number
-  std::vector<std::string_view> (*words)() = nullptr;    ///< returns the words that a scene file may give; null for other fields
+  std::vector<std::string_view> (*words)() = nullptr;    ///< returns the words that a scene file may give; null if none
   void (*choose)(Owner&, std::string_view) = nullptr;    ///< sets the member of the struct to the enumerator that a word names
   std::string_view refused_word = {}, why_refused = {};  ///< word that users may expect for this field, and why it is refused
 };

@@ -12,8 +12,8 @@
 
 namespace softland {
 
-/// The uses of random numbers. The number of each use keeps the streams of one seed apart. It must not change: the same
-/// seed would give other results.
+/// The uses of random numbers. The number of each use keeps the streams of one seed apart. It must not change:
+/// otherwise the same seed would give other results.
 enum class Stream : std::uint64_t {
   sobol_shift = 1,
   skew = 2,

@@ -34,8 +34,8 @@ void require(bool rule_holds, Message&& message, std::source_location where = st
   if (!rule_holds) throw InvalidInput(message(), where);
 }
 
-/// Returns the name of an option of a computation between two control characters. with_fields() later replaces the first by
-/// the prefix that the option has for the user, such as "--".
+/// Returns the name of an option of a computation between two control characters. with_fields() later removes them, and
+/// puts the prefix that the option has for the user, such as "--", in front of the name.
 [[nodiscard]] inline std::string requested(std::string_view field) { return '\x02' + std::string(field) + '\x03'; }
 
 /// Returns the text with `before` in front of each field name that requested() has marked: "--" for a command line, "" for a

@@ -38,8 +38,8 @@ Eigen::MatrixXd permitted(const NormalisedModes::Beam& beam, const Eigen::Matrix
   return basis;
 }
 
-// Returns the bending energy that a rigidity 1 + xi, xi in [-1, 1], adds between the shape functions m and m + 1 of an element:
-// the integral of xi times two neighbours of the normalised Legendre polynomials.
+// Returns the bending energy that the linear part of a rigidity 1 + xi, xi in [-1, 1], adds between the shape functions m and
+// m + 1 of an element: the integral of xi times two neighbours of the normalised Legendre polynomials.
 double taper_coupling(int m) { return (m + 1) / std::sqrt((2 * m + 1.0) * (2 * m + 3.0)); }
 
 // The phase of a mode over the beam, as if the mode were a travelling bending wave, and the growth of the phase with omega^2.
@@ -101,7 +101,7 @@ double general_pinned_inverse_square(const Eigen::RowVectorXd& deflections, cons
 }
 
 // Returns true when the modes of the beam `known` serve for `beam`. Beams on springs or with linear sections may differ by
-// rounding, as when all sections become thicker by one factor, since their modes always take a full search.
+// rounding, as when all sections become thicker by one factor: their modes would take a full search again.
 bool is_known(const NormalisedModes::Beam& beam, const NormalisedModes::Beam& known) {
   if (beam == known) return true;
   if (!beam.is_general() || !known.is_general() || beam.modes != known.modes || beam.far_clamp != known.far_clamp ||

@@ -93,8 +93,8 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
   constexpr double longest = 0.05, shortest = 1e-9;  // limits of the largest change of a gap in a step, as shares of this gap
   constexpr double least_gap = 0.25;                 // least gap in this limit, over the dielectric's equivalent depth
   constexpr double rounding = 1e-12;                 // relative change of the potential energy that counts as rounding
-  // Least eigenvalue of the stiffness over that of the modes alone; change of a gap over its limit below which a state is a
-  // saddle.
+  // Least eigenvalue of the stiffness in a Newton step, over that of the modes alone; step over its limit below which a state
+  // with a negative eigenvalue is a saddle.
   constexpr double least_stiffness = 1e-9, at_saddle = 1e-2;
   Statics statics(model);
   Switch::Workspace work = model.workspace();

@@ -19,7 +19,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double longest_angle = 2.5;  // bound of duration times norm of A (linearised equations) in a part
+constexpr double longest_angle = 2.5;  // bound of a part: its duration times the norm of the matrix A of the equations
 constexpr int most_parts = 4096;       // largest number of parts into which an integration step is divided
 constexpr int parts_at_edge = 6;       // number of parts of an integration step at whose begin or end a contact closes or opens
 constexpr Index lane_size = lanes;
@@ -193,7 +193,7 @@ void LinearizedClosing::linearize_step() {
   add_parts(step, contact.active && after_edge, contact.active && before_edge);
 }
 
-// Computes the derivative of the rest position at the start by each device parameter, at which the static forces remain 0.
+// Computes the derivative of the rest position at the start by each device parameter: the shift that keeps static forces at 0.
 void LinearizedClosing::begin_at_rest() {
   rest_ = MatrixXd::Zero(size_, moving_);
   const std::vector<double> before = values_before(signals_);

@@ -185,7 +185,7 @@ class LinearizedClosing {
   std::vector<Jump> jumps_;
   Eigen::MatrixXd rest_;  // derivatives of the rest position at the start by device parameters, one column each
   Node from_, middle_, to_;
-  bool goes_on_ = false;  // true when from_ is the begin of the next part
+  bool goes_on_ = false;  // true when from_ has the derivatives at the begin of the next part
 };
 
 }  // namespace softland

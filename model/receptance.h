@@ -60,7 +60,7 @@ class Receptance {
   [[nodiscard]] Eigen::VectorXd motion(Eigen::Index lane) const;
 
  private:
-  // Number of motions of an element: deflection and rotation with its left end, then its shape functions.
+  // Number of motions of an element: deflection and rotation of the rigid element, then its shape functions.
   static constexpr int size = 2 + element_functions;
   static constexpr int kept = 4;  // number of motions of an element that move its right end
   // Elements of equal size and section share their quadratic form of elastic less kinetic energy, a lower triangle, from which

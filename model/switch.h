@@ -303,7 +303,7 @@ class Switch {
   std::shared_ptr<const ReynoldsFilm> film_;
   std::optional<MidPlaneStretching> stretching_;
   std::optional<Eigen::VectorXd> rest_;
-  // Largest valid gap to the near electrode, from which the beam is too close to an electrode or film wall on the far side [m].
+  // Largest valid gap to the near electrode; beyond it the beam is too close to an electrode or film wall on the far side [m].
   double most_gap_ = std::numeric_limits<double>::infinity();
   double contact_gap_ = 0;  // distance of the first contact from its plane at rest [m]
   double penetration_scale_ = 0;

@@ -284,7 +284,7 @@ std::optional<FigureSlope> cost_slope(const Aim& aim, const Metrics& figures, co
   for (const CostTerm& part : parts) {
     const double value = figures.*part.figure;
     if (!std::isfinite(value)) continue;
-    // The cost is a closed formula of the figures, so that its central differences are accurate to about 1e-10.
+    // The cost is a closed-form function of the figures, so that its central differences are accurate to about 1e-10.
     const double size = std::abs(value) > 0 ? std::abs(value) : part.scale;
     if (!(size > 0) || !std::isfinite(size)) continue;
     const double h = 1e-6 * size;
