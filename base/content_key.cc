@@ -6,7 +6,7 @@
 #include <bit>
 
 // MurmurHash3_x64_128 of Austin Appleby (public domain), seed 0: 128 bits, the same on every machine, and ten times as quick as
-// a cryptographic hash. This hash does not resist an attacker who constructs two contents with one key.
+// a cryptographic hash. It does not resist an attacker who constructs two inputs with the same key.
 namespace softland {
 namespace {
 

@@ -15,7 +15,7 @@ class InvalidInput : public std::runtime_error {
  public:
   explicit InvalidInput(const std::string& message, std::source_location where = std::source_location::current())
       : std::runtime_error(message), where_(where) {}
-  /// Returns the place in the sources that threw the exception, for debugging; users do not see it.
+  /// Returns the source location that threw the exception, for debugging; users do not see it.
   [[nodiscard]] const std::source_location& where() const noexcept { return where_; }
 
  private:

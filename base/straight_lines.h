@@ -1,4 +1,4 @@
-// Linear interpolation between values at places.
+// Piecewise linear interpolation.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 namespace softland {
 
-/// Returns the value at x of the straight lines between `values` at `places`. Both have the same size, at least 2, and `places`
-/// increases. The first and the last line continue beyond the ends.
+/// Returns the value at x of the piecewise linear function through the points (places, values). Both have the same size, at
+/// least 2, and `places` increases. The first and the last line continue beyond the ends.
 [[nodiscard]] inline double along_lines(const std::vector<double>& places, const std::vector<double>& values, double x) {
   const auto next = std::clamp<std::ptrdiff_t>(std::ranges::upper_bound(places, x) - places.begin(), 1,
                                                static_cast<std::ptrdiff_t>(places.size()) - 1);

@@ -47,8 +47,8 @@ struct CompositeSection {
 /// / (A L^2) between two clamps, a sixteenth of this with a free end.
 [[nodiscard]] double buckling_stress(const Structure& structure, const std::optional<Surface>& surface = {});
 
-/// Returns the elongation of the beam per axial force: the integral of 1 / (E A), E Young's modulus, A area [m/N]. E is used as
-/// given: the sides of the beam are free to contract.
+/// Returns the elongation of the beam per axial force: the integral of 1 / (E A), E Young's modulus, A area [m/N]. The option
+/// plate_strain does not change E here, since the sides of the beam are free to contract.
 [[nodiscard]] double stretch_per_force(const Structure& structure);
 
 struct BeamSupport {

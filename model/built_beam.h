@@ -52,7 +52,7 @@ struct LocalSection {
 /// Returns the edges of sections and layers of a beam, from 0 to its length [m]; for all other structures 0 and the length.
 [[nodiscard]] std::vector<double> edges_of_parts(const Structure& structure);
 
-/// Returns the places where the table of a beam's rest shape has kinks, between its ends [m]; empty without such a table.
+/// Returns the positions of kinks in a beam's rest shape, the inner points of its table [m]; empty without a table.
 [[nodiscard]] std::vector<double> kinks_at_rest(const Structure& structure);
 
 /// A section, layer or hole pattern that a device cannot have, and the reason.

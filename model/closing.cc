@@ -194,8 +194,8 @@ class ClosingRun {
     return false;
   }
 
-  // Ends the run after a step when the switch has failed, or an option requires the end; `field` has figures of the gap between
-  // beam and electrode at the end of the step.
+  // Ends the run after a step when the switch has failed, or an option requires the end; `field` describes the gap between beam
+  // and electrodes at the end of the step.
   void check_interval(const FieldFigures& field) {
     if (ended_) return;
     if (field.smallest_gap < model_.gap_floor() && is_over_electrode()) {

@@ -149,7 +149,7 @@ void check_gap_and_electrodes(const Device& d) {
   }
 }
 
-/// Checks that a structure with a given shape at rest touches neither an electrode nor a contact at rest.
+/// Checks that a structure with a curved rest shape touches neither an electrode nor a contact at rest.
 void check_rest_shape(const Device& d) {
   const double lowest = std::visit(
       [&](const auto& kind) {

@@ -119,7 +119,7 @@ static_assert(is_complete<residual_loads>());
 /// Elastic skins at the surfaces of a thin beam: see model/surface.h.
 struct Surface {
   double elastic_modulus = 0;  ///< elastic modulus of the surface skins [N/m], of either sign
-  double residual_stress = 0;  ///< residual surface stress [N/m], positive where the surface pulls
+  double residual_stress = 0;  ///< residual surface stress [N/m], positive in tension
   SurfaceFaces faces = SurfaceFaces::all;
   ResidualLoad cantilever_load = ResidualLoad::none;  ///< effect of the residual surface stress on a cantilever
 };

@@ -37,7 +37,7 @@ const Landing* Device::landing() const {
 
 namespace {
 
-// Returns the place at which a beam that bends over its electrodes first touches the faces of their dielectrics. This is the
+// Returns the position at which a beam that bends over its electrodes first touches the faces of their dielectrics. This is the
 // free end, or the middle between two clamps, if a pad lies there, and otherwise the edge of the nearest pad.
 Place first_touch_on(const Device& d) {
   const double length = d.structure.length, aim = d.structure.has_far_clamp() ? length / 2 : length;

@@ -212,7 +212,6 @@ void LinearizedClosing::begin_at_rest() {
   }
 }
 
-// Computes the voltages of the drives at time t.
 void LinearizedClosing::set_volts(double t) {
   for (std::size_t k = 0; k < volts_.size(); ++k) volts_[k] = signals_[k].pieces()[pieces_[on_][k]].voltage(t);
 }

@@ -179,7 +179,7 @@ class LinearizedClosing {
   std::size_t next_arc_ = 0;      // index in arcs_ of the first arc after the linearised steps
   std::size_t next_passage_ = 0;  // index of the next change of the contact law in the recorded motion
   std::size_t on_ = 0;            // index in pieces_ of the signal pieces in use
-  std::vector<double> volts_;     // current voltages of the drives
+  std::vector<double> volts_;
   std::vector<Part> parts_;
   std::vector<double> numbers_;  // matrices of Magnus' series, and derivatives by the inputs, for all parts
   std::vector<Jump> jumps_;

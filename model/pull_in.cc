@@ -205,7 +205,7 @@ std::optional<StablePath> stable_path(const Switch& model, std::size_t drive, Bi
     if (!std::isfinite(strength) || (model.drive_kind(drive) == DriveKind::electrode && !(strength > 0))) return std::nullopt;
     const double value = model.value_of_strength(drive, strength);
     if (k == 1) direction = value;
-    // The branch of equilibria turns back here (pull-in).
+    // At pull-in the branch of equilibria turns back, and no stable path goes on.
     if (!((value - path.values.back()) * direction > 0)) return std::nullopt;
     values[drive] = value;
     if (!(open_tangent_eigenvalue(model, branch.q(), values) > 0)) return std::nullopt;

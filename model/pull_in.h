@@ -57,8 +57,8 @@ struct HeldEquilibrium {
   double voltage = std::numeric_limits<double>::quiet_NaN();  ///< voltage of the drive that holds the contact point [V]
 };
 /// Returns the equilibrium whose contact point has this deflection [m], on the branch of static_pull_in() and
-/// release_voltage(). Returns none when the branch could not be computed up to this deflection, or the drive would have to
-/// push. Throws InvalidInput as static_pull_in() does.
+/// release_voltage(). Returns none when the branch could not be computed up to this deflection, or the drive would have to push
+/// the beam away. Throws InvalidInput as static_pull_in() does.
 [[nodiscard]] std::optional<HeldEquilibrium> held_by_drive(const Switch& model, std::size_t drive, double deflection,
                                                            Bias bias = {});
 

@@ -144,7 +144,7 @@ double pull_through_voltage_near(const Switch& model, std::size_t drive, std::sp
   if (lands_on_wall(model, drive)) return no_equilibrium;
   const double neutral = model.neutral_voltage(drive);
   const double given = std::abs(volts[drive] - neutral);
-  // A search by factors of the given voltage would not leave 0.
+  // The search multiplies the given voltage by factors, so it cannot start at 0.
   if (given == 0) return pull_through_voltage(model, drive, volts, precision);
   const auto found = pull_through_from(model, drive, {volts.begin(), volts.end()}, given, near, precision);
   return found ? neutral + *found : pull_through_voltage(model, drive, volts, precision);

@@ -50,7 +50,7 @@ class Receptance {
   struct Answer {
     Lane deflection;   ///< receptance: deflection by a unit force
     Lane inertia;      ///< derivative of the receptance by the squared frequency, the integral of mass times squared deflection
-    Lane below;        ///< number of natural frequencies of the beam below the given frequency
+    Lane below;        ///< number of natural frequencies of the beam below lambda
     Lane least_pivot;  ///< smallest pivot except the last, which vanishes at a pole: small pivots magnify rounding
   };
   /// Returns the receptance of the beam at the position x in (0, 1], for one squared frequency per SIMD lane.

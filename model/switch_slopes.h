@@ -75,7 +75,7 @@ class SwitchSlopes {
   std::vector<std::size_t> moving_;
   // The two switches with a smaller and a larger parameter, for each parameter on which the switch depends.
   std::vector<Neighbours> neighbours_;
-  std::vector<Switch::Workspace> above_, below_;  // workspaces of the two switches
+  std::vector<Switch::Workspace> above_, below_;
   Eigen::VectorXd deflection_;  // static deflection under a force at the contact point that moves this point by 1 m
 };
 

@@ -41,7 +41,7 @@ struct FirstTouch {
   double velocity = std::numeric_limits<double>::quiet_NaN();  ///< impact velocity of the first touch [m/s]; NaN before a touch
 
   [[nodiscard]] bool happened() const { return !std::isnan(time); }
-  /// Stores a touch at a time [s] with an impact velocity [m/s], unless an earlier touch is known.
+  /// Stores a touch at a time [s] with an impact velocity [m/s] if it is earlier than the stored touch.
   void take(double at, double impact_velocity) {
     if (!(time <= at)) *this = {.time = at, .velocity = impact_velocity};
   }
@@ -116,7 +116,7 @@ struct Trajectory {
   double hold_capacitance = std::numeric_limits<double>::quiet_NaN();
   bool is_held = true;  ///< false when no stable closed equilibrium was found under the hold levels of the drives
   double collapse_time = std::numeric_limits<double>::quiet_NaN();  ///< time at which the beam reached the electrode [s]
-  /// Smallest gap of the run from beam to electrode, at any place [m].
+  /// Smallest gap between beam and electrode, over the whole beam and the whole run [m].
   double smallest_gap = std::numeric_limits<double>::quiet_NaN();
   /// Energy above that of the closed equilibrium once the switch has touched and the drives are at their hold levels [J].
   /// Bouncing or damping must dissipate this energy before the switch rests. The value includes the energy that impacts

@@ -102,8 +102,8 @@ struct Metrics {
   // The following figures of a closing enter the cost of a search; results do not show them.
   double closest = unset;    ///< smallest distance to the contact plane before the first touch [m]; known also without contact
   double separated = unset;  ///< total time in separation after the first touch [s]
-  /// End of the last significant rebound; end of the run when the last rebound has not ended; first contact without a
-  /// significant rebound [s].
+  /// End of the last significant rebound [s]; the end of the run when this rebound has not ended, and the time of first contact
+  /// without a significant rebound.
   double last_rebound_end = unset;
   /// Energy above that of the closed equilibrium after the first touch, when the drives are at their hold levels; at least 0
   /// [J].
@@ -130,7 +130,7 @@ class LandingFigures {
   /// Summary of the contact point's motion up to the end of a run.
   struct Course {
     bool sound = true;   ///< true when every point of the motion was finite, and the points were in order of time
-    bool above = false;  ///< true when a rebound had not ended at the end of the run; it was passed to rebound()
+    bool above = false;  ///< true when a rebound had not ended at the end of the run; rebound() has received it too
     FirstTouch first_touch = {};
     double last_time = 0;             ///< time of the last point of the motion [s]
     double closest = Metrics::unset;  ///< smallest distance to the contact plane before the first touch [m]

@@ -121,8 +121,8 @@ struct OpeningFigures {
   int touches = 0;  ///< number of touches of the contact after the first opening
 };
 
-/// Returns the figures of the opening in a run that begins closed (ClosingOptions::begins_closed). A run that did not reach its
-/// end has only a status.
+/// Returns the figures of the opening in a run that begins closed (ClosingOptions::begins_closed). For a run that did not reach
+/// its end all figures but the status keep their defaults.
 [[nodiscard]] OpeningFigures release_figures(const Trajectory& opening, const OpeningBand& band);
 
 }  // namespace softland
