@@ -8,7 +8,7 @@
 
 namespace softland {
 
-/// Reads the aim of a search. Throws InvalidInput with the rule that the text breaks.
+/// Reads the aim of a search. Throws InvalidInput whose message states the rule that the text breaks.
 [[nodiscard]] Aim parse_aim(std::string_view text);
 
 }  // namespace softland

@@ -17,7 +17,8 @@ void vary(SceneFile& file, const std::string& key, std::string_view cov, bool al
   if (always || file.written(key)) file.set(fmt::format("spread.\"{}\"={{distribution=\"normal\",cov=\"{}\"}}", key, cov));
 }
 
-// Varies a number of the structure, and the same number of every beam section that has its own value, by one common factor.
+// Varies a key of [structure], such as thickness, by a normal factor with the coefficient of variation `cov`. The same factor
+// multiplies the key in every beam section that has its own value.
 void vary_sections(SceneFile& file, std::string_view key, std::string_view cov) {
   std::vector<std::string> keys;
   const auto add = [&](const std::string& path) {

@@ -34,7 +34,7 @@ class MeasurementReader {
  public:
   MeasurementReader(const toml::table& table, const std::string& file, const std::filesystem::path& directory)
       : table_(table), file_(file), directory_(directory) {}
-  /// Reads the keys of a measurement that a command-line option gives.
+  /// Takes the keys of one measurement from the command-line option `option` instead of a file.
   MeasurementReader(const toml::table& table, const std::string& option)
       : table_(table), file_(option), directory_(option), is_option_(true) {}
 
@@ -107,10 +107,11 @@ class MeasurementReader {
   }
 
   struct Column {
-    std::string name;  // name of the column in the header of the file
+    std::string name;  // name of the column in the header of the file of measured rows
     double unit = 1;   // size of the column's unit [SI unit]
   };
-  // Returns the column of the file whose name is `stem` with a unit, such as "closing_time_us", "capacitance [fF]" or "time_s".
+  // Returns the column whose name is `stem` and a unit of the dimension `due`: "closing_time_us" or "capacitance [fF]" for the
+  // stems "closing_time" and "capacitance". None without such a column.
   [[nodiscard]] std::optional<Column> column_of(const std::vector<std::string>& header, std::string_view stem,
                                                 const Dimension& due) const {
     for (const std::string& name : header) {
@@ -167,7 +168,7 @@ class MeasurementReader {
       }
     } catch (const InvalidInput& error) {
       if (std::string_view(error.what()).find("measurement.") != std::string_view::npos)
-        throw;  // the message of the exception names the key already
+        throw;  // refuse() would name a key a second time
       refuse("file", error.what());
     }
   }
@@ -177,7 +178,8 @@ class MeasurementReader {
            : kind.has_level  ? fmt::format("voltage_V and {}", value)
                              : value;
   }
-  // Returns true if a header has the form that softland writes, even with columns of another quantity.
+  // Returns true if a header names a column as softland does, for any quantity. Such a file is not read as that of an
+  // instrument: an error then names the columns that the measurement needs.
   [[nodiscard]] bool is_own(const std::vector<std::string>& header) const {
     return std::ranges::any_of(bench_quantities(), [&](const BenchQuantity& one) {
       return column_of(header, one.name, one.name == of_contact ? dimension::none : one.dimension).has_value();
@@ -282,7 +284,7 @@ class MeasurementReader {
     shift_times(trace, time_shift());
     const double unit = unit_of_trace(kind, channel_of(recording, keys, std::string(kind.name)));
     for (std::size_t k = 0; k < trace.times.size(); ++k) {
-      if (trace.times[k] < 0) continue;  // skip rows before t = 0, where the drives begin
+      if (trace.times[k] < 0) continue;  // skip rows before t = 0, the begin of the drive waveforms
       require(m.values.size() < most_rows, [&] { return fmt::format("{}: more than {} rows from t = 0 on", path, most_rows); });
       require(m.times.empty() || trace.times[k] > m.times.back(),
               [&] { return fmt::format("{}: times must rise from row to row", path); });
@@ -291,7 +293,8 @@ class MeasurementReader {
     }
     require(!m.values.empty(), [&] { return fmt::format("{}: all rows are before t = 0; give shift to move them", path); });
   }
-  // Returns the size of the unit of a recorded channel [SI unit]; 1 for a channel in volts.
+  // Returns the factor that converts the values of a trace_of() this channel to the SI unit of the quantity: `per_volt`, or the
+  // size of the unit that the measurement or the file names.
   [[nodiscard]] double unit_of_trace(const BenchQuantity& kind, const Channel& channel) const {
     if (has("per_volt")) {
       refuse_where(!channel.is_voltage && !channel.unit.empty(), "per_volt",
@@ -313,7 +316,7 @@ class MeasurementReader {
     return one.value * (has("unit") ? channel.per_si : 1);
   }
 
-  // Removes the rows of a measurement after the time `until`.
+  // Removes the rows of a measured position or velocity after the time of the key `until`.
   void cut(const BenchQuantity& kind, BenchMeasurement& m) const {
     refuse_where(kind.name == of_contact || !kind.is_over_time, "until", "is of a position or velocity only");
     const double end = quantity("until", {dimension::time}).value;
@@ -324,8 +327,8 @@ class MeasurementReader {
     m.has_end = true;
   }
 
-  // Finds the times at which the contact closes or opens: each is halfway between a row in which the contact is open and one in
-  // which it is closed.
+  // Replaces the rows of contact states (0 open, 1 closed) by the first times at which the contact closes or opens. Each time
+  // is halfway between two rows of different state.
   void find_edges(BenchMeasurement& m) const {
     const int edges = has("edges") ? whole("edges", 1, 3) : 1;
     std::vector<double> found;

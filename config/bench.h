@@ -1,4 +1,4 @@
-// A file of measurements, bench.toml: results of measurements on devices of a scene, and their errors.
+// A file of measurements, bench.toml: values measured on fabricated devices of a scene, and their measurement errors.
 //
 //   [[measurement]]
 //   quantity = "closing_time"        # pull_in, release, frequency, capacitance, closing_time, contact, position or velocity
@@ -10,17 +10,17 @@
 //   error = "50 ns"                  # one standard deviation, absolute or a percentage of the value
 //   mode = 1                         # number of the mode, for a frequency
 //   until = "60 us"                  # for a position or velocity: rows after this time are skipped
-//   edges = 1                        # for a contact record: number of edges used from the first touch on, 1 to 3
+//   edges = 1                        # for a contact: number of its first closings and openings that are used, 1 to 3
 //   device = "A7"                    # measured device; measurements without this key belong to one device
 //
 //   [device.A7]
 //   set = ["gap.electrode=3.4 um"]   # known differences of this device from the scene
 //
-// A file in the form of softland has a column of values, and one of levels or of times. The names of the columns begin with the
+// A CSV file of measured rows has a column of values, and one of levels or of times. The names of the columns begin with the
 // quantity, with "level" or "voltage", and with "time". They end in the unit: "closing_time_us", "capacitance [fF]", "time_s".
-// The column of a contact record is "contact", 0 open and 1 closed. Contact, position and velocity are also read from the files
-// of instruments (exchange/recording.h), by the keys of a waveform's file (column, time_column, interval, skip, time_unit,
-// decimal, shift) and
+// The column of a contact is "contact", 0 for open and 1 for closed. Contact, position and velocity are also read from the
+// files of instruments (exchange/recording.h), by the keys of a waveform's file (column, time_column, interval, skip,
+// time_unit, decimal, shift) and
 //
 //   unit = "mm/s"                    # unit of a position or velocity, if the file names none, or
 //   per_volt = "50 mm/s"             # size of one volt of the channel
@@ -43,7 +43,7 @@
 
 namespace softland {
 
-/// A quantity that a file of measurements may hold: its dimension and the keys that a measurement of it may have.
+/// A quantity that a file of measurements may hold, with its dimension and the keys that its [[measurement]] may have.
 struct BenchQuantity {
   std::string_view name;
   Dimension dimension;
@@ -53,16 +53,16 @@ struct BenchQuantity {
   bool is_positive = true;    ///< true when measured values of the quantity must be above 0
 };
 
-/// Name of the quantity that is a record of the contact's state, open or closed, against time.
+/// Name of the quantity whose measurement is the state of the contact, open or closed, against time.
 inline constexpr std::string_view of_contact = "contact";
 
 struct BenchMeasurement {
   std::string quantity;                 ///< name of the measured quantity, one of bench_quantities()
   std::string drive = {};               ///< name of the driven electrode or piezo; empty where it is not given
   std::string device = {};              ///< name of the measured device; empty where it is not given
-  std::vector<double> values = {};      ///< measured values [SI unit]
+  std::vector<double> values = {};      ///< measured values [SI unit]; for a contact, times of its first closings and openings
   std::vector<double> errors = {};      ///< standard deviation of each value [SI unit]
-  std::vector<double> levels = {};      ///< commanded voltage of each measured value [V]; empty where none is given
+  std::vector<double> levels = {};      ///< commanded voltage of each measured value [V]; empty if the file names none
   std::vector<double> times = {};       ///< time of each measured value of a quantity over time [s]
   bool has_end = false;                 ///< true when rows after the time of the key `until` were removed
   std::optional<std::string> waveform;  ///< source of the drive waveform: "scene", or the path of a file
@@ -73,7 +73,7 @@ struct BenchMeasurement {
 struct Bench {
   std::string name;
   std::vector<BenchMeasurement> measurements;
-  /// Keys of the scene that differ for each named device, such as "gap.electrode=3.4 um".
+  /// The known differences of each named device from the scene: assignments to keys, such as "gap.electrode=3.4 um".
   std::map<std::string, std::vector<std::string>> changes;
 };
 

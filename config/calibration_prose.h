@@ -1,5 +1,5 @@
-// Reads a per-device calibration, which is measured on every device before use, from text: "Vdp,frequency:0.5 %", with " in 8
-// classes" to sort devices into classes.
+// Reads from text which quantities a per-device calibration measures on every device, with the measurement errors: "Vdp,
+// frequency:0.5 %" (no error given: 0), with " in 8 classes" to sort the devices into classes.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace softland {
 
-/// Replaces [calibration], the per-device calibration of the scene. The words "none" remove the section, and empty words change
-/// nothing. Throws InvalidRequest about the option `calibrate`.
+/// Replaces [calibration], the per-device calibration of the scene, by that which `words` describe. The text "none" removes the
+/// section, and an empty text changes nothing. Throws InvalidRequest about the option `calibrate`.
 void set_calibration(SceneFile& file, const std::string& words);
 
 }  // namespace softland

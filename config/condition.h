@@ -19,9 +19,9 @@ enum class Comparison { below, at_most, equal, at_least, above };
 struct Condition {
   Figure figure;
   Comparison comparison = Comparison::below;
-  double limit = 0;  ///< limit of the figure [SI unit of the figure, or a factor on the figure of an actuation by a plain step]
-  std::string text;  ///< the condition as the user wrote it
-  bool of_step = false;  ///< true if the limit is a factor on the figure of an actuation by a plain voltage step
+  double limit = 0;      ///< limit of the figure [its SI unit; if of_step, multiples of the figure under a plain step]
+  std::string text;      ///< the condition as the user wrote it
+  bool of_step = false;  ///< true if the limit is in multiples of the figure under a plain voltage step
 
   /// Returns the violation of the condition by a figure's value, relative to the limit (absolute if the limit is 0); 0 or less
   /// if the condition holds. Returns infinity for a value that is not finite, which a failed closing has.
@@ -29,23 +29,23 @@ struct Condition {
   [[nodiscard]] bool holds(double value) const;
 };
 
-/// Reads a condition such as "t_p < 60 us", or a condition relative to an actuation by a plain step, "t_i < 3 step". Throws
-/// InvalidInput with the rule that the text breaks.
+/// Reads a condition such as "t_p < 60 us", or one whose limit is relative to the plain voltage step, "t_i < 3 step". Throws
+/// InvalidInput whose message states the rule that the text breaks.
 [[nodiscard]] Condition parse_condition(std::string_view text, std::span<const Figure> figures);
 
-/// Replaces a limit relative to an actuation by a plain step with an absolute limit; `of_step` is the figure of that actuation.
-/// Throws InvalidInput if the actuation does not have the figure, or if the figure is 0.
+/// Returns the condition with an absolute limit instead of one relative to the plain step; `of_step` is the figure under the
+/// plain step. Throws InvalidInput if the limit is relative and this figure is not finite or 0.
 [[nodiscard]] Condition beside_step(Condition condition, double of_step);
 
 /// The statistic over simulated devices (process variation) that a search minimises.
 struct RobustMeasure {
-  Risk risk;  ///< statistic of the closings' cost; with `yield`, over the devices that violate the condition `yield`
-  std::optional<Condition> yield;  ///< condition on a closing that as many devices as possible shall fulfil
+  Risk risk;                       ///< statistic of the devices' costs that a search minimises; not used if `yield` is set
+  std::optional<Condition> yield;  ///< condition; a search maximises the share of devices that fulfil it
   std::string text;                ///< the statistic as the user wrote it
 };
 
-/// Reads the statistic that a search minimises: cvar:LEVEL, quantile:LEVEL, mean+Ksigma, worst, yield:CONDITION, yield (no
-/// significant rebound). Throws InvalidInput with the rule that the text breaks.
+/// Reads the statistic that a search minimises: cvar:LEVEL, quantile:LEVEL, mean+Ksigma, worst, yield:CONDITION, or yield,
+/// whose condition is no significant rebound. Throws InvalidInput whose message states the rule that the text breaks.
 [[nodiscard]] RobustMeasure parse_robust_measure(std::string_view text, std::span<const Figure> figures);
 
 }  // namespace softland

@@ -58,17 +58,17 @@ std::vector<double> volts(const std::vector<Quantity>& quantities, const PullInV
   return values;
 }
 
-/// The values to which relative levels of a waveform refer.
+/// The values to which percentages and multiples of pull-in voltages in a waveform refer, and the slew limit.
 struct References {
   std::string_view drive;
   const PullInVoltages& pull_in;
-  const std::optional<double>& main_hold;                     ///< hold voltage of the main electrode [V]
+  const std::optional<double>& main_hold;                     ///< hold voltage of main_electrode() [V]
   double max_slew = std::numeric_limits<double>::infinity();  ///< slew limit of the voltage source [V/s]
   double before = 0;                                          ///< voltage of the drive before t = 0 [V]
 };
 
-/// Returns a voltage difference of a waveform in volts. A percentage refers to the base level or, for the piezo, to the main
-/// electrode's hold voltage.
+/// Returns in volts a parameter that is a voltage difference. A percentage refers to `base`, the level to which the difference
+/// is added, or for the piezo to the main electrode's hold voltage.
 double swing(const SectionReader& in, std::string_view key, const Quantity& given, const References& to, double base) {
   if (given.dimension != dimension::none || to.drive == dispersion_drive) return volts(given, to.pull_in);
   if (to.drive != piezo_drive) {
@@ -95,7 +95,7 @@ void read_list(const SectionReader& in, std::string_view key, ParameterKind kind
 template <class Family>
 Waveform read_parameters(const SectionReader& in, const References& to) {
   Family waveform;
-  double base = 0;  // voltage level to which a relative level is added [V]
+  double base = 0;  // last absolute voltage level of the waveform, to which voltage differences are added [V]
   for (const Parameter<Family>& p : FamilyOf<Family>::parameters) {
     const auto* one = std::get_if<double Family::*>(&p.member);
     if (one == nullptr) {
@@ -139,15 +139,15 @@ Signal compile(const SectionReader& in, const Waveform& waveform, double before)
   }
 }
 
-/// Returns the permitted range of any drive voltage, also of a multiple of Vsp or Vdp (pull-in voltages), because resolved
-/// scenes are written in volts.
+/// Returns the permitted range of a drive voltage [V]. A multiple of a pull-in voltage must also fit, because resolved scenes
+/// hold its value in volts.
 const Range& any_voltage() {
   static const Range range = Key{.dimensions = {dimension::voltage}}.range_of(dimension::voltage);
   return range;
 }
 
-/// Reads the limits of a drive's voltage source; none if the source is unlimited. Without a pull-in voltage there is no default
-/// limit.
+/// Reads the voltage and slew limits of a drive's source; none if it has no limit. An electrode of known pull-in voltages has
+/// default_limit() as its default voltage limit.
 std::optional<DriverLimits> read_limits(const SectionReader& in, std::string_view drive, const PullInVoltages& known) {
   DriverLimits limits{.min_voltage = 0, .max_voltage = std::numeric_limits<double>::infinity()};
   if (known.dynamic_pull_in > 0 && drive != piezo_drive) {
@@ -166,7 +166,7 @@ std::optional<DriverLimits> read_limits(const SectionReader& in, std::string_vie
   return limits;
 }
 
-/// Reads the voltage source of a drive. The load of the source, the capacitance of the switch, is set later.
+/// Reads the voltage source of a drive, without its load: prepare() adds the capacitance of the switch.
 DriverModel read_model(const SectionReader& in, std::string_view drive) {
   DriverModel model;
   if (!in.is_present()) return model;
@@ -208,7 +208,8 @@ void check_order(const SectionReader& in, const DriverLimits& limits) {
              fmt::format("min_voltage of {} V must be less than max_voltage of {} V", limits.min_voltage, limits.max_voltage));
 }
 
-// Returns advice for a step waveform that breaks no rule but the slew limit of its source; otherwise an empty text.
+// Returns the advice to give rise_time to a step waveform that obeys the voltage limits of its source but not the slew limit;
+// an empty text for any other waveform.
 std::string missing_rise(const Waveform& waveform, double before, const DriverLimits& limits) {
   const Step* const step = std::get_if<Step>(&waveform);
   if (step == nullptr || std::max(step->level, before) > limits.max_voltage || std::min(step->level, before) < limits.min_voltage)
@@ -232,7 +233,7 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
   std::vector<Drive> drives;
   std::optional<double> main_hold;
   if (!main_electrode(device).empty()) main_hold = 0;
-  // The piezo is the last drive: its voltages may be percentages of the main electrode's hold voltage.
+  // drive_names() lists the piezo after the electrodes: its voltages may be percentages of the main electrode's hold voltage.
   for (const std::string& drive : drive_names(device)) {
     Drive& one = drives.emplace_back(Drive{.name = drive});
     const auto found = pull_in.find(one.name);
@@ -288,8 +289,8 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
   return Drives(std::move(drives));
 }
 
-/// Returns the hold voltages of all drives, in order, computed as if every needed pull-in voltage were `volt` [V]. Notes on the
-/// files that are read are added to `notes`, if not null.
+/// Returns the hold voltages of all drives, in order, computed as if Vsp and Vdp of the drives in need_pull_in were `volt` [V].
+/// Notes on the files that are read are added to `notes`, if not null.
 std::vector<double> levels_held(const SceneFile::Impl& file, const Scene& scene, double volt, std::vector<std::string>* notes) {
   std::map<std::string, PullInVoltages> pull_in;
   for (const std::string& drive : scene.need_pull_in) pull_in[drive] = {.static_pull_in = volt, .dynamic_pull_in = volt};
@@ -299,7 +300,7 @@ std::vector<double> levels_held(const SceneFile::Impl& file, const Scene& scene,
   return levels;
 }
 
-/// Returns true if simulations begin with the switch closed; checks that all drives have equal before_state.
+/// Returns true if simulations begin with the switch closed. Throws InvalidInput if drives have different before_state.
 bool begins_closed(const SceneFile::Impl& file, const Device& device) {
   std::string closed;  // key of a drive whose before_state is closed
   for (const std::string& drive : drive_names(device)) {
@@ -394,8 +395,8 @@ void check_drives(const SceneFile::Impl& file, Scene& scene) {
       if (waveform.keys_in_pull_in_units().empty()) scene.limits_in_pull_in.emplace_back(drive);
     }
   }
-  // The rules of waveform families do not depend on the pull-in voltage, so 1 V is used to check them. A hold level that
-  // differs for 1 V and 0.5 V is a multiple of a pull-in voltage.
+  // The pull-in voltages are not known yet. Reading the waveforms with 1 V instead checks the rules of their families, which do
+  // not depend on the value. A hold level that differs for 1 V and 0.5 V is a multiple of a pull-in voltage.
   scene.standing = levels_held(file, scene, 1, &scene.file_notes);
   scene.begins_closed = begins_closed(file, device);
   if (scene.need_pull_in.empty()) return;

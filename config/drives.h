@@ -13,10 +13,9 @@
 
 namespace softland::internal {
 
-/// Keys that may be given instead of the key of a waveform parameter.
 inline constexpr std::string_view frequency_key = "frequency";  ///< key that may replace the angular frequency of a waveform
 inline constexpr std::string_view file_key = "file";            ///< key that may replace the rows of a table waveform
-/// Keys of [waveform.NAME] that are used together with `file`: they give facts that the file of an instrument lacks.
+/// Keys of [waveform.NAME] that say how its `file` is read, for example the unit of the times, which many files lack.
 namespace file_keys {
 inline constexpr std::string_view column = "column", time_column = "time_column", interval = "interval", skip = "skip",
                                   unit = "unit", time_unit = "time_unit", decimal = "decimal", scale = "scale", shift = "shift";
@@ -36,14 +35,14 @@ inline constexpr std::string_view steepest_rise = "driver";
 /// Returns the waveform with every voltage level raised by `by` [V].
 [[nodiscard]] Waveform raised(Waveform waveform, double by);
 
-/// Returns the reason why the device has no drive of this name, with a hint; empty where the drive exists.
+/// Returns for a message why the device has no drive of this name, with the nearest valid name; empty if the drive exists.
 [[nodiscard]] std::string why_no_drive(const Device& device, const std::string& name);
 
 /// Throws InvalidInput for an electrode name that cannot be the name of a drive.
 void check_drive_name(const SceneFile::Impl& file, const std::string& electrode);
 
-/// Checks every [waveform.NAME] and [driver.NAME] as far as this is possible without pull-in voltages. Throws InvalidInput.
-/// Sets Scene::need_pull_in and Scene::standing.
+/// Checks every [waveform.NAME] and [driver.NAME], except the limits that depend on pull-in voltages. Throws InvalidInput. Sets
+/// need_pull_in, limits_in_pull_in, standing, begins_closed and file_notes of the scene.
 void check_drives(const SceneFile::Impl& file, Scene& scene);
 
 /// Reads the waveforms and sources of all drives, in volts. Throws InvalidInput for a waveform outside the limits of its

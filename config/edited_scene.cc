@@ -32,7 +32,7 @@ class Lines {
     }
     return i;
   }
-  // Returns the end of the line that contains an index of the text, without its line break.
+  // Returns the index of the end of the line that contains the index `place`, before the line break.
   [[nodiscard]] std::size_t end(std::size_t place) const {
     std::size_t end = std::min(text_.find('\n', place), text_.size());
     if (end > place && text_[end - 1] == '\r') --end;
@@ -44,7 +44,7 @@ class Lines {
   std::vector<std::size_t> begins_;
 };
 
-// Returns the end of the number or quoted text that begins at `begin`.
+// Returns the index behind the TOML number or quoted text that begins at index `begin`.
 std::size_t end_of_value(std::string_view text, std::size_t begin) {
   const char quote = text[begin];
   if (quote == '"' || quote == '\'') {
@@ -64,7 +64,7 @@ const toml::node* node_at(const toml::table& root, const std::vector<std::string
   return node;
 }
 
-// Writes a value in the unit of the scene's text that it replaces.
+// Returns a value as text in the unit of `written`, the text in the scene that it replaces.
 std::string in_unit_of(const std::string& written, const Quantity& value) {
   constexpr const char* number_begins = "0123456789.eE+-−_";
   std::size_t end = 0;
@@ -100,7 +100,7 @@ std::string edited_scene(std::string_view text, const std::string& name, const s
   const toml::table root = internal::parse_toml(text, name);
   const Lines lines(text);
   std::vector<Replacement> all;
-  std::map<std::size_t, std::string> remarks;  // comments to add to the scene's text, by the end of their line
+  std::map<std::size_t, std::string> remarks;  // comments to add to lines of the scene, by the index of the line's end
   for (const SceneEdit& edit : edits) {
     const std::vector<std::string> path = internal::split_path(edit.path);
     const toml::node* node = node_at(root, path);

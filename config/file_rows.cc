@@ -26,7 +26,7 @@ bool says_something(const SectionReader& in) {
   return std::any_of(file_keys::all.begin(), file_keys::all.end(), [&](std::string_view key) { return in.is_given(key); });
 }
 
-/// Returns true if the header of a file, its first line that is not a comment, has the column of times that softland writes.
+/// Returns true for a file that softland wrote: its first line that is not a comment has a column time_s.
 bool is_own(std::string_view content) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (content.starts_with(byte_order_mark)) content.remove_prefix(byte_order_mark.size());
@@ -50,9 +50,9 @@ std::pair<double, double> extremes(const std::vector<double>& values, std::size_
   return {*least, *most};
 }
 
-// Shifts the times of recorded rows. A time within rounding of t = 0 is set to 0.
+// Adds `shift` to the times of recorded rows. A time that is 0 but for rounding becomes 0 exactly.
 void shift_times(std::vector<double>& times, double shift) {
-  constexpr double rounding = 1e-6;  // rounding error of a time, as a share of the mean step
+  constexpr double rounding = 1e-6;  // rounding error of a time, as a share of the mean interval of the rows
   const double step = (times.back() - times.front()) / static_cast<double>(times.size());
   for (double& time : times) {
     time += shift;
@@ -76,7 +76,7 @@ double level_before(const SectionReader& in, const Trace& trace, std::size_t cou
   return least == most ? least : std::clamp(sum / static_cast<double>(count), least, most);
 }
 
-// Returns the recorded rows from t = 0 on, the first row at 0.
+// Returns the recorded rows from t = 0 on. If no row is at t = 0, a first row is added there: interpolated, or the first value.
 FileRows from_zero(const SectionReader& in, const Trace& trace) {
   FileRows rows;
   const auto at_zero = std::find_if(trace.times.begin(), trace.times.end(), [](double time) { return time >= 0; });
@@ -108,8 +108,8 @@ FileRows from_zero(const SectionReader& in, const Trace& trace) {
   return rows;
 }
 
-// Thins a long record of a voltage to the rows that the bandwidth of [driver] needs; without this key, a bandwidth that
-// resolves 1/2000 of the record.
+// Removes rows of a long record that do not change the voltage after the low-pass filter of [driver]. Without the key
+// bandwidth, the filter has a time constant of 1/2000 of the record.
 void downsample(FileRows& rows, const SectionReader& driver) {
   constexpr std::size_t few = 4096;
   constexpr double relative_error = 1e-3, parts = 2000;
@@ -122,7 +122,7 @@ void downsample(FileRows& rows, const SectionReader& driver) {
   const auto [least, most] = extremes(table.voltage, table.voltage.size());
   const std::size_t count = table.time.size();
   Thinned made = thinned(table, time_constant, relative_error * (most - least));
-  if (2 * made.table.time.size() > count) return;  // keep all rows if more than half of them are needed
+  if (2 * made.table.time.size() > count) return;  // keep the rows if thinning saves less than half
   table = std::move(made.table);
   rows.told += fmt::format("; thinned from {} to {} rows: after filtering with {} of {} they differ by less than {}", count,
                            table.time.size(), has_bandwidth ? "the bandwidth" : "a bandwidth",
@@ -157,7 +157,7 @@ FileRows read_file_rows(const SectionReader& waveform, std::string_view drive, c
     return read_foreign(in, content, path, drive, driver);
   } catch (const InvalidInput& error) {
     const std::string_view what = error.what();
-    if (what.find(in.path()) != std::string_view::npos) throw;  // the message of the exception names the key already
+    if (what.find(in.path()) != std::string_view::npos) throw;  // the message names a key already
     in.file().fail(in.path(file_key), what);
   }
 }

@@ -13,12 +13,12 @@ namespace softland::internal {
 struct FileRows {
   Table table;                        ///< recorded times and voltages from t = 0 on
   std::optional<double> before = {};  ///< mean voltage of the rows before t = 0, if the file has such rows [V]
-  std::string told = {};              ///< note for the user on a file of another program; empty for a file of softland
+  std::string told = {};              ///< note on what was read from a file of another program, or empty
 };
 
 /// Reads the file that [waveform.NAME] names. The numbers of a file written by softland (column time_s) are read bit for bit,
-/// unless the section has keys that describe the file. Other files are read by exchange/; a long file is thinned to what the
-/// bandwidth of [driver.NAME] passes. Throws InvalidInput with key and file.
+/// unless the section has keys that describe the file. Other files are read by exchange/; rows of a long file that the
+/// bandwidth of [driver.NAME] makes superfluous are removed. Throws InvalidInput with key and file.
 [[nodiscard]] FileRows read_file_rows(const SectionReader& waveform, std::string_view drive, const SectionReader& driver);
 
 }  // namespace softland::internal

@@ -46,8 +46,8 @@ ModeKeys mode_keys(const SectionReader& in) {
   return made;
 }
 
-// Sets the width of the beam from the file of modes, from the key, or from both if they agree. Returns the widths at the
-// positions if the width is not constant.
+// Sets the width of the structure from the file of modes or the key `width`, which must agree if both give it. Returns the
+// widths at the positions of the mode shapes if the width varies, otherwise none.
 std::vector<double> take_width(Structure& s, const ModeTable& table, const SectionReader& in) {
   constexpr double even = 1e-3;
   double low = std::numeric_limits<double>::infinity(), high = 0;
@@ -80,7 +80,7 @@ SplineEnd far_end_of(const SectionReader& in) {
   return in.is_given(keys::far_anchor) && in.text(keys::far_anchor) == clamped ? SplineEnd::clamped : SplineEnd::free;
 }
 
-// Returns the heights of the beam's face at rest, by position; empty if the face is straight.
+// Returns the offsets of the structure's face at rest, by position; empty if the structure is straight at rest.
 std::vector<double> offsets_of(ModeTable& table) {
   const bool is_straight = std::ranges::all_of(table.rest_offsets, [](double offset) { return offset == 0; });
   return is_straight ? std::vector<double>() : std::move(table.rest_offsets);

@@ -1,4 +1,4 @@
-// Reads the table of vibration modes that [structure] kind = "modes" names or holds. Internal to config/.
+// Reads the table of vibration modes of [structure] kind = "modes" from a file or from the scene itself. Internal to config/.
 #pragma once
 
 #include <string_view>
@@ -17,16 +17,15 @@ inline constexpr std::string_view file = "file", axis = "axis", direction = "dir
                                   rest_offsets = "rest_offsets", widths = "widths", far_anchor = "far_anchor";
 }  // namespace modal_keys
 
-/// Returns the keys that describe the table of modes; in a scene they precede the other keys of [structure].
+/// Returns the keys of [structure] that describe the table of modes; a written scene lists them before the other keys.
 [[nodiscard]] std::vector<Key> modal_table_keys();
 
 /// Sets the table of modes, length, width and number of modes of the structure. A file of another program adds a note to the
-/// scene. Throws InvalidInput with key, file and rule for unreadable data, and for a structure that is not a beam of constant
-/// width.
+/// scene. Throws InvalidInput with key, file and rule for unreadable data and for keys that contradict each other or the file.
 void read_modal_table(Scene& scene, const SectionReader& in);
 
-/// Replaces the name of a file of modes in a scene by the table itself, so that the scene needs no other file. The table reads
-/// back to the same bits. Scenes with other structures are not changed.
+/// Replaces the name of a file of modes in a scene by the table of modes itself, so that the scene needs no other file. The
+/// written numbers read back to the same bits. Scenes with other structures are not changed.
 void hold_table(toml::table& root, const Structure& structure);
 
 }  // namespace softland::internal

@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::uint64_t most_searched = 10'000'000;
 
-/// Runs `read`, and adds the source (option or file and line) of a plan's entry to the beginning of messages about the entry.
+/// Returns read(). An InvalidInput that it throws gets the source of the plan's entry (option, or file and line) in front.
 template <class Read>
 auto at_place(const PlanRequest& request, std::string_view key, std::size_t number, Read&& read) {
   try {
@@ -34,7 +34,7 @@ auto at_place(const PlanRequest& request, std::string_view key, std::size_t numb
   }
 }
 
-/// Splits an entry "KEY=VALUES" of a plan into key and values.
+/// Splits an entry "KEY=VALUES" or "KEY*KEY=VALUES" of a plan into the name of its variable and the text of the values.
 std::pair<std::string, std::string> name_and_values(const std::string& entry) {
   const std::size_t equals = entry.find('=');
   require(equals != std::string::npos && equals > 0,
@@ -117,8 +117,8 @@ void Plan::read_rows(const PlanRequest& request) {
   std::vector<double> scale;
   at_place(request, "list", 0, [&] {
     for (const std::string& column : request.columns) {
-      // A column name of a list of points is "structure.length [um]"; unlike the bracket of a unit, that of a list element
-      // follows without a blank.
+      // A column name is a key and its unit, "electrode.main.span[2] [um]". A blank distinguishes the bracket of the unit from
+      // that of a list element.
       const std::size_t bracket = column.find(" [");
       const std::string name(trimmed(std::string_view(column).substr(0, bracket)));
       std::string unit;
@@ -135,7 +135,7 @@ void Plan::read_rows(const PlanRequest& request) {
   for (const std::vector<double>& row : request.rows) {
     std::vector<double> values;
     for (std::size_t i = 0; i < row.size(); ++i) {
-      // Numbers are scaled in decimal, so that 245 [um] becomes the double nearest to 245e-6.
+      // Conversion to SI units ends with a rounding to 15 digits, so that 245 [um] becomes the double nearest to 245e-6.
       values.push_back(scale[i] == 1 ? row[i] : in_few_digits(row[i] * scale[i]));
       require(!variables_[i].is_whole || values.back() == std::round(values.back()), [&] {
         return fmt::format("{}: {} = {} must be a whole number", request.place("list", 0), variables_[i].name, values.back());

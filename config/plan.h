@@ -1,10 +1,10 @@
-// The plan of a design-space exploration is the request for it: a scene, its varied numbers and their values, and the study (a
-// verb) of every point.
+// The plan of a design-space exploration: a scene, the variables (numbers of the scene that vary) with their values, and the
+// study (a softland command such as simulate) of every point. A point is one combination of values of the variables.
 //
 // A plan is identified by its text: the canonical scene, the variables in SI units, the study with all its options. Equal texts
-// give equal points, on any machine and in any part of the plan. A point, one combination of values, is a function of its
-// number:
-//   grid     all combinations of the values of the variables, the last one fastest
+// give equal points on any machine. The number of a point alone determines its values, so that parts of a plan can be computed
+// apart:
+//   grid     all combinations of the values of the variables; the last variable changes fastest
 //   sample   a point set in the box of the ranges (sampling/points.h)
 //   list     the rows of a table
 //   nsga2    points in the box of the ranges that a search for a Pareto front finds in sequence (optimizers/nsga2.h): point k
@@ -27,15 +27,15 @@
 
 namespace softland {
 
-/// The request for the plan of a design-space exploration, from options of the command line or from a file.
+/// The entries of a plan as the user gives them, by options of the command line or in a file.
 struct PlanRequest {
-  /// Returns the source of a plan's entry for messages: "--vary gap.contact=1 um:2 um" for ("vary", 0), or "map.toml:4:
-  /// plan.study = "optimise"".
+  /// Returns the source of entry number `number` of the key, for messages: "--vary gap.contact=1 um:2 um" for ("vary", 0), or
+  /// "map.toml:4: plan.study = "optimise"".
   using Place = std::function<std::string(std::string_view key, std::size_t number)>;
 
   SceneFile scene;
   std::vector<std::string> vary = {};               ///< ranges of varied keys: "structure.length=245 um:275 um:7"
-  std::string sample = {};                          ///< point set that samples the ranges: "sobol:128"; empty for a grid
+  std::string sample = {};                          ///< point set in the ranges, with its size: "sobol:128"; empty for a grid
   std::string pareto = {};                          ///< figures of merit that a search for a Pareto front minimises
   std::vector<std::string> columns = {};            ///< columns of a list of points: "gap.contact [um]"; empty without a list
   std::vector<std::vector<double>> rows = {};       ///< values of a list of points, by row and column
@@ -45,7 +45,7 @@ struct PlanRequest {
   Place place = {};
 };
 
-/// Reads a plan file, the request of a design-space exploration, which has a section [plan]. The section names the file of the
+/// Reads a plan file, which consists of a section [plan]. The section names the file of the
 /// scene, relative to the plan file, or holds the text of the scene. Throws InvalidInput with file, line, key, value and rule.
 [[nodiscard]] PlanRequest read_plan(const SceneFile& file);
 /// Returns true when the file is a plan of a design-space exploration: it has a section [plan].
@@ -55,18 +55,18 @@ struct PlanRequest {
 void read_list(PlanRequest& request, const std::string& path);
 /// Adds options of the study of every point, such as "impact-velocity=1 mm/s". Throws InvalidInput.
 void add_options(PlanRequest& request, const std::vector<std::string>& told);
-/// Options of the study of every point that are keys of [plan]; all other options are in the list `options` of [plan].
+/// Options of the study that a plan file gives by keys of [plan]; its list `options` gives all others.
 inline constexpr std::string_view plan_options[] = {"certify",  "samples",   "target", "actuator",
                                                     "waveform", "optimizer", "budget"};
 
-/// A key of the scene that a varied number of the plan sets.
+/// A key of the scene that a variable of the plan sets.
 struct PlanKey {
   std::string path;         ///< path of the key in the scene, such as "electrode.main.span"
   std::size_t element = 0;  ///< number of the list element that varies, from 1; 0 for a key without a list
-  Quantity base = {};       ///< value of the key in the scene, if the plan's variable is a factor on it
+  Quantity base = {};       ///< value of the key in the scene, which a variable that is a factor multiplies
 };
 
-/// A varied number of the scene, or several numbers of the scene varied by one factor.
+/// A variable of the plan: sets one key of the scene, or multiplies the values of several keys by one factor.
 struct PlanVariable {
   std::string name;  ///< name of the variable: "structure.length", "electrode.main.span[2]", "gap.electrode*gap.contact"
   std::vector<PlanKey> keys;
@@ -76,7 +76,7 @@ struct PlanVariable {
   /// Words of a varied choice or flag; the variable's value is the number of a word, from 1.
   std::vector<std::string> words = {};
   std::vector<double> values = {};         ///< values of the variable on a grid [SI unit of `dimension`]
-  double low = 0, high = 0;                ///< range of the variable for a sample [SI unit of `dimension`]
+  double low = 0, high = 0;                ///< range of the variable, unless it has `values` [SI unit of `dimension`]
   bool is_logarithmic = false;             ///< true for values in equal ratios instead of equal steps
   [[nodiscard]] std::string unit() const;  ///< unit of the variable, such as "m" or "Vdp"; empty for a plain number
 };
@@ -95,10 +95,10 @@ class Plan {
   [[nodiscard]] const std::string& study() const { return study_; }
   [[nodiscard]] const std::map<std::string, std::string>& options() const { return options_; }
   [[nodiscard]] std::uint64_t seed() const { return seed_; }
-  /// Returns true if a search for a Pareto front chooses the points; pareto() has the figures that the search minimises.
+  /// Returns true if a search for a Pareto front chooses the points; pareto() names the figures of merit that it minimises.
   [[nodiscard]] bool is_search() const { return is_search_; }
   [[nodiscard]] const std::string& pareto() const { return pareto_; }
-  /// Maps a point of the unit cube to the box of the variables' ranges; returns the values of the variables there [SI unit].
+  /// Returns the values of the variables [SI unit] at a point of the unit cube, whose coordinates are shares of their ranges.
   [[nodiscard]] std::vector<double> values_in_box(std::vector<double> place) const;
   /// Returns the values of the variables at point k of the plan, in the order of the variables [SI unit]. Throws InvalidInput
   /// for the points of a search.
@@ -122,7 +122,7 @@ class Plan {
   std::string pareto_;
   std::vector<PlanVariable> variables_;
   std::vector<std::vector<double>> rows_;  // values of a list of points, by row and variable [SI unit]
-  std::optional<PointSet> sample_;         // point set of a sample; also set for a Pareto search, which reads ranges as a sample
+  std::optional<PointSet> sample_;         // kind of point set; also set for a Pareto search, whose variables have ranges
   bool is_search_ = false;
   std::uint64_t points_ = 1;
   std::optional<SamplePoints> sampled_;

@@ -1,5 +1,5 @@
-// Reads the entries of a plan of a design-space exploration: the keys that an entry names, and their values or range. See
-// config/plan.h.
+// Reads the entries KEY=VALUES of a plan of a design-space exploration (config/plan.h): the keys of the scene that vary, and
+// their values or range.
 #pragma once
 
 #include <fmt/format.h>
@@ -23,7 +23,7 @@
 namespace softland::internal {
 
 inline constexpr std::string_view plan_section = "plan";
-inline constexpr std::uint64_t most_values = 10'000'000;  // largest number of values of one variable, or rows of a list
+inline constexpr std::uint64_t most_values = 10'000'000;  // most values of a variable, or rows of a list of points
 
 inline std::vector<std::string> split_trimmed(std::string_view text, char at) {
   std::vector<std::string> parts = split(text, at);
@@ -50,7 +50,7 @@ inline Quantity plan_quantity(std::string_view given) {
   return parse_quantity(fmt::format("{} {}", text.substr(0, length), text.substr(length)));
 }
 
-/// Returns the value rounded to 15 significant digits.
+/// Returns the value rounded to 15 significant digits, which removes the rounding errors of a conversion of units.
 inline double in_few_digits(double value) {
   const std::string text = fmt::format("{:.15g}", value);
   double rounded = value;
@@ -66,7 +66,7 @@ inline double between(const PlanVariable& variable, double t) {
   return in_few_digits(variable.is_logarithmic ? low * std::pow(high / low, t) : std::lerp(low, high, t));
 }
 
-/// Returns a value as canonical text in the unit of its variable.
+/// Returns a value of a variable as the scene writes it: a word, or a number with its SI unit that reads back to the same bits.
 inline std::string value_text(const PlanVariable& variable, double value) {
   return variable.words.empty() ? quantity_text(value, variable.dimension)
                                 : variable.words.at(static_cast<std::size_t>(value) - 1);
@@ -152,7 +152,7 @@ class KeyFinder {
   const SceneFile::Impl& file_;
 };
 
-/// Reads one entry of a plan into a varied number.
+/// Reads one entry of a plan into a variable; `name` is its text before "=".
 class EntryReader {
  public:
   EntryReader(const KeyFinder& finder, const std::string& name) {
@@ -264,7 +264,8 @@ class EntryReader {
     const Dimension given = all.front().dimension;
     const std::vector<Dimension>& allowed = keys_.front().schema->dimensions;
     const std::optional<Quantity>& base = keys_.front().base;
-    // A position on the beam may be a length in the scene; a percentage in the plan is then a factor on the length.
+    // A percentage of a position on the beam is a factor if the scene gives the position as a length; otherwise the scene and
+    // the plan both give shares of the beam's length.
     const bool is_of_value = keys_.front().schema->bound.place != nullptr && given == dimension::none && is_percent && base &&
                              base->dimension != dimension::none;
     const bool fits = variable_.is_whole

@@ -41,7 +41,7 @@ void read_list(PlanRequest& request, const std::string& path) {
 
 namespace {
 
-/// Reads the keys of [plan] in a plan file.
+/// Reads the keys of [plan] in a plan file, and checks that the file has no other section.
 class PlanReader {
  public:
   explicit PlanReader(const SceneFile& file) : file_(file.impl()) {
@@ -118,7 +118,7 @@ class PlanReader {
     }
   }
   [[nodiscard]] PlanRequest::Place place() const {
-    // The sources of the entries (file and line) are copied, because the file may not exist any more when a message needs one.
+    // The function returned here is called after this reader and its file are destroyed, so it owns the sources of the entries.
     std::map<std::string, std::string, std::less<>> places;
     for (const auto& [key, node] : *find_section()) {
       const std::string at = path(key.str());

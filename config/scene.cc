@@ -38,7 +38,7 @@ void check_section_names(const SceneFile::Impl& file) {
   }
 }
 
-/// Sets the members of the scene that the keys of one section describe, and checks the members together.
+/// Sets the members of the scene that the keys of one section describe, and checks the rules between several keys.
 void read_section(Scene& scene, const internal::Section& section, const SectionReader& in, std::string_view name = {}) {
   if (!in.is_present() && !section.always_in_force) return;
   const std::size_t entry = section.begin(scene, in, name);
@@ -125,7 +125,7 @@ std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device
         "{}: surface.residual_stress has no effect on a cantilever; surface.cantilever_load selects its effect", file.name));
   }
   constexpr double wide = 5;          // width over thickness above which the beam bends more like a plate
-  constexpr double rounding = 1e-12;  // for a width of 20 um and a thickness of 4 um, rounding must not exceed the ratio
+  constexpr double rounding = 1e-12;  // a width of exactly five thicknesses, as 20 um to 4 um, must give no warning
   const Structure& structure = device.structure;
   const auto* const beam = structure.find<Beam>();
   if (beam != nullptr && structure.is_built() && !beam->plate_strain && !file.find({"structure", "plate_strain"})) {
@@ -196,8 +196,8 @@ void warn_of_fixed_sections(const SceneFile::Impl& file, const DeviceSpread& spr
   }
 }
 
-/// Returns all sections that apply to the scene, with [spread] (process variation) from resolved_spread(). `keys_of` makes the
-/// table of a section.
+/// Returns the sections of the scene as one table: those in the file, and those whose defaults apply without a section. The
+/// function keys_of(reader) returns the keys of a section. [spread] (process variation) is that of resolved_spread().
 template <class KeysOf>
 toml::table sections_of(const SceneFile::Impl& file, KeysOf&& keys_of) {
   toml::table root;

@@ -44,8 +44,8 @@ class SceneFile {
   /// other key is removed. Messages about the key name the option ("--set gap.contact=...") instead of file and line. Throws
   /// InvalidInput for an invalid assignment.
   void set(std::string_view assignment);
-  /// Sets a key of the scene to a value; a number is in the SI unit of the key. Throws std::logic_error for a key that no scene
-  /// has.
+  /// Sets a key of the scene to a value; a number is in the SI unit of the key. Throws std::logic_error if the schema has no
+  /// such key.
   void assign(const std::string& path, const SceneValue& value);
   /// Sets a key of the scene that holds one quantity, or element number `element` (counted from 1) of a key that holds a list.
   /// Throws std::logic_error for a key or an element that does not exist.
@@ -57,11 +57,12 @@ class SceneFile {
   /// Removes a section or a key from the scene, if it exists.
   void erase(const std::string& path);
   /// Replaces [waveform.DRIVE] by this waveform in volts and seconds, with digits that read back to the same bits. The rows of
-  /// a Table are written into the scene. Voltage and state before t = 0 do not change. Throws InvalidInput for a waveform
+  /// a Table are written into the scene. The keys before and before_state keep their values. Throws InvalidInput for a waveform
   /// outside the rules of its family.
   void set_waveform(const std::string& drive, const Waveform& given);
 
-  /// Removes the line numbers of all keys of the scene: messages then give the name of the file only.
+  /// Removes the line numbers of all keys of the scene, for a text that the user has not written: messages then give its name
+  /// only.
   void forget_places();
 
   /// Returns the same scene under another name: its text is written and read again, and an added contact is kept.
@@ -70,8 +71,8 @@ class SceneFile {
   /// scene to which a contact was added.
   [[nodiscard]] std::string text() const;
   [[nodiscard]] nlohmann::json json() const;
-  /// Returns the value at a key path as text: a string as it is, another value as JSON, and for a section its key `model`, if
-  /// any. Returns none if the scene does not contain the path.
+  /// Returns the value at a key path as text: a string as it is, another value as JSON, and for a section the value of its key
+  /// `model`, if any. Returns none if the scene does not contain the path.
   [[nodiscard]] std::optional<std::string> written(const std::string& path) const;
   /// Returns the keys that the scene contains in a section, in the order of the text.
   [[nodiscard]] std::vector<std::string> keys(const std::string& section) const;
@@ -112,17 +113,17 @@ inline constexpr double default_max_voltage = 1.5;
 /// The names of the piezo and of the dispersion force among the drives.
 inline constexpr std::string_view piezo_drive = "piezo", dispersion_drive = "dispersion";
 
-/// One drive of a switch: an electrode or the piezo, with its voltages. The dispersion force is a drive as well; its value is
-/// the factor on the force minus 1, so that every drive is 0 at rest.
+/// One drive of a switch: an electrode or the piezo, with its voltages. The dispersion force is a drive as well. Its waveform
+/// is the factor on the force minus 1, so that 0 means no actuation for every drive.
 struct Drive {
   std::string name = {};                  ///< name of the drive: an electrode, piezo_drive or dispersion_drive
   std::optional<Waveform> waveform = {};  ///< voltage waveform of the drive; not set: 0 V
   std::optional<double> before = {};      ///< voltage before t = 0 that the scene gives [V]; not set: 0 V
   bool begins_closed = false;             ///< true when the drive's key before_state is closed: see Scene::begins_closed
-  /// Limits of the source; none if unlimited; [0, default_limit()] for electrodes whose Vdp is known.
+  /// Limits of the source; none if unlimited. Without given limits, electrodes of known Vdp have [0, default_limit()].
   std::optional<DriverLimits> limits = {};
   DriverModel source = {};               ///< voltage source, ideal by default; prepare() adds its load
-  std::optional<double> amplifier = {};  ///< volts at the switch per volt of the source; all other voltages are at the switch
+  std::optional<double> amplifier = {};  ///< gain of an amplifier between source and switch; voltages are those at the switch
   SourceErrors errors = {};              ///< errors of the source: gain, offset and delay
 
   [[nodiscard]] double hold_level() const;                                  ///< voltage that the waveform keeps at its end [V]
@@ -164,18 +165,19 @@ class Drives {
 };
 
 struct SimulateOptions {
-  double duration = 0;     ///< simulated time [s]; 0: six periods of the first mode, or four closing times of a plain step
+  double duration = 0;     ///< simulated time [s]; 0: six periods of mode 1, or longer if gas slows the closing
   double accuracy = 1e-6;  ///< target relative error of initial contact time, impact velocity and highest rebound
   double tolerance = 0;    ///< relative tolerance of the integrator; 0: derived from accuracy
-  double open_at = std::numeric_limits<double>::quiet_NaN();  ///< time of the command to open [s]; NaN: derived from the drives
+  double open_at = std::numeric_limits<double>::quiet_NaN();  ///< time of the command to open [s]; NaN: see open_command()
   bool automatic_effects = false;  ///< true to leave out physical effects that change no figure by more than effects_tolerance
-  /// Change of first contact time, impact velocity and highest rebound that counts for an effect, relative.
+  /// Relative change of first contact time, impact velocity or highest rebound above which an effect is kept.
   double effects_tolerance = 1e-3;
 };
 
-/// The per-device calibration: figures measured on every device before actuation. The waveform f of the scene is scaled by the
-/// figures of the device, V(t) = Vdp f(t f_1), or V(t) = f(t f_1) / p for a piezo, with f_1 the first frequency and p the
-/// piezo's deflection per volt over the contact gap. The waveform in the scene is that of the nominal device.
+/// The per-device calibration: figures measured on every device before actuation. They scale the waveform of the device in
+/// voltage and time: V(t) = Vdp f(t f_1), or V(t) = f(t f_1) / p for a piezo. f is the common dimensionless waveform, f_1 the
+/// device's first frequency, and p the deflection by the piezo per volt over the contact gap. The waveform in the scene is that
+/// of the nominal device.
 struct Calibration {
   /// Relative standard deviation of the measured Vdp (dynamic pull-in voltage) and of the measured frequency; none where the
   /// quantity is not measured on every device.
@@ -186,8 +188,8 @@ struct Calibration {
   /// Standard deviation of the measured closing time of a step to closing_step times the nominal Vdp [s]; none where it is not
   /// measured. The closing time gives the scale of the voltages, and is never measured together with Vdp.
   std::optional<double> time_error = {};
-  /// Number of classes into which devices are sorted by the calibration measurement, each with one waveform; none if every
-  /// device has its own waveform.
+  /// Number of classes into which the devices are sorted by the measured values. All devices of a class use one waveform; none
+  /// if every device has its own.
   std::optional<int> classes = {};
 
   [[nodiscard]] bool is_empty() const { return !pull_in_error && !frequency_error && !piezo_error && !time_error; }
@@ -196,10 +198,10 @@ struct Calibration {
 inline constexpr std::string_view measured_pull_in = "Vdp", measured_frequency = "frequency", measured_piezo = "piezo",
                                   measured_time = "time";
 inline constexpr std::array measurement_names{measured_pull_in, measured_frequency, measured_piezo, measured_time};
-/// Voltage of the step whose closing time is measured, as a multiple of the nominal Vdp. The step is slow enough that its
-/// closing time depends on the same properties of the device as a closing with a soft impact.
+/// Voltage of the step whose closing time is measured, as a multiple of the nominal Vdp. Under so low a voltage
+/// the switch closes slowly, so that the time depends on the same properties of the device as a closing with a soft impact.
 inline constexpr double closing_step = 1.2;
-/// Default error of a measured closing time: that of a generator and an oscilloscope [s].
+/// Default standard deviation of a measured closing time: that of a generator and an oscilloscope [s].
 inline constexpr double usual_time_error = 50e-9;
 inline constexpr int most_classes = 256;
 namespace internal {
@@ -210,7 +212,7 @@ struct Scene {
   std::string title;
   Device device;
   SimulateOptions simulate;
-  /// True for modes = "auto": `device` has a default number of modes until studies/closing/auto_modes.h chooses the number.
+  /// True for modes = "auto": studies/closing/auto_modes.h chooses the number of modes; until then `device` has the default.
   bool auto_modes = false;
   MetricsOptions metrics;
   DeviceSpread spread;
@@ -218,9 +220,9 @@ struct Scene {
   /// True if simulations begin in the closed equilibrium under the drives' voltages before t = 0, instead of the open
   /// equilibrium.
   bool begins_closed = false;
-  /// Drives (electrode names) whose waveform or given limits are in units of the pull-in voltages Vsp or Vdp.
+  /// Names of the electrodes whose waveform or voltage limits are in multiples of the pull-in voltages Vsp or Vdp.
   std::vector<std::string> need_pull_in;
-  /// Drives in need_pull_in of which only the voltage limits are in units of Vsp or Vdp.
+  /// Names in need_pull_in of the electrodes of which only the voltage limits are in such multiples.
   std::vector<std::string> limits_in_pull_in = {};
   /// Voltage of each drive while the pull-in voltages of another drive are computed, in the order of Switch::drives(): the hold
   /// voltage if it does not depend on Vsp or Vdp, otherwise 0 V; for the dispersion force the factor minus 1.
@@ -229,9 +231,9 @@ struct Scene {
   std::vector<std::string> warnings;
   SceneFile file;
 
-  /// Returns waveforms and limits of all drives in volts. `pull_in` must hold every electrode of need_pull_in; an electrode
-  /// that is not in `pull_in` gets no default limit. Throws InvalidInput for a waveform outside the rules of its family or
-  /// outside the limits of its source.
+  /// Returns waveforms and limits of all drives in volts. `pull_in` must hold every electrode of need_pull_in; other electrodes
+  /// that it lacks have no default voltage limit. Throws InvalidInput for a waveform outside the rules of its family or outside
+  /// the limits of its source.
   [[nodiscard]] Drives drives(const std::map<std::string, PullInVoltages>& pull_in) const;
 };
 

@@ -23,7 +23,7 @@ namespace {
 
 using internal::join_path;
 
-/// Returns the depth of nested tables of a TOML node.
+/// Returns how many levels of tables are nested in a TOML node; 0 for a value that is not a table.
 std::size_t levels(const toml::node& node) {
   const toml::table* table = node.as_table();
   if (!table) return 0;
@@ -48,7 +48,7 @@ void record_origins(SceneFile::Impl& impl, const toml::table& table, const std::
     }
     const auto* inner = node.as_table();
     if (!inner) continue;
-    // A section and a dotted key may together form a path of keys that is too deep to be read again.
+    // Neither the header of this section nor the dotted key alone is too deep, but together their path may be.
     require(parts < internal::deepest_path, fmt::format("{}: a key has more than {} parts", place, internal::deepest_path));
     record_origins(impl, *inner, key_path, parts + 1);
   }
@@ -73,13 +73,13 @@ const toml::node* SceneFile::Impl::find(const std::vector<std::string>& path) co
 
 SceneFile::Impl::Origin SceneFile::Impl::origin(std::string_view path) const {
   if (const auto exact = origins.find(path); exact != origins.end()) return exact->second;
-  // Find the origin of a value that contains this key, such as an option that replaced a whole section.
+  // A key without an origin of its own has that of the value that contains it, such as an option that set a whole section.
   const Origin* nearest = nullptr;
   for (const auto& [known, place] : origins) {
-    if (is_below(path, known)) nearest = &place;  // origins are sorted by path, so that the last match is the nearest
+    if (is_below(path, known)) nearest = &place;  // sorted by path: the last match is the innermost value
   }
   if (nearest) return *nearest;
-  // Find a section that exists only because an option set one of its keys.
+  // A section that exists only because an option set one of its keys has the origin of this key.
   for (const auto& [known, place] : origins) {
     if (is_below(known, path)) return place;
   }

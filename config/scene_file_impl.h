@@ -21,7 +21,7 @@ namespace softland::internal {
 /// Largest number of parts of a key's path; "gap.contact" has two.
 inline constexpr std::size_t deepest_path = 16;
 
-/// Returns a path of keys as text, parts quoted where TOML needs it: spread."structure.thickness".
+/// Returns `path` extended by `key`, which is quoted if TOML requires it: spread."structure.thickness".
 [[nodiscard]] std::string join_path(const std::string& path, std::string_view key);
 /// Splits the text of a path of keys into its parts. Throws InvalidInput whose message states only the broken rule.
 [[nodiscard]] std::vector<std::string> split_path(std::string_view path);
@@ -43,8 +43,8 @@ inline constexpr std::size_t deepest_path = 16;
 [[nodiscard]] std::string write_scene(const toml::table& root);
 /// Returns a TOML table, list or value as JSON.
 [[nodiscard]] nlohmann::json to_json(const toml::node& node);
-/// Returns a table that holds the value of a TOML text under `value_key`. Throws InvalidInput for a text that is not a TOML
-/// value.
+/// Parses the text of one TOML value; returns a table with this value under the key value_key. Throws InvalidInput for any
+/// other text.
 [[nodiscard]] toml::table parse_value(std::string_view toml_text);
 inline constexpr std::string_view value_key = "v";
 
@@ -65,7 +65,7 @@ struct SceneFile::Impl {
   struct Origin {
     std::string text;  ///< source of the key's value: "scenes/x.toml:12" or "--set gap.contact=3"
     bool is_option = false;
-    std::string replaced = {};  ///< path of the value that this key replaced; empty if the key replaced none
+    std::string replaced = {};  ///< path of the older value that setting this key removed; empty if none
   };
 
   std::string name;

@@ -16,7 +16,8 @@ namespace softland {
 namespace internal {
 namespace {
 
-/// Returns the end of the TOML string that begins at `begin`; a single-line string ends with its line at the latest.
+/// Returns the index behind the TOML string that begins at `begin`. A single-line string without a closing quote ends with its
+/// line.
 std::size_t end_of_string(std::string_view text, std::size_t begin) {
   const char quote = text[begin];
   const std::string triple(3, quote);
@@ -95,8 +96,7 @@ std::vector<std::string_view> key_names(const Section* section) {
   return names;
 }
 
-/// Writes a section of a scene and its subsections. Inline tables stay inline: an entry of [spread] is most readable on one
-/// line.
+/// Writes a section of a scene and its subsections. Inline tables, such as the varied quantities in [spread], stay on one line.
 void write_section(std::string& out, const toml::table& table, const std::string& path, std::size_t depth,
                    const Section* section) {
   const bool holds_keys = section && (depth == (section->is_named ? 2U : 1U) || (section->may_be_named && depth == 2));

@@ -21,7 +21,7 @@ namespace softland::internal {
 
 class SectionReader;
 
-/// Word for the free end of the beam, used instead of a position.
+/// Word that a scene may use instead of a position, for the far end of the beam.
 inline constexpr std::string_view tip = "tip";
 
 struct Section;
@@ -29,8 +29,9 @@ struct Section;
 /// The type of the value of a scene's key. `table`: keys in braces; `tables`: a list of such tables.
 enum class KeyType { text, texts, flag, integer, choice, quantity, quantities, table, tables };
 
-/// The member of a scene that a key sets. At most one of these functions is set, except that a word may replace a table. The
-/// second argument of the functions selects the electrode or the table of a list; `element` selects the element of a list.
+/// Access to the member of a scene that a key sets: the function for the type of the key's value is set, the others are null. A
+/// key with two types of values has two functions. The second argument of the functions is the index of the electrode, the
+/// contact, or the table in a list of tables; `element` is the index in a list of numbers.
 struct Bound {
   double& (*number)(Scene&, std::size_t) = nullptr;
   Place& (*place)(Scene&, std::size_t, std::size_t element) = nullptr;
@@ -44,7 +45,7 @@ struct Bound {
 struct Key {
   std::string_view name;
   KeyType type = KeyType::quantity;
-  /// Permitted dimensions of the key's value; empty if another key decides. The first dimension gives the SI unit of the key.
+  /// Permitted dimensions of the key's value; empty in [spread], where the varied key decides. The first gives the SI unit.
   std::vector<Dimension> dimensions = {};
   Range range = {};         ///< permitted values of the key; see range_of()
   std::size_t count = 0;    ///< type `quantities`: number of list elements; 0 for any number
@@ -56,16 +57,15 @@ struct Key {
   std::vector<std::string_view> words = {};
   std::string_view fallback = {};  ///< default value of the key as TOML; empty for none
   bool required = false;
-  std::vector<std::string_view> only_for = {};  ///< values of Section::selector for which this key exists; empty: all
-  std::vector<std::string_view> instead_of =
-      {};                              ///< other keys that may replace this key; one of them suffices if this key is required
-  std::string_view about = {};         ///< description of the key, one line
-  std::string_view beyond = {};        ///< advice for a user who needs a value outside the key's range
-  std::string_view why_fixed = {};     ///< reason why [spread] cannot vary this key; empty if [spread] can
-  std::string_view if_list = {};       ///< type `quantity`: advice for a user who gives a list
-  std::string_view like = {};          ///< an example value of the key as text; empty: see example_of()
-  std::string_view unless = {};        ///< another key, which makes this key optional if given
-  const Section* (*part)() = nullptr;  ///< types `table` and `tables`: the keys of one table
+  std::vector<std::string_view> only_for = {};    ///< values of Section::selector for which this key exists; empty: all
+  std::vector<std::string_view> instead_of = {};  ///< keys that may be given instead of this key, even if it is required
+  std::string_view about = {};                    ///< description of the key, one line
+  std::string_view beyond = {};                   ///< advice for a user who needs a value outside the key's range
+  std::string_view why_fixed = {};                ///< reason why [spread] cannot vary this key; empty if [spread] can
+  std::string_view if_list = {};                  ///< type `quantity`: advice for a user who gives a list
+  std::string_view like = {};                     ///< an example value of the key as text; empty: see example_of()
+  std::string_view unless = {};                   ///< another key, which makes this key optional if given
+  const Section* (*part)() = nullptr;             ///< types `table` and `tables`: the keys of one table
   Bound bound = {};
 
   // Setters of properties of a key that the functions in config/schema/sections.h do not set.
@@ -89,7 +89,7 @@ struct Key {
   [[nodiscard]] bool belongs_to(std::string_view choice) const;
 };
 
-/// Advice for an unknown key that contains a certain word: the advice names the key that the user may need.
+/// Advice `text` for an unknown key whose name contains `word`; it names the key that the user may need.
 struct Advice {
   std::string_view word, text;
 };
@@ -99,16 +99,16 @@ struct Section {
   std::string_view entry = {};   ///< NAME of the [section.NAME] to which these keys apply; empty: every other NAME
   bool is_named = false;         ///< true if the scene has [name.NAME], any number of them
   bool may_be_named = false;     ///< true if the scene has [name], or several [name.NAME]
-  std::string_view beside = {};  ///< key in [name] beside sections [name.NAME]; separate code reads the key
+  std::string_view beside = {};  ///< key that [name] itself may hold although is_named; separate code reads it
   bool required = false;
   bool always_in_force = false;    ///< true if the defaults of the keys apply even without the section
   bool may_vary = false;           ///< true when [spread] (process variation) may vary numbers of this section
   std::string_view selector = {};  ///< key whose value decides which other keys the section has
   std::vector<Key> keys = {};
   std::string_view about = {};
-  std::vector<Advice> advice = {};  ///< advice for unknown keys of the section; the first that applies is shown
-  /// Creates the part of the scene that the section describes; `name` is NAME of [section.NAME]. Returns the number of an
-  /// electrode or contact. Null if separate code reads the keys, as for waveforms, drivers and spread.
+  std::vector<Advice> advice = {};  ///< advice for unknown keys of the section; a message shows the first that applies
+  /// Creates the part of the scene that the section describes; `name` is NAME of [section.NAME]. Returns its index
+  /// among the electrodes or contacts. Null if separate code reads the keys, as for waveforms, drivers and spread.
   std::size_t (*begin)(Scene& scene, const SectionReader& in, std::string_view name) = nullptr;
   /// Checks rules between several keys of the section, after all keys are set. Throws InvalidInput.
   void (*check)(Scene& scene, const SectionReader& in, std::size_t entry) = nullptr;

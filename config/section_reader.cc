@@ -115,7 +115,7 @@ std::vector<Quantity> parse_list(const Key& key, const toml::array& array) {
   return values;
 }
 
-// Returns a position on the beam; a percentage is a share of the length of the beam.
+// Returns a position on the beam from a length or a percentage of the beam's length.
 Place place_of(const Quantity& quantity) {
   return quantity.dimension == dimension::none ? Place::share(quantity.value) : Place(quantity.value);
 }
@@ -415,7 +415,7 @@ void SectionReader::set_members(Scene& scene, std::size_t entry) const {
     } else if (bound.element != nullptr) {
       for (std::size_t k = 0; k < quantities(name).size(); ++k) bound.element(scene, entry, k) = quantities(name)[k].value;
     } else if (bound.place != nullptr) {
-      if (is_word(name)) continue;  // a word such as "tip" means the default of the scene's member
+      if (is_word(name)) continue;  // a word such as "tip" keeps the default of the scene's member
       for (std::size_t k = 0; k < quantities(name).size(); ++k) bound.place(scene, entry, k) = place_of(quantities(name)[k]);
     } else if (bound.number != nullptr) {
       bound.number(scene, entry) = number(name);
@@ -432,7 +432,7 @@ void SectionReader::set_members(Scene& scene, std::size_t entry) const {
 }
 
 void SectionReader::require_of_structure(std::string_view key, std::string_view needed, const Structure& structure) const {
-  // Only a plate, or a beam without sections, may lack the needed number: sections have their own thicknesses.
+  // A beam of sections need not give structure.thickness: every section has its own thickness.
   const bool may_lack =
       structure.is_rigid() || (needed == "thickness" && std::isnan(structure.thickness) && !structure.is_built());
   require(!may_lack || SectionReader(file_, "structure").is_given(needed), key,

@@ -28,7 +28,8 @@ class SectionReader {
   /// kind, dimension or range. Keys that are not given take their defaults. `file` must outlive the reader.
   explicit SectionReader(const SceneFile::Impl& file, std::string_view section, std::string_view name = {});
 
-  /// Returns the tables in the value of a key: one for the type `table`, none if a word replaces the table, all for `tables`.
+  /// Returns readers of the tables in the value of a key: one for the type `table` (none if a word replaces it), all for
+  /// `tables`.
   [[nodiscard]] std::vector<SectionReader> parts(std::string_view key) const;
   /// Returns the table that holds the last key of a path below this section, such as {"sections[2]", "holes", "pitch"}, and the
   /// number of the table in its list; none if there is no such table.
@@ -46,7 +47,7 @@ class SectionReader {
   /// Returns the description of a key of the section, or null.
   [[nodiscard]] const Key* find(std::string_view key) const { return section_.find(key, choice_); }
 
-  /// Returns the value of a key that holds a number, or its default [SI unit]; NaN without either.
+  /// Returns the number that a key holds, or else its default [SI unit]; NaN if the key has neither.
   [[nodiscard]] double number(std::string_view key) const;
   [[nodiscard]] const std::vector<Quantity>& quantities(std::string_view key) const;
   [[nodiscard]] std::vector<double> numbers(std::string_view key) const;
@@ -62,7 +63,7 @@ class SectionReader {
   [[nodiscard]] const std::string& text(std::string_view key) const;
   [[nodiscard]] const std::vector<std::string>& texts(std::string_view key) const;
 
-  /// Returns the keys whose values are multiples of a pull-in voltage.
+  /// Returns the names of the keys whose values are multiples of a pull-in voltage (Vsp or Vdp).
   [[nodiscard]] std::vector<std::string_view> keys_in_pull_in_units() const;
   /// Returns every key that has a value, with its TOML value as written or by default.
   [[nodiscard]] toml::table with_defaults() const;
@@ -78,7 +79,8 @@ class SectionReader {
   }
   /// Throws InvalidInput about the section with the text `rule`.
   [[noreturn]] void fail(std::string_view rule) const { file_.fail_section(path_, rule); }
-  /// Throws InvalidInput about `key` if [structure] lacks the optional key `needed`.
+  /// Throws InvalidInput about `key` if its law needs the optional key `needed` of [structure], such as width, and it is
+  /// missing.
   void require_of_structure(std::string_view key, std::string_view needed, const Structure& structure) const;
   /// Throws InvalidInput unless the two positions of `key` increase and are on the beam.
   void require_on_beam(std::string_view key, const Structure& beam) const;

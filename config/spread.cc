@@ -101,7 +101,7 @@ FoundKey find_drive_error(const SceneFile::Impl& file, const Device& device, con
   if (error == nullptr) fail(hint(parts[2], names_of(drive_errors)));
   const SectionReader of_drive(file, parts[0], parts[1]);
   const bool is_given = of_drive.is_present() && error->value != DriveError::jitter && of_drive.is_given(error->name);
-  // The jitter of edges is positive or negative, and is not a key of a voltage source.
+  // Only the gain must stay in the range of its key. Offset, delay and jitter of a device may have either sign.
   const Key* const key = find_section(parts[0])->find(error->name);
   const Key any_value;
   const Key& ranged = error->value == DriveError::gain ? *key : any_value;
@@ -146,7 +146,7 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
     for (const Key& key : of_key.keys()) {
       const std::size_t size =
           key.bound.element != nullptr && of_key.has_value(key.name) ? of_key.quantities(key.name).size() : 0;
-      // An element of a list that cannot vary is refused with the reason of the list.
+      // An element of a list that cannot vary is a candidate too, so that the message below gives the reason of the list.
       const bool is_fixed_list = key.type == KeyType::quantities && !key.why_fixed.empty();
       const bool is_number =
           is_fixed_list                   ? true
@@ -228,7 +228,7 @@ class EntryUnits {
 
   [[nodiscard]] bool is_factor() const { return is_factor_; }
   [[nodiscard]] bool is_added() const { return in_.is_given("weights"); }
-  /// Returns the value of the varied quantity in the nominal design.
+  /// Returns the value of the variable in the nominal design: 1 for a factor, 0 for an added amount, or the value of its key.
   [[nodiscard]] double nominal() const { return is_factor_ ? 1 : is_added() ? 0 : keys_.front().varied.nominal; }
   [[nodiscard]] double of(const Quantity& q) const {
     return is_factor_ || q.dimension != dimension::none ? q.value : q.value * keys_.front().varied.nominal;
@@ -238,7 +238,7 @@ class EntryUnits {
   [[nodiscard]] double width(std::string_view key) const { return std::abs(of(key)); }
   [[nodiscard]] double of(std::string_view key, double otherwise) const { return in_.is_given(key) ? of(key) : otherwise; }
 
-  /// Returns the quantity 1 in the unit of the values in a file of an empirical distribution.
+  /// Returns one unit of the values in the file of an empirical distribution, as the key `unit` names it.
   [[nodiscard]] Quantity unit() const {
     try {
       return parse_quantity("1 " + in_.text("unit"));
@@ -263,8 +263,8 @@ class EntryUnits {
                   fmt::format("one amount cannot be added to {} and {}", keys_.front().varied.name(), key.varied.name()));
     }
   }
-  // Checks the dimension of a number in [spread]: a plain number is a factor on any key, any other number must have the
-  // dimension of the key.
+  // Checks the dimension of a quantity in an entry of [spread]: a plain number is relative to the varied key's value, any other
+  // quantity must have the dimension of the varied key.
   void check(std::string_view key, const Dimension& given) {
     if (given == dimension::none) {
       ratio_ = key;
@@ -372,7 +372,7 @@ SpreadVariable read_variable(const SceneFile::Impl& file, Scene& scene, const st
                                          varied.unit.empty() ? "" : ": give it a standard_deviation in " + varied.unit));
     }
     if (varied.drive && varied.drive->error == DriveError::jitter) {
-      // The value of this variable seeds the random delays of the edges; the value itself is not a time.
+      // The value of this variable for a device seeds the random delays of its edges. It is no delay, so any value is valid.
       variable.is_drawn_per_edge = true;
       key.varied.refusal = [](double) { return std::string(); };
     }

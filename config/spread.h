@@ -40,9 +40,9 @@ struct VariedKey {
   std::string unit;            ///< SI unit of the varied key
   double nominal = 0;          ///< value of the varied key in the scene, the nominal design
   Dimension measured_in = {};  ///< dimension in which the key varies, one of those that the key may have
-  double weight = 1;           ///< weight with which a varied amount is added to the value of the key
-  /// Returns the member of a scene that the varied key sets. Null if the key does not set a single number; the scene must then
-  /// be read again with the new value.
+  double weight = 1;           ///< if SpreadVariable::is_added: factor on the amount that is added to the nominal value
+  /// Returns the member of a scene that the varied key sets. Null if the key does not set a single number: the scene must then
+  /// be read again to give a device its value.
   std::function<double&(Scene&)> member;
   /// Error of a drive's voltage source, if the varied number is such an error; Scene has no member for it.
   std::optional<VariedDrive> drive;
@@ -57,9 +57,9 @@ struct VariedKey {
 struct SpreadVariable {
   std::string name;  ///< name of the quantity's entry in [spread]
   std::vector<VariedKey> keys;
-  /// true: multiplies the values of its keys; false, unless is_added: replaces the value of its one key.
+  /// true: the variable multiplies the values of its keys; false, unless is_added: it replaces the value of its one key.
   bool is_factor = true;
-  bool is_added = false;  ///< true: is added to the values of its keys, multiplied by the weights of the keys
+  bool is_added = false;  ///< true: the variable times the weight of each key is added to the key's value
   Distribution distribution;
   /// True for jitter, which has a random value for every edge of every device. The value of the variable for a device is then a
   /// number in (0, 1) that seeds the random numbers of the edges.
@@ -84,13 +84,13 @@ struct DeviceSpread {
   /// Turns a point of the open unit cube into values of the varied quantities [SI unit, factor, or for jitter a number in (0,
   /// 1)], in place.
   void to_values(std::span<double> u) const;
-  /// Returns the value of a varied key if its quantity has the value `x` [SI unit].
+  /// Returns the value of a varied key [SI unit] on a device whose value of the variable is `x`.
   [[nodiscard]] static double value(const SpreadVariable& variable, const VariedKey& key, double x) {
     if (variable.is_added) return key.nominal + key.weight * x;
     return variable.is_factor ? key.nominal * x : x;
   }
-  /// Returns the random delay of a waveform's edge [s] if the jitter variable has the value `x`; edges are numbered over all
-  /// drives.
+  /// Returns the random delay [s] of an edge of a waveform on a device whose value of the jitter variable is `x`. `edge`
+  /// numbers the edges of all drives.
   [[nodiscard]] static double jitter(const SpreadVariable& variable, double x, std::uint64_t edge);
 };
 

@@ -18,9 +18,9 @@ namespace {
 struct Symbol {
   std::string_view name;
   Dimension dimension;
-  int exponent = 0;  ///< power of ten by which a number in the unit is multiplied to get SI
+  int exponent = 0;  ///< the unit is factor * 10^exponent SI units
   bool takes_prefix = false;
-  double factor = 1;  ///< further factor on a number in the unit, not a power of ten
+  double factor = 1;  ///< the rest of the size of the unit beside the power of ten
 };
 
 constexpr std::array symbols{
@@ -77,7 +77,7 @@ constexpr std::array spellings{Spelling{"\u00b5", "u"},   // micro sign (U+00B5)
 std::string plainly_spelt(std::string_view text) {
   std::string plain(text);
   const auto is_ascii = [](char c) { return static_cast<unsigned char>(c) < 0x80; };
-  if (std::all_of(plain.begin(), plain.end(), is_ascii)) return plain;  // fast path without a copy, for long lists of numbers
+  if (std::all_of(plain.begin(), plain.end(), is_ascii)) return plain;  // skip the search in long lists of numbers
   for (const Spelling& spelling : spellings) {
     for (auto at = plain.find(spelling.printed); at != std::string::npos; at = plain.find(spelling.printed, at)) {
       plain.replace(at, spelling.printed.size(), spelling.plain);
@@ -182,8 +182,8 @@ int parse_power(std::string_view text, std::string_view factor) {
   return power;
 }
 
-/// Returns true when a digit after this factor of a unit is its power: "m3" is a volume, and no symbol of a unit ends with a
-/// digit.
+/// Returns true when the last digit of this factor of a unit is a power of a length: "m3" is a volume. No symbol of a unit ends
+/// with a digit.
 bool has_digit_power(std::string_view factor) {
   if (factor.empty() || factor.back() < '2' || factor.back() > '9') return false;
   const auto unit = look_up(factor.substr(0, factor.size() - 1));
@@ -276,7 +276,8 @@ std::size_t number_length(std::string_view text) {
   return i;
 }
 
-/// Returns true if this character may follow a number directly: "100um" is a quantity, "2,5 um" and "1_000 um" are not.
+/// Returns true if a unit may begin with this character directly after a number: "100um" is valid, "2,5 um" and "1_000 um" are
+/// not.
 bool begins_unit(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%'; }
 
 /// Returns number * 10^exponent, rounded once.

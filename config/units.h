@@ -3,7 +3,7 @@
 // Grammar: number SPACE unit; the space may be missing before a letter or %. A unit is factors joined by spaces or `*`, with at
 // most one `/`; every factor after the `/` divides. A factor is a prefix (y z a f p n u m k M G T), a symbol and an integer
 // power `^n`; the whole numerator may be `1`. A text without unit is a plain number. S/s, with a prefix, are samples per
-// second, as the makers of converters write it. An exact symbol wins over prefix + symbol: "Pa s" is pascal second, "m Pa"
+// second, as data sheets of converters write it. An exact symbol wins over prefix + symbol: "Pa s" is pascal second, "m Pa"
 // metre pascal, "mPa" millipascal. Printed spellings are read as well: µ (micro sign or Greek mu) for u, the no-break space,
 // the minus sign, the middle dot, ² and ³. So whatever softland prints as a quantity can be read again.
 //

@@ -97,7 +97,7 @@ std::vector<Key> contact_keys() {
 void check_pad_length(const Device& d, const Contact& c, const SectionReader& in) {
   const bool per_area = acts_per_area(c.model);
   if (!in.is_given("pad_length")) {
-    if (d.structure.is_rigid() && !per_area) return;  // for a plate, a resistance by area uses only the area of the pad
+    if (d.structure.is_rigid() && !per_area) return;  // a plate needs the length only for a law per area
     in.fail(R"(missing key 'pad_length' (a length such as "2 um"))");
   }
   if (per_area && !in.is_given("pad_width")) in.require_of_structure("pad_length", "width", d.structure);
@@ -113,7 +113,7 @@ void check_named(const Device& d, std::size_t k, const SectionReader& in) {
   if (!in.is_given("gap")) in.fail(R"(missing key 'gap' (a length such as "2 um"))");
   const double own = in.number("gap");
   const SectionReader gap(in.file(), "gap");
-  constexpr double most = 0.99;  // largest contact gap as a share of the electrode gap: see check_gap()
+  constexpr double most = 0.99;  // as in check_gap()
   in.require(c.side == Side::far || own < most * d.gap.electrode, "gap",
              fmt::format("must be less than {:g} times {}", most, gap.written("electrode")));
 }

@@ -35,14 +35,14 @@ Landing& landing(Scene& scene, std::size_t k) {
 }
 using OfLanding = Of<landing>;
 
-// The keys of asperities are set in the order of their names, so any of them may be the first.
+// Any key of the asperities may be the first that is set, so each of them creates the asperities if they do not exist.
 UniformAsperities& asperities(Scene& scene, std::size_t k) {
   std::optional<UniformAsperities>& one = landing(scene, k).asperities;
   if (!one) one.emplace();
   return *one;
 }
 
-/// Returns the keys of asperities on the face of the dielectric, which dissipate no energy.
+/// Returns the keys of asperities on the face of the dielectric: those of an asperity contact without its damping.
 std::vector<Key> asperity_keys() {
   std::vector<Key> keys;
   const auto add = [&]<std::size_t i>(std::integral_constant<std::size_t, i>) {
@@ -120,7 +120,7 @@ std::size_t begin_electrode(Scene& scene, const SectionReader&, std::string_view
   return scene.device.electrodes.size() - 1;
 }
 
-/// Sets the extent of a plate's electrode: the length that gives its area.
+/// Checks the keys span (of a beam) and area (of a plate). For a plate, sets begin and end so that the electrode has this area.
 void check_extent(const Structure& s, Electrode& e, const SectionReader& in) {
   if (s.is_rigid()) {
     in.require(!in.is_given("span"), "span", "belongs to a beam; the electrode of a plate has an area");

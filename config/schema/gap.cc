@@ -35,7 +35,7 @@ void check_gap(Scene& scene, const SectionReader& in, std::size_t) {
     in.require(!in.is_given("contact"), "contact", "belongs to a single [contact]: every [contact.NAME] has its own gap");
     return;
   }
-  if (has_landing(in.file())) return;  // check_landing() sets the contact gap
+  if (has_landing(in.file())) return;  // check_landing() sets the contact gap to the face of the dielectric
   if (!in.is_given("contact")) in.fail(R"(missing key 'contact' (a length such as "2 um"))");
   if (gap.contact <= gap.electrode && may_land(scene.device.structure, in.file())) {
     in.require(!scene.device.lands_on_dielectric() || in.file().find({"dispersion"}) == nullptr, "contact",

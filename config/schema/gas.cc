@@ -13,7 +13,7 @@ Gas& gas(Scene& scene, std::size_t) { return *scene.device.gas; }
 std::vector<Key> gas_keys() {
   std::vector<Key> keys = keys_of_laws<Gas, gas>("law of the squeeze film; linear: a constant damper");
   std::ranges::find(keys, "damping", &Key::name)
-      ->dimensions.push_back(dimension::damping);  // for a plate the damping may be that of the whole plate
+      ->dimensions.push_back(dimension::damping);  // a plate may give the damping of the whole plate [N s/m]
   return keys;
 }
 

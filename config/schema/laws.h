@@ -1,4 +1,5 @@
-// The keys of a section whose law (of contact, force or gas) is a variant of parameter structs (base/field.h).
+// Makes the keys of a section that selects a law of contact, force or gas. Each law is a struct of parameters, whose fields
+// (base/field.h) describe the keys.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +18,7 @@
 
 namespace softland::internal {
 
-/// Returns the value of field i, a number, of law `Law` in a scene; `part` returns the variant of laws in the scene.
+/// Returns the member of a scene that holds field i, a number, of `Law`; `part` returns the variant of laws in the scene.
 template <auto part, class Law, std::size_t i>
 [[nodiscard]] double& bound_number(Scene& scene, std::size_t entry) {
   return *number_of(part(scene, entry), fields_of<Law>[i].key);
@@ -34,7 +35,7 @@ void bound_word(Scene& scene, std::size_t entry, std::string_view word) {
       part(scene, entry));
 }
 
-/// Returns the scene key that a field describes, without the member that the key sets.
+/// Returns the scene key that a field of a law describes, without access to the member that the key sets.
 template <class Owner>
 [[nodiscard]] Key described(const Field<Owner>& field) {
   Key key{.name = field.key,

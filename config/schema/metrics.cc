@@ -65,8 +65,8 @@ void order_contacts(Device& d) {
   d.gap.contact = d.contacts.front().gap;
 }
 
-// Checks the request for electrical figures, which need a contact; a resistance needs the resistivity of every contact that
-// makes the connection.
+// Checks the keys that define when the electrical connection counts as closed. They need a contact; closed_resistance needs the
+// resistivity of every contact that makes the connection.
 void check_electrical(const Device& d, const SectionReader& in) {
   for (const std::string_view key : {"closed_force", "closed_resistance", "closed_after"}) {
     in.require(!in.is_given(key) || d.has_contact(), key, "needs a [contact]");

@@ -13,8 +13,8 @@
 namespace softland::internal {
 namespace {
 
-/// Range of the sizes of a quantity in a scene [SI unit]. It exceeds that of any switch, and products of a few values in the
-/// range stay within double precision.
+/// Permitted range of values of one dimension in a scene [SI unit]. Values of real switches lie far inside, and products of a
+/// few values in the range stay within double precision.
 struct Extent {
   Dimension dimension;
   double smallest;  ///< smallest permitted value of a positive quantity

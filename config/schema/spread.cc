@@ -6,7 +6,7 @@
 namespace softland::internal {
 namespace {
 
-/// Returns a key of [spread] for a number in the unit of the varied key, or for a ratio to the value in the scene.
+/// Returns a key of [spread] whose value is in the unit of the varied key, or a ratio to the value of that key in the scene.
 Key of_the_key(std::string_view name, std::string_view about) { return number(name, {}, any, about); }
 
 }  // namespace

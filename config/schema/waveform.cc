@@ -6,7 +6,7 @@
 namespace softland::internal {
 namespace {
 
-/// Returns the scene keys of one parameter of a waveform family: two keys if a scene may give the parameter in two forms.
+/// Returns the scene keys of one parameter of a waveform family: two if a second key may replace it, such as frequency.
 template <class Family>
 std::vector<Key> keys_of(const Parameter<Family>& parameter, const std::vector<Dimension>& level, bool factor) {
   Key key = std::holds_alternative<double Family::*>(parameter.member) ? number(parameter.name, level, any, parameter.about)
@@ -87,8 +87,8 @@ std::vector<Key> keys_beside_file() {
   return keys;
 }
 
-/// Returns the section for waveforms of the drive `entry`, or of all drives without a specific section. `level` holds the
-/// permitted dimensions of a level.
+/// Returns the section [waveform.ENTRY] of the drive `entry`; an empty `entry` means all drives that have no section of their
+/// own. `level` holds the permitted dimensions of a voltage level.
 Section section_of(std::string_view entry, const std::vector<Dimension>& level, std::string_view about) {
   std::vector<std::string_view> names;
   std::vector<Key> keys{one_of("family", {}, "shape of the voltage against time").needed(),
