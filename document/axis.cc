@@ -25,13 +25,13 @@ Points drawable(const Points& points) {
 double Axis::transformed(double value) const { return scale == AxisScale::linear ? value : std::log10(value); }
 
 double Axis::pixel(double value) const {
-  constexpr double farthest = 1e7;  // largest coordinate in a drawing, beyond any paper [px]
+  constexpr double farthest = 1e7;  // largest absolute coordinate, far outside the picture [px]
   const double part = part_between(transformed(low), transformed(high), transformed(value));
   return std::clamp(pixel_low + part * (pixel_high - pixel_low), -farthest, farthest);
 }
 
 double part_between(double low, double high, double value) {
-  constexpr double middle = 0.5, quarter = 0.25;  // factors that scale two numbers down where their difference would overflow
+  constexpr double middle = 0.5, quarter = 0.25;  // a quarter of each number keeps the differences finite
   const double way = high - low;
   const double part =
       std::isfinite(way) ? (value - low) / way : (quarter * value - quarter * low) / (quarter * high - quarter * low);
@@ -40,7 +40,7 @@ double part_between(double low, double high, double value) {
 
 namespace {
 
-/// Returns ticks at multiples of 1, 2 or 5 times a power of ten.
+/// Returns about `wanted` ticks at the multiples of a step, which is 1, 2 or 5 times a power of ten.
 std::vector<double> linear_ticks(double low, double high, int wanted) {
   const double raw = std::isfinite(high - low) ? (high - low) / wanted : high / wanted - low / wanted;
   const double decade = std::pow(10, std::floor(std::log10(raw)));

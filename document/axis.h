@@ -1,4 +1,4 @@
-// An axis of a chart maps data to pixels and chooses the round numbers that are written beside it.
+// An axis of a chart maps data to pixels and chooses the round numbers at which it has ticks.
 #pragma once
 
 #include <vector>

@@ -21,9 +21,10 @@ namespace softland::internal {
 using CurveTable = std::map<std::string, std::vector<double>>;
 using CurveTables = std::map<std::string, CurveTable>;
 
-/// The role of a curve chooses its colour and line style. The roles `third`, `fourth` and `fifth` are further curves;
-/// `measured` shows measurements as dots. The role `limit` shows a voltage limit of a source. The roles `device` and
-/// `device_before` (thin lines) show one of many devices under the found waveform, and under the plain step.
+/// The role of a curve determines its colour and line style. In reports on a search, `best` is the found waveform, and
+/// `baseline` the plain step. The dots of `evaluations` are the waveforms that were tried, those of `measured` are
+/// measurements. `limit` is a bound, such as a voltage limit. The thin lines of `device` and `device_before` are one of many
+/// devices under the found waveform and under the plain step. `third`, `fourth` and `fifth` are further curves.
 enum class Role { best, baseline, evaluations, third, fourth, fifth, measured, limit, device, device_before };
 enum class AxisScale { linear, logarithmic };
 
@@ -40,7 +41,7 @@ struct Band {
   Role role = Role::best;
 };
 
-/// A dot on the picture; `text` may be empty.
+/// A dot at a point of the chart, with `text` beside it; `text` may be empty.
 struct Mark {
   double x = 0;
   double y = 0;
@@ -54,7 +55,7 @@ struct Chart {
   std::string caption;
   std::string x_column;
   std::string x_label;
-  std::string x_unit;  ///< unit of the values on the x axis; empty: x is a count
+  std::string x_unit;  ///< unit of the values on the x axis; empty: a number without unit
   std::string y_label;
   std::string y_unit;
   AxisScale scale = AxisScale::linear;    ///< scale of the y axis: linear or logarithmic
@@ -64,16 +65,17 @@ struct Chart {
   std::optional<std::array<double, 2>> y_home;  ///< range of the y axis before any zoom; not set: the range of the data in view
   bool zero_line = false;
   std::string zero_label;
-  bool zero_label_left = false;  ///< true: the label of the line y = 0 stands at its left end
+  bool zero_label_left = false;  ///< true: zero_label, the label of the line y = 0, stands at its left end
   std::string group;             ///< charts of one group share cursor and zoom; empty: alone
   int height = 300;              ///< height of the chart [px]
   std::vector<Series> series;
   std::vector<Mark> marks;
   std::vector<Band> bands = {};  ///< filled areas between two columns, drawn below the curves, and in static pictures only
-  /// true: each series is a horizontal bar, one below the other: solid where its value is 1, pale where it is between 0 and 1.
+  /// true: each series is drawn as a horizontal bar along x: solid where its value is 1, pale where it is between 0 and 1, and
+  /// empty where it is 0. The bars are below each other.
   bool is_of_bars = false;
 };
-inline constexpr int bar_height = 24;  ///< the height of one bar [px]
+inline constexpr int bar_height = 24;  ///< height of one bar [px]
 
 struct Picture {
   CurveTables tables;

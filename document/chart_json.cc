@@ -40,8 +40,8 @@ const char* role_name(Role role) {
 
 const char* scale_name(AxisScale scale) { return scale == AxisScale::linear ? "linear" : "log"; }
 
-// Returns the values of a table's column in the given rows: packed by packed(), or as numbers of six digits if the axis of the
-// chart is logarithmic.
+// Returns the values of a column in the given rows as JSON: packed by packed(), or as numbers of six digits if `logarithmic`,
+// because the unit of packed() would hide small values on a logarithmic axis.
 json rows_json(const std::vector<double>& column, const std::vector<std::size_t>& rows, bool logarithmic) {
   std::vector<double> kept;
   double largest = 0;
@@ -76,7 +76,7 @@ json packed(const std::vector<double>& column, double unit) {
 
 json chart_json(const Picture& picture, std::size_t rows) {
   json tables = json::object();
-  std::set<std::string> logarithmic;  // names of the curve tables in charts whose two axes are both logarithmic
+  std::set<std::string> logarithmic;  // names of the curve tables in charts with a logarithmic x axis
   for (const Chart& chart : picture.charts) {
     if (chart.x_scale == AxisScale::linear) continue;
     for (const Series& one : chart.series) logarithmic.insert(one.table);

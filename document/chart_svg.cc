@@ -56,11 +56,11 @@ Stroke stroke(Role role) {
 
 bool is_one_of_many(Role role) { return role == Role::device || role == Role::device_before; }
 
-/// Returns true if the points of a curve are dots that no line joins.
+/// Returns true if curves of this role are drawn as dots without a line.
 bool dots(Role role) { return role == Role::evaluations || role == Role::measured; }
 
-/// Returns the points of a curve in the visible x range, plus one on either side. Per column of pixels, the first, lowest,
-/// highest and last point are kept.
+/// Returns the points of a curve to draw: those in the visible x range, and one on either side. Of all points in one column of
+/// pixels, only the first, lowest, highest and last are kept.
 std::vector<std::array<double, 2>> visible(const Axis& x, const Axis& y, const std::vector<double>& xs,
                                            const std::vector<double>& ys) {
   std::vector<std::array<double, 2>> out;
@@ -109,7 +109,7 @@ std::array<double, 2> range_in_view(const CurveTables& tables, const Chart& char
   lowest = std::min(lowest, 0.0);
   highest = std::max(highest, 0.0);
   const double margin = highest > lowest ? 0.06 * (highest - lowest) : 1.0;
-  // Height of the label below the zero line, in units of the y axis.
+  // Room below the zero line for its label, in units of the y axis.
   const double words = chart.zero_label.empty() ? 0 : 0.1 * (highest - lowest) * 240 / chart.height;
   return {lowest - (lowest < 0 || chart.zero_line ? std::max(margin, words) : 0), highest + margin};
 }
@@ -125,7 +125,8 @@ std::string label(double x, double y, const char* anchor, const char* colour, do
                      anchor, colour, size, extra, escaped(words));
 }
 
-/// Writes a number with a true minus sign and without negative zero; powers of ten from 1e4 on, and up to 1e-4, as in 10⁵.
+/// Returns the label of a tick: a number with a true minus sign and without negative zero. Powers of ten from 1e4 on, and up to
+/// 1e-4, are written as 10⁵.
 std::string tick_text(double value) {
   const double exponent = std::log10(std::abs(value));
   if (value > 0 && std::abs(exponent) > 3.5 && std::abs(exponent - std::round(exponent)) < 1e-9) {

@@ -19,17 +19,17 @@ using namespace internal;
 namespace {
 
 constexpr std::string_view words_style = "words", missing_style = "missing", part_style = "part";
-constexpr std::size_t most_warnings = 200;  // largest number of warnings on a page
+constexpr std::size_t most_warnings = 200;  // largest number of warnings that a page shows
 constexpr std::size_t gap = 2;              // blanks between columns of a table on a terminal
 
-// Returns the heading of column `place`; null if the table has no heading there.
+// Returns the heading of the column with index `place`; null if the table has no heading there.
 const TableCell* head_of(const ReportTable& table, std::size_t place) {
   return place < table.head.size() ? &table.head[place] : nullptr;
 }
 
 bool is_of_words(const TableCell* head) { return head != nullptr && head->style == words_style; }
 
-// Returns the text of a cell with control characters escaped: text from names must not act on a terminal.
+// Returns the text of a cell for a terminal. Control characters, which names in a scene may contain, are escaped.
 std::string shown_text(const TableCell& cell) { return (cell.style == part_style ? "  " : "") + printable_line(cell.text); }
 
 // Calls `use(cell, place)` for every cell of a row; `place` is the first column that the cell spans.
@@ -55,8 +55,8 @@ std::vector<std::size_t> widths_of(const ReportTable& table) {
   return widths;
 }
 
-// Returns a line with the heading of the row and the columns from `first` to before `last`. Numbers are right-aligned, words
-// left-aligned.
+// Returns a row of a table as a line of text: its heading, and the columns from `first` to before `last`. Numbers are
+// right-aligned, words left-aligned.
 std::string line_of(const TableRow& row, const ReportTable& table, const std::vector<std::size_t>& widths, std::size_t first,
                     std::size_t last) {
   std::string line;
@@ -203,7 +203,7 @@ std::string internal::words_html(std::string_view words) {
   std::string out;
   while (!words.empty()) {
     const std::size_t end = std::min(words.find_first_of(ends), words.size());
-    // End of the word, without a full stop behind it.
+    // The full stop at the end of a sentence is not part of a symbol such as t_i.
     const std::size_t stop = end > 0 && words[end - 1] == '.' ? end - 1 : end;
     const std::string_view word = words.substr(0, stop);
     out += has_index(word) ? symbol_html(word) : escaped(word);

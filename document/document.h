@@ -50,7 +50,7 @@ struct SubHeading {
 struct ReportList {
   std::vector<std::string> lines;
 };
-/// A picture that only a page shows. It is drawn when the page is written: output on a terminal does not wait for pictures.
+/// A picture that only a page shows. It is drawn when the page is written, so that output on a terminal does not wait for it.
 struct Drawing {
   std::function<std::string(const internal::Picture&)> html;  ///< returns HTML, not escaped, from the result of Document::draw
 };
@@ -66,7 +66,7 @@ struct ReportSection {
   ShownIn shown = ShownIn::everywhere;
 };
 
-/// A number with its name, at the top of a page.
+/// A main result with its name, at the top of a page.
 struct KeyNumber {
   std::string name, value;
   std::string change = {};  ///< change of the number from its value under the plain voltage step, in words; may be empty
@@ -75,17 +75,18 @@ struct KeyNumber {
   bool is_words = false;    ///< true if the value is words instead of a number
 };
 
-/// The data from which the contents of a page can be computed again.
+/// The data with which a user can compute the results of a page again.
 struct MadeAgain {
   std::string version, command;  ///< version of the program, and command line, that gave the results
   std::string made_with;         ///< compiler and machine that gave the results, one line; empty if unknown
   std::string scene;             ///< resolved scene (all defaults written out) as the text of a scene file; may be empty
   std::optional<std::uint64_t> seed = {};
   double tolerance = std::numeric_limits<double>::quiet_NaN();  ///< relative tolerance of the integrator that gave the results
-  std::vector<std::string> reproduce = {};                      ///< command lines that give the result again; empty: `command`
+  std::vector<std::string> reproduce = {};                      ///< commands that repeat the results; empty: `command` does
 };
 
-/// Keeps a reference to the record from which the document was made; the record must outlive the document.
+/// A report for the terminal and for a web page. Its functions refer to the results of the study (such as a ClosingRecord),
+/// which must outlive it.
 struct Document {
   std::string title;  ///< title of the scene that the report is about; may be empty
   std::string origin;
@@ -96,21 +97,21 @@ struct Document {
   std::vector<std::string> warnings;
   std::vector<std::string> page_warnings = {};  ///< warnings that only the page shows, besides those of the terminal
   std::function<internal::Picture()> draw;      ///< returns the charts for the page's script; may be empty
-  MadeAgain made = {};                          ///< data for computing the contents of the page again
-  /// CSS and HTML that the page needs for pictures other than those that `draw` returns.
+  MadeAgain made = {};                          ///< data for computing the results again
+  /// CSS and HTML that the page needs for pictures other than the charts of `draw`.
   std::string style = {}, scripts = {};
 };
 
-/// Returns headline, sentences and tables for a terminal, at most `screen` columns wide where words permit it.
+/// Returns headline, sentences and tables of the document for a terminal, at most `screen` columns wide where words permit it.
 [[nodiscard]] std::string terminal_text(const Document& document, std::size_t screen = 130);
-/// Returns a self-contained HTML page (< 1 MB): styles, script and data are inside, and the page loads nothing else. In print
-/// and without JavaScript, the charts are static SVG. All text is escaped.
+/// Returns the document as a self-contained HTML page (< 1 MB): styles, script and data are inside, and the page loads nothing
+/// else. In print and without JavaScript, the charts are static SVG. All text is escaped.
 [[nodiscard]] std::string page_html(const Document& document);
 
 namespace internal {
 
-/// Returns the table as text. Columns beyond the width `screen` are printed below the others, except a last column of words.
-/// Lines have no trailing blanks.
+/// Returns the table as text. Columns that do not fit into `screen` characters are printed as a second table below,
+/// except a last column of words. Lines have no trailing blanks.
 [[nodiscard]] std::string table_text(const ReportTable& table, std::size_t screen = 130);
 [[nodiscard]] std::string table_html(const ReportTable& table);
 /// Draws every chart of the document with its title and caption.

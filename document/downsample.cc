@@ -14,8 +14,8 @@ std::vector<std::size_t> downsampled(const std::vector<const std::vector<double>
     std::iota(kept.begin(), kept.end(), std::size_t{0});
     return kept;
   }
-  // Of a smooth curve, a bucket (a group of consecutive rows) keeps far fewer rows than in the worst case: start with many
-  // buckets, and reduce them until the rows are few enough.
+  // Each bucket (group of consecutive rows) keeps two rows and the extremes of every column. On smooth curves these are mostly
+  // the same rows, so start with as many buckets as rows are permitted, and reduce their number until the rows are few enough.
   for (std::size_t buckets = most;;) {
     kept.clear();
     for (std::size_t bucket = 0; bucket < buckets; ++bucket) {

@@ -19,9 +19,9 @@ namespace softland::internal {
 namespace {
 
 constexpr double map_left = 84;
-constexpr double map_right = 128;  // width of the colour scale beside the map [px]
+constexpr double map_right = 128;  // width to the right of the map, for the colour scale [px]
 constexpr double map_above = 14;
-constexpr double map_below = 84;    // height of tick labels, axis label and legend of hatches [px]
+constexpr double map_below = 84;    // height below the map, for tick labels, axis label and legend of hatches [px]
 constexpr int steps_of_scale = 32;  // number of distinct colours of the map's colour scale
 
 std::vector<double> finite(const std::vector<double>& values) {
@@ -30,7 +30,7 @@ std::vector<double> finite(const std::vector<double>& values) {
   return out;
 }
 
-/// Returns the finite number nearest to a value that may be infinite.
+/// Returns a value that overflowed to infinity as the largest finite number of its sign.
 double within(double value) {
   constexpr double largest = std::numeric_limits<double>::max();
   return std::clamp(value, -largest, largest);
@@ -50,7 +50,7 @@ class Contour {
 
   std::vector<ContourLine> lines() {
     std::vector<ContourLine> all;
-    // An open line begins at an edge with one piece; all other lines are closed.
+    // An edge that only one piece joins is an end of an open line. The lines that remain after all open ones are closed.
     for (const bool open : {true, false}) {
       for (auto& [edge, next] : joined_) {
         if (next.empty() || (open && next.size() != 1)) continue;
@@ -81,7 +81,7 @@ class Contour {
     }
     if (crossed.size() == 2) join(crossed[0], crossed[1]);
     if (crossed.size() != 4) return;
-    // At a saddle, the mean of the four corners decides which two corners are connected.
+    // The line crosses all four edges of the square at a saddle. The mean of the four corners decides which edges it joins.
     const bool middle = std::midpoint(std::midpoint(corners[0], corners[1]), std::midpoint(corners[2], corners[3])) > level_;
     const bool turned = middle == (corners[0] > level_);
     join(crossed[0], crossed[turned ? 1 : 3]);
@@ -144,7 +144,7 @@ class Cells {
   }
 
   [[nodiscard]] double edge(std::size_t k) const { return axis_.pixel(edges_[k]); }
-  /// Returns the pixel coordinate of a position k, in numbers of cells, between the centres of cells.
+  /// Returns the pixel coordinate of position k, interpolated between centres of cells; the centre of cell i is at k = i.
   [[nodiscard]] double place(double k) const {
     const auto lower = std::min(static_cast<std::size_t>(k), values_.size() - 1);
     const auto upper = std::min(lower + 1, values_.size() - 1);
@@ -164,8 +164,8 @@ std::string axis_label(const std::string& label, const std::string& unit, const 
   return escaped(label) + (unit.empty() ? "" : fmt::format(" ({}{})", prefix.symbol, escaped(unit)));
 }
 
-/// Returns SVG paths of rectangles by class (colour or hatch) of cell; neighbouring cells of one class in a row make one
-/// rectangle.
+/// Returns one SVG path for each class of cells, a colour or a hatch. Neighbouring cells of one class in a row make one
+/// rectangle of the path.
 std::map<std::size_t, std::string> rectangles(const std::vector<std::size_t>& classes, const Cells& x, const Cells& y,
                                               std::size_t columns) {
   std::map<std::size_t, std::string> paths;
@@ -183,7 +183,7 @@ std::map<std::size_t, std::string> rectangles(const std::vector<std::size_t>& cl
   return paths;
 }
 
-/// Returns a hatch pattern, which distinguishes the reasons for a missing value without colour.
+/// Returns the SVG hatch pattern of cells without a value. Each reason for a missing value has its own hatch.
 std::string mark_pattern(std::size_t reason) {
   constexpr std::array shapes{"M-1 7L7 -1M-1 1L1 -1M5 7L7 5", "M-1 -1L7 7M-1 5L1 7M5 -1L7 1", "M0 3H6", "M3 0V6"};
   return fmt::format(
@@ -205,7 +205,7 @@ std::string cells(const HeatMap& map, const Cells& x, const Cells& y, const Colo
   for (const auto& [which, path] : rectangles(classes, x, y, columns)) {
     const std::string fill = which < steps_of_scale ? scale_colour((static_cast<double>(which) + 0.5) / steps_of_scale)
                                                     : fmt::format("url(#reason-{})", which - steps_of_scale);
-    // A stroke in the colour of the fill closes the gap between rows.
+    // A stroke in the colour of the cells hides the thin gap that renderers leave between rows.
     const std::string stroke = which < steps_of_scale ? fmt::format(" stroke=\"{}\" stroke-width=\"0.4\"", fill) : "";
     out += fmt::format("<path d=\"{}\" fill=\"{}\"{}/>\n", path, fill, stroke);
   }
@@ -220,7 +220,7 @@ std::string contours(const HeatMap& map, const Cells& x, const Cells& y, const C
   for (const double level : contour_levels(map.values, 9)) {
     if (level <= range.low || level >= range.high) continue;
     for (const ContourLine& line : contour_lines(map.values, columns, level)) {
-      // Least number of pieces of a contour line that is drawn, and of one that is labelled.
+      // Least number of points of a contour line that is drawn, and of one that has a label.
       constexpr std::size_t shortest = 4, labelled = 14;
       if (line.size() < shortest) continue;
       for (std::size_t k = 0; k < line.size(); ++k)
@@ -333,7 +333,8 @@ std::vector<double> contour_levels(const std::vector<double>& values, int wanted
 }
 
 bool is_ragged(const std::vector<double>& values, std::size_t columns) {
-  // Neighbouring values of a smooth figure differ by at most this share of the range; random values differ by a third.
+  // Largest mean difference of smooth values from the mean of their neighbours, as a share of the colour range. For random
+  // values it is about a third.
   constexpr double smooth = 0.1;
   const ColourRange range = colour_range(values);
   double sum = 0;

@@ -39,11 +39,12 @@ using ContourLine = std::vector<std::array<double, 2>>;
 /// Returns about `wanted` round values between the smallest and the largest value, for contour lines.
 [[nodiscard]] std::vector<double> contour_levels(const std::vector<double>& values, int wanted);
 
-/// Returns true if the figure jumps from cell to cell, as chaotic figures do: contour lines would then cover the map.
+/// Returns true if the values jump from cell to cell, as figures of chaotic bouncing do. Contour lines would then cover the
+/// map.
 [[nodiscard]] bool is_ragged(const std::vector<double>& values, std::size_t columns);
 
-/// The range of values that the colours cover. The lowest and highest 2 % of the values are cut off if they make the range more
-/// than three times as wide. An empty range is widened.
+/// The range of values that the colour scale covers. The lowest and highest 2 % of the values are left out if the range would
+/// otherwise be more than three times as wide. If all values are equal, the range is widened.
 struct ColourRange {
   double low = 0, high = 1;
   bool cut_below = false, cut_above = false;

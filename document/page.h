@@ -9,7 +9,7 @@
 
 namespace softland::internal {
 
-/// Replaces each {{name}} in the text by the part of this name. The inserted parts are not searched for further {{name}}.
+/// Replaces each {{NAME}} in a template by the element NAME of `parts`. The inserted text is not searched for further {{NAME}}.
 [[nodiscard]] std::string filled(std::string_view text, const std::map<std::string, std::string, std::less<>>& parts);
 
 /// Returns the text, cut at a line end to at most 100 kB; a note then says that it was cut.
@@ -17,7 +17,8 @@ namespace softland::internal {
 
 /// Draws the chart as a static <svg> element.
 [[nodiscard]] std::string still_picture(const CurveTables& tables, const Chart& chart);
-/// Draws the chart as a small static <svg> element, one of many beside each other in an element of the class "multiples".
+/// Draws the chart as a small static <svg> element. Many of them stand beside each other in an element of CSS class
+/// "multiples".
 [[nodiscard]] std::string small_picture(const CurveTables& tables, const Chart& chart);
 /// Returns the HTML of a chart: title, caption, and the element in which the script draws the chart.
 [[nodiscard]] std::string figure_html(const CurveTables& tables, const Chart& chart);

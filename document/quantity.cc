@@ -54,7 +54,8 @@ int place_of_error(double error) {
   return std::abs(error) < 1.95 * std::pow(10, exponent) ? exponent - 1 : exponent;
 }
 
-/// Returns the decimal place of the last shown digit of a value.
+/// Returns the decimal place of the last shown digit of a value: the coarsest of the places that the number of digits, the
+/// resolution of the unit and the error permit.
 int last_place(double value, double error, std::string_view unit, int digits) {
   int place = -400;
   if (value != 0) place = exponent_of(value) - digits + 1;
@@ -63,7 +64,7 @@ int last_place(double value, double error, std::string_view unit, int digits) {
   return place;
 }
 
-/// Formats `value` [unit] with `prefix`, to the digit 10^place.
+/// Formats `value` [unit] with the SI prefix `prefix`; 10^place is the decimal place of its last digit.
 std::string in_prefix(double value, int place, Prefix prefix, std::string_view unit) {
   const double size = std::abs(value);
   if (size >= beyond_prefixes || (size > 0 && size < prefixes.front().factor))
@@ -74,7 +75,7 @@ std::string in_prefix(double value, int place, Prefix prefix, std::string_view u
          (unit.empty() ? "" : fmt::format("{}{}{}", no_break_space, prefix.symbol, unit));
 }
 
-/// A rounded value with the decimal place of its last digit and its prefix.
+/// A rounded value with the decimal place of its last digit and its SI prefix.
 struct Shown {
   double value = 0;
   int place = 0;
@@ -153,7 +154,7 @@ std::string quantity_within(double value, double error, std::string_view unit, i
   if (!std::isfinite(value)) return none;
   if (is_fast(value, unit)) return quantity_within(per_microsecond * value, per_microsecond * error, fast_slew, digits);
   const double least = resolution(unit);
-  const bool known = !(error >= least);  // true unless the error of the value is above the resolution of its unit
+  const bool known = !(error >= least);  // true unless the error is at least the resolution of the unit
   if (known && value > 0 && value < least) return "< " + quantity(least, unit, 1);
   const Shown s = shown(value, error, unit, digits);
   if (unit.empty() && !(error > 0)) return plain_number(value, digits);
@@ -179,7 +180,7 @@ std::string plain_number(double value, int digits) {
   if (!std::isfinite(value)) return none;
   const double size = std::abs(value);
   if (size != 0 && (size < 1e-4 || size >= 1e6)) return scientific(value, digits);
-  // Digits before the decimal point, all of which are shown: 2500 remains 2500 even if fewer digits are requested.
+  // All digits before the decimal point are shown: 2500 remains 2500 even if fewer digits are requested.
   const int whole_digits = size >= 1 ? exponent_of(size) + 1 : 1;
   return with_true_minus(fmt::format("{:.{}g}", value == 0 ? 0.0 : value, std::max(digits, whole_digits)));
 }

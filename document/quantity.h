@@ -1,4 +1,4 @@
-// Formats every number that people read; JSON keeps all digits.
+// Formats the numbers in reports and messages. JSON files, for programs, hold all digits and do not use these functions.
 //
 // A number has an SI prefix, a true minus sign (U+2212) and a no-break space before its unit. Digits beyond the requested
 // number, below the resolution of the unit, or below the error of the value are not shown: 26 attoseconds are "< 1 fs", 306.8

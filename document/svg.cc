@@ -17,7 +17,7 @@ namespace {
 
 constexpr double between = 14;  // distance between the charts of a picture [px]
 
-/// Breaks words into lines of at most `columns` bytes; a longer word stands alone.
+/// Breaks a text into lines of at most `columns` bytes; a longer word has a line of its own.
 std::vector<std::string> wrapped(const std::string& text, std::size_t columns) {
   const std::string words = printable_line(text);
   std::vector<std::string> lines{""};
@@ -31,7 +31,7 @@ std::vector<std::string> wrapped(const std::string& text, std::size_t columns) {
   return lines;
 }
 
-// Colours of the drawing, and those that take their place where the reader prefers a dark page.
+// Colours of charts with their replacements for a reader whose browser prefers a dark colour scheme.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 8> dark_colours{{{"#fff", "#131416"},
                                                                                      {"#1b1f24", "#e6e8ea"},
                                                                                      {"#5f6b76", "#a7b0b8"},

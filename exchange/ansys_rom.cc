@@ -2,9 +2,9 @@
 // a few nodes, each shape scaled to 1 at its largest value. It has no masses, and its units are those of the finite-element
 // model.
 //
-// After the frequencies the file has damping, ranges of the modal coordinates, and loads. A mode is used by the model if its
-// range is not empty. Next are the numbers of the nodes, their direction of motion, their positions, and a row of shape values
-// per mode. Source: the layout of files written by ANSYS 18; the element: ANSYS Mechanical APDL,
+// After the frequencies the file has the damping ratios, the range of every modal coordinate, and loads. A reduced-order model
+// uses the modes whose range is not empty. Next are the numbers of the nodes, their directions of motion, their positions, and
+// a row of shape values per mode. Source: the layout of files written by ANSYS 18; the element: ANSYS Mechanical APDL,
 // Coupled-Field Analysis Guide, "Reduced Order Modeling".
 #include <fmt/format.h>
 
@@ -23,7 +23,7 @@
 namespace softland::internal {
 namespace {
 
-/// Lines of a .rom file that hold numbers alone.
+/// A line of a .rom file that consists of numbers only.
 struct Row {
   std::size_t line = 0;
   bool is_real = false;  ///< true if a number of the line has a decimal point
@@ -51,7 +51,7 @@ class RomReader {
       }
       if (row.numbers.empty()) {
         end_ = row.line;
-        break;  // the names of the reduced-order model's functions follow the last numbers
+        break;  // after the last numbers come names of fitted functions, which are not read
       }
       rows_.push_back(std::move(row));
     }
@@ -96,7 +96,7 @@ class RomReader {
     return static_cast<long long>(value);
   }
 
-  // Returns the first `count` numbers of a line; the rest of the line must be 0.
+  // Returns the first `count` numbers of row `at`; further numbers, which fill the line, must be 0.
   std::vector<double> reals(std::size_t at, std::size_t count, const char* what) const {
     if (at >= rows_.size()) refusals_.fail(fmt::format("the file ends before the {}", what));
     const Row& row = rows_[at];
@@ -106,7 +106,8 @@ class RomReader {
     return {row.numbers.begin(), row.numbers.begin() + static_cast<std::ptrdiff_t>(count)};
   }
 
-  // Reads the numbers of the mesh nodes, ten per line, then their directions in the same form, then three rows of positions.
+  // Reads the node numbers from row `at` on, ten per line, then the direction of motion of every node in the same form, then
+  // the x, y and z positions of all nodes, one row each.
   void read_nodes(NodalModes& made, std::size_t at) {
     std::size_t end = at;
     while (end < rows_.size() && !rows_[end].is_real) ++end;

@@ -17,7 +17,8 @@ namespace softland::internal {
 namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-// Largest number of rows of numbers beside which a file may have settings, such as "Sample interval, 1e-6".
+// Some instruments write settings, such as "Sample interval, 1e-6", in further columns beside the first rows of numbers. Number
+// of rows that may have them.
 constexpr std::size_t longest_preamble = 64;
 
 class BlockReader {
@@ -57,8 +58,8 @@ class BlockReader {
   const ReadKeys& keys_;
   DecimalSign decimal_;
   char separator_ = ',';
-  bool pairs_ = false;        // true: the comma of the file is both the decimal sign and the separator
-  bool may_be_pairs_ = true;  // true while every row so far could consist of numbers with a decimal comma
+  bool pairs_ = false;        // true: commas are decimal signs and separators, as in 0,5,1,25
+  bool may_be_pairs_ = true;  // true while all rows so far may be such numbers: see pairs_
   std::vector<bool> is_numeric_;
   Block block_;
   CellList headings_;  // headings of all columns of the file, above the numbers
@@ -66,7 +67,7 @@ class BlockReader {
   std::size_t width_ = 0;  // number of cells of a row
   std::size_t rows_with_words_ = 0;
   std::vector<std::optional<Unit>> cell_units_;  // unit written beside the numbers of each column, as in "5.0 V"
-  std::size_t last_length_ = 0;                  // length of the last cell, if equal in all rows so far, otherwise 0
+  std::size_t last_length_ = 0;                  // length of each row's last cell, if equal in all rows so far, else 0
 };
 
 void BlockReader::find_layout() {
@@ -92,7 +93,8 @@ bool BlockReader::begins_block(const CellList& cells) const {
     if (!may_be_value(cells[i])) return false;
     has_number |= holds_number(cells[i]);
   }
-  // A row that has a text in front of the only column of numbers is a setting of the file, and the number is its value.
+  // If the file has only one column of numbers, a line with a text in front of the number is not a row: it is a setting of the
+  // instrument with its value.
   const std::size_t last = is_numeric_.size() - 1;
   const bool is_only = std::count(is_numeric_.begin(), is_numeric_.end(), true) == 1;
   const bool has_key = is_only && std::any_of(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(last),
@@ -100,7 +102,7 @@ bool BlockReader::begins_block(const CellList& cells) const {
   return has_number && !has_key;
 }
 
-// Joins pairs of cells to numbers with a decimal comma: the first cell is the whole part, the second the fraction.
+// Joins each pair of cells to a number with a decimal comma: the first cell is the whole part, the second the fraction.
 CellList BlockReader::paired(const CellList& cells, std::size_t line) const {
   std::size_t count = cells.size();
   while (count > 0 && cells[count - 1].empty()) --count;
@@ -157,7 +159,7 @@ void BlockReader::take_beside(const CellList& cells, std::size_t line, std::stri
 // Returns the number of characters of a number's text without the sign.
 std::size_t digits_in(std::string_view cell) { return cell.size() - (cell.starts_with('-') || cell.starts_with('+') ? 1 : 0); }
 
-// Returns true if the file may end within its last number: the last cell is shorter than the last cells of all other rows.
+// Returns true if the end of the file may have cut its last number, which is then shorter than that of all other rows.
 bool BlockReader::was_cut(const CellList& cells) const {
   constexpr std::size_t fewest = 3;
   return block_.lines.size() >= fewest && digits_in(cells[is_numeric_.size() - 1]) < last_length_;
@@ -168,7 +170,7 @@ void BlockReader::take_number(std::size_t k, const Cell& cell, std::string_view 
   block_.values[k].push_back(cell.kind == CellKind::number ? cell.value : not_a_number);
   Missing& missing = block_.missing[k];
   if (cell.kind == CellKind::number) {
-    // Count significant digits only in rows whose number is a power of two, to save time.
+    // Counting significant digits takes time, so count them only in rows whose index is a power of two, and in the last row.
     if ((row & (row - 1)) == 0 || unended) block_.digits[k] = std::max(block_.digits[k], significant_digits(text));
   } else if (missing.count++ == 0) {
     missing.line = line;
@@ -204,7 +206,7 @@ void BlockReader::take_unit(std::size_t k, Cell& cell, std::string_view text, st
 
 void BlockReader::read_row(const CellList& cells, std::size_t line, bool unended) {
   const auto cut = [&](const std::string& why) {
-    // A row that the end of the file cuts is shorter than a full row.
+    // A row more than twice as long as the first one is damaged, not cut by the end of the file.
     if (cells.back().data() + cells.back().size() - cells.front().data() > static_cast<std::ptrdiff_t>(2 * first_row_.size()))
       fail(line, 0, why);
     block_.left_out.push_back(fmt::format("line {}: {}: the file ends in the middle of it", line, why));
@@ -261,8 +263,8 @@ CellList BlockReader::units_in(const CellList& cells) const {
   return has_unit ? cells : CellList{};
 }
 
-// Refuses units beyond the last column of numbers: a column name then contains the separator, and the names after it are
-// shifted.
+// Refuses a heading with a unit to the right of the last column of numbers. Some column name then contains the separator, which
+// shifts all names after it to wrong columns.
 void BlockReader::refuse_shifted(const CellList& cells, std::size_t line) const {
   for (std::size_t i = is_numeric_.size(); i < cells.size(); ++i) {
     if (unit_of(cells[i]) || heading_of(cells[i]).unit)
@@ -288,7 +290,7 @@ void BlockReader::take_headings(const std::vector<Line>& above) {
   if (next > 0 && may_be_headings(cells[next - 1])) units = units_in(cells[next - 1]);
   if (!units.empty()) --next;
   CellList names;
-  // A comment line, or a single key with its value, does not name the columns.
+  // A comment line does not name the columns.
   const bool is_comment =
       next > 0 && std::string_view("#;%").find(trimmed(above[next - 1].text).front()) != std::string_view::npos;
   if (next > 0 && may_be_headings(cells[next - 1]) && !is_comment) {
@@ -305,7 +307,7 @@ void BlockReader::take_headings(const std::vector<Line>& above) {
     block_.names.emplace_back(i < names.size() ? names[i] : std::string_view());
     block_.units.emplace_back(i < units.size() ? units[i] : std::string_view());
   }
-  // A column name beyond the columns of numbers may have a value in the row of units.
+  // A heading that is not above numbers may be a setting of the instrument, whose value is in the row of units.
   for (std::size_t i = 0; i < std::min(names.size(), units.size()); ++i) {
     if ((i >= is_numeric_.size() || !is_numeric_[i]) && !names[i].empty()) block_.preamble.take(names[i], units[i]);
   }
@@ -354,8 +356,8 @@ void BlockReader::read_lines() {
   }
 }
 
-// Refuses a line above the numbers that has one invalid cell and would otherwise be a row of numbers: the line follows units or
-// a heading of times, or begins like a number.
+// Refuses a damaged row at the begin of the numbers, which would otherwise be skipped as a line above them. Such a line has one
+// invalid cell and follows units or a heading of times, or it begins like a number.
 void BlockReader::refuse_broken_row(const std::vector<Line>& above) const {
   CellList cells, before;
   if (!above.empty()) {
@@ -397,7 +399,7 @@ void BlockReader::refuse_broken_row(const std::vector<Line>& above) const {
   }
 }
 
-// Refuses rows such as 0,5,1,25, which may be four numbers or two.
+// Refuses a file of rows such as 0,5,1,25 unless the user gives the decimal sign: each row may be four numbers or two.
 void BlockReader::refuse_two_meanings() const {
   if (decimal_.is_given || separator_ != ',' || !may_be_pairs_) return;
   const auto named = std::count_if(headings_.begin(), headings_.end(), [](std::string_view cell) { return !cell.empty(); });

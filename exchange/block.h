@@ -26,10 +26,11 @@ struct Block {
   std::vector<std::string> left_out, notes;
 };
 
-/// Note for a file whose last line has no line end.
+/// Note for the user about a file whose last line has no line end.
 inline constexpr std::string_view may_be_cut = "the last line has no line end: its last number may have been cut";
 
-/// Reads columns of numbers below other lines of a file. Throws InvalidInput with line, column and the broken rule.
+/// Reads the columns of numbers of a file, and the headings and settings in the lines above them. Throws InvalidInput with
+/// line, column and the broken rule.
 [[nodiscard]] Block read_block(std::string_view text, const Refusals& refusals, const ReadKeys& keys);
 
 /// Reads a text in which every channel is a row of numbers, with or without a name in front. Returns none for any other text.

@@ -30,7 +30,8 @@ struct Cell {
   CellKind kind = CellKind::blank;
   double value = 0;
 };
-/// Reads a cell as a number or one of the other kinds. The first decimal sign found is stored in `decimal`.
+/// Reads a cell as a number or as one of the other kinds. The first point or comma in a number sets `decimal`, if not known
+/// yet.
 [[nodiscard]] Cell read_cell(std::string_view cell, DecimalSign& decimal);
 
 /// Returns the text with its ASCII letters in lower case.

@@ -21,8 +21,8 @@ namespace {
 
 constexpr std::string_view own_format = "softland CSV";
 
-// Returns true for a column of contact states as softland writes it: "closed" or "left_closed". Two rows of the same time are a
-// jump in such a file.
+// Returns true for the name of a column of contact states, 0 or 1, that softland writes: "closed" or "NAME_closed". In a file
+// with such a column, two rows of the same time are a jump.
 bool is_contact_state(std::string_view name) { return name == "closed" || name.ends_with("_closed"); }
 
 /// Makes a recording (times and channels) from columns of numbers and from the lines above the columns.
@@ -103,21 +103,21 @@ std::optional<std::size_t> RecordingMaker::time_place() const {
     }
     return std::nullopt;
   };
-  // Names of columns of times. A column of row numbers is used only if the file has no column of times.
+  // Names that a column of times may have. A column of row numbers takes its place only if the file has no column of times.
   constexpr std::array<std::string_view, 11> times{"time",      "t",    "x",     "x-axis", "xpos",  "times",
                                                    "timestamp", "zeit", "temps", "tempo",  "tiempo"};
   constexpr std::array<std::string_view, 3> rows{"index", "sample", "n"};
   if (const auto time = named_one_of(times)) return time;
   if (const auto row = named_one_of(rows)) return row;
   if (block_.has_headings || count < 2) return std::nullopt;
-  // In a file without column names, the first column is the times if it never decreases and is not constant.
+  // If the file has no column names, the first column holds the times if it never decreases and is not constant.
   const std::vector<double>& first = block_.values.front();
   const bool rises = std::is_sorted(first.begin(), first.end()) && first.front() < first.back();
   return rises ? std::optional<std::size_t>(0) : std::nullopt;
 }
 
-// Returns true if a column is a second column of times. The times of both columns must be equal, unless the user selects a
-// column.
+// Returns true if column `k` is a copy of the column of times `time`: some instruments write the times once per channel. Throws
+// InvalidInput if both have the same name but other values. Returns false if the user has selected the column of times.
 bool RecordingMaker::is_second_time(std::size_t k, std::size_t time) const {
   const bool is_said = !keys_.time_column.empty() || keys_.time_column_number > 0;
   if (is_said || !block_.has_headings || block_.names[time].empty() || block_.names[k] != block_.names[time]) return false;
@@ -146,7 +146,7 @@ void RecordingMaker::set_times(std::optional<std::size_t> place) {
   made_.notes.insert(made_.notes.end(), rows.notes.begin(), rows.notes.end());
 }
 
-// Converts codes of an analogue-to-digital converter to volts.
+// Converts the integer codes of a converter, which some instruments write instead of volts, to volts.
 void RecordingMaker::scale_codes() {
   constexpr double largest_code = 32767, codes_per_division = 25;
   std::size_t whole = 0, fractions = 0;
@@ -159,7 +159,7 @@ void RecordingMaker::scale_codes() {
     fail("the volts per division of these codes are not known; save one channel per file");
   if (made_.channels.size() != 1) return;
   Channel& channel = made_.channels.front();
-  // The voltage of code 0 is offset; at full scale it is exactly offset + factor.
+  // The voltage of a code is offset + factor * (code / full_scale), so that full scale is exactly offset + factor.
   double full_scale = 1, factor = 1, offset = 0;
   if (preamble_.high && preamble_.low && made_.format == "Keysight arb") {
     const bool is_short = preamble_.text.find("short") != std::string::npos;

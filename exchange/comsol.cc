@@ -73,7 +73,7 @@ class ComsolReader {
  private:
   [[noreturn]] void fail(const std::string& rule) const { refusals_.fail(lines_.number(), 0, rule); }
 
-  // Returns the text behind a key of the header: "8" in "% Nodes:    8" or "% Nodes,8".
+  // Returns the text behind a key in a line of the header: "8" for the key Nodes in "Nodes:    8" or "Nodes,8".
   static std::string_view setting(std::string_view line, std::string_view key) {
     if (!line.starts_with(key)) return {};
     line.remove_prefix(key.size());
@@ -106,8 +106,8 @@ class ComsolReader {
 
   void cells_of(std::string_view line) { split_cells(line, is_csv_ ? ',' : ' ', cells_); }
 
-  // Splits the header line into as many column names as a row has numbers. In a CSV, a comma ends a name unless a parameter
-  // follows.
+  // Splits the header line into as many column names as a row has numbers. In a CSV, a comma ends a name, except before a
+  // further parameter of the solution such as "p=1".
   void name_columns(std::string_view line, std::size_t count) {
     std::vector<std::string> names;
     if (is_csv_) {
@@ -189,7 +189,7 @@ class ComsolReader {
     return std::abs(value->real());
   }
 
-  // The first line that does not begin with '%' ended the header and is the first row of numbers.
+  // Reads the rows of numbers. read_header() has already read the first one, the first line that does not begin with '%'.
   void read_rows() {
     values_.resize(columns_.size());
     do {
@@ -236,7 +236,8 @@ class ComsolReader {
     for (std::size_t k = 0; k < row.size(); ++k) values_[k].push_back(row[k] * columns_[k].per_unit);
   }
 
-  // Makes modes of the columns: columns with equal parameters are the components of one mode.
+  // Makes modes from the columns. Columns with equal parameters, such as the frequency, are the displacement components of a
+  // mode.
   void make_modes() {
     made_.holds = {false, false, false};
     std::vector<std::string> order;
@@ -265,8 +266,8 @@ class ComsolReader {
     }
   }
 
-  // Returns the real motion of a complex mode. A mode is known up to a complex phase; the phase that leaves the smallest
-  // imaginary part is removed.
+  // Returns the real motion of a complex mode. Its common complex phase is arbitrary, so all displacements are multiplied by
+  // that phase factor which leaves the smallest imaginary part.
   std::vector<Vector3> in_phase(const std::array<const std::vector<Complex>*, 3>& parts, const std::string& parameters) {
     constexpr double rounding = 1e-6, most = 0.1;
     Complex squares = 0;

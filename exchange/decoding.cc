@@ -58,7 +58,7 @@ int zero_bytes(std::string_view bytes) {
     first += bytes[2 * i] == '\0';
     second += bytes[2 * i + 1] == '\0';
   }
-  const std::size_t most = count - count / 8;  // number of ASCII characters that UTF-16 must have; an eighth may be others
+  const std::size_t most = count - count / 8;  // UTF-16 is recognised if seven of eight characters are ASCII
   if (second >= most && first == 0) return 1;
   if (first >= most && second == 0) return 0;
   return -1;

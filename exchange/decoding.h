@@ -23,7 +23,7 @@ class Lines {
   bool next();
   [[nodiscard]] std::string_view line() const { return line_; }
   [[nodiscard]] std::size_t number() const { return number_; }
-  /// Returns true if the current line ends with the file, without a line end.
+  /// Returns true if the current line is the last and has no line end.
   [[nodiscard]] bool is_unended() const { return is_unended_; }
 
  private:

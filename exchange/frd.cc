@@ -1,8 +1,8 @@
 // Reads results of CalculiX (.frd): modes of *FREQUENCY, which CalculiX normalises to a modal mass of 1 in its units.
 //
-// Numbers are in fixed columns, without blanks between them. A record " -1" holds the number of a node in 10 columns (5 in the
-// short format), then numbers of 12 columns. Source: CalculiX GraphiX user manual, "Result Format", sections "Nodal Point
-// Coordinate Block" and "Nodal Results Block".
+// Numbers are in fixed columns, without blanks between them. A line that begins with " -1" holds the number of a node in 10
+// columns (5 in the short format), then values of 12 columns each. Source: CalculiX GraphiX user manual, "Result Format",
+// sections "Nodal Point Coordinate Block" and "Nodal Results Block".
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -73,8 +73,8 @@ class FrdReader {
       fail(fmt::format("{} is \"{}\"; it must be a whole number", what, printable_line(shortened(text, 20))));
     return value;
   }
-  // Returns the number of columns for the number of a node, which depends on the format at the end of the first line of a
-  // block.
+  // Returns how many columns the number of a node takes in a block of the format `format`, which the first line of the block
+  // names.
   [[nodiscard]] std::size_t node_width(std::string_view format) const {
     if (format == "1") return 10;
     if (format == "0") return 5;
@@ -83,7 +83,7 @@ class FrdReader {
   }
   [[nodiscard]] std::size_t node(std::size_t width) const { return whole(field(key_width, width), "the number of the node"); }
   [[nodiscard]] Vector3 vector(std::size_t begin) const {
-    // The length of the line is checked, because one character more or less would shift all numbers.
+    // Check the length of the line: one character more or less would shift the columns of all numbers.
     const std::size_t end = begin + 3 * number_width;
     if (lines_.line().size() < end || !trimmed(lines_.line().substr(end)).empty())
       fail(fmt::format("the line of a node must have {} columns, and has {}", end, lines_.line().size()));
@@ -113,7 +113,7 @@ class FrdReader {
     if (made_.nodes.size() != count) fail(fmt::format("the block has {} nodes, but states {}", made_.nodes.size(), count));
   }
 
-  // Reads a block of results; of its results, the displacements of modes are used.
+  // Reads a block of results. Only the displacements of modes are used; other results are skipped.
   void read_step() {
     constexpr std::string_view modal = "2";
     const bool is_modal = field(56, 2) == modal;
@@ -155,8 +155,8 @@ class FrdReader {
         {.frequency = value, .modal_mass = modal_mass_, .motion = std::move(motion), .name = fmt::format("mode {}", mode)});
   }
 
-  // Checks the frequency of a mode [Hz] against the generalised stiffness (1PGK), which is the squared angular frequency times
-  // the generalised mass.
+  // Checks the frequency of a mode [Hz] against the generalised stiffness of the mode in the line 1PGK, which is the squared
+  // angular frequency times the modal mass. A file whose numbers were changed by hand fails here.
   void check_frequency(double frequency) const {
     constexpr double printed = 1e-4;  // relative rounding error of numbers printed with six digits
     const double angular = 2 * std::numbers::pi * frequency, squared = squared_frequency_ / modal_mass_;

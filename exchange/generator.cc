@@ -23,8 +23,8 @@ VoltageRange range_of(const std::vector<double>& volts) {
   return low == 0 ? VoltageRange{0, 1} : VoltageRange{std::min(0.0, low), std::max(0.0, low)};
 }
 
-// Writes a Keysight file: codes from -32767 to 32767 between the low and the high level. Source: Keysight 33500 Series
-// Operating and Service Guide, "Arbitrary waveform file format".
+// Returns a Keysight file. Its samples are integers from -32767 for the low level to 32767 for the high level. Source: Keysight
+// 33500 Series Operating and Service Guide, "Arbitrary waveform file format".
 std::string keysight_arb(const GeneratorSamples& s) {
   constexpr double full_scale = 32767;
   const auto [low, high] = range_of(s.volts);
@@ -37,7 +37,7 @@ std::string keysight_arb(const GeneratorSamples& s) {
   return text;
 }
 
-// Writes the CSV of Siglent's EasyWave, in which the samples cover one period.
+// Returns a CSV for Siglent EasyWave, in which the samples cover one period.
 std::string siglent_csv(const GeneratorSamples& s) {
   const auto [low, high] = range_of(s.volts);
   const auto count = static_cast<double>(s.volts.size());
@@ -54,7 +54,7 @@ void append_rows(std::string& text, const GeneratorSamples& s) {
     fmt::format_to(std::back_inserter(text), "{},{}\n", static_cast<double>(k) / s.rate, s.volts[k]);
 }
 
-// Writes times and volts below the preamble of an oscilloscope file, which Tektronix ArbExpress and ArbBuilder import.
+// Returns times and volts below the preamble of an oscilloscope file, which Tektronix ArbExpress and ArbBuilder import.
 std::string tektronix_csv(const GeneratorSamples& s) {
   std::string text = fmt::format("Record Length,{}\nSample Interval,{}\nVertical Units,V\nHorizontal Units,s\n\nTIME,{}\n",
                                  s.volts.size(), 1 / s.rate, s.name);
@@ -62,7 +62,7 @@ std::string tektronix_csv(const GeneratorSamples& s) {
   return text;
 }
 
-// Writes the CSV of Rigol's Ultra Station, in which the volts follow an empty cell.
+// Returns a CSV for Rigol Ultra Station: its column x is empty, the volts are in column y.
 std::string rigol_csv(const GeneratorSamples& s) {
   const auto [low, high] = range_of(s.volts);
   std::string text = fmt::format(
@@ -72,7 +72,7 @@ std::string rigol_csv(const GeneratorSamples& s) {
   return text;
 }
 
-// Writes the CSV that the oscilloscope of Digilent WaveForms exports and its generator imports.
+// Returns a CSV in the form that the oscilloscope of Digilent WaveForms exports and its generator imports.
 std::string digilent_csv(const GeneratorSamples& s) {
   std::string text =
       fmt::format("#Digilent WaveForms\n#Sample rate: {}Hz\n#Samples: {}\n\nTime (s),{} (V)\n", s.rate, s.volts.size(), s.name);
@@ -96,7 +96,7 @@ std::string generator_file(const GeneratorFormat& format, GeneratorSamples sampl
   require(!samples.volts.empty(), "a generator file needs at least one sample");
   require(samples.volts.size() <= format.most, [&] {
     const double most = samples.rate * static_cast<double>(format.most - 1) / static_cast<double>(samples.volts.size() - 1);
-    const double step = std::pow(10, std::floor(std::log10(most)) - 2);  // three digits, rounded down
+    const double step = std::pow(10, std::floor(std::log10(most)) - 2);  // unit of the third digit
     return fmt::format("{} samples: a {} takes at most {}; choose a sample rate of at most {}", samples.volts.size(),
                        format.instrument, format.most, engineering(std::floor(most / step) * step, "Hz", 3));
   });

@@ -18,7 +18,7 @@ struct GeneratorSamples {
   std::optional<std::size_t> marker = {};  ///< number of the sample at which the sync output of the generator falls
 };
 
-/// A file format of waveform generators, with the smallest and the largest number of samples that the named instrument accepts.
+/// A file format of waveform generators, with the fewest and the most samples that the instrument of this name accepts.
 struct GeneratorFormat {
   std::string_view name, instrument;
   std::size_t fewest = 1, most = 1;

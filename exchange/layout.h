@@ -41,16 +41,17 @@ void split_row(std::string_view line, char separator, CellList& cells);
 [[nodiscard]] bool may_be_value(std::string_view cell);
 [[nodiscard]] std::size_t numbers_in(const CellList& cells);
 
-/// Returns the last lines of a text that are not blank, from the last line upwards, without the first `skip` lines of the text.
-/// A last line without a line end, which may be incomplete, comes at the end of the list. In a long text, line numbers do not
-/// count from the beginning of the text.
+/// Returns the last dozen lines of a text that are not blank, from the last line upwards; the first `skip` lines of the text
+/// are left out. A last line without a line end may be incomplete and is put at the end of the list. In a long text, only its
+/// end is read, and the line numbers do not count from its beginning.
 [[nodiscard]] std::vector<Line> last_lines(std::string_view text, std::size_t skip);
 
-/// Returns the separator of cells for which most lines consist of numbers only or, if no line does, contain a number.
+/// Returns the separator with which most of the lines split into cells of numbers only. If no separator does so, returns the
+/// one with which most lines have several cells, one of them a number; by default a comma.
 [[nodiscard]] char separator_of(const std::vector<Line>& lines);
 
-/// Returns true for each column that has more numbers than words in the last lines of the text. If there are lines without
-/// words, only those lines count. The last element is true; empty if there are no numbers.
+/// Returns for each column of the lines `last` true if it has more numbers than words. If there are lines without words, only
+/// those lines count. The columns end with the last column of numbers; none if there are no numbers.
 [[nodiscard]] std::vector<bool> numeric_columns(const std::vector<Line>& last, char separator);
 
 }  // namespace softland::internal

@@ -12,13 +12,13 @@
 namespace softland {
 namespace {
 
-// Removes intervals of the contact state `state` (closed or open) that are shorter than `least`.
+// Removes the intervals in which the contact is closed (`state` true) or open (false) for less than `least` [s].
 void merge_short(std::vector<LevelEdge>& edges, bool state, double least) {
   std::vector<LevelEdge> kept;
   for (std::size_t k = 0; k < edges.size(); ++k) {
     const bool is_short = edges[k].closed == state && k + 1 < edges.size() && edges[k + 1].time - edges[k].time < least;
     if (is_short) {
-      ++k;  // also remove the closing or opening that ends the short interval
+      ++k;  // skip the edge that ends the short interval, too
     } else {
       kept.push_back(edges[k]);
     }

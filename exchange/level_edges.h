@@ -1,9 +1,10 @@
 // Finds the times at which a contact closes and opens, from a recorded voltage that crosses a threshold.
 //
-//   closed while the recorded voltage is beyond the threshold; it must pass the threshold by hysteresis / 2 to change the state
+//   closed while the recorded voltage is above the threshold (below it, if is_closed_below); the state changes when the voltage
+//   has passed the threshold by hysteresis / 2
 //
-// The time of an edge is that of the last crossing of the threshold before the edge, by linear interpolation between rows.
-// States that last for less than `merge` are ignored: first short openings, then short contacts.
+// The time of the change is that of the last crossing of the threshold before it, by linear interpolation between rows. States
+// that last for less than `merge` are ignored: first short openings, then short contacts.
 #pragma once
 
 #include <string>

@@ -12,14 +12,14 @@ constexpr std::size_t fit_terms = 8;
 // One equation of the least-squares fit; its last element is the right-hand side.
 using Equation = std::array<double, fit_terms + 1>;
 
-// Solves linear equations for the first unknown by Gaussian elimination with pivoting; none if a pivot is nearly 0.
+// Returns the first unknown of the equations, by Gaussian elimination with pivoting; none if the equations are singular.
 std::optional<double> first_unknown(std::array<Equation, fit_terms>& rows) {
-  constexpr double nothing = 1e-10;  // size of a pivot that counts as zero, as a share of the largest element
+  constexpr double nothing = 1e-10;  // a pivot below this share of the largest element counts as zero
   double largest = 0;
   for (const Equation& row : rows) {
     for (std::size_t k = 0; k < fit_terms; ++k) largest = std::max(largest, std::abs(row[k]));
   }
-  // Eliminate the unknowns from the last to the second; the first one remains.
+  // Eliminate the unknowns from the last to the second, so that the first equation contains the first unknown only.
   for (std::size_t k = fit_terms; k-- > 0;) {
     std::size_t pivot = 0;
     for (std::size_t i = 0; i <= k; ++i) {
@@ -51,7 +51,7 @@ std::optional<double> value_on_axis(std::span<const NearPoint> points) {
     }
     flat_p = std::max(flat_p, std::abs(point.p)), flat_q = std::max(flat_q, std::abs(point.q));
   }
-  // A flat mesh has no extent in one direction; the slope of the fit in that direction is set to 0.
+  // A flat mesh does not determine the slopes in the direction in which it has no extent, so set them to 0.
   if (flat_p == 0) rows[4][4] = rows[6][6] = 1;
   if (flat_q == 0) rows[5][5] = rows[7][7] = 1;
   return first_unknown(rows);

@@ -12,7 +12,7 @@ namespace softland::internal {
 namespace {
 
 struct UnitRow {
-  std::string_view word;  ///< unit as written; for more than three letters their case is ignored
+  std::string_view word;  ///< unit as written; in words of four letters or more, case is ignored
   Measure measure;
   std::string_view symbol;
   double per_si = 1;
@@ -100,7 +100,7 @@ std::string_view without_brackets(std::string_view text) {
   return text;
 }
 
-// Splits the heading of a column: the text before `at` is the name, `rest` is the unit.
+// Returns the heading whose name is the text before index `at` and whose unit is `rest`; none if `rest` is not a known unit.
 std::optional<Heading> split_heading(std::string_view text, std::size_t at, std::string_view rest) {
   std::optional<Unit> unit = unit_of(trimmed(rest));
   if (!unit) return std::nullopt;
@@ -186,7 +186,7 @@ std::optional<Measured> measured_value(std::string_view text, const std::optiona
 
 bool is_unit_of_cells(const std::optional<Unit>& unit) {
   if (!unit) return false;
-  // M and g are units here, and also scale suffixes of numbers in SPICE.
+  // A number with m or g may also be a SPICE number with a scale suffix, so these units are not accepted.
   const bool is_suffix = unit->symbol == "m" || unit->symbol == "g";
   return unit->measure == Measure::time || unit->measure == Measure::voltage || (unit->measure == Measure::other && !is_suffix);
 }

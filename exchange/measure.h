@@ -7,12 +7,12 @@
 
 namespace softland::internal {
 
-enum class Measure { time, voltage, frequency, samples, level, other };  // quantity that a unit measures; level: decibels
+enum class Measure { time, voltage, frequency, samples, level, other };  // quantity of a unit; level is in decibels
 
 struct Unit {
   Measure measure = Measure::other;
   std::string symbol;  ///< symbol of the unit, such as "s" or "mV"; the text itself if the unit is not known
-  double per_si = 1;   ///< how many of this unit are one SI unit: 1000 for ms
+  double per_si = 1;   ///< number of this unit in one SI unit: 1000 for ms
   [[nodiscard]] double in_si(double value) const { return value / per_si; }
 };
 

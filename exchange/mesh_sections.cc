@@ -14,9 +14,9 @@
 namespace softland::internal {
 namespace {
 
-constexpr double printed = 2e-5;  // rounding error of positions printed with six digits, as a share of the structure's length
-constexpr std::size_t nodes_of_section = 3;  // least number of nodes for the mean of a section
-constexpr std::size_t nearby = 3;            // number of evenly spaced places on either side whose nodes a local fit uses
+constexpr double printed = 2e-5;             // rounding error of positions with six digits, over the length of the structure
+constexpr std::size_t nodes_of_section = 3;  // fewest nodes of a section whose mean motion is used
+constexpr std::size_t nearby = 3;            // a local fit uses the nodes of this many places on either side
 constexpr int place_digits = 6;
 
 }  // namespace
@@ -36,7 +36,7 @@ MeshSections::MeshSections(const std::vector<Vector3>& nodes, Way axis, Way dire
   if (lacks_sections()) divide_evenly();
 }
 
-// Division by 1 / length unit, instead of multiplication, makes 100 um exactly 1e-4 m.
+// Dividing by 1 / length unit instead of multiplying by the unit makes 100 um exactly 1e-4 m.
 double MeshSections::along_axis(const Vector3& v) const { return axis_.sign * v[axis_.direction] / (1 / length_unit_); }
 
 void MeshSections::gather() {
@@ -109,7 +109,7 @@ std::vector<double> MeshSections::widths() const {
   const double rounding = printed * sections_.back().place;
   std::vector<double> all;
   for (std::size_t k = 0; k < sections_.size(); ++k) {
-    // In an irregular mesh, where most places have fewer than three nodes, nodes near a place give its width.
+    // In an irregular mesh, where most places have fewer than three nodes, nodes at the places nearby give the width too.
     const std::size_t reach = is_irregular() ? nearby : 0;
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (std::size_t s = k - std::min(k, reach); s <= std::min(k + reach, sections_.size() - 1); ++s) {
@@ -158,7 +158,7 @@ void MeshSections::add_motion(const Section& section, const NodalMode& mode, Sec
   }
   for (const std::size_t node : section.nodes) {
     for (std::size_t d = 0; d < 3; ++d) {
-      // Differences of the motion along the axis within a section are the section's rotation in bending, not torsion.
+      // In bending, sections rotate and their nodes move along the axis differently. This does not count as torsion.
       if (d != axis_.direction) motion.torsion += std::pow(mode.motion[node][d] - mean[d], 2);
     }
   }
@@ -185,7 +185,7 @@ double MeshSections::twist(const Section& section, const NodalMode& mode, const 
 }
 
 double MeshSections::fitted(std::size_t place, const NodalMode& mode) const {
-  constexpr double reach = 2.5;  // half the width of the fit window, in spacings of the places; less than `nearby`
+  constexpr double reach = 2.5;  // half the width of the fit window in spacings of the places, below `nearby`
   const std::size_t p = direction_.direction, q = 3 - axis_.direction - p;
   std::vector<NearPoint> near;
   for (std::size_t s = place - std::min(place, nearby); s <= std::min(place + nearby, sections_.size() - 1); ++s) {

@@ -1,4 +1,5 @@
-// Sections of a mesh along an axis, and their motion in each mode. Internal to exchange/.
+// Divides the mesh of a structure into cross-sections along its axis, and finds their motion in each mode. Internal to
+// exchange/.
 //
 // All nodes at one place along the axis form a section, whose motion is the mean of its nodes. If most places have fewer than
 // three nodes, as in meshes of tetrahedra, the mesh is called irregular. The motion on the axis is then fitted at evenly spaced
@@ -15,17 +16,18 @@
 
 namespace softland::internal {
 
-/// A coordinate direction of a mesh file (0, 1 or 2 for x, y or z) with its sign.
+/// A direction in the coordinates of a mesh file: 0, 1 or 2 for x, y or z, with a sign.
 struct Way {
   std::size_t direction = 0;
   double sign = 1;
 };
 
-/// Motion of the sections of a mesh in one mode, in the unit of the mode, and the squared motion of all nodes by kind.
+/// Motion of the sections of a mesh in one mode, in the unit of the mode. The squared motion of all nodes is divided into
+/// bending, in-plane, axial and torsional motion.
 struct SectionMotion {
-  /// Mean motion of each section in the direction of motion, in the third direction, along the axis.
+  /// Mean displacement of each section: in the switch's direction of motion, in-plane across the axis, and along the axis.
   std::vector<double> along, across, axial;
-  /// Motion of each section by rotation about the axis, half the extent of the mesh from its middle.
+  /// Displacement of each section by its rotation about the axis, at a distance of half the extent of the mesh.
   std::vector<double> twist;
   double bending = 0, in_plane = 0, axial_share = 0, torsion = 0;
   [[nodiscard]] double all() const { return bending + in_plane + axial_share + torsion; }
@@ -33,9 +35,10 @@ struct SectionMotion {
 
 class MeshSections {
  public:
-  /// Sorts the nodes of a mesh into sections. `clamp` [m] is the position of the clamp on the axis; none: the clamp is at the
-  /// first node. Throws InvalidInput for fewer than three places, including the clamp, and for an irregular mesh with too few
-  /// nodes to find the motion at some place.
+  /// Sorts the nodes of a mesh into sections. The direction `axis` points from the clamp to the far end, `direction` is that of
+  /// the switch's motion. The nodes have the unit `length_unit` [m]. `clamp` [m] is the position of the clamp on the axis;
+  /// none: the clamp is at the first node. Throws InvalidInput for nodes at fewer than three places along the axis, including
+  /// the clamp, and for an irregular mesh with too few nodes to find the motion at some place.
   MeshSections(const std::vector<Vector3>& nodes, Way axis, Way direction, double length_unit, std::optional<double> clamp,
                const Refusals& refusals);
 
@@ -43,14 +46,14 @@ class MeshSections {
   [[nodiscard]] double first() const { return first_; }  ///< position of the first node on the axis [m]
   [[nodiscard]] bool is_irregular() const { return step_ > 0; }
   [[nodiscard]] std::vector<double> widths()
-      const;  ///< width of each section, across the axis and the direction of motion [m]; NaN for a line of nodes
+      const;  ///< width of each section, in-plane across the axis [m]; NaN if the mesh has no width there
   [[nodiscard]] std::vector<double> offsets()
-      const;  ///< height of each section's face in the direction of motion, relative to the first section [m]
+      const;  ///< offset of each section's face in the direction of motion from that of the first section [m]
   [[nodiscard]] SectionMotion motion(const NodalMode& mode) const;
 
  private:
   struct Section {
-    double place = 0;  ///< distance of the mesh section from the clamp [m]
+    double place = 0;  ///< distance of the section from the clamp [m]
     std::vector<std::size_t> nodes;
   };
   [[nodiscard]] double along_axis(const Vector3& v) const;  ///< component of a position along the axis [m]

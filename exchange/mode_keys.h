@@ -16,12 +16,12 @@ struct ModeKeys {
   std::optional<double> length_unit = {};  ///< unit of the file's positions [m]
   std::optional<double> mass_unit = {};    ///< unit of mass in which the file's modes are normalised [kg]
   std::optional<double> mass =
-      {};  ///< mass of a structure of constant mass per length; normalises modes that are not mass-normalised [kg]
+      {};  ///< mass of a structure of constant mass per length [kg]; gives the modal masses if the file does not
   bool mass_normalised = false;          ///< true if the modes of the file are mass-normalised, although the file does not say so
   std::optional<double> clamp = {};      ///< position of the clamp on the axis of the file, if there is no node at the clamp [m]
   std::vector<double> frequencies = {};  ///< frequencies of the modes of a file that does not hold them [Hz]
 
-  // The following members form the names of keys in messages, such as "structure.mass" or "--mass".
+  // How messages write the names of keys: as in a scene ("structure.mass") or as options ("--mass").
   std::string prefix = {};    ///< beginning of the keys' names in messages: "structure.", "--"
   char word_separator = '_';  ///< separator of the words of a key's name: '_' or '-'
   /// Returns the full name of a key for a message, such as "structure.mass_unit".

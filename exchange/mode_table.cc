@@ -139,7 +139,8 @@ class TableMaker {
           fmt::format("an irregular mesh: motions on the axis are fitted at {} even places", made_.places.size()));
   }
 
-  // Classifies a mode (bending, in-plane, axial, torsional) by the squared motions of its nodes.
+  // Classifies mode `k` of the file as bending, in-plane, axial or torsional: the kind with the largest squared motion of the
+  // nodes.
   void judge(std::size_t k) {
     const NodalMode& mode = read_.modes[k];
     SectionMotion motion = sections_->motion(mode);
@@ -225,7 +226,8 @@ class TableMaker {
   static void scale(std::vector<double>& shape, double factor) {
     for (double& value : shape) value *= factor;
   }
-  // Returns the mean square of a mode shape over the length; the shape is a cubic spline clamped at the first place.
+  // Returns the mean square of a mode shape over the length; between its values, the shape is a cubic spline clamped at the
+  // first.
   [[nodiscard]] double mean_square(const std::vector<double>& shape) const;
 
   NodalModes read_;
@@ -238,7 +240,7 @@ class TableMaker {
   std::vector<double> modal_masses_;
 };
 
-constexpr double still = 1e-4;  // largest motion that counts as zero, as a share of the largest motion of the mode
+constexpr double still = 1e-4;  // motion that counts as zero, as a share of the largest in the mode
 
 double largest_motion(const std::vector<double>& shape) {
   double most = 0;
@@ -256,7 +258,7 @@ double TableMaker::mean_square(const std::vector<double>& shape) const {
   return ClampedSpline(made_.positions, shape, far_end_of(made_)).integral_of_square() / made_.positions.back();
 }
 
-// Checks a table of modes from any source. Mode shapes are made positive at the far end, and exactly 0 at the clamp.
+// Checks a table of modes, and makes its mode shapes positive at the far end and exactly 0 at the clamp.
 void check(ModeTable& table, const ModeKeys& keys) {
   constexpr std::size_t fewest = 3;
   const auto fail = [&](const std::string& rule) { throw InvalidInput(fmt::format("{}: {}", table.file, rule)); };
@@ -319,7 +321,7 @@ std::string ModeFound::name() const {
 }
 
 ModeTable read_mode_table(const std::string& file, const ModeKeys& keys) {
-  // Binary results are refused: public readers of such files may return wrong numbers without an error.
+  // Binary results of ANSYS are refused: open-source readers of this format may return wrong numbers without an error.
   const auto ends_with = [&](std::string_view end) {
     return file.size() > end.size() && internal::lower_case(file).ends_with(end);
   };

@@ -18,15 +18,15 @@ namespace softland {
 
 enum class ModeKind { bending, in_plane, axial, torsional, unused };
 
-/// One mode of a file and its kind. Motions are means over the nodes of a section, in the length unit of the file.
+/// One mode of a file, its kind, and its motion by cross-sections of the mesh, in the length unit of the file.
 struct ModeFound {
   int number = 0;        ///< number of the mode in the file, from 1
   double frequency = 0;  ///< frequency of the mode [Hz]
   ModeKind kind = ModeKind::bending;
-  double share = 0;  ///< share of the mode's kind in the squared motion of all nodes; 1 if the file holds one direction only
-  /// Mean motion of each section in the direction of motion, in the third direction, along the axis.
+  double share = 0;  ///< share of this kind of motion in the squared motion of all nodes; 1 if the file has one direction
+  /// Mean displacement of each section: in the switch's direction of motion, in-plane across the axis, and along the axis.
   std::vector<double> along, across, axial;
-  /// Motion of each section by rotation about the axis, half the extent of the mesh from its middle.
+  /// Displacement of each section by its rotation about the axis, at a distance of half the extent of the mesh.
   std::vector<double> twist;
   /// Returns the name of the mode's kind, such as "bending" or "in-plane".
   [[nodiscard]] std::string name() const;
@@ -42,7 +42,7 @@ struct ModeTable {
   std::vector<double> frequencies;  ///< frequencies of the modes, rising [Hz]
   /// Mass-normalised shape of each mode at each position, positive at the far end [kg^(-1/2)].
   std::vector<std::vector<double>> shapes;
-  /// End condition of the shapes: clamped if the far end moves in no mode, and the first shape has no slope there.
+  /// End condition at the far end: clamped if the far end moves in no mode, and the first shape has no slope there.
   SplineEnd far_end = SplineEnd::free;
 
   std::size_t nodes = 0;            ///< number of nodes of the mesh; 0 for a table of modes
@@ -53,7 +53,7 @@ struct ModeTable {
 };
 
 /// Reads a file of vibration modes. Throws InvalidInput with file, line and rule for an unreadable file, for a file without
-/// modes (a static result, a pressure), and for an ambiguous file, with the key that decides.
+/// modes (such as a static result), and for an ambiguous file; the message then names the key that the user must give.
 [[nodiscard]] ModeTable read_mode_table(const std::string& file, const ModeKeys& keys);
 /// Reads the content of a file of vibration modes; `file` is the name of the file in messages.
 [[nodiscard]] ModeTable parse_mode_table(std::string_view content, const std::string& file, const ModeKeys& keys);

@@ -22,22 +22,22 @@ struct NodalMode {
       std::numeric_limits<double>::quiet_NaN();  ///< modal mass in the unit of the file; NaN if the file does not give it
   std::vector<Vector3> motion;                   ///< motion of each node in the mode, in any unit
   std::string name;                              ///< name of the mode in messages, such as "mode 1"
-  bool is_used = true;                           ///< false for a mode that a reduced-order model does not use
+  bool is_used = true;                           ///< false for a mode that the reduced-order model in the file leaves out
 };
 
 struct NodalModes {
   std::string format;
-  std::vector<Vector3> nodes;    ///< positions of the nodes in the unit of length; NaN in a direction that the file lacks
+  std::vector<Vector3> nodes;    ///< positions of the nodes in the length unit of the file; NaN where it lacks a coordinate
   std::vector<NodalMode> modes;  ///< modes in the order of the file
   std::array<bool, 3> holds{true, true, true};  ///< true for the directions of motion that the file holds
   std::optional<double> length_unit = {};       ///< unit of length of the node positions that the file names [m]
   bool needs_length_unit = false;               ///< true if the format has no usual unit of length, so that the user must give it
-  std::string normalised_by = {};               ///< text of the file on the normalisation of its modes; may be empty
+  std::string normalised_by = {};               ///< source of the modal masses in the file, in words; empty if it has none
   std::vector<std::string> left_out = {}, notes = {};
 };
 
-// Functions that recognise or read one file format of vibration modes each. Readers throw InvalidInput with file, line and
-// rule.
+// Two functions for each file format of vibration modes: one recognises a text of this format, the other reads it. Reading
+// throws InvalidInput with file, line and rule.
 [[nodiscard]] bool is_frd(std::string_view text);
 [[nodiscard]] NodalModes read_frd(std::string_view text, const std::string& file);
 

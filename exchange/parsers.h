@@ -1,4 +1,4 @@
-// Parsers of the kinds of recorded files: columns, SPICE sources, value change dumps, Universal File Format. Internal to
+// Parsers of recorded files: columns of numbers, SPICE sources, value change dumps, Universal File Format. Internal to
 // exchange/.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace softland::internal {
 
-/// Returns the kind of a file that is known but not a record over time, such as "mesh" or "picture"; empty for other files.
+/// Returns the kind of a file that cannot hold a recording, such as "a mesh" or "a picture"; empty for any other file.
 [[nodiscard]] std::string refused_kind(std::string_view text);
 
 /// Reads a recording from columns of numbers, or from channels written as rows of numbers.

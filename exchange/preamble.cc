@@ -14,11 +14,11 @@ namespace {
 
 enum class Says { interval, rate, start, trigger_sample, centre, samples, frequency, period, level };
 
-/// A key of a preamble (a setting above the numbers), in lower case, reduced to its letters and digits.
+/// A key that a preamble (the lines above the numbers) may have, in lower case without blanks and punctuation.
 struct KeyRow {
   std::string_view key;
   Says says;
-  /// Voltage level in Preamble that the key gives; null for keys about times.
+  /// Member of Preamble that the key sets; null for keys about times.
   std::optional<double> Preamble::*member = nullptr;
 };
 constexpr std::array known_keys{
@@ -76,12 +76,12 @@ constexpr std::array known_keys{
     KeyRow{"lowlevel", Says::level, &Preamble::low},
 };
 
-/// Keys of a preamble (the lines above the numbers) that give the units: vertical of the voltages, horizontal of the times.
+/// Keys of a preamble whose value is a unit: vertical_keys for that of the voltages, horizontal_keys for that of the times.
 constexpr Words vertical_keys{"verticalunits", "verticalunit", "yunits", "yunit", "vunit", "yaxisunits", "yaxisunit"};
 constexpr Words horizontal_keys{"horizontalunits", "horizontalunit", "xunits",       "xunit",      "hunit",    "timeunits",
                                 "timeunit",        "timebaseunits",  "timebaseunit", "xaxisunits", "xaxisunit"};
 
-/// A file format and the words, in lower case, that its preamble and headings contain. The first matching row is used.
+/// A file format and words, in lower case, that its preamble and headings contain. If several rows match, the first is used.
 struct FormatRow {
   std::string_view name;
   Words words;
@@ -120,8 +120,8 @@ std::string letters_of(std::string_view key) {
   return letters;
 }
 
-// Returns the statement about the times, such as the interval, that a number in the preamble makes; none if the unit of the
-// number does not match its key.
+// Returns the statement about the times, such as the interval, that the key `says` makes with this number; none if the unit of
+// the number does not fit.
 std::optional<TimeClaim> claim_of(Says says, const Measured& number) {
   using Of = TimeClaim::Of;
   const bool is_rate = says == Says::rate || says == Says::frequency;
@@ -192,7 +192,7 @@ void Preamble::take_line(std::string_view line, const std::vector<std::string_vi
       filled.push_back(cell);
     }
   }
-  // Channels of an oscilloscope with different units have no common unit of voltage.
+  // A line such as "Vertical Units,V,A" gives channels different units, so it does not set a common unit.
   const bool differs = filled.size() > 2 && letters_of(filled[0]).starts_with("vertical") &&
                        std::any_of(filled.begin() + 2, filled.end(), [&](std::string_view cell) { return cell != filled[1]; });
   if (differs) return;

@@ -10,8 +10,8 @@
 
 namespace softland::internal {
 
-/// A statement of the preamble (lines above the numbers) about the times, such as the sampling interval or the number of
-/// samples.
+/// The statement of a key in the preamble (lines above the numbers) about the times, such as the sampling interval or the
+/// number of samples.
 struct TimeClaim {
   enum class Of { interval, start, trigger_sample, centre, samples, period };
   Of of = Of::interval;
@@ -25,13 +25,13 @@ struct Preamble {
   std::vector<TimeClaim> claims = {};  ///< statements about the times, in the order of the file, without repetition
   /// Size of a vertical division of the oscilloscope's screen [unit of the channel].
   std::optional<double> vertical_scale = {};
-  std::optional<double> high = {}, low = {};  ///< voltages of the converter's largest and smallest code [V]
+  std::optional<double> high = {}, low = {};  ///< voltages of the largest and smallest integer code of the samples [V]
   std::optional<Unit> vertical_unit = {};
   std::optional<Unit> horizontal_unit = {};
   std::string source;  ///< name of the recorded channel
   std::string text;    ///< the whole preamble in lower case, by which the format is recognised
 
-  /// Reads one line of the preamble; `cells` are the cells of the line as separated in the file.
+  /// Reads one line of the preamble; `cells` are its cells, split by the separator of the file.
   void take_line(std::string_view line, const std::vector<std::string_view>& cells);
   /// Reads a key of the preamble and its value; returns false for an unknown key.
   bool take(std::string_view key, std::string_view value);

@@ -22,7 +22,7 @@ std::string names_of(const Recording& recording) {
   return names;
 }
 
-/// Sets evenly spaced times of the rows with the interval that the user gives, from the first time of the file on.
+/// Replaces the times of the rows by evenly spaced ones. They begin at the first time of the file, or at 0 if it has no times.
 void take_even_times(Recording& made, double interval) {
   const double first = made.times.empty() ? 0 : made.times.front();
   made.interval = interval;

@@ -1,9 +1,9 @@
 // Reads a recording of an instrument or a simulator: a time axis, and channels of numbers with names and units.
 //
 // The reader takes columns of numbers as oscilloscopes, loggers and spreadsheets write them (any separator and decimal sign,
-// lines above the numbers, a row of units, rows instead of columns). It takes sources of SPICE (PWL), value change dumps (VCD),
-// and data sets 58 and 58b of the Universal File Format. The recording lists what was assumed and what was left out. Ambiguous
-// text is refused, with the key that decides.
+// lines above the numbers, a row of units, channels as rows instead of columns). It takes sources of SPICE (PWL), value change
+// dumps (VCD), and data sets 58 and 58b of the Universal File Format. The recording lists what was assumed and what was left
+// out. An ambiguous file is refused; the message names the key that the user must give.
 #pragma once
 
 #include <cstddef>
@@ -42,8 +42,8 @@ struct Channel {
   std::string heading;  ///< whole heading of the channel's column
   std::string unit;     ///< unit of the channel, as "V" or "mV"; empty where the file names none
   bool is_voltage = false;
-  bool is_state = false;       ///< true for a channel of states 0 and 1, of logic or of a contact, without a unit
-  double per_si = 1;           ///< how many of the channel's unit are one SI unit: 1000 for mV
+  bool is_state = false;       ///< true for a channel of states 0 and 1 (of a logic signal or a contact)
+  double per_si = 1;           ///< number of the channel's unit in one SI unit: 1000 for mV
   int column = 0;              ///< number of the channel's column in the file, from 1
   std::vector<double> values;  ///< values of the channel, one per row, in its unit; NaN where missing
   Missing missing = {};
@@ -53,9 +53,9 @@ struct Recording {
   std::string file;
   std::string format;
   std::vector<double> times = {};  ///< times of the rows [s]; empty if the file has neither times nor an interval
-  bool has_times = false;          ///< true if the file holds the times; false if they follow from the interval
+  bool has_times = false;          ///< true if the file holds the times; false if they are computed from the interval
   bool times_have_unit = false;
-  double last_digit = 0;                  ///< value of the last written digit of the times [s]
+  double last_digit = 0;                  ///< resolution of the times: value of their last written digit [s]
   std::optional<double> interval = {};    ///< sampling interval that the file states beside the times [s]
   bool is_breakpoints = false;            ///< true if straight lines connect the rows, and two rows of the same time are a jump
   std::vector<std::uint32_t> lines = {};  ///< line of the file in which each row is
@@ -68,12 +68,12 @@ struct Recording {
   [[nodiscard]] std::string place(std::size_t row) const;
 };
 
-/// Returns the channel that the keys name, else the only channel, else the channel called `usual`. Throws InvalidInput with the
-/// names of the channels if no such channel exists.
+/// Returns the channel that the user names in `keys`, else the only channel, else the channel called `usual`. Throws
+/// InvalidInput with the names of the channels if no such channel exists.
 [[nodiscard]] const Channel& channel_of(const Recording& recording, const ReadKeys& keys, const std::string& usual);
 
-/// Reads a recorded file. Throws InvalidInput with file, line, column and rule for an unreadable file, for a file without a
-/// record over time (a spectrum, logic states, a mesh), and for an ambiguous file.
+/// Reads a recorded file. Throws InvalidInput with file, line, column and rule for an unreadable file, for a file that
+/// holds no voltages or states over time (such as a spectrum or a mesh), and for an ambiguous file.
 [[nodiscard]] Recording read_recording(const std::string& file, const ReadKeys& keys = {});
 /// Reads the content of a recorded file; `file` is the name of the file in messages.
 [[nodiscard]] Recording parse_recording(std::string_view content, const std::string& file, const ReadKeys& keys = {});

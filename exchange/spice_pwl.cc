@@ -85,7 +85,8 @@ void add_tokens(std::string_view line, std::size_t number, std::vector<Token>& t
   }
 }
 
-// Removes the mark of a SPICE continuation line, a plus and a blank. "+1u 5" is instead a time relative to the time before.
+// Removes the mark of a SPICE continuation line, a plus and a blank. Without the blank, as in "+1u 5", the plus means a time
+// relative to the time before.
 std::string_view without_continuation(std::string_view line) {
   return line.starts_with("+ ") || line.starts_with("+\t") || line == "+" ? trimmed(line.substr(1)) : line;
 }
@@ -134,7 +135,7 @@ class NetlistReader {
     tell_numbers_in_comment(given, line);
     take_numbers(line.substr(open + 1));
   }
-  // Adds a note about numbers in a comment between the points of a PWL source: the comment may hide points by mistake.
+  // Adds a note if a comment between the points of a PWL source begins with a number: it may hide points by mistake.
   void tell_numbers_in_comment(std::string_view given, std::string_view line) {
     std::string_view comment = trimmed(given);
     comment.remove_prefix(line.size());
@@ -202,7 +203,7 @@ Recording points_of(const Source& source, const std::string& file) {
   return made;
 }
 
-/// Properties of the times in a text of two numbers per line, whose times have no scale suffix.
+/// The times in a text of two numbers per line, to distinguish a PWL source from recorded columns with rounded times.
 struct PlainTimes {
   std::vector<double> all;
   std::size_t repeated = 0;  ///< number of rows with the same time as the row before
@@ -215,8 +216,8 @@ struct PlainTimes {
     thrice |= repeats && count > 1 && all[count - 2] == time;
     all.push_back(time);
   }
-  // Returns true if the times seem rounded: three rows of equal time, or every time twice. A voltage jump has two rows of equal
-  // time.
+  // Returns true if the times seem rounded, as those of recorded columns may be: three rows have equal time, or every time
+  // occurs twice. In a PWL source, a voltage jump has two rows of equal time.
   [[nodiscard]] bool are_rounded() const {
     constexpr std::size_t fewest = 8;
     return thrice || (all.size() >= fewest && 2 * repeated + 1 >= all.size());
@@ -225,8 +226,9 @@ struct PlainTimes {
 
 }  // namespace
 
-// Returns true if every line has two numbers and the text has a feature of PWL files that plain columns lack: suffixes,
-// comments, or a plus before some times while others have no sign. A plus beside negative times, or before all times, is a sign.
+// Returns true for a netlist with PWL( ). Returns true for lines of time and value that are more likely a PWL source than
+// recorded columns: they have scale suffixes, continuation lines or relative times, or their times are not rounded. Times are
+// relative if some have a plus and others have no sign. A plus before all times, or beside negative times, is a sign.
 bool is_spice_pwl(std::string_view text) {
   constexpr std::size_t enough = 64;
   if (has_pwl_bracket(text)) return true;

@@ -15,7 +15,7 @@ namespace {
 
 using Of = TimeClaim::Of;
 
-// Relative rounding error of an interval or a time that a file gives with few digits.
+// Relative rounding error that an interval or a time in a file may have.
 constexpr double printed_digits = 1e-5;
 // Relative rounding error of times that some instruments compute in single precision.
 constexpr double single_precision = 1.2e-7;
@@ -23,8 +23,8 @@ constexpr double single_precision = 1.2e-7;
 std::string seconds(double time) { return engineering(time, "s", 6); }
 std::string quoted(const std::string& key) { return "\"" + printable_line(key) + "\""; }
 
-/// A sampling interval that the file states. If the file names no unit, `value` assumes seconds, and `in_units` assumes the
-/// horizontal unit of the file.
+/// A sampling interval that the file states, in seconds. If the file names no unit with the number, `value` takes the number as
+/// seconds, and `in_units` as in the horizontal unit of the file.
 struct Interval {
   std::string source;
   double value = 0;
@@ -35,7 +35,7 @@ class RowTimer {
  public:
   RowTimer(const TimeColumn* column, std::size_t count, const Preamble& preamble, const ReadKeys& keys, const Refusals& refusals)
       : column_(column), count_(count), preamble_(preamble), keys_(keys), refusals_(refusals) {
-    // In a Siglent file the horizontal unit is that of the display, not that of the times.
+    // The horizontal unit in a Siglent file is that of the oscilloscope's display, not that of the times.
     if (format_of(preamble.text) != "Siglent CSV") unit_above_ = preamble.horizontal_unit;
   }
   RowTimes make();
@@ -73,7 +73,7 @@ class RowTimer {
   RowTimes made_;
 };
 
-// Returns true for a file of a waveform generator that states the period; the samples cover one period.
+// Returns true for a file of a waveform generator, whose samples cover one period.
 bool RowTimer::is_generator() const {
   return (column_ == nullptr || column_->name == "xpos") &&
          (column_ != nullptr || preamble_.text.find("rigol:dg") != std::string::npos || preamble_.first(Of::interval) == nullptr);
@@ -99,7 +99,7 @@ void RowTimer::take_unit() {
   }
 }
 
-// Refuses more rows than the samples that the file states; `last` is the number of samples, or the number of the last sample.
+// Throws InvalidInput if the file states fewer samples than `last`, the number of rows or the number of the last sample.
 void RowTimer::require_count(double last) const {
   if (is_decided()) return;
   for (const TimeClaim& claim : preamble_.claims) {
@@ -126,7 +126,7 @@ void RowTimer::find_intervals() {
   }
 }
 
-// Requires all stated sampling intervals to be equal, unless the times show which interval is right.
+// Requires all sampling intervals that the file states to be equal, unless the user has decided which times to use.
 void RowTimer::require_same_intervals() {
   if (intervals_.empty()) return;
   const Interval& first = intervals_.front();
@@ -176,7 +176,7 @@ void RowTimer::set_even(double first_sample) {
   require_same_intervals();
   if (!made_.interval) return;
   if (!is_decided()) require_same_starts();
-  // Start of the record: stated by the file as a time, or as the number of a sample, or as the middle of the record.
+  // Time of the first sample. A file may state this time, the number of the sample at t = 0, or the time of the middle sample.
   double start = 0;
   for (const Of of : {Of::start, Of::trigger_sample, Of::centre}) {
     if (const TimeClaim* const claim = preamble_.first(of)) {
@@ -184,7 +184,7 @@ void RowTimer::set_even(double first_sample) {
       break;
     }
   }
-  // If the first sample is a whole number of intervals from t = 0, the time of one sample is set to exactly 0.
+  // If the first sample is a whole number of intervals from t = 0 but for rounding, set the time of one sample to exactly 0.
   constexpr double whole = 1e-6;
   const double steps = start / *made_.interval, rounded = std::round(steps);
   made_.times.resize(count_);
@@ -194,7 +194,8 @@ void RowTimer::set_even(double first_sample) {
   }
 }
 
-// Returns true if the column of times numbers the samples, and the file states the sampling interval.
+// Returns true if the column of times holds numbers of samples: its unit says so, or it holds whole numbers, is not called
+// time, and the file states the sampling interval.
 bool RowTimer::is_sample_count() const {
   if (unit_) return unit_->measure == Measure::samples;
   const std::vector<double>& raw = column_->raw;
@@ -210,7 +211,7 @@ void RowTimer::set_even_from_numbers() {
           column_->lines[i], static_cast<std::size_t>(column_->column),
           fmt::format("the number of the sample is {}, and that above is {}; numbers must be consecutive", raw[i], raw[i - 1]));
   }
-  // Sample numbers begin at 0 in a column with a unit of samples, at 1 in a file of a generator, and at 0 or 1 otherwise.
+  // Numbers of samples count from 0 in a column with a unit of samples, from 1 in EasyWave files (xpos), otherwise from 0 or 1.
   const bool counts_from_one = !unit_ && (raw.front() == 1 || (column_->name == "xpos" && raw.front() > 1));
   const double first = raw.front() - (counts_from_one ? 1 : 0);
   require_count(first + static_cast<double>(count_));
@@ -220,7 +221,7 @@ void RowTimer::set_even_from_numbers() {
         fmt::format("its first row is number {}: {} after the first sample", raw.front(), seconds(first * *made_.interval)));
 }
 
-// Sets the times from the column "xpos" of EasyWave: sample numbers, shares of the period, or times.
+// Sets the times from the column "xpos" of an EasyWave file, which holds shares of the period or times.
 void RowTimer::set_shares_of_period() {
   const std::vector<double>& raw = column_->raw;
   if (intervals_.empty())
@@ -269,8 +270,8 @@ void RowTimer::require_start() const {
   if (is_decided() || count_ < 2) return;
   const double interval = made_.interval.value_or(std::abs(duration()) / intervals());
   for (const TimeClaim& claim : preamble_.claims) {
-    // A stated middle of the record has a known meaning in GW Instek files only. A start without a unit may refer to another
-    // quantity.
+    // Check the first time against what the file states about it. The middle of the record has a known meaning in GW Instek
+    // files only, and a start without a unit may belong to another quantity.
     const bool is_axis = claim.of == Of::centre ? preamble_.text.find("sampling period") != std::string::npos
                                                 : claim.has_unit || !intervals_.empty();
     if (!is_start(claim) || !is_axis) continue;
@@ -287,7 +288,8 @@ void RowTimer::require_start() const {
   }
 }
 
-// Refuses different units of times in the column and in the preamble, unless an interval in seconds shows which is right.
+// Throws InvalidInput if the column and the preamble name different units of the times, and no stated interval tells which is
+// right.
 void RowTimer::require_unit() const {
   if (is_decided() || !keys_.time_unit.empty() || !unit_above_ || !column_->unit || unit_above_->measure != Measure::time) return;
   if (unit_above_->per_si == column_->unit->per_si || !intervals_.empty()) return;

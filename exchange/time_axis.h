@@ -1,4 +1,4 @@
-// Finds the times of the rows of a file, from its column of times and from its preamble, which must agree. Internal to
+// Finds the times of the rows of a recorded file, from its column of times and from its preamble, which must agree. Internal to
 // exchange/.
 #pragma once
 
@@ -29,15 +29,15 @@ struct TimeColumn {
 struct RowTimes {
   std::vector<double> times = {};       ///< times of the rows [s]; empty if the file has neither times nor an interval
   std::optional<double> interval = {};  ///< sampling interval that the file states [s]
-  bool stand_in_file = false;           ///< true if the file has the times, false if they follow from the sampling interval
+  bool stand_in_file = false;           ///< true if the file holds the times, false if they are computed from the interval
   bool have_unit = false;
-  double last_digit = 0;  ///< value of the last written digit of the times [s]
+  double last_digit = 0;  ///< resolution of the times: value of their last written digit [s]
   std::vector<std::string> notes = {};
 };
 
 /// Returns the times of `count` rows of a file. Throws InvalidInput if two statements of the file differ by more than a
-/// sampling interval; the message names both statements and the keys that decide. `keys.interval` or `keys.uneven` decides in
-/// advance.
+/// sampling interval; the message names both, and the keys by which the user decides. With `keys.interval` or `keys.uneven`,
+/// the user has decided, and such statements are not compared.
 [[nodiscard]] RowTimes times_of_rows(const TimeColumn* column, std::size_t count, const Preamble& preamble, const ReadKeys& keys,
                                      const Refusals& refusals);
 

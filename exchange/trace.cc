@@ -57,13 +57,14 @@ double deviation(const std::vector<double>& times, double interval) {
   return most;
 }
 
-/// Returns the rounding error of the times as written in the file [s].
+/// Returns the largest rounding error that times may have as written in the file [s].
 double rounding(const Recording& recording) {
   const std::vector<double>& t = recording.times;
   return 1.01 * recording.last_digit + single_precision * std::max(std::abs(t.front()), std::abs(t.back()));
 }
 
-// Returns the first row with an unusual time step if nine of ten steps are equal; none if the steps are uneven in general.
+// Returns the first row whose interval from the row above differs, if at least nine of ten intervals are equal: it may follow a
+// gap in the record. None if the intervals are uneven in general.
 std::optional<std::size_t> odd_step(const Recording& recording) {
   constexpr double most_of = 0.9;
   const std::vector<double>& t = recording.times;
@@ -114,7 +115,7 @@ std::vector<double> resolved_times(const Recording& recording, const ReadKeys& k
         "{}: the file has neither times nor an interval; give interval = \"...\", the time between rows, or time_column",
         recording.file);
   });
-  if (keys.interval) return recording.times;  // an interval that the user gives makes the times evenly spaced
+  if (keys.interval) return recording.times;  // read_recording() has set evenly spaced times already
   const TimeAxis axis = time_axis(recording);
   if (keys.uneven || recording.is_breakpoints) {
     require_not_back(recording, axis);
@@ -130,7 +131,7 @@ std::vector<double> resolved_times(const Recording& recording, const ReadKeys& k
                       "interval = \"{}\" uses that interval, interval = \"uneven\" the times",
                       recording.file, seconds(*recording.interval), seconds(off), seconds(*recording.interval)));
     }
-    // Deviation from even spacing, as a share of the interval, below which times are used as written.
+    // Largest deviation from even spacing, as a share of the interval, of times that are used as written.
     constexpr double exact = 1e-3;
     if (axis.repeated == 0 && !axis.back && off <= exact * *recording.interval) return recording.times;
     told += fmt::format("; times are rounded to {}: replaced by even times from the first one with the interval of the file",
@@ -150,8 +151,8 @@ std::vector<double> resolved_times(const Recording& recording, const ReadKeys& k
   return recording.times;
 }
 
-// Removes rows without a value of the channel at both ends. Between other rows, a blank is skipped, and a value out of range is
-// refused.
+// Removes the rows without a finite value of the channel at both ends of the trace, and blank rows between others. Throws
+// InvalidInput for a value out of range between finite values.
 void drop_missing(const Recording& recording, const Channel& channel, Trace& trace, std::string& told) {
   if (channel.missing.count == 0) return;
   std::size_t first = 0, last = trace.values.size();

@@ -12,7 +12,7 @@
 namespace softland::internal {
 namespace {
 
-/// Lines of a file that hold the numbers of one channel each, and the lines above these.
+/// The rows of a file in which each row holds the numbers of one channel (`places` are their lines), and the lines above.
 struct LyingRows {
   std::vector<Line> above, places;
   std::vector<CellList> rows;
@@ -21,7 +21,7 @@ struct LyingRows {
   char separator = ',';
 };
 
-// Returns the lines of a text of few lines; none if the text has more lines than a file with one channel per row.
+// Returns the lines of a text that are not blank; none if they are more than 64, the most of a file with one channel per row.
 std::vector<Line> few_lines(std::string_view text, const ReadKeys& keys, bool& ends_unended) {
   constexpr std::size_t most = 64;
   std::vector<Line> all;
@@ -58,7 +58,8 @@ LyingRows rows_in(const std::vector<Line>& all) {
   return found;
 }
 
-// Returns true if each row is a channel. Rows without names must be long, and must not have column names above them.
+// Returns true if each row is likely a channel, not a sample of all channels: rows begin with names, or they are long and there
+// are no column names above them.
 bool are_channels(const LyingRows& found) {
   constexpr std::size_t fewest_named = 3, fewest_unnamed = 16;
   if (found.rows.size() < 2) return false;

@@ -1,8 +1,8 @@
 // Reads vibration modes in the Universal File Format: data sets 55 (motion of nodes), 15 or 2411 (positions of nodes) and 164
 // (units).
 //
-// Fields of numbers have 13 or more columns, without blanks between them; their signs separate them. Source: Structural
-// Dynamics Research Corporation, Universal File Datasets 15, 55, 164, 2411.
+// Numbers are in columns of 13 or more characters; there may be no blank between them, so that only a sign separates them.
+// Source: Structural Dynamics Research Corporation, Universal File Datasets 15, 55, 164, 2411.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -25,7 +25,7 @@
 namespace softland::internal {
 namespace {
 
-/// Motion of some mesh nodes in one mode, from a data set 55.
+/// Motion of the mesh nodes in one mode, which one data set 55 gives.
 struct Set55 {
   double frequency = 0, modal_mass = 0;
   long long mode = 0;

@@ -108,7 +108,7 @@ double real(const Reader& in, std::string_view text, std::string_view what) {
   return *value;
 }
 
-// Returns the label and the unit of an axis, in columns 27 to 46 and 48 to 67 of the line.
+// Returns the label and the unit of an axis from columns 27 to 46 and 48 to 67 of its line in the header; empty for NONE.
 std::pair<std::string, std::string> axis_prose(std::string_view line) {
   const auto field = [&](std::size_t from) {
     return from < line.size() ? std::string(trimmed(line.substr(from, 20))) : std::string();
@@ -182,7 +182,7 @@ void refuse_other_functions(const Reader& in, const Header& header) {
     in.fail(fmt::format("the abscissa is in {}; give a record over time", unit->symbol));
 }
 
-// Reads numbers in columns of a line. There may be no blank before a number with a sign.
+// Reads up to `due` numbers of a data set in text form. There may be no blank between numbers if the second has a sign.
 std::vector<double> ascii_numbers(Reader& in, std::size_t due, std::vector<std::string>& left_out) {
   std::vector<double> numbers;
   numbers.reserve(std::min<std::size_t>(due, in.rest().size() / 6 + 1));
@@ -247,7 +247,8 @@ Values binary_values(Reader& in, const Header& header, std::vector<std::string>&
   const std::size_t size = header.is_double() ? 8 : 4;
   if (header.count > header.bytes / size)
     in.fail(fmt::format("{} bytes cannot hold {} values of {} bytes", header.bytes, header.count, size));
-  // Unevenly spaced abscissas have four bytes in some files, and the size of the values in others.
+  // In binary data with unevenly spaced abscissas, an abscissa has four bytes in some files and as many as an ordinate in
+  // others.
   const std::size_t row = header.bytes / header.count, abscissa = row - size;
   const bool fits = row * header.count == header.bytes && (header.is_even ? abscissa == 0 : abscissa == 4 || abscissa == size);
   if (!fits) in.fail(fmt::format("{} bytes do not hold {} values of {} bytes", header.bytes, header.count, size));
@@ -295,8 +296,8 @@ std::vector<double> times_of(const Header& header, const Values& values) {
   return times;
 }
 
-// Checks the header of unevenly spaced abscissas: the first abscissa and the increment in the header must be 0 or agree with
-// the abscissas.
+// Checks a data set with unevenly spaced abscissas: the first abscissa and the increment in its header must both be 0 or agree
+// with the abscissas.
 void require_same_axis(const Header& header, const Values& values, const std::vector<double>& times, std::size_t line,
                        const Refusals& refusals, const ReadKeys& keys) {
   if (header.is_even || (header.first == 0 && header.step == 0)) return;

@@ -4,7 +4,7 @@
 // the values before and after, so that straight lines between rows are steps. Variables with the same identifier have the same
 // values.
 //
-// The states x and z, and the states W, U and '-' of VHDL, are missing numbers; vectors are whole numbers.
+// The states x and z, and the states W, U and '-' of VHDL, become missing numbers. A vector of bits becomes a whole number.
 //
 // Source: IEEE Std 1364-2005, clause 18.
 #include <fmt/format.h>
@@ -104,7 +104,7 @@ class VcdReader {
   [[noreturn]] void fail_at_word(const std::string& rule) const {
     fail(fmt::format("\"{}\" {}", printable_line(shortened(words_.word())), rule));
   }
-  /// Returns the words of the file up to the next keyword $end.
+  /// Reads the words of a section of the file, up to the next keyword $end.
   std::vector<std::string_view> words_to_end() {
     std::vector<std::string_view> all;
     while (words_.next() && words_.word() != "$end") all.push_back(words_.word());
@@ -138,7 +138,7 @@ class VcdReader {
   std::vector<Variable> variables_;
   std::vector<DumpedSignal> signals_;
   std::unordered_map<std::string_view, std::size_t> identifiers_;
-  std::vector<std::size_t> chosen_;  // indices of the variables that become channels
+  std::vector<std::size_t> chosen_;  // indices of the variables that become channels of the recording
 
   bool has_begun_ = false;
   std::uint64_t first_ = 0, now_ = 0;
@@ -299,7 +299,7 @@ void VcdReader::take_time() {
   const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), time);
   if (error != std::errc() || stop != digits.data() + digits.size()) fail_at_word("must be a time, a whole number below 2^64");
   if (!has_begun_) {
-    // Changes of variables before the first time count as changes at that time.
+    // Values that the file gives before its first time are those at that time.
     for (DumpedSignal& signal : signals_)
       for (Change& change : signal.changes) change.time = time;
     moments_.assign(1, {.time = time, .line = static_cast<std::uint32_t>(words_.line())});
@@ -330,7 +330,7 @@ double VcdReader::vector_value(std::string_view digits, const DumpedSignal& sign
   return std::isfinite(value) ? value : missing_number;
 }
 
-// Stores a change of a variable. Of several changes at one time, the last change is used.
+// Stores a change of a variable at the current time. If it changes several times at one time, the last change is used.
 void VcdReader::change(std::string_view identifier, double value) {
   DumpedSignal& signal = signal_of(identifier);
   if (!signal.is_wanted) return;
