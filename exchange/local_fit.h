@@ -8,8 +8,8 @@
 namespace softland::internal {
 
 /// A mesh point near the place on the axis at which a quantity is fitted, with the value of the quantity. `along` is its
-/// distance from the place along the axis, in units of half the fit's window, -1 to 1. `p` and `q` are its coordinates across
-/// the axis, in units of the extent of the mesh.
+/// distance from the place along the axis, from -1 to 1 within the fit's window. The coordinates `p` and `q` across the axis
+/// are in units of the extent of the mesh.
 struct NearPoint {
   double along = 0, p = 0, q = 0;
   double value = 0;

@@ -1,8 +1,8 @@
 // Linear equations whose matrix has the shape of an arrow: a dense core, and blocks along the rest of the diagonal that couple
 // with the core only.
 //
-//   | C  B |        C core x core, D block diagonal, B core x rest, E rest x core. By elimination of the blocks the work grows
-//   | E  D |        with the number of blocks, not with its cube.
+//   | C  B |        C core x core, D block diagonal, B core x rest, E rest x core. Eliminating the blocks of D one by one makes
+//   | E  D |        the work proportional to their number, instead of its cube as for a dense matrix.
 #pragma once
 
 #include <Eigen/LU>
@@ -12,7 +12,8 @@ namespace softland {
 
 class ArrowEquations {
  public:
-  /// Takes `size` unknowns. The first `core` unknowns form the dense core; the others form blocks of `block` unknowns each.
+  /// Prepares equations with `size` unknowns. The first `core` form the dense core, the others form blocks of `block` unknowns
+  /// each.
   ArrowEquations(Eigen::Index size, Eigen::Index core, Eigen::Index block)
       : size_(size), core_(core), block_(block), blocks_(static_cast<std::size_t>((size - core) / block)) {}
 
@@ -47,8 +48,8 @@ class ArrowEquations {
  private:
   Eigen::Index size_, core_, block_;
   std::vector<Eigen::PartialPivLU<Eigen::MatrixXd>> blocks_;
-  Eigen::MatrixXd upper_;       // upper right block B of the matrix [C B; E D]
-  Eigen::MatrixXd eliminated_;  // D^-1 E of the matrix [C B; E D], whose block diagonal part D is eliminated
+  Eigen::MatrixXd upper_;       // B, the upper right part of the matrix
+  Eigen::MatrixXd eliminated_;  // D^-1 E, by which the unknowns of D are eliminated
   Eigen::PartialPivLU<Eigen::MatrixXd> core_equations_;
 };
 

@@ -13,15 +13,16 @@ struct DormandPrince {
                                            {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
                                            {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
                                            {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
-  /// Weights of the stages in the error estimate: solution of fifth order minus solution of fourth order.
+  /// Weights of the slopes of the stages in the error estimate, which is the solution of fifth order minus that of fourth
+  /// order.
   static constexpr double difference[7] = {71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
 
   static constexpr float integral = 0.04F, proportional = 0.2F - 0.75F * integral;
   static constexpr double safety = 0.9;
   static constexpr double least_growth = 0.2, most_growth = 10;
-  /// Factor by which the step length may grow after the first step, whose length is a guess.
+  /// Largest growth factor of the step length after the first step, whose length is only a guess.
   static constexpr double first_growth = 1e4;
-  static constexpr float least_error = -13;  ///< smallest error that the step size control remembers, as a binary logarithm
+  static constexpr float least_error = -13;  ///< binary logarithm of the smallest error that the step size control remembers
   static constexpr double not_finite = 0.1;  ///< factor on the step length after an error estimate that is not finite
 };
 

@@ -8,8 +8,8 @@ namespace softland {
 
 enum class Integrator {
   automatic,   ///< the caller chooses a method that suits its equations; make_stepper() refuses this value
-  lawson,      ///< explicit Runge-Kutta 5(4) for the deviation of the modes from their free oscillation, own implementation
-  arkode_erk,  ///< explicit Runge-Kutta 5(4) for the whole motion, by ARKODE
+  lawson,      ///< explicit Runge-Kutta 5(4) for the deviation of the modes from their free oscillation: lawson.h
+  arkode_erk,  ///< explicit Runge-Kutta 5(4) for the equations as they are, by ARKODE
   esdirk,      ///< diagonally implicit Runge-Kutta 5(4), by ARKODE, with the exact Jacobian
   bdf,         ///< backward differentiation formulas, by CVODE, with the exact Jacobian
   adams,       ///< Adams-Moulton method, by CVODE, with functional iteration

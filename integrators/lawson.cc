@@ -57,7 +57,7 @@ void Lawson::turn_to_nodes(double h) {
   for (std::size_t b = 0; b < omega_.size(); b += lanes) {
     const Lane phase = h * lane(omega_, b);
     for (std::size_t s = 1; s < stages; ++s) {
-      if (s == last) {  // the last two stages are at the same time
+      if (s == last) {  // both last stages are at the end of the step
         for (const auto member : {&Stage::cosine, &Stage::sine, &Stage::slack})
           lane(k_[s].*member, b) = lane(k_[s - 1].*member, b);
         continue;
@@ -176,7 +176,7 @@ bool Lawson::step(double t_stop) {
       most = 1;
       continue;
     }
-    // A step size needs no more digits than a float has.
+    // Single precision is enough for a step length.
     const float log_error = std::log2(static_cast<float>(std::clamp(e2, 1e-36, 1e36))) / 2;
     const double growth =
         Pair::safety * static_cast<double>(std::exp2(Pair::integral * last_error_ - Pair::proportional * log_error));
@@ -185,7 +185,7 @@ bool Lawson::step(double t_stop) {
       y_.swap(trial_);
       rates_.swap(next_rates_);
       last_error_ = std::max(log_error, Pair::least_error);
-      // The error of a step that was shortened to end at t_stop says little about the next step, which begins with a restart.
+      // A step that was shortened to end at t_stop also sets the next step length. It is not used: a restart follows at t_stop.
       h_ = h * std::clamp(growth, Pair::least_growth, most);
       first_ = false;
       return true;

@@ -1,7 +1,7 @@
 // Motion of one point of the beam within an integration step. Every mode moves by its exact motion under the force at the start
-// of the step (integrators/phase.h). A quintic polynomial is added, so that position, velocity and acceleration are right at
-// the end of the step. The force changes little in a step, so this interpolation is accurate over steps of a radian and more of
-// the fastest mode. Quintic interpolation between both ends alone would not be.
+// of the step (integrators/phase.h). A quintic polynomial is added, so that position, velocity and acceleration agree with
+// those of the integrator at the end of the step. The force changes little in a step, so this interpolation is accurate even if
+// the phase of the fastest mode advances by a radian and more. Quintic interpolation between both ends alone would not be.
 #pragma once
 
 #include <array>
@@ -11,11 +11,10 @@
 
 namespace softland {
 
-/// The quintic polynomial that starts from rest at 0 and has position p, velocity v and acceleration a at the end of a step of
-/// length 1.
+/// The quintic polynomial in x, 0 <= x <= 1, with position, velocity and acceleration 0 at x = 0, and p, v and a at x = 1.
 template <class T>
 struct Remainder {
-  std::array<T, 3> factors{};  ///< coefficients of the quintic's powers 3 to 5; the lower powers are absent
+  std::array<T, 3> factors{};  ///< coefficients of the powers 3 to 5; those of lower powers are 0
 
   Remainder() = default;
   Remainder(const T& p, const T& v, const T& a) : factors{10 * p - 4 * v + a / 2, -15 * p + 7 * v - a, 6 * p - 3 * v + a / 2} {}
@@ -38,9 +37,9 @@ class ModalMotion {
     push_.resize(omega_.size());
   }
 
-  /// Sets a step of `length` [s], divided into `pieces` equal intervals. q, v and a are coordinates, velocities and
-  /// accelerations of the modes at the start of the step, `end` is the motion of the point at the end of the step. No phase of
-  /// a mode may exceed largest_phase.
+  /// Sets the integration step to interpolate. It is `length` long [s] and divided into `pieces` equal intervals for knot(). q,
+  /// v and a are the coordinates, velocities and accelerations of the modes at its start. `end` is the motion of the point at
+  /// its end. The phase of a mode may advance by largest_phase at the most.
   void set(double length, int pieces, const double* q, const double* v, const double* a, const Sample& end) {
     per_length_ = 1 / length;
     Lane start = Lane::Zero();
@@ -84,7 +83,7 @@ class ModalMotion {
     s.acceleration += (omega * omega * (pull * turned.cosine - push * turned.sine)).sum();
   }
 
-  // Adds the quintic part of the motion, at the share x of the step, to `s`.
+  // Adds the quintic part of the motion to `s`; `x` is the time as a share of the step.
   void add_rest(double x, Sample& s) const {
     s.position += rest_.position(x);
     s.velocity += per_length_ * rest_.velocity(x);
@@ -94,7 +93,7 @@ class ModalMotion {
   std::size_t modes_;
   std::vector<double> omega_, shape_, pull_, push_;
   std::vector<Sample> knots_;
-  Remainder<double> rest_;  // quintic part of the motion, for a step of length 1
+  Remainder<double> rest_;  // quintic part of the motion, over the time as a share of the step
   double start_ = 0, per_length_ = 0;
 };
 

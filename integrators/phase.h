@@ -1,5 +1,5 @@
-// Rotation of the phases of free modes: the exact motion between two instants of q'' = -omega^2 q + constant, for several modes
-// at once, one per SIMD lane.
+// Cosine and sine of the phase omega t by which a free mode, q'' = -omega^2 q + constant, advances in a time t: its exact
+// motion follows from them. Several modes are computed at once, one per SIMD lane.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace softland {
 
-/// Largest phase of a mode [rad] for which turn() is exact to rounding.
+/// Largest phase [rad] for which turn() is accurate to rounding.
 inline constexpr double largest_phase = 2;
 
 struct Turn {
@@ -17,10 +17,10 @@ struct Turn {
   Lane slack;  ///< 1 - cosine of the phase, without cancellation
 };
 
-/// Returns cosine and sine of a phase: Taylor series at half the phase, whose first omitted term is below 1e-18.
+/// Returns cosine and sine of a phase by Taylor series at half the phase. The first omitted term is below 1e-18.
 [[nodiscard]] inline Turn turn(const Lane& phase) {
   constexpr std::size_t degree = 18;
-  constexpr auto factors = [] {  // coefficients (-1)^(k/2) / k! of the Taylor series, alternating even and odd k
+  constexpr auto factors = [] {  // (-1)^floor(k/2) / k!: even k of the cosine, odd k of the sine
     std::array<double, degree + 2> f{1, 1};
     for (std::size_t k = 2; k < degree + 2; ++k) f[k] = -f[k - 2] / static_cast<double>(k * (k - 1));
     return f;
@@ -35,7 +35,7 @@ struct Turn {
   return {.cosine = 1 - slack, .sine = 2 * sine * cosine, .slack = slack};
 }
 
-/// Returns the rotation by the sum of the phases of `a` and `b`.
+/// Returns cosine and sine of the sum of the phases of `a` and `b`.
 [[nodiscard]] inline Turn operator+(const Turn& a, const Turn& b) {
   const Lane slack = a.slack + b.slack - a.slack * b.slack + a.sine * b.sine;
   return {.cosine = 1 - slack, .sine = a.sine * b.cosine + a.cosine * b.sine, .slack = slack};

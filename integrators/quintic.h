@@ -41,7 +41,8 @@ class Quintic {
     for (double& t : turns.at) t = begin_ + t * length_;
     return turns;
   }
-  /// Bounds of the position between both ends: the curve stays between the control points of its Bernstein form.
+  /// Bounds of the position between both ends: the least and the largest coefficient of the polynomial in Bernstein form. The
+  /// polynomial does not leave them, but need not reach them.
   struct Bounds {
     double least = 0, most = 0;  ///< bounds of the interpolated position [m]
   };

@@ -19,7 +19,7 @@ double bracketed_zero(Function f, double low, double high) {
     const double middle = a + (b - a) / 2;
     return !(middle > a && middle < b);
   };
-  std::uintmax_t most = 200;  // largest number of evaluations of the function f
+  std::uintmax_t most = 200;  // largest number of evaluations of f
   boost::math::tools::toms748_solve([&](double t) { return keep(t, f(t)); }, low, high, f_low, f_high, neighbours, most);
   return zero;
 }

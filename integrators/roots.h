@@ -8,7 +8,7 @@
 namespace softland {
 
 namespace internal {
-/// A reference to a function of one number; the function must outlive it.
+/// A reference to a function double -> double, which must outlive it. It keeps the solver out of the templates of this header.
 struct Function {
   const void* object;
   double (*call)(const void* object, double at);

@@ -24,7 +24,7 @@
 namespace softland {
 namespace {
 
-// Wraps ArrowEquations as a direct solver of SUNDIALS.
+// Returns a direct linear solver of SUNDIALS that calls ArrowEquations.
 SUNLinearSolver arrow_solver(const OdeSystem& system, SUNContext context) {
   SUNLinearSolver solver = SUNLinSolNewEmpty(context);
   solver->content = new ArrowEquations(static_cast<Eigen::Index>(system.size), static_cast<Eigen::Index>(system.core),
@@ -83,7 +83,7 @@ class Context {
 class SundialsStepper : public Stepper {
  public:
   explicit SundialsStepper(const OdeSystem& system) : system_(system), y_(new_vector()), weights_(new_vector()) {
-    // Fused operations add all terms of a stage's sum in one call: the vectors are short, so that calls cost most of the time.
+    // Fused operations add all terms of a stage in one call. The vectors are so short that the calls cost most of the time.
     N_VEnableFusedOps_Serial(y_.get(), SUNTRUE);
     last_.rates.resize(system.size - system.frequencies.size());
   }
@@ -100,7 +100,7 @@ class SundialsStepper : public Stepper {
   }
   [[nodiscard]] double time() const final { return t_; }
   [[nodiscard]] const double* state() const final { return N_VGetArrayPointer(y_.get()); }
-  // The last stage of many Runge-Kutta methods is the right-hand side at the end of the step.
+  // Many methods evaluate the right-hand side at the end of the step last; then no further evaluation is necessary.
   [[nodiscard]] const double* rates() final {
     if (!last_.is_at(t_, state())) evaluate(t_, state());
     return last_.rates.data();
@@ -134,7 +134,7 @@ class SundialsStepper : public Stepper {
     auto* me = static_cast<SundialsStepper*>(self);
     const double* state = N_VGetArrayPointer(y);
     double* out = N_VGetArrayPointer(dydt);
-    // A step begins where the last step ended; the right-hand side has been computed there.
+    // A step begins where the last one ended or where the integration restarted: the rates there are known already.
     const Evaluation& known = me->last_.is_at(t, state)    ? me->last_
                               : me->begin_.is_at(t, state) ? me->begin_
                                                            : me->evaluate(t, state);
@@ -142,7 +142,7 @@ class SundialsStepper : public Stepper {
     std::copy_n(state + modes, modes, out);
     std::copy(known.rates.begin(), known.rates.end(), out + modes);
     for (std::size_t i = 0; i < me->system_.size; ++i) {
-      if (!std::isfinite(out[i])) out[i] = 1e100;  // fails the error test, so that an explicit method makes a shorter step
+      if (!std::isfinite(out[i])) out[i] = 1e100;  // the error test fails, and the step is repeated with a shorter length
     }
     return 0;
   }
@@ -150,8 +150,8 @@ class SundialsStepper : public Stepper {
     static_cast<SundialsStepper*>(self)->system_.jacobian(t, N_VGetArrayPointer(y), SUNDenseMatrix_Data(j));
     return 0;
   }
-  // SUNDIALS refuses a tolerance below the rounding error of an unknown; in a stiff contact, absolute tolerances are that
-  // small.
+  // Returns the inverse tolerance of each unknown. SUNDIALS refuses tolerances below the rounding error of the unknown, which
+  // the absolute tolerances of a stiff contact may be, so that error is their lower bound here.
   static int error_weights(N_Vector y, N_Vector ewt, void* self) {
     constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
     const auto* me = static_cast<SundialsStepper*>(self);
@@ -173,7 +173,7 @@ class SundialsStepper : public Stepper {
   double t_ = 0;
 
  private:
-  // A point (t, y) at which the right-hand side was evaluated, and the value there.
+  // A time and a state y at which the right-hand side was evaluated, and its value (v', z') there.
   struct Evaluation {
     double t = std::numeric_limits<double>::quiet_NaN();
     std::vector<double> y, rates;
@@ -194,7 +194,7 @@ class SundialsStepper : public Stepper {
 
   void load(double t, const double* y, const double* rates, const std::vector<double>& absolute) {
     t_ = t;
-    last_.t = std::numeric_limits<double>::quiet_NaN();  // the last evaluation was before the discontinuity
+    last_.t = std::numeric_limits<double>::quiet_NaN();  // an evaluation before the discontinuity is not valid after it
     begin_.t = t;
     begin_.y.assign(y, y + system_.size);
     begin_.rates.assign(rates, rates + last_.rates.size());
@@ -207,13 +207,13 @@ class SundialsStepper : public Stepper {
   std::string message_, said_;
 };
 
-constexpr long unbounded_steps = -1;  // SUNDIALS does not limit the steps; the caller does
-// Relative change of the step length above which the matrix is factorised again.
+constexpr long unbounded_steps = -1;  // the caller limits the number of steps, not SUNDIALS
+// Relative change of the step length above which the matrix of the implicit equations is factorised again.
 constexpr double smallest_change_of_step = 1e-10;
 constexpr int steps_of_a_jacobian = 2;
-// Predictors of ARKODE for the iteration of a stage. The trivial predictor is the state before the step; the other extrapolates
-// the last step, with a lower order for later stages. For a compressible gas film the trivial predictor needs half the time at
-// a tolerance of 1e-4, the extrapolation 0.4 of the time at 1e-8; at 1e-5 the times are equal.
+// Predictors of ARKODE: start values of the iteration for a stage. The trivial predictor is the state before the step; the
+// other one extrapolates the last step, with a lower order for later stages. For a compressible gas film the trivial predictor
+// needs half the time at a tolerance of 1e-4, the extrapolation 0.4 of the time at 1e-8; at 1e-5 the times are equal.
 constexpr int predictor_trivial = 0, predictor_of_falling_order = 2;
 constexpr double extrapolates_below = 3e-6;  // relative tolerance below which the predictor extrapolates
 
@@ -240,7 +240,7 @@ class ErkStepper final : public SundialsStepper {
            ok(ERKStepSetTableNum(memory_, ARKODE_DORMAND_PRINCE_7_4_5), "ERKStepSetTableNum") &&
            ok(ERKStepWFtolerances(memory_, &SundialsStepper::error_weights), "ERKStepWFtolerances") &&
            ok(ERKStepSetMaxNumSteps(memory_, unbounded_steps), "ERKStepSetMaxNumSteps") &&
-           // The steppers interpolate without SUNDIALS, so use its cheapest interpolant.
+           // The interpolant of SUNDIALS is not used, so choose the cheapest one.
            ok(ERKStepSetInterpolantType(memory_, ARK_INTERP_LAGRANGE), "ERKStepSetInterpolantType") &&
            ok(ERKStepSetInterpolantDegree(memory_, 0), "ERKStepSetInterpolantDegree");
   }
@@ -279,8 +279,9 @@ class DirkStepper final : public SundialsStepper {
            ok(ARKStepWFtolerances(memory_, &SundialsStepper::error_weights), "ARKStepWFtolerances") &&
            ok(ARKStepSetLinearSolver(memory_, solver_.get(), matrix_.get()), "ARKStepSetLinearSolver") &&
            ok(ARKStepSetJacFn(memory_, &SundialsStepper::jacobian), "ARKStepSetJacFn") &&
-           // SUNDIALS remembers the convergence rate of its iterations until the next factorisation. After one lucky iteration
-           // SUNDIALS would accept the next iterations too early, with errors of stages of a thousand times the tolerance.
+           // Factorise at every change of the step length. SUNDIALS keeps its estimate of the convergence rate until then.
+           // After an iteration that converged fast by chance, it would stop later ones too early, with errors of a thousand
+           // tolerances.
            ok(ARKStepSetDeltaGammaMax(memory_, smallest_change_of_step), "ARKStepSetDeltaGammaMax") &&
            ok(ARKStepSetJacEvalFrequency(memory_, steps_of_a_jacobian), "ARKStepSetJacEvalFrequency") &&
            ok(ARKStepSetPredictorMethod(memory_, predictor_), "ARKStepSetPredictorMethod") &&
@@ -333,7 +334,7 @@ class CvodeStepper final : public SundialsStepper {
   }
   bool reinitialize(double t) override { return ok(CVodeReInit(memory_, t, y_.get()), "CVodeReInit"); }
   bool set_steps(double first, double longest) override {
-    // BDF and Adams methods restart at order 1, so divide the suggested first step by 100.
+    // BDF and Adams methods restart at order 1, which needs shorter steps than those of order 5 for which `first` is suggested.
     return ok(CVodeSetInitStep(memory_, first / 100), "CVodeSetInitStep") &&
            ok(CVodeSetMaxStep(memory_, longest), "CVodeSetMaxStep");
   }

@@ -19,11 +19,12 @@ double square_distance(const SpacePoint& a, const SpacePoint& b) {
   return dx * dx + dy * dy + dz * dz;
 }
 
-// Chooses start centres of classes for Lloyd's iteration; fewer than `count` when there are fewer distinct points.
+// Draws the start centres of the classes from the points, as k-means++ does; fewer than `count` if there are fewer distinct
+// points.
 std::vector<SpacePoint> start_centres(std::span<const SpacePoint> points, std::size_t count, std::uint64_t seed,
                                       std::size_t start) {
   std::vector<SpacePoint> centres;
-  std::vector<double> square(points.size(), 1.0);  // equal weights: the first centre is any point with equal probability
+  std::vector<double> square(points.size(), 1.0);  // weights of the points; the first centre is drawn with equal ones
   while (centres.size() < count) {
     double sum = 0;
     for (const double one : square) sum += one;
@@ -45,11 +46,12 @@ std::vector<SpacePoint> start_centres(std::span<const SpacePoint> points, std::s
 
 struct Sorted {
   Classes classes;
-  // Sum of the square distances of the points to the centres of their classes.
+  // Sum of the squared distances of the points from the centres of their classes.
   double square = std::numeric_limits<double>::infinity();
 };
 
-// Assigns every point to its nearest centre and moves each centre to the mean of its points, until no point changes its class.
+// Lloyd's iteration: assigns every point to its nearest centre and moves each centre to the mean of its points, until no point
+// changes its class.
 Sorted settle(std::span<const SpacePoint> points, std::vector<SpacePoint> centres) {
   Sorted sorted{.classes = {.centres = std::move(centres), .shares = {}}};
   std::vector<std::size_t> own(points.size(), points.size());
@@ -101,7 +103,7 @@ Classes classes_of(std::span<const SpacePoint> points, std::size_t count, std::u
     if (one.square < best.square) best = std::move(one);
   }
   std::sort(best.classes.centres.begin(), best.classes.centres.end());
-  // Second pass: computes the shares of the classes of the sorted centres.
+  // Repeat the iteration with the sorted centres, which gives the shares of the classes in this order.
   return settle(points, std::move(best.classes.centres)).classes;
 }
 

@@ -3,8 +3,8 @@
 //
 //   minimise  sum_i min_c |x_i - c|^2   over `count` centres c
 //
-// For a measured quantity this is the quantizer of least mean square error. Its classes are narrow where points are many and
-// wide where they are few. Their widths lie between those of classes of equal shares, whose outermost classes are very wide,
+// For a measured quantity this is the quantizer of least mean square error. Its classes are narrow where points are dense and
+// wide where they are sparse. Their widths lie between those of classes of equal shares, whose outermost classes are very wide,
 // and equal widths. Lloyd's iteration finds the centres from several starts; a better local minimum may exist. The centres of a
 // start are drawn one by one from the points, with a probability in proportion to the square distance to the nearest centre
 // drawn before.
@@ -28,7 +28,8 @@ struct Classes {
   std::vector<SpacePoint> centres;  ///< centres of the classes in ascending order
   std::vector<double> shares;       ///< share of the points in each class
 
-  /// Returns the number of the class of a point, that of the nearest centre; the lowest number of several equally near centres.
+  /// Returns the index of the class to which a point belongs: that of the nearest centre, the lowest index if several are as
+  /// near.
   [[nodiscard]] std::size_t nearest(const SpacePoint& point) const;
 };
 

@@ -31,7 +31,7 @@ Interval wilson_interval(std::size_t successes, std::size_t trials, double confi
   const double z = standard_normal_quantile((1 + confidence) / 2), z2 = z * z;
   const double middle = (share + z2 / (2 * n)) / (1 + z2 / n);
   const double half = z / (1 + z2 / n) * std::sqrt(share * (1 - share) / n + z2 / (4 * n * n));
-  // The bound of a probability is exactly 0 without a success, and exactly 1 without a failure.
+  // Without a success the low end is exactly 0, and without a failure the high end is exactly 1. Rounding must not change this.
   return {.low = successes == 0 ? 0 : middle - half, .high = successes == trials ? 1 : middle + half};
 }
 
@@ -44,14 +44,14 @@ Interval quantile_interval(std::span<const double> sample, double p, double conf
   const std::size_t n = sample.size();
   const boost::math::binomial_distribution<> binomial(static_cast<double>(n), p);
   const double tail = (1 - confidence) / 2;
-  // The condition P(B < l) <= tail, B binomial, is monotone in l and holds for l = 0.
+  // Bisect for the largest l with P(B < l) <= tail, B binomial: the condition holds for l = 0 and up to that l.
   const auto fewer = [&](std::size_t l) { return l == 0 ? 0 : cdf(binomial, static_cast<double>(l - 1)); };
   std::size_t low = 0, beyond = n + 1;
   while (beyond - low > 1) {
     const std::size_t middle = (low + beyond) / 2;
     (fewer(middle) <= tail ? low : beyond) = middle;
   }
-  // The condition P(B >= u) <= tail, B binomial, is monotone in u and holds for u = n + 1.
+  // Bisect for the smallest u with P(B >= u) <= tail, B binomial: the condition holds from that u on, up to u = n + 1.
   const auto at_least = [&](std::size_t u) { return u == 0 ? 1 : cdf(complement(binomial, static_cast<double>(u - 1))); };
   std::size_t before = 0, high = n + 1;
   while (high - before > 1) {

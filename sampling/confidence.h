@@ -1,6 +1,7 @@
-// Confidence intervals of figures of a sample of independent values, larger being worse and +infinity the worst (statistics.h).
+// Confidence intervals of statistics (such as a quantile) of a distribution, from a sample of independent values. Larger values
+// are worse, and +infinity is the value of a failed device (statistics.h).
 //
-// An interval of confidence c covers the figure of the distribution in a share c of all samples. The figure is below the
+// An interval of confidence c covers the true value of the statistic in a share c of all samples. The true value is below the
 // interval in a share (1 - c) / 2 of all samples, and above it in the same share. Scrambled Sobol' points and Latin hypercubes
 // are not independent samples: for means over such points these intervals are too wide.
 //
@@ -31,7 +32,7 @@ namespace softland {
 ///   l = largest with P(B < l) <= (1 - confidence) / 2,   u = smallest with P(B >= u) <= (1 - confidence) / 2
 ///
 /// B is binomial (n, p). The interval covers the quantile with at least this confidence. Its low end is -infinity, or its high
-/// end +infinity, when the sample is too small; the high end is +infinity, too, when x_u is the figure of a failed switch.
+/// end +infinity, when the sample is too small. The high end is +infinity as well when x_u is the value of a failed device.
 /// Throws what sample_quantile throws, and InvalidInput unless 0 < p < 1. Source: H. A. David & H. N. Nagaraja, "Order
 /// Statistics", 3rd ed. 2003, section 7.1.
 [[nodiscard]] Interval quantile_interval(std::span<const double> sample, double p, double confidence = 0.95);
@@ -42,12 +43,12 @@ struct BootstrapOptions {
   std::uint64_t seed = 1;
 };
 
-/// Returns a bootstrap confidence interval of any figure of a sample: quantiles of the figure over samples that are drawn from
-/// this sample with replacement. The error of its coverage falls as n^-1/2 for each side and as n^-1 for both together. With
-/// fewer than some ten values the interval covers the figure too seldom; for the extremes of a sample it is meaningless. The
-/// same seed gives the same interval. The interval is NaN when a repetition gives NaN. Throws InvalidInput for a sample without
-/// values and unless there are at least 2 repetitions. Source: B. Efron & R. J. Tibshirani, "An Introduction to the Bootstrap",
-/// 1993, section 13.3 (percentile interval).
+/// Returns a bootstrap confidence interval of a statistic (a function of a sample): quantiles of the statistic over samples
+/// that are drawn from this sample with replacement. The error of its coverage falls as n^-1/2 for each side and as n^-1 for
+/// both together. With fewer than some ten values the interval covers the figure too seldom; for the extremes of a sample it is
+/// meaningless. The same seed gives the same interval. The interval is NaN when a repetition gives NaN. Throws InvalidInput for
+/// a sample without values and unless there are at least 2 repetitions. Source: B. Efron & R. J. Tibshirani, "An Introduction
+/// to the Bootstrap", 1993, section 13.3 (percentile interval).
 [[nodiscard]] Interval bootstrap_interval(std::span<const double> sample,
                                           const std::function<double(std::span<const double>)>& statistic,
                                           const BootstrapOptions& options = {});
@@ -61,8 +62,8 @@ void check(const BootstrapOptions& options);
 /// `place`.
 [[nodiscard]] std::size_t bootstrap_row(std::uint64_t seed, std::size_t repetition, std::size_t place, std::size_t count);
 
-/// Returns the interval with the middle share `confidence` of the values of a figure over bootstrap repetitions; NaN when a
-/// value is NaN.
+/// Returns the percentile interval of a statistic: the middle share `confidence` of its `values` over the bootstrap
+/// repetitions; NaN when a value is NaN.
 [[nodiscard]] Interval percentile_interval(std::span<const double> values, double confidence);
 
 }  // namespace internal

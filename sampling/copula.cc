@@ -20,7 +20,7 @@ void require_in_range(double value) {
   require(-1 <= value && value <= 1, "a correlation of " + rounded_text(value) + " must be between -1 and 1");
 }
 
-// Returns the names of the main variables of an eigenvector: those with at least half of the size of its largest element.
+// Returns the names of the variables with the largest parts of an eigenvector, at least half of its largest element in size.
 std::string main_parts(const Eigen::VectorXd& vector, const std::vector<std::string>& names) {
   const double largest = vector.cwiseAbs().maxCoeff();
   std::string parts;
@@ -68,7 +68,7 @@ void GaussianCopula::correlate(std::span<double> u) const {
     require(p > 0 && p < 1, "every coordinate of a point must be above 0 and below 1");
     z[i] = standard_normal_quantile(p);
   }
-  for (Eigen::Index i = 1; i < z.size(); ++i) {  // i = 1: the first variable v_1 = u_1 keeps all its bits
+  for (Eigen::Index i = 1; i < z.size(); ++i) {  // the first variable does not change: v_1 = u_1
     const double correlated = factor_.row(i).head(i + 1).dot(z.head(i + 1));
     u[static_cast<std::size_t>(i)] = std::clamp(standard_normal_cdf(correlated), 0x1p-53, 1 - 0x1p-53);
   }

@@ -3,11 +3,11 @@
 //   v_i = Phi((L z)_i),   z_i = Phi^-1(u_i),   L L^T = R
 //
 // u, v are uniform in (0, 1), Phi is the standard normal distribution, R the correlation matrix, L its lower Cholesky factor:
-// v_1 = u_1. R is the correlation of the underlying normal variables. Variables with other distributions have a correlation of
-// smaller size. Their rank correlation (Spearman) does not depend on the distributions, rho_S = 6/pi asin(rho / 2), and neither
-// does Kendall's tau = 2/pi asin(rho). Extreme values of two variables are independent in the limit for any rho < 1 (no tail
-// dependence). rho = +-1 makes R singular and is refused: two such variables are one. Source: R. B. Nelsen, "An
-// Introduction to Copulas", 2nd ed. 2006; W. H. Kruskal, J. Am. Stat. Assoc. 53 (1958) 814 (ranks).
+// v_1 = u_1. R is the correlation of the underlying normal variables. If the variables have other distributions, their own
+// correlation is smaller in size. Their rank correlation (Spearman) does not depend on the distributions, rho_S = 6/pi asin(rho
+// / 2), and neither does Kendall's tau = 2/pi asin(rho). Extreme values of two variables are independent in the limit for any
+// rho < 1 (no tail dependence). rho = +-1 makes R singular and is refused: two such variables are one. Source: R. B. Nelsen,
+// "An Introduction to Copulas", 2nd ed. 2006; W. H. Kruskal, J. Am. Stat. Assoc. 53 (1958) 814 (ranks).
 #pragma once
 
 #include <Eigen/Core>

@@ -26,7 +26,7 @@ void require_positive(std::string_view parameter, double value) {
              std::string(parameter) + " = " + text(value) + " must be finite and above 0");
 }
 
-// The density is without its constant factor 1 / sqrt(2 pi).
+// Returns the standard normal density without its factor 1 / sqrt(2 pi), which cancels in moments().
 double standard_normal_density(double z) { return std::exp(-z * z / 2); }
 
 // Returns the distribution of the logarithm of a lognormal variable.
@@ -35,8 +35,8 @@ Normal logarithm_of(const Lognormal& d) {
   return {.mean = std::log(d.mean) - variance / 2, .standard_deviation = std::sqrt(variance)};
 }
 
-// The functions for each kind of distribution: a check of its parameters, its support and quantile, and the probabilities of a
-// value of at most x and of a value below x.
+// For each kind of distribution, functions that check its parameters, return its support and its quantile, and return the
+// probabilities of a value of at most x (up_to) and of a value below x (below).
 
 void check(const Normal& d) {
   require_finite("mean", d.mean);
@@ -98,7 +98,7 @@ double quantile_of(const Empirical& d, double p) {
   const std::size_t i = std::min(static_cast<std::size_t>(place), d.values.size() - 2);
   return d.values[i] + (place - static_cast<double>(i)) * (d.values[i + 1] - d.values[i]);
 }
-// Returns the distribution function at an x between the sorted sample values i and i + 1, which differ.
+// Returns the distribution function of a sample at an x between its sorted values i and i + 1, which differ.
 double between(const Empirical& d, std::size_t i, double x) {
   const double fraction = (x - d.values[i]) / (d.values[i + 1] - d.values[i]);
   return (static_cast<double>(i) + fraction) / static_cast<double>(d.values.size() - 1);
@@ -124,8 +124,8 @@ struct Moments {
   double mean, standard_deviation;
 };
 
-// Returns the moments of value(t) for a t whose density is smooth between the breaks. Gauss quadrature with eight points is
-// exact for polynomials of degree 15.
+// Returns mean and standard deviation of value(t) for a random t with a density that is smooth between the breaks. Gauss
+// quadrature with eight points between two breaks is exact for polynomials of degree 15.
 template <class Value, class Density>
 Moments moments(const std::vector<double>& breaks, Value value, Density density) {
   static const GaussRule rule = gauss_rule(8);
@@ -146,7 +146,7 @@ Moments moments(const std::vector<double>& breaks, Value value, Density density)
   return {.mean = mean, .standard_deviation = std::sqrt(variance)};
 }
 
-// Returns quadrature breaks from low to high in steps of at most half a standard deviation of a normal variable.
+// Returns breaks for the quadrature of a standard normal variable, from low to high in steps of at most 0.5.
 std::vector<double> normal_breaks(double low, double high) {
   const int count = std::max(1, static_cast<int>(std::ceil((high - low) / 0.5)));
   std::vector<double> breaks;
@@ -154,7 +154,8 @@ std::vector<double> normal_breaks(double low, double high) {
   return breaks;
 }
 
-// Number of standard deviations beyond which a normal density, 2e-37 of its largest value, adds nothing to a moment.
+// Number of standard deviations up to which a normal density is integrated. It is 2e-37 of its largest value there, and adds
+// nothing to a moment beyond.
 constexpr double far_out = 13;
 
 Moments moments_within(const Normal& d, const Interval& x) {
@@ -170,7 +171,7 @@ Moments moments_within(const Lognormal& d, const Interval& x) {
   const Normal logarithm = logarithm_of(d);
   const double s = logarithm.standard_deviation;
   const double low = x.low > 0 ? std::max((std::log(x.low) - logarithm.mean) / s, -far_out) : -far_out;
-  // The density of the second moment of a lognormal variable is centred about 2 s above the mean of its logarithm.
+  // The integrand of the second moment, exp(2 s z) times a normal density, has its maximum at z = 2 s, so integrate farther.
   const double high = std::min((std::log(x.high) - logarithm.mean) / s, far_out + 2 * s);
   return moments(
       normal_breaks(low, high), [&](double z) { return std::exp(logarithm.mean + s * z); }, standard_normal_density);
@@ -242,7 +243,7 @@ void Distribution::find_moments() {
 
 double Distribution::quantile(double p) const {
   if (!(p > 0 && p < 1)) require(false, "p = " + text(p) + " must be above 0 and below 1");
-  // Rounding may give the probability 1, where a quantile is infinite.
+  // Rounding may give the probability 1, at which the quantile of an unbounded distribution is infinite.
   const double of_whole = std::min(below_ + p * kept_, 1 - 0x1p-53);
   const double value = std::visit([&](const auto& d) { return quantile_of(d, of_whole); }, parameters_);
   return std::clamp(value, support_.low, support_.high);  // rounding may move the value beyond the support of the distribution

@@ -11,8 +11,8 @@
 // (1996) 361. So an empirical distribution has no value outside the given values, a step where values are equal, and a variance
 // slightly below that of the values.
 //
-// Each may be truncated to [low, high]: X given low <= X <= high, Q_t(p) = Q(F(low-) + p (F(high) - F(low-))). All numbers are
-// in the unit of the variable.
+// Each may be truncated to [low, high]: X given low <= X <= high. With Q the quantile and F the distribution function of X, the
+// quantile is then Q(F(low-) + p (F(high) - F(low-))), where F(low-) = P(X < low). All numbers are in the unit of the variable.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ namespace softland {
 
 enum class DistributionKind { normal, lognormal, uniform, triangular, empirical };
 
-/// Name and keys of a kind of distribution. The keys are the names of the parameters in the messages of InvalidParameter.
+/// A kind of distribution, its name, and the keys that name its parameters in a scene and in InvalidParameter.
 struct DistributionRow {
   DistributionKind value;
   std::string_view name;
@@ -73,8 +73,8 @@ class Distribution {
   /// Parameters of a distribution. The alternatives are in the order of DistributionKind.
   using Parameters = std::variant<Normal, Lognormal, Uniform, Triangular, Empirical>;
 
-  /// The least probability that a truncation may leave. A smaller probability is a mistake of units, and its quantiles would
-  /// show rounding errors.
+  /// Least probability of the values that a truncation keeps. A smaller one is likely a mistake of units, and the quantiles
+  /// would have rounding errors.
   static constexpr double least_kept = 1e-6;
 
   /// Throws InvalidParameter for invalid parameters; its parameter() is a key of distribution_kinds, truncate_low or
@@ -90,7 +90,8 @@ class Distribution {
   [[nodiscard]] double quantile(double p) const;
   /// Returns the probability of a value of at most x.
   [[nodiscard]] double cdf(double x) const;
-  /// Return moments of the truncated distribution, to 1e-12 of the standard deviation or of the mean, whichever is larger.
+  /// Return the mean and the standard deviation of the distribution after truncation. Their error is below 1e-12 of the larger
+  /// of the two.
   [[nodiscard]] double mean() const { return mean_; }
   [[nodiscard]] double standard_deviation() const { return standard_deviation_; }
   [[nodiscard]] const Interval& support() const { return support_; }
@@ -101,8 +102,8 @@ class Distribution {
   Parameters parameters_;
   Truncation truncation_;
   Interval support_;
-  double below_ = 0;  // probability that the truncation cuts off at the low end
-  double kept_ = 1;   // probability that remains within the truncation
+  double below_ = 0;  // probability of the values below the truncated range
+  double kept_ = 1;   // probability of the values in the truncated range
   double mean_ = 0, standard_deviation_ = 0;
 };
 

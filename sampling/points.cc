@@ -9,26 +9,27 @@
 namespace softland {
 namespace {
 
-constexpr int resolved_bits = 32;  // highest bits of a coordinate that Boost's Sobol direction numbers define
+constexpr int resolved_bits = 32;  // number of highest bits of a coordinate that come from the Sobol' sequence
 
-// Returns a number in (0, 1): the middle of one of 2^52 equal intervals, which the highest bits select.
+// Returns a number in (0, 1) from 64 random bits: the highest 52 select one of 2^52 equal intervals, whose middle is returned.
 double in_open_interval(std::uint64_t bits) { return (static_cast<double>(bits >> 12) + 0.5) * 0x1p-52; }
 
 std::vector<std::uint32_t> direction_numbers(std::size_t dimensions) {
   boost::random::sobol_engine<std::uint32_t, resolved_bits> sequence(dimensions);
   std::vector<std::uint32_t> directions;
   for (int r = 0; r < resolved_bits; ++r) {
-    // Boost's Sobol point s combines the direction numbers of those bits that are set in the Gray code of s + 1. Here only bit
-    // r is set.
+    // Point s of Boost's sequence is the exclusive or of the direction numbers of the bits that are set in the Gray code of s +
+    // 1. For this s only bit r is set, so the point is direction number r.
     sequence.seed(static_cast<std::uint32_t>((std::uint64_t{2} << r) - 2));
     for (std::size_t i = 0; i < dimensions; ++i) directions.push_back(sequence());
   }
   return directions;
 }
 
-// Returns 64 bits of a coordinate: the highest 32 are the scrambled bits of `digits`, the others are random.
+// Returns 64 bits of a scrambled coordinate. The highest 32 are those of `digits` (from the Sobol' sequence) after scrambling,
+// the others are random.
 std::uint64_t scrambled(std::uint64_t key, std::uint32_t digits) {
-  // Node 2^j + (the first j bits) of the binary tree decides whether bit j, counted from 0 at the highest bit, is flipped.
+  // The random bit of node 2^j + (the first j bits of `digits`) decides whether bit j, counted from the highest, is flipped.
   std::uint32_t flips = 0;
   for (unsigned j = 0; j < resolved_bits; ++j) {
     const std::uint64_t node = (std::uint64_t{digits} | std::uint64_t{1} << resolved_bits) >> (resolved_bits - j);
@@ -38,9 +39,9 @@ std::uint64_t scrambled(std::uint64_t key, std::uint32_t digits) {
   return std::uint64_t{digits ^ flips} << resolved_bits | below >> resolved_bits;
 }
 
-// Returns the image of k under a random permutation of 0, ..., size - 1.
+// Returns the image of k under a permutation of 0, ..., size - 1, which `key` determines.
 std::uint64_t permuted(std::uint64_t key, std::uint64_t k, std::uint64_t size) {
-  constexpr std::uint64_t rounds = 8;  // rounds of the Feistel network; four suffice for large halves, but a half may be one bit
+  constexpr std::uint64_t rounds = 8;  // of the Feistel network; four suffice unless a half has few bits
   const int width = static_cast<int>(std::bit_width(size - 1)), right_width = (width + 1) / 2;
   const std::uint64_t right_mask = (std::uint64_t{1} << right_width) - 1,
                       left_mask = (std::uint64_t{1} << (width - right_width)) - 1;
@@ -55,8 +56,8 @@ std::uint64_t permuted(std::uint64_t key, std::uint64_t k, std::uint64_t size) {
   return k;
 }
 
-// Returns a random number inside stratum `stratum` of `size` equal parts of (0, 1). It has so few random bits that the sum is
-// exact and rounds neither to the next stratum nor to 1.
+// Returns a random number inside stratum number `stratum` of the `size` equal parts of (0, 1). Only as many random bits are
+// used as leave the sum below exact, so that it rounds neither to the next stratum nor to 1.
 double in_stratum(std::uint64_t bits, std::uint64_t stratum, std::uint64_t size) {
   const int kept = 52 - static_cast<int>(std::bit_width(size - 1));
   const double inside = (static_cast<double>(bits >> (64 - kept)) + 0.5) / static_cast<double>(std::uint64_t{1} << kept);
@@ -71,7 +72,7 @@ SamplePoints::SamplePoints(PointSet kind, std::size_t dimensions, std::uint64_t 
              "dimensions = " + std::to_string(dimensions) + " must be between 1 and " + std::to_string(most_dimensions));
   require_of("size", 1 <= size && size <= largest_size,
              "size = " + std::to_string(size) + " must be between 1 and " + std::to_string(largest_size));
-  // The key of a dimension is not a random number of the stream, so that the stream remains unused for other numbers.
+  // Derive the keys of all dimensions from one number of the stream, so that its other numbers remain unused.
   for (std::size_t i = 0; i < dimensions; ++i) keys_.push_back(split_mix_64(random_bits(seed, stream, 0), i));
   if (kind == PointSet::sobol) directions_ = direction_numbers(dimensions);
 }
@@ -91,7 +92,7 @@ void SamplePoints::point(std::uint64_t k, std::span<double> u) const {
       break;
     case PointSet::latin_hypercube:
       for (std::size_t i = 0; i < u.size(); ++i) {
-        // The key of the dimension seeds the permutation of the strata; its complement seeds the positions inside the strata.
+        // The key of the dimension seeds the permutation of the strata, and its complement the positions inside the strata.
         u[i] = in_stratum(split_mix_64(~keys_[i], k), permuted(keys_[i], k, size_), size_);
       }
       break;

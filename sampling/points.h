@@ -11,12 +11,12 @@
 //                    variable each hardly adds to it. All points depend on N: sets of different size have nothing in common.
 //   monte_carlo      independent and uniform; the error falls as N^-1/2. Point k is the same for every size.
 //
-// Coordinate i does not depend on the number of dimensions. All coordinates are multiples of 2^-53 except in the Latin
-// hypercube, whose division by N rounds.
+// Coordinate i of a point does not depend on the number of dimensions. All coordinates are multiples of 2^-53, except in a
+// Latin hypercube, where a division by N rounds them.
 //
-// Scrambling: each bit j of a coordinate is flipped by a random bit that belongs to the bits before it. There is one such bit
-// for each node of a binary tree, drawn by the number of the node. The direction numbers give the highest 32 bits. Lower bits
-// are zero in the sequence, so that they become the random bits of their nodes. Permutation: a Feistel network over the least
+// Scrambling: bit j of a coordinate is flipped or not by a random bit, which depends on the bits above bit j: on a node of a
+// binary tree. It is computed from the number of the node. The direction numbers give the highest 32 bits of a coordinate. The
+// lower bits are 0 in the sequence, so that after scrambling they are random. Permutation: a Feistel network over the least
 // power of two that holds N, repeated until it gives a number below N.
 //
 // Sources: A. B. Owen, "Randomly permuted (t,m,s)-nets and (t,s)-sequences", 1995 (scrambling), and "Scrambled net variance for
@@ -67,7 +67,7 @@ class SamplePoints {
   std::uint64_t size_;
   std::vector<std::uint64_t> keys_;  // seed of the random numbers of each dimension
   std::vector<std::uint32_t>
-      directions_;  // Sobol direction numbers for bit r of a point's number, for all dimensions, from r * dimensions() on
+      directions_;  // element r * dimensions() + i: Sobol direction number of dimension i for bit r of a point's number
 };
 
 }  // namespace softland

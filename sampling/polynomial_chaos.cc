@@ -16,11 +16,11 @@ namespace {
 using Exponents = std::vector<int>;
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-constexpr int highest_degree = 50;  // a higher power of a normal variable would exceed all other terms in any sample
+constexpr int highest_degree = 50;  // higher powers of a normal variable exceed all other terms in any sample
 constexpr double candidates_per_figure = 10;
 
-// Returns the orthonormal polynomials of degree 0, ..., degree at u: of Legendre for a uniform, of Hermite for a normal
-// variable.
+// Returns the values of the orthonormal polynomials of degree 0, ..., degree for a coordinate u of the unit cube: Legendre
+// polynomials for a uniform germ, Hermite polynomials for a normal one.
 std::vector<double> polynomials(Germ germ, int degree, double u) {
   std::vector<double> values(static_cast<std::size_t>(degree) + 1, 1);
   const double xi = germ == Germ::uniform ? 2 * u - 1 : standard_normal_quantile(u);
@@ -35,7 +35,8 @@ std::vector<double> polynomials(Germ germ, int degree, double u) {
   return values;
 }
 
-// Adds the exponents of all polynomial terms of this degree; `term` holds the exponents of the variables before `from`.
+// Appends to `terms` all polynomial terms whose exponents of the variables before `from` are those in `term`, and whose
+// exponents of the other variables have the sum `degree`.
 void add_terms(std::vector<Exponents>& terms, Exponents& term, std::size_t from, int degree) {
   if (from + 1 == term.size()) {
     term[from] = degree;
@@ -57,19 +58,22 @@ struct Value {
   std::vector<std::vector<double>> of_variable;
 };
 
-// The polynomial terms that orthogonal matching pursuit chooses, in the order of choice.
+// The polynomial terms that orthogonal matching pursuit chooses, in the order of choice, as indices of the columns of all
+// terms.
 struct Pursuit {
   std::vector<Eigen::Index> columns;
-  std::vector<double> errors;    // sum of squared prediction errors of the held-back rows, with 1, 2, ... terms
-  Eigen::VectorXd coefficients;  // coefficients of all polynomial terms
+  std::vector<double> errors;    // sum of the squared errors at the held-back rows with 1, 2, ... terms
+  Eigen::VectorXd coefficients;  // coefficients with all chosen terms
 };
 
-// Chooses at most `most` of the columns (polynomial terms) by matching pursuit, the constant column first. `held` are the rows
-// held back for validation, `held_y` their figures.
+// Chooses at most `most` polynomial terms to fit the figures `y` by matching pursuit, the constant first. Row j of `columns`
+// holds the values of all terms at the point of figure j. `held` are such rows held back for validation, `held_y` their
+// figures.
 Pursuit pursue(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y, Eigen::Index most, const Eigen::MatrixXd& held,
                const Eigen::VectorXd& held_y) {
   const Eigen::RowVectorXd sizes = columns.colwise().norm();
-  // The chosen columns (terms) are Psi = Q R. Here are Q, its continuation Psi_held R^-1 to the held-back rows, and R^-1.
+  // QR factorisation of the chosen columns Psi = Q R: q is Q, q_held its continuation Psi_held R^-1 to the held-back rows, and
+  // inverse is R^-1.
   Eigen::MatrixXd q(columns.rows(), most), q_held(held.rows(), most), inverse = Eigen::MatrixXd::Zero(most, most);
   Eigen::VectorXd residual = y, held_residual = held_y, projections(most);
   std::vector<bool> used(static_cast<std::size_t>(columns.cols()), false);
@@ -83,7 +87,7 @@ Pursuit pursue(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y, Eigen::
     }
     if (next < 0) break;
     used[static_cast<std::size_t>(next)] = true;
-    // Gram-Schmidt runs twice: one pass leaves rounding errors of the size of the removed part.
+    // Gram-Schmidt runs twice: after one pass, rounding errors of the removed part are not orthogonal to Q.
     Eigen::VectorXd direction = columns.col(next), shares = Eigen::VectorXd::Zero(k);
     for (int time = 0; time < 2; ++time) {
       const Eigen::VectorXd share = q.leftCols(k).transpose() * direction;
@@ -110,7 +114,8 @@ Pursuit pursue(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y, Eigen::
   return made;
 }
 
-// Returns the cross-validation fold of each figure, drawn at random: neighbours in a set of points may depend on each other.
+// Returns the number of the cross-validation fold of each figure. The folds are drawn at random, because points next to each
+// other in a set may not be independent.
 std::vector<std::size_t> folds_of(std::size_t figures) {
   constexpr std::size_t most_folds = 10;
   const SamplePoints order(PointSet::latin_hypercube, 1, 0, Stream::folds, figures);
@@ -124,7 +129,8 @@ std::vector<std::size_t> folds_of(std::size_t figures) {
   return fold;
 }
 
-// Returns, as element k, the squared error of predicting each cross-validation fold from the other folds by k + 1 terms.
+// Returns the errors of predicting each cross-validation fold from the other folds. Element k is the sum of the squared errors
+// with k + 1 terms.
 std::vector<double> prediction_errors(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y,
                                       const std::vector<std::size_t>& fold, Eigen::Index most) {
   std::vector<double> errors(static_cast<std::size_t>(most), 0);
@@ -133,7 +139,7 @@ std::vector<double> prediction_errors(const Eigen::MatrixXd& columns, const Eige
     std::vector<Eigen::Index> kept, held;
     for (std::size_t j = 0; j < fold.size(); ++j) (fold[j] == f ? held : kept).push_back(static_cast<Eigen::Index>(j));
     const Pursuit made = pursue(columns(kept, Eigen::all), y(kept), most, columns(held, Eigen::all), y(held));
-    // A matching pursuit that ended early keeps its last error for more terms.
+    // If matching pursuit has found fewer terms, its last error counts for all larger numbers of terms.
     for (std::size_t k = 0; k < errors.size(); ++k) errors[k] += made.errors[std::min(k, made.errors.size() - 1)];
   }
   return errors;
@@ -161,7 +167,7 @@ PolynomialChaos::PolynomialChaos(const std::vector<Germ>& germs_of_variables, co
     : germs_(germs_of_variables) {
   check(germs_of_variables, points, figures, most_degree);
   const std::size_t n = figures.size(), d = dimensions();
-  // The candidate terms are sorted by their degree: the first last[p] terms are those of degree at most p.
+  // All terms from which pursue() may choose, sorted by degree: the first last[p] have degree p or less.
   std::vector<Exponents> candidates;
   std::vector<std::size_t> last;
   double count = 1;  // number of polynomial terms of degree at most p in d variables: the binomial coefficient of d + p and p

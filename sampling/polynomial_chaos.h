@@ -1,4 +1,5 @@
-// Polynomial chaos: a figure as a sum of polynomials that are orthonormal over the distribution of its variables.
+// Polynomial chaos: approximates a figure of merit by a sum of polynomials, which are orthonormal over the distribution of the
+// variables.
 //
 //   y(xi) = sum c_a psi_a(xi),   psi_a(xi) = prod psi_(a_i)(xi_i),   |a| = sum a_i <= p
 //
@@ -8,13 +9,13 @@
 // (2008) 964).
 //
 // Choice of terms: orthogonal matching pursuit begins with the constant, and adds the term with which the residual correlates
-// most. The number k of terms, at most half the figures, and the degree p are those that predict best in a tenfold
-// cross-validation. Each tenth of the figures is predicted from the others alone, by terms that were chosen without it,
+// most. The number k of terms, at most half the number of figures y_i, and the degree p are those that predict best in a
+// tenfold cross-validation. It predicts each tenth of the figures from the others alone, by terms that were chosen without it,
 //
 //   q2 = 1 - sum (y_i - prediction_i)^2 / sum (y_i - mean)^2
 //
-// Leaving out one figure from a fit with given terms would be cheaper but too optimistic: for 60 random numbers it chooses 29
-// terms and gives a q2 of 0.6. The choice of k and p is still optimistic, by a tenth or two of 1 - q2. q2 is 1 for a
+// Leave-one-out errors of a fit with all figures and given terms would be cheaper but too optimistic: 60 random numbers would
+// get 29 terms and a q2 of 0.6. The choice of k and p still makes q2 too high, by 0.1 to 0.2 times 1 - q2. q2 is 1 for a
 // polynomial, and near or below 0 where the sum predicts no better than the mean. Degrees are tried up to `most_degree`, as
 // long as there are at most ten times as many terms as figures. The sum converges slowly, and q2 is low, for a figure that
 // jumps or whose slope jumps.
@@ -51,10 +52,10 @@ class PolynomialChaos {
                   int most_degree = 10);
 
   [[nodiscard]] std::size_t dimensions() const { return germs_.size(); }
-  /// Largest degree of the polynomials; 0 when none predicts better than the mean.
+  /// Largest degree of the chosen terms; 0 when no term predicts better than the mean.
   [[nodiscard]] int degree() const { return degree_; }
-  [[nodiscard]] std::size_t terms() const { return terms_.size(); }  ///< number of polynomial terms, with the constant
-  /// Predicted share of the variance in cross-validation; NaN when all figures are equal.
+  [[nodiscard]] std::size_t terms() const { return terms_.size(); }  ///< number of polynomial terms, including the constant
+  /// Share q2 of the variance of the figures that the sum predicts in cross-validation; NaN when all figures are equal.
   [[nodiscard]] double q2() const { return q2_; }
 
   /// Returns the value of the polynomial sum at a point of the open unit cube. Throws InvalidInput unless `u` has dimensions()

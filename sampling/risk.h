@@ -1,14 +1,14 @@
-// Measures of risk: one number for a sample of figures of which larger ones are worse (statistics.h). A robust search minimises
-// it.
+// Measures of risk: each is one number for a sample of values of which larger ones are worse (statistics.h). A robust search
+// minimises one of them.
 //
 //   cvar       conditional value at risk at a level: the mean of the worst 1 - level
-//   quantile   the value that a share `level` stays below
+//   quantile   the value below which a share `level` of the sample lies
 //   mean+sigma mean + factor times the standard deviation
 //   worst      the largest value
 //
 // CVaR uses every value of the tail, so that a single value changes it little. A quantile depends on one or two values. The
-// mean plus a multiple of the standard deviation also punishes values far on the good side. The worst value grows with the size
-// of the sample. Source: R. T. Rockafellar & S. Uryasev, Journal of Risk 2 (2000) 21.
+// mean plus a multiple of the standard deviation also increases with values far on the good side. The worst value grows with
+// the size of the sample. Source: R. T. Rockafellar & S. Uryasev, Journal of Risk 2 (2000) 21.
 #pragma once
 
 #include <span>

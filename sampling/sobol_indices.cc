@@ -9,12 +9,12 @@
 namespace softland {
 namespace {
 
-// Terms of the sums that estimate Sobol' indices, one row of the design after the other.
+// Contribution of each row of the design to the sums that estimate Sobol' indices, with centred figures f.
 struct Rows {
   std::size_t dimensions, count;
   std::vector<double> sums, squares;  // f(A) + f(B) and f(A)^2 + f(B)^2 of each row's points A and B
-  // Terms of the sums for the first-order and the total index, times the variance; row j and variable i at j d + i, of d
-  // variables.
+  // Terms of the sums for the first-order and the total index, before the division by the variance. Element j d + i belongs to
+  // row j and variable i of d variables.
   std::vector<double> first_order, total;
 };
 
@@ -39,7 +39,8 @@ struct Estimate {
   std::vector<double> first_order, total;
 };
 
-// Estimates Sobol' indices from the rows row_at(0), ..., row_at(count - 1).
+// Estimates Sobol' indices from as many rows of the design as there are, with the indices row_at(0), row_at(1), ...: all rows
+// once, or the rows that a bootstrap repetition draws.
 template <class RowAt>
 Estimate estimate(const Rows& rows, RowAt row_at) {
   const std::size_t d = rows.dimensions;
@@ -55,7 +56,7 @@ Estimate estimate(const Rows& rows, RowAt row_at) {
     }
   }
   const double n = static_cast<double>(rows.count), mean = sum / (2 * n);
-  made.variance = squares / (2 * n) - mean * mean;  // the figures are centred, so the difference loses hardly any digits
+  made.variance = squares / (2 * n) - mean * mean;  // no cancellation, because the figures are centred
   for (std::size_t i = 0; i < d; ++i) {
     made.first_order[i] /= n * made.variance;
     made.total[i] /= n * made.variance;

@@ -6,12 +6,12 @@
 // The variables u_i are independent and uniform; u_~i are all but u_i. Row j of A and of B is two points of the unit cube,
 // A_B^i is A with coordinate i of B, and V is the variance of f over A and B together. S_i is the share of the variance that
 // would disappear if u_i were known. T_i is the share that would remain if all variables but u_i were known. 0 <= S_i <= T_i;
-// the sum of S_i is at most 1, and 1 without interactions. f is centred by its mean, which changes no expectation and takes
-// most of the noise out of S_i.
+// the sum of S_i is at most 1, and 1 without interactions. The mean of f is subtracted first, which changes no expected value
+// but removes most of the noise of S_i.
 //
-// Estimates may leave these bounds: a first-order index near zero is as often below zero as above. Each index has a bootstrap
-// interval over the rows, which takes them for independent: it is too wide for Sobol' points. An index is distinguishable from
-// zero where its interval lies above zero.
+// Estimates may leave these bounds: an estimate of a first-order index near zero is as often below zero as above. Each index
+// has a bootstrap interval over the rows of the design. It assumes independent rows, so it is too wide for Sobol' points. An
+// index is distinguishable from zero if its interval lies above zero.
 //
 // A failed switch has a figure that is not finite, for which no variance exists. A row with such a figure is left out as a
 // whole, so that the indices are those of the switches that do not fail. There are no indices when more than `most_failed` of
@@ -45,7 +45,8 @@ class SobolDesign {
   [[nodiscard]] std::uint64_t rows() const { return points_.size(); }
   [[nodiscard]] std::uint64_t evaluations() const { return rows() * (dimensions() + 2); }
 
-  /// Writes the point of evaluation m. Throws InvalidInput unless m < evaluations() and u has dimensions() elements.
+  /// Writes the coordinates of the point of evaluation m to `u`. Throws InvalidInput unless m < evaluations() and u has
+  /// dimensions() elements.
   void point(std::uint64_t m, std::span<double> u) const;
 
  private:
@@ -72,8 +73,8 @@ struct SobolEstimate {
 
 struct SobolOptions {
   BootstrapOptions bootstrap = {};
-  /// The largest share of the rows that may hold figures that are not finite. Leaving out one row in a hundred can move an
-  /// index by some hundredths, as much as the error of a thousand rows.
+  /// Largest share of the rows that may be left out because of figures that are not finite. Leaving out one row in a hundred
+  /// can change an index by some hundredths, as much as its statistical error with a thousand rows.
   double most_failed = 0.01;
 };
 

@@ -1,9 +1,9 @@
-// Statistics of a sample of figures. A larger figure is worse, and +infinity, the figure of a switch that failed, is the worst
-// of all.
+// Statistics of a sample: values of one figure of merit on simulated devices. Larger values are worse. The value of a device
+// that failed is +infinity.
 //
 // Mean, standard deviation and conditional value at risk are infinite as soon as they use an infinite value; the skewness is
-// then NaN. A quantile is infinite when it uses an infinite order statistic. So the quantile p stays finite while less than
-// about a share 1 - p of the switches fails, but the mean only while none fails.
+// then NaN. A quantile is infinite when it uses an infinite order statistic. So the quantile p is finite as long as less than
+// about a share 1 - p of the devices fails, but the mean only if none fails.
 //
 // Every function throws InvalidInput for a sample without values, and for one with NaN or -infinity. All results are in the
 // unit of the sample.
