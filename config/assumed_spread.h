@@ -17,8 +17,8 @@ namespace softland {
 /// Note for the user that a process variation is assumed.
 inline constexpr std::string_view assumed_prose = "The scene has no [spread]: a typical process variation is assumed.";
 
-/// Adds the assumed process variation [spread] to a scene that has none, and returns true in that case. An
-/// existing section is kept; read_scene() refuses an empty one.
+/// Adds the assumed process variation [spread] to a scene that has none, and returns true in that case. An existing section is
+/// kept; read_scene() refuses an empty one.
 bool assume_spread(SceneFile& file);
 
 }  // namespace softland

@@ -1,5 +1,5 @@
-// Reads from text which quantities a per-device calibration measures on every device, with the measurement errors: "Vdp,
-// frequency:0.5 %" (no error given: 0), with " in 8 classes" to sort the devices into classes.
+// Reads a per-device calibration from text: the quantities that are measured on every device before use, with the measurement
+// errors, "Vdp,frequency:0.5 %" (no error given: 0). The text " in 8 classes" at the end sorts the devices into classes.
 #pragma once
 
 #include <string>

@@ -45,8 +45,8 @@ struct PlanRequest {
   Place place = {};
 };
 
-/// Reads a plan file, which consists of a section [plan]. The section names the file of the
-/// scene, relative to the plan file, or holds the text of the scene. Throws InvalidInput with file, line, key, value and rule.
+/// Reads a plan file, which consists of a section [plan]. The section names the file of the scene, relative to the plan file,
+/// or holds the text of the scene. Throws InvalidInput with file, line, key, value and rule.
 [[nodiscard]] PlanRequest read_plan(const SceneFile& file);
 /// Returns true when the file is a plan of a design-space exploration: it has a section [plan].
 [[nodiscard]] bool is_plan(const SceneFile& file);

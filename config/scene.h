@@ -170,7 +170,7 @@ struct SimulateOptions {
   double tolerance = 0;    ///< relative tolerance of the integrator; 0: derived from accuracy
   double open_at = std::numeric_limits<double>::quiet_NaN();  ///< time of the command to open [s]; NaN: see open_command()
   bool automatic_effects = false;  ///< true to leave out physical effects that change no figure by more than effects_tolerance
-  /// Relative change of first contact time, impact velocity or highest rebound above which an effect is kept.
+  /// Relative change of first contact time, impact velocity or highest rebound above which a physical effect is kept.
   double effects_tolerance = 1e-3;
 };
 
@@ -198,8 +198,8 @@ struct Calibration {
 inline constexpr std::string_view measured_pull_in = "Vdp", measured_frequency = "frequency", measured_piezo = "piezo",
                                   measured_time = "time";
 inline constexpr std::array measurement_names{measured_pull_in, measured_frequency, measured_piezo, measured_time};
-/// Voltage of the step whose closing time is measured, as a multiple of the nominal Vdp. Under so low a voltage
-/// the switch closes slowly, so that the time depends on the same properties of the device as a closing with a soft impact.
+/// Voltage of the step whose closing time is measured, as a multiple of the nominal Vdp. The switch closes slowly under so low
+/// a voltage, so that the time depends on the same properties of the device as a closing with a soft impact.
 inline constexpr double closing_step = 1.2;
 /// Default standard deviation of a measured closing time: that of a generator and an oscilloscope [s].
 inline constexpr double usual_time_error = 50e-9;
@@ -222,7 +222,7 @@ struct Scene {
   bool begins_closed = false;
   /// Names of the electrodes whose waveform or voltage limits are in multiples of the pull-in voltages Vsp or Vdp.
   std::vector<std::string> need_pull_in;
-  /// Names in need_pull_in of the electrodes of which only the voltage limits are in such multiples.
+  /// Names in need_pull_in of the electrodes of which only the voltage limits are in multiples of Vsp or Vdp.
   std::vector<std::string> limits_in_pull_in = {};
   /// Voltage of each drive while the pull-in voltages of another drive are computed, in the order of Switch::drives(): the hold
   /// voltage if it does not depend on Vsp or Vdp, otherwise 0 V; for the dispersion force the factor minus 1.

@@ -99,7 +99,7 @@ struct Section {
   std::string_view entry = {};   ///< NAME of the [section.NAME] to which these keys apply; empty: every other NAME
   bool is_named = false;         ///< true if the scene has [name.NAME], any number of them
   bool may_be_named = false;     ///< true if the scene has [name], or several [name.NAME]
-  std::string_view beside = {};  ///< key that [name] itself may hold although is_named; separate code reads it
+  std::string_view beside = {};  ///< key in [name] itself, next to sections [name.NAME]; separate code reads it
   bool required = false;
   bool always_in_force = false;    ///< true if the defaults of the keys apply even without the section
   bool may_vary = false;           ///< true when [spread] (process variation) may vary numbers of this section
@@ -107,8 +107,8 @@ struct Section {
   std::vector<Key> keys = {};
   std::string_view about = {};
   std::vector<Advice> advice = {};  ///< advice for unknown keys of the section; a message shows the first that applies
-  /// Creates the part of the scene that the section describes; `name` is NAME of [section.NAME]. Returns its index
-  /// among the electrodes or contacts. Null if separate code reads the keys, as for waveforms, drivers and spread.
+  /// Creates the part of the scene that the section describes; `name` is NAME of [section.NAME]. Returns its index among the
+  /// electrodes or contacts. Null if separate code reads the keys, as for waveforms, drivers and spread.
   std::size_t (*begin)(Scene& scene, const SectionReader& in, std::string_view name) = nullptr;
   /// Checks rules between several keys of the section, after all keys are set. Throws InvalidInput.
   void (*check)(Scene& scene, const SectionReader& in, std::size_t entry) = nullptr;

@@ -77,7 +77,7 @@ constexpr std::array spellings{Spelling{"\u00b5", "u"},   // micro sign (U+00B5)
 std::string plainly_spelt(std::string_view text) {
   std::string plain(text);
   const auto is_ascii = [](char c) { return static_cast<unsigned char>(c) < 0x80; };
-  if (std::all_of(plain.begin(), plain.end(), is_ascii)) return plain;  // skip the search in long lists of numbers
+  if (std::all_of(plain.begin(), plain.end(), is_ascii)) return plain;  // fast path: there is nothing to replace
   for (const Spelling& spelling : spellings) {
     for (auto at = plain.find(spelling.printed); at != std::string::npos; at = plain.find(spelling.printed, at)) {
       plain.replace(at, spelling.printed.size(), spelling.plain);

@@ -110,8 +110,8 @@ struct Document {
 
 namespace internal {
 
-/// Returns the table as text. Columns that do not fit into `screen` characters are printed as a second table below,
-/// except a last column of words. Lines have no trailing blanks.
+/// Returns the table as text. Columns that do not fit into `screen` characters are printed as a second table below, except a
+/// last column of words. Lines have no trailing blanks.
 [[nodiscard]] std::string table_text(const ReportTable& table, std::size_t screen = 130);
 [[nodiscard]] std::string table_html(const ReportTable& table);
 /// Draws every chart of the document with its title and caption.

@@ -17,8 +17,8 @@ namespace softland::internal {
 namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-// Some instruments write settings, such as "Sample interval, 1e-6", in further columns beside the first rows of numbers. Number
-// of rows that may have them.
+// Some instruments write settings, such as "Sample interval, 1e-6", in further columns beside the first rows of numbers.
+// Largest number of rows beside which they may stand.
 constexpr std::size_t longest_preamble = 64;
 
 class BlockReader {

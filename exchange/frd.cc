@@ -156,7 +156,7 @@ class FrdReader {
   }
 
   // Checks the frequency of a mode [Hz] against the generalised stiffness of the mode in the line 1PGK, which is the squared
-  // angular frequency times the modal mass. A file whose numbers were changed by hand fails here.
+  // angular frequency times the modal mass.
   void check_frequency(double frequency) const {
     constexpr double printed = 1e-4;  // relative rounding error of numbers printed with six digits
     const double angular = 2 * std::numbers::pi * frequency, squared = squared_frequency_ / modal_mass_;

@@ -7,7 +7,7 @@
 
 namespace softland::internal {
 
-enum class Measure { time, voltage, frequency, samples, level, other };  // quantity of a unit; level is in decibels
+enum class Measure { time, voltage, frequency, samples, level, other };  // quantity that a unit measures; level: in decibels
 
 struct Unit {
   Measure measure = Measure::other;

@@ -2,8 +2,8 @@
 //
 // The modes oscillate faster than the forces on them change: two periods of the fourth mode pass while the gap hardly moves. So
 // a step contains the exact motion of every mode under the force at its start, kept constant. The Runge-Kutta method integrates
-// only the effect of the change of the force. With omega the angular frequency of a mode, theta =
-// omega t, q and v its coordinate and velocity, and a the acceleration at the start of the step,
+// only the effect of the change of the force. With omega the angular frequency of a mode, theta = omega t, q and v its
+// coordinate and velocity, and a its acceleration at the start of the step,
 //
 //   q = q0 + (a / omega^2) (1 - cos theta) + P cos theta + (v0 + R) sin theta / omega
 //   v = (v0 + R) cos theta + (a / omega) sin theta - P omega sin theta

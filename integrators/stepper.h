@@ -40,8 +40,8 @@ class Stepper {
   [[nodiscard]] virtual const double* rates() = 0;
   [[nodiscard]] virtual std::string message() const = 0;
   /// Returns the stiffness: the length of the last step over the time constant of the fastest decaying part of the solution; 0
-  /// if the method does not compute it. Above about 3, stability instead of the tolerance limits the steps of an explicit
-  /// method.
+  /// if the method does not compute it. Stability instead of the tolerance limits the steps of an explicit method if the
+  /// stiffness is above about 3.
   [[nodiscard]] virtual double stiffness() const { return 0; }
 };
 

@@ -45,10 +45,10 @@ struct BootstrapOptions {
 
 /// Returns a bootstrap confidence interval of a statistic (a function of a sample): quantiles of the statistic over samples
 /// that are drawn from this sample with replacement. The error of its coverage falls as n^-1/2 for each side and as n^-1 for
-/// both together. With fewer than some ten values the interval covers the figure too seldom; for the extremes of a sample it is
-/// meaningless. The same seed gives the same interval. The interval is NaN when a repetition gives NaN. Throws InvalidInput for
-/// a sample without values and unless there are at least 2 repetitions. Source: B. Efron & R. J. Tibshirani, "An Introduction
-/// to the Bootstrap", 1993, section 13.3 (percentile interval).
+/// both together. With fewer than some ten values the interval covers the true value too seldom; for the extremes of a sample
+/// it is meaningless. The same seed gives the same interval. The interval is NaN when a repetition gives NaN. Throws
+/// InvalidInput for a sample without values and unless there are at least 2 repetitions. Source: B. Efron & R. J. Tibshirani,
+/// "An Introduction to the Bootstrap", 1993, section 13.3 (percentile interval).
 [[nodiscard]] Interval bootstrap_interval(std::span<const double> sample,
                                           const std::function<double(std::span<const double>)>& statistic,
                                           const BootstrapOptions& options = {});

@@ -41,7 +41,7 @@ std::uint64_t scrambled(std::uint64_t key, std::uint32_t digits) {
 
 // Returns the image of k under a permutation of 0, ..., size - 1, which `key` determines.
 std::uint64_t permuted(std::uint64_t key, std::uint64_t k, std::uint64_t size) {
-  constexpr std::uint64_t rounds = 8;  // of the Feistel network; four suffice unless a half has few bits
+  constexpr std::uint64_t rounds = 8;  // rounds of the Feistel network; four suffice for large halves, but a half may be one bit
   const int width = static_cast<int>(std::bit_width(size - 1)), right_width = (width + 1) / 2;
   const std::uint64_t right_mask = (std::uint64_t{1} << right_width) - 1,
                       left_mask = (std::uint64_t{1} << (width - right_width)) - 1;

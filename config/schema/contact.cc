@@ -113,7 +113,7 @@ void check_named(const Device& d, std::size_t k, const SectionReader& in) {
   if (!in.is_given("gap")) in.fail(R"(missing key 'gap' (a length such as "2 um"))");
   const double own = in.number("gap");
   const SectionReader gap(in.file(), "gap");
-  constexpr double most = 0.99;  // as in check_gap()
+  constexpr double most = 0.99;  // largest share of the electrode gap, as in check_gap()
   in.require(c.side == Side::far || own < most * d.gap.electrode, "gap",
              fmt::format("must be less than {:g} times {}", most, gap.written("electrode")));
 }
