@@ -250,7 +250,7 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
 
     const SectionReader in(file, "waveform", drive);
     if (!in.is_present()) continue;
-    // The drive of the dispersion force has the factor on the force minus 1.
+    // The scene gives the dispersion force as a factor on it; the value of the drive is this factor minus 1.
     const double offset = drive == dispersion_drive ? -1 : 0;
     one.begins_closed = in.is_given(before_state_key) && in.text(before_state_key) == closed_state_word;
     if (in.is_given(before_key)) one.before = offset + volts(in.quantities(before_key).front(), known);

@@ -58,7 +58,7 @@ inline double in_few_digits(double value) {
   return rounded;
 }
 
-/// Returns the value of a variable at the share `t` of the variable's range, 0 to 1.
+/// Returns the value of a variable at the share `t` of its range: `low` for 0, `high` for 1.
 inline double between(const PlanVariable& variable, double t) {
   const double low = variable.low, high = variable.high;
   if (t == 0) return low;

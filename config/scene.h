@@ -224,8 +224,8 @@ struct Scene {
   std::vector<std::string> need_pull_in;
   /// Names in need_pull_in of the electrodes of which only the voltage limits are in multiples of Vsp or Vdp.
   std::vector<std::string> limits_in_pull_in = {};
-  /// Voltage of each drive while the pull-in voltages of another drive are computed, in the order of Switch::drives(): the hold
-  /// voltage if it does not depend on Vsp or Vdp, otherwise 0 V; for the dispersion force the factor minus 1.
+  /// Voltage of each drive while the pull-in voltages of another drive are computed, in the order of Switch::drives(). It is
+  /// the hold voltage if that does not depend on Vsp or Vdp, otherwise 0 V; for the dispersion force, the factor on it minus 1.
   std::vector<double> standing;
   std::vector<std::string> file_notes = {};  ///< notes for the user on files of instruments, one line each
   std::vector<std::string> warnings;

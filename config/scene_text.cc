@@ -61,7 +61,7 @@ std::string float_text(double value) {
   if (std::isnan(value)) return "nan";
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
   std::string text = number_text(value);
-  if (text.find_first_of(".e") == std::string::npos) text += ".0";  // TOML would read the number as an integer
+  if (text.find_first_of(".e") == std::string::npos) text += ".0";  // without a point, TOML reads an integer
   return text;
 }
 

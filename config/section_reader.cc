@@ -14,7 +14,7 @@
 namespace softland::internal {
 namespace {
 
-/// Returns what value a key needs, for example `a length such as "2 um"`.
+/// Returns for messages what value a key needs, for example `a length such as "2 um"`.
 std::string wanted(const Key& key) {
   switch (key.type) {
     case KeyType::text:

@@ -59,7 +59,7 @@ double DeviceSpread::jitter(const SpreadVariable& variable, double x, std::uint6
 namespace internal {
 namespace {
 
-/// A key of the scene and the dimensions that its value may have.
+/// A key of the scene that an entry of [spread] varies, and the dimensions that its value may have.
 struct FoundKey {
   VariedKey varied;
   std::vector<Dimension> dimensions;
@@ -75,7 +75,7 @@ std::function<std::string(double)> refusal_outside(const Range& range, const std
 struct DriveErrorRow {
   DriveError value;
   std::string_view name;
-  double nominal;  // value of the key in the scene [SI unit]
+  double nominal;  // value of the error if the scene does not give it [SI unit]
   Dimension dimension;
 };
 constexpr std::array drive_errors{

@@ -52,7 +52,7 @@ std::vector<double> linear_ticks(double low, double high, int wanted) {
     }
   }
   const double first = std::ceil(low / step - 1e-9);
-  constexpr double countable = 4503599627370496;  // doubles from this size on, 2^52, are whole numbers
+  constexpr double countable = 4503599627370496;  // 2^52: larger doubles are whole numbers
   if (!(step > 0 && std::abs(first) < countable)) return low < high ? std::vector{low, high} : std::vector{low};
   std::vector<double> out;
   for (int k = 0; k <= 10 * wanted; ++k) {

@@ -140,7 +140,7 @@ void check_extent(const Structure& s, Electrode& e, const SectionReader& in) {
 void check_fringing(const Structure& s, const Electrode& e, const SectionReader& in) {
   const FringingRow& law = row_of(fringing_laws, e.fringing);
   const SectionReader structure(in.file(), "structure");
-  // In a beam built of sections, the fringing field uses the local thickness.
+  // A beam built of sections has local thicknesses, which the fringing field uses; it need not have structure.thickness.
   const bool lacks_thickness = law.needs_thickness && std::isnan(s.thickness) && !s.is_built();
   const std::string fringing =
       fmt::format("fringing = {}{}", toml_string(law.name), in.is_given("fringing") ? "" : ", the default,");

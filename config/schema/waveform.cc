@@ -24,7 +24,7 @@ std::vector<Key> keys_of(const Parameter<Family>& parameter, const std::vector<D
       if (!key.required) key.fallback = factor ? "1.0" : "'0 V'";
       break;
     case ParameterKind::swing:
-      if (!factor) key.dimensions.push_back(dimension::none);  // a plain number permits a percentage
+      if (!factor) key.dimensions.push_back(dimension::none);  // permit percentages, which are plain numbers
       break;
     case ParameterKind::time:
       take(dimension::time, not_negative, "'0 s'");
