@@ -13,10 +13,11 @@
 namespace softland::apps {
 
 /// Runs a command in the shell, in its own process group, with pipes for its standard input and output. The destructor closes
-/// the input of the command. A command that does not end then gets SIGTERM, and later SIGKILL, as does its group.
+/// the input of the command, and sends SIGTERM and later SIGKILL to the process group if the command has not ended soon after
+/// that.
 class ChildProcess {
  public:
-  /// Starts the command. A longer line of output than `longest_line` [byte] is cut. Throws std::system_error if no process
+  /// Starts the command. Lines of its output are cut beyond `longest_line` [byte]. Throws std::system_error if no process
   /// starts.
   ChildProcess(const std::string& command, std::size_t longest_line);
   ~ChildProcess();

@@ -34,7 +34,7 @@ std::string command_line(const std::vector<std::string>& words) {
 void describe(CLI::App& app) {
   app.name("softland");
   app.get_formatter()->label("SUBCOMMAND", "VERB");
-  // Width of option names in --help: two blanks after the longest name that fits on one line [characters].
+  // Width of the column of option names in --help [characters]; CLI11 puts the help of longer names on the next line.
   app.get_formatter()->column_width(25);
   app.require_subcommand(1);
   app.set_help_flag("-h,--help", "print this help");

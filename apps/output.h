@@ -13,9 +13,10 @@
 
 namespace softland::apps {
 
-/// Reserves the file of --json and the folder of --out for this run. Call it after reading the scene and before any long
-/// computation. This run will write `files` to the folder; the files `kept` of an earlier run are continued, not replaced.
-/// Throws InvalidInput if a file cannot be written, or would replace an input or another output of this run.
+/// Reserves the file of --json and the folder of --out for this run; returns the folder, none without --out. Call it after
+/// reading the scene and before any long computation. This run will write `files` to the folder; the files `kept` of an earlier
+/// run are continued, not replaced. Throws InvalidInput if a file cannot be written, or would replace an input or another
+/// output of this run.
 [[nodiscard]] std::optional<ResultFolder> reserve_outputs(const Common& common, const std::vector<std::string>& files,
                                                           const std::vector<std::string>& kept = {});
 

@@ -1,4 +1,5 @@
-// An overview of a database file of a study: the number of points by status, and the extremes of every figure.
+// An overview of a database file of a study: the number of points (computed scenes) by status, and the smallest and largest
+// value of every figure of merit.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +19,8 @@ struct Overview {
     std::int64_t least_at = 0, most_at = 0;
   };
   std::map<std::string, std::int64_t> by_status;
-  std::map<std::string, std::string> first_reasons;  // message of the first point that failed, by the status of the point
-  std::vector<Extent> extents;  // smallest and largest value of every figure, by its column in the database file
+  std::map<std::string, std::string> first_reasons;  // message of the first failed point of each status
+  std::vector<Extent> extents;  // extremes of every figure of merit, in the order of the columns of the database file
   bool has_figures = false;
 };
 

@@ -124,8 +124,8 @@ std::string SearchRun::duration_prose(int jobs, double max_seconds) const {
   return text + ", fewer than usual, because its closings are slow to simulate";
 }
 
-// Prints a row of the table of the best waveforms so far, for a better waveform that was found; prints the table's head before
-// the first row.
+// Prints a row of the table of the best waveforms so far when the search has found a better waveform; prints the table's head
+// before the first row.
 void SearchRun::tell(const Leading& leading) {
   const auto row = [&](const std::string& name, const std::vector<DeviceOutcome>& outcomes, const std::string& after) {
     const auto figure = [](double value, std::string_view unit) {

@@ -107,7 +107,7 @@ int run_study(const verbs::Study& study, const Common& c, const verbs::Arguments
     });
   const bool takes_results = study.scene != verbs::scene_alone;
   const SceneFile file = takes_results ? load_scene_or_result(c) : load_scene(c);
-  static_cast<void>(read_scene(file));  // check the scene here: an output must not replace a table that the scene names
+  static_cast<void>(read_scene(file));  // reading marks the files that the scene names as inputs: no output may replace them
   std::optional<ResultFolder> folder = reserve_outputs(c, study.files);
   std::optional<ShownWork> work(std::in_place, c.quiet, c.stop);
   const Progress& progress = work->progress();

@@ -6,14 +6,14 @@
 
 namespace softland::apps {
 
-/// A function that runs a verb on the command line; the verb has another implementation in the Python module.
+/// A function that runs a verb whose computation differs between the command line and the Python module, on the command line.
 using RunTold = int (*)(const Common&, const verbs::Arguments&);
 
 /// Runs a verb whose computation the command line and the Python module share; returns the exit status of the program.
 [[nodiscard]] int run_study(const verbs::Study& study, const Common& common, const verbs::Arguments& arguments);
 
-/// Declares the options of the verb, and its action: `run` if the study describes no computation, otherwise run_study().
-/// Keeps a reference to `study`.
+/// Declares the options of the verb, and its action: run_study(), or `run` for a verb whose description `study` has no
+/// computation. Keeps a reference to `study`.
 void add_study(Verb& verb, const verbs::Study& study, RunTold run = nullptr);
 
 }  // namespace softland::apps

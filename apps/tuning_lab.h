@@ -18,9 +18,9 @@ namespace softland::apps {
 class TuningLab {
  public:
   virtual ~TuningLab() = default;
-  /// Applies the voltages of a shot and returns the record of the contact; none if the user wants no more shots. `sent` holds
-  /// the signals of the shot as the voltage sources receive them. Throws InvalidInput if the laboratory gives no record, and
-  /// Interrupted after a signal to stop.
+  /// Applies the voltages of a shot and returns the measured times of the contact; none if the user wants no more shots. `sent`
+  /// holds the signals of the shot as the voltage sources receive them. Throws InvalidInput if the laboratory reports no
+  /// measurement, and Interrupted after a signal to stop.
   [[nodiscard]] virtual std::optional<ContactRecord> fire(const CommandedShot& shot, const SentSignals& sent) = 0;
   /// Ends the session with the laboratory; no shot follows.
   virtual void finish() {}

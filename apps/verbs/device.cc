@@ -25,7 +25,8 @@ namespace {
 
 using nlohmann::json;
 
-// Returns the record of the simulated device for a line with a shot, or a message if the line is invalid.
+// Closes the simulated device under the voltages of a shot, one JSON line. Returns the record of the contact as JSON, or a
+// message if the line is invalid.
 json answer(const PracticeDevice& device, const json& line) {
   try {
     const CommandedShot shot = read_shot(line);

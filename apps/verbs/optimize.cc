@@ -49,8 +49,8 @@ namespace fs = std::filesystem;
 using internal::percent;
 using internal::quantity;
 
-// Returns a sentence that compares the found waveform with the plain step on simulated devices of [spread]; empty if the scene
-// has no process variation, or after a request to stop.
+// Returns a sentence that compares the found waveform with the plain step on devices with the process variation of [spread];
+// empty if the scene has no process variation, or after a request to stop.
 std::string on_devices(const Common& c, const PreparedScene& winner, int jobs, const fs::path& place) {
   if (winner.scene.spread.empty()) return {};
   constexpr std::uint64_t devices = 200;
@@ -87,20 +87,20 @@ int status_of(const FoundSearch& found) {
   return found.is_success() ? exit_done : exit_no_success;
 }
 
-// A search whose result is reported; of several seeds, the best search.
+// The search whose result is reported: the only search, or the best of the searches with several seeds.
 struct Asked {
   const Common& c;
   StoredSearch& search;
   const std::optional<KnownSearch>& known;
   const SearchOutput& output;
-  SearchPlaces* places = nullptr;           // folders that the searches of all seeds share; null for a single search
+  SearchPlaces* places = nullptr;           // result folders that the searches of all seeds share; null for a single search
   std::optional<SeedsFindings> seeds = {};  // completed searches of all seeds; none if the user requested a single seed
   bool limit = false;                       // true: compute the least closing time of any waveform, even if that takes minutes
 };
 
 // Returns true if computing the least closing time (verb `limit`) takes a second or two, which is short beside the search. The
-// computation is much longer with a slew limit, and with more than four modes of a cantilever, whose frequency ratio exceeds
-// 34.
+// computation is much longer with a slew limit, and with more than four modes of a cantilever, whose highest frequency is then
+// more than 34 times the lowest.
 bool takes_little(const Asked& asked, const OptimizeResult& result) {
   // Largest ratio of the highest natural frequency of the modes to the lowest at which computing the limit is quick.
   constexpr double widest_band = 40;
@@ -111,12 +111,12 @@ bool takes_little(const Asked& asked, const OptimizeResult& result) {
                               [](const Drive& one) { return one.limits && std::isfinite(one.limits->max_slew); });
 }
 
-// Computes the least closing time of any waveform for the drives and the impact velocity of the found waveform; none if the
-// verb `limit` does not apply to the scene.
+// Computes the least closing time that any waveform can reach on the same electrodes and piezos, within the same voltage
+// limits, at the impact velocity of the found waveform. Returns none if the verb `limit` does not apply to the scene.
 std::optional<TouchLimit> limit_of(const Asked& asked, const OptimizeResult& result) {
   if (!result.best || result.search.termination == Termination::interrupted) return std::nullopt;
   if (!asked.limit && !takes_little(asked, result)) return std::nullopt;
-  constexpr double softest = 1e-3;  // least impact velocity, as a share of that under the plain step
+  constexpr double softest = 1e-3;  // least permitted impact velocity, as a share of that under the plain step
   const double own = result.best->metrics.impact_velocity, step = result.baseline.metrics.impact_velocity;
   if (!std::isfinite(own)) return std::nullopt;
   const double velocity = std::isfinite(step) ? std::max(own, softest * step) : own;
@@ -216,7 +216,7 @@ std::pair<double, std::string> words_of(const SeedStudy::State& now, const Store
   return {now.part, words + fmt::format(", {:.0f} s", elapsed)};
 }
 
-// Runs the searches of all seeds, shows their progress, and keeps the best scene so far in the folder.
+// Runs the searches of all seeds, shows their progress, and writes the scene with the best waveform so far to the folder.
 void run_shown(SeedStudy& study, const Common& c, const StoredSearch& search, SearchPlaces& places,
                const FamilyColumns& columns) {
   SearchLog log(places.folder(), columns);

@@ -34,11 +34,11 @@ namespace {
 
 struct ReportRequest {
   std::string result;
-  std::string pareto;  ///< value of the option --pareto: figures of the Pareto front of an exploration
-  std::string map;     ///< value of the option --map: figure, and the two variables on the axes of the map
+  std::string pareto;  ///< value of the option --pareto: figures to minimise or maximise in an exploration
+  std::string map;     ///< value of the option --map: the figure of merit to draw, and the two variables on the axes
 };
 
-// Returns the column with this name, a variable or a figure.
+// Returns the column of the variable or the figure of merit with this name. Throws InvalidInput if the exploration lacks it.
 std::size_t column_named(const ExplorationReport& report, const std::string& name, bool is_variable) {
   std::string there;
   for (std::size_t c = 0; c < report.columns.size(); ++c) {
@@ -53,7 +53,7 @@ std::size_t column_named(const ExplorationReport& report, const std::string& nam
 
 std::string folder_of(const std::filesystem::path& file) { return file.has_parent_path() ? file.parent_path().string() : "."; }
 
-// Draws the map of a figure over two variables for --map=FIGURE or --map=FIGURE:ACROSS:UP.
+// Draws a figure of merit over two variables as a map, for --map=FIGURE or --map=FIGURE:ACROSS:UP.
 std::string map_of(const ExplorationReport& report, const std::string& words) {
   std::vector<std::string> parts{""};
   for (const char letter : words) {
@@ -116,7 +116,7 @@ std::filesystem::path record_in(const std::filesystem::path& folder) {
   throw InvalidInput(fmt::format("{}: must hold one of {}; name the folder of --out", folder.string(), fmt::join(names, ", ")));
 }
 
-// Writes the files of an outcome, except JSON, to --out, and prints the text of the outcome.
+// Writes the files of a report, except JSON, to --out or beside `record`, and prints the text of the report.
 int leave(Common c, const std::filesystem::path& record, std::vector<verbs::Outcome::File> all, const std::string& text) {
   std::erase_if(all, [](const auto& file) { return file.name.ends_with(".json"); });
   std::vector<std::string> files;
@@ -130,7 +130,8 @@ int leave(Common c, const std::filesystem::path& record, std::vector<verbs::Outc
   return exit_done;
 }
 
-// Returns the path of the database file in the JSON of an exploration, as seen from the folder of the JSON or the current one.
+// Returns the path of the database file that the JSON of an exploration names. A relative path starts from the folder of the
+// JSON, or else from the current folder.
 std::string store_of(const nlohmann::json& j, const std::filesystem::path& record) {
   const std::filesystem::path named = internal::JsonReader::read<std::string>(internal::JsonReader(j).at("store"));
   for (const std::filesystem::path& place : {record.parent_path() / named, named}) {
@@ -140,7 +141,7 @@ std::string store_of(const nlohmann::json& j, const std::filesystem::path& recor
                                  shortened(printable_line(named.string()))));
 }
 
-// Returns the figures of the Pareto front in the JSON, in the form of the option --pareto.
+// Returns the figures that span the Pareto front in the JSON, in the form of the option --pareto.
 std::string aims_of(const nlohmann::json& j) {
   std::string aims;
   for (const nlohmann::json& one : internal::JsonReader(internal::JsonReader(j).at("pareto")).at("aims")) {

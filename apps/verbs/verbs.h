@@ -1,5 +1,5 @@
-// Verbs whose action belongs to the command line: verbs of verbs/study.h without a computation there, and verbs that only the
-// program has, in the order of --help. Each has a file in this folder, with options and action.
+// Verbs that run differently on the command line than in Python, or only on the command line, in the order of --help. Each has
+// a file in this folder, with options and action.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ void add_read(Verb& verb);
 /// Makes the text of the verb `modes` again from its JSON, for the verb `report`. Throws InvalidInput for other JSON.
 [[nodiscard]] verbs::Outcome modes_shown_again(const nlohmann::json& json);
 
-// Verbs of verbs/study.h whose action the command line provides.
+// Actions of the verbs that verbs/study.h describes without a computation.
 [[nodiscard]] int run_optimize(const Common& common, const verbs::Arguments& arguments);
 [[nodiscard]] int run_explore(const Common& common, const verbs::Arguments& arguments);
 [[nodiscard]] int run_tune(const Common& common, const verbs::Arguments& arguments);
