@@ -22,7 +22,7 @@ constexpr std::size_t fewest_intervals = 8, most_intervals = 512, most_known = 6
 // that they can be more accurate than own_waveform_accuracy.
 constexpr double aim = 1e-12;
 
-// Returns Chebyshev point k of [begin, end] divided into `intervals`; the points run from the end to the beginning.
+// Returns Chebyshev point k of the second kind on [begin, end], a cosine of k pi / intervals; point 0 is at the end.
 double chebyshev_point(double begin, double end, std::size_t k, std::size_t intervals) {
   return (begin + end) / 2 + (end - begin) / 2 * std::cos(pi * static_cast<double>(k) / static_cast<double>(intervals));
 }
@@ -41,7 +41,7 @@ std::string shown(const py::handle& given) {
 
 // Converts the value that a Python function returned to numbers; `who` names the function in messages.
 std::vector<double> numbers(const py::object& given, const std::string& who) {
-  // Clears the Python error of a failed conversion.
+  // ensure() clears the Python error of a failed conversion, so that require() can report the value.
   const auto values = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
   require(static_cast<bool>(values), [&] { return who + " returned " + shown(given) + "; it must return an array of numbers"; });
   return {values.data(), values.data() + values.size()};

@@ -77,7 +77,7 @@ class PythonWaveform final : public OwnWaveform {
   std::vector<OwnParameter> parameters_;
   pybind11::object breakpoints_, voltage_;
   mutable std::mutex lock_;
-  // Voltages over time of the latest waveforms that a search has tried.
+  // Cache of the voltages of the latest candidates: evaluating one of these candidates again does not call Python.
   mutable std::vector<std::shared_ptr<const Course>> known_;
   mutable FirstError first_;
 };

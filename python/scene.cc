@@ -61,7 +61,7 @@ namespace {
 
 using Value = std::variant<bool, int, double, std::string>;
 
-// Changes a key of the scene as the option --set does; a number is in the SI unit of the key.
+// Sets the value of a scene key as the option --set does; a number is in the SI unit of the key.
 void change(SceneFile& file, const std::string& key, const Value& value) {
   if (const auto* text = std::get_if<std::string>(&value)) return file.set(key + "=" + *text);
   try {

@@ -21,10 +21,11 @@ namespace softland::python {
 struct PyScene {
   SceneFile file;
   std::filesystem::path directory;  ///< folder to which relative paths in the scene refer
-  /// The prepared scene without and with default limits of the drive voltages; null until requested.
+  /// The prepared scene without and with the default voltage limits of a search; null until requested.
   std::shared_ptr<const PreparedScene> plain = {}, limited = {};
 
-  /// Returns the scene prepared for simulation; the first call prepares it.
+  /// Returns the scene prepared for simulation; the first call prepares it. With `default_limits`, drives without limits in the
+  /// scene get the voltage limits of a search.
   [[nodiscard]] std::shared_ptr<const PreparedScene> ready(bool default_limits, InterruptibleRun& run);
   [[nodiscard]] std::shared_ptr<const PreparedScene> ready(bool default_limits = false) {
     InterruptibleRun run;

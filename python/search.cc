@@ -22,7 +22,7 @@ namespace py = pybind11;
 
 namespace {
 
-// The request of a search, with Python objects that a text cannot express.
+// The request of a search: the options as texts, and the Python functions, start waveforms and callbacks.
 struct Request {
   verbs::OptimizeRequest words;
   std::shared_ptr<PythonObjective> objective;
@@ -49,8 +49,8 @@ PlannedSearch planned_search(const Request& request, const SceneFile& file, Inte
   return search;
 }
 
-// Returns a search that is stored in a folder. The stored request (plan) of the search includes the start waveforms; a file
-// must be able to hold them.
+// Returns a search that is stored in a folder. Its stored request includes the start waveforms. Throws InvalidInput for Python
+// functions and for start waveforms, which a file cannot express.
 StoredSearch kept_search(const Request& request, const PyScene& scene, std::optional<KnownSearch>& known, InterruptibleRun& run) {
   require(!request.objective && request.own_waveforms.empty(),
           "out: must not be given for a search with Python functions, which cannot be stored in a file");

@@ -76,7 +76,8 @@ std::unique_ptr<PracticeDevice> practice(const PyScene& scene, const verbs::Argu
   return run([&](const Progress&) { return std::make_unique<PracticeDevice>(file, options); });
 }
 
-// Returns the answer of a simulated device to a line with a shot, as the command `softland device` gives it.
+// Closes a simulated device under the voltages of a shot, one JSON line. Returns the contact record as a JSON line, as the
+// command `softland device` does.
 std::string answered(const PracticeDevice& device, const std::string& line) {
   const CommandedShot shot = read_shot(read_line(line));
   const std::vector<Waveform> waveforms = shot.waveforms(device.nominal());

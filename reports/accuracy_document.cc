@@ -72,7 +72,8 @@ void keep(Picture& drawn, Chart chart) {
   drawn.charts.push_back(std::move(chart));
 }
 
-// Returns the points (computing time, error) of an integrator, one per tolerance.
+// Returns the points (computing time, largest relative error of the well-conditioned figures) of an integrator, one per
+// tolerance.
 Points work_precision(const AccuracyStudy& study, const std::vector<AccuracyRow>& rows, Integrator integrator) {
   Points points;
   for (const AccuracyRow& row : rows) {
@@ -278,7 +279,7 @@ std::vector<KeyNumber> reference_keys(const AccuracyStudy& study) {
   return keys;
 }
 
-// Returns the relative accuracy of the figures that the scene requests.
+// Returns the relative accuracy of the figures of merit that the scene sets in [simulate], or its default.
 double asked_accuracy(const Origin& origin) {
   const auto simulate = origin.scene.find("simulate");
   const bool is_written = simulate != origin.scene.end() && simulate->is_object() && simulate->contains("accuracy");

@@ -87,7 +87,7 @@ class BeamSketch {
     // Scale of heights in the view from the side [px/m].
     const double up = most_height / (highest + d_.gap.electrode), ground = top + 20 + most_height;
     const auto y = [&](double above_electrode) { return ground - above_electrode * up; };
-    constexpr double least = 2;  // least drawn height of a layer [px]
+    constexpr double least = 2;  // least drawn thickness of a layer [px]
     double deepest = 0;
     std::string out = label(0, top,
                             fmt::format("from the side, heights enlarged {:.3g} times: {} above the electrode", up / scale_,

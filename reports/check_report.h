@@ -17,14 +17,14 @@ struct CheckRecord {
   struct Line {
     std::string name, value;
   };
-  /// The rest shape of a structure that is not straight at rest. A rise is measured from the straight shape, away from the
-  /// electrodes of the near side.
+  /// The rest shape of a structure that is not straight at rest. A rise is the distance from the straight shape, positive away
+  /// from the electrodes below the structure.
   struct Rest {
     double far_end_rise = Metrics::unset;  ///< rise of the far end of the structure above its straight shape [m]
     double far_end_gap = Metrics::unset;   ///< distance of the structure's far end to the plane of the electrode [m]
     double contact_rise = Metrics::unset;  ///< rise of the structure at the first contact above its straight shape [m]
     double contact_gap = Metrics::unset;   ///< distance of the structure at the first contact to the contact plane [m]
-    double least_gap = Metrics::unset;     ///< smallest gap between the structure and the electrodes of the near side [m]
+    double least_gap = Metrics::unset;     ///< smallest gap between the structure and the electrodes below it [m]
   };
   Origin origin;
   std::string file;  ///< name of the scene file as the user gave it

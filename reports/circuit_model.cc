@@ -36,7 +36,7 @@ constexpr bool only_pushes =
 
 // A dialect writes operands of formulas in one language, SPICE or Verilog-A.
 struct Dialect {
-  std::string voltage;  // operand of a formula for the voltage of a node: "v" or "V"
+  std::string voltage;  // name of the operand for the voltage of a node: "v" in SPICE, "V" in Verilog-A
   bool has_variables;   // true if the circuit language has named numbers besides voltages of nodes
   [[nodiscard]] Formula node(const std::string& name) const { return Formula::named(fmt::format("{}({})", voltage, name)); }
   [[nodiscard]] Formula between(const std::string& name) const { return Formula::named(fmt::format("{}({},g)", voltage, name)); }
@@ -44,7 +44,7 @@ struct Dialect {
 };
 
 struct Point {
-  // Sums over the modes that give the local gap in contact gaps (of Y), and the local velocity (of U).
+  // Local gap divided by the rest gap of the contact, and local velocity in contact gaps per tau: sums over the modes.
   std::string gap, velocity;
   std::string load;           // load at a quadrature point of the beam times its quadrature weight, acting on the first mode
   std::vector<double> share;  // load on each mode divided by the load on the first mode
@@ -55,18 +55,20 @@ struct Circuit {
   std::vector<std::string> drives;  // names of the circuit's pins for the drives, in the order of Switch::drives()
   double tau = 0;                   // time scale 1 / omega_1 of the model [s]
   double gap = 0;                   // rest gap of the contact [m]
-  // Per mode: (tau omega)^2, 2 zeta tau omega, Y at rest, and share of Y in the contact's deflection y.
+  // Per mode: (tau omega)^2, 2 zeta tau omega, rest value of the modal coordinate Y, and deflection of the contact per Y.
   std::vector<double> stiffness, friction, start, at_contact;
-  // Per mode: pins of the drives whose force is proportional to their voltage (piezos), with the factor.
+  // Per mode: pins of the piezos, each with its dimensionless force on the mode per volt.
   std::vector<std::vector<std::pair<std::string, double>>> pushes;
   std::vector<Point> points;
   std::vector<std::pair<std::string, std::string>> charges;  // pins of the electrodes, each with the formula of its charge [C]
-  // Pins of the piezos, each with the factors of the velocities U of every mode that give its current [A].
+  // Pins of the piezos, each with the factors by which the modal velocities U contribute to its current [A].
   std::vector<std::pair<std::string, std::vector<double>>> currents;
   std::optional<std::string> contact;  // formula of the contact force on the first mode; none for a switch without a contact
-  double force_scale = 0;              // scale of the contact force in the formulas [N]
-  std::string deflection, rate;  // formulas of the contact's deflection over the contact gap, and of its rate over gap / tau
-  // Formula of the tension of the beam, then of the pull of the tension on every mode; empty without tension.
+  double force_scale = 0;              // force in newtons at which the scaled contact force is 1
+  // Formulas of the deflection of the contact point in contact gaps, and of its velocity in contact gaps per tau.
+  std::string deflection, rate;
+  // Formula of the tension by stretching, then for each mode the factor of the tension in the force on the mode; empty for a
+  // beam that does not stretch.
   std::vector<std::string> tension;
 };
 
@@ -135,7 +137,7 @@ class SubcircuitWriter {
 
   void find_points() {
     std::vector<Formula> charges(device_.electrodes.size(), Formula(0));
-    // Scale of a force on the first mode in the equations of the circuit.
+    // Converts a force on the first mode [N] to the dimensionless force in the equation of dU_1/dt.
     const double scale = c_.tau * c_.tau * unit_ * unit_ / c_.gap;
     for (Eigen::Index p = 0; p < model_.quadrature().points(); ++p) {
       const Eigen::VectorXd shape = model_.quadrature().shapes().row(p).head(model_.modes()) / unit_;
@@ -152,7 +154,8 @@ class SubcircuitWriter {
       c_.charges.emplace_back(c_.drives[k], (charges[k] * d_.between(c_.drives[k])).text());
   }
 
-  // Returns the load at a quadrature point [N/m]; adds the capacitances of the point to those of the electrodes [F].
+  // Returns the load on the beam at the position x [N/m]; adds the capacitance of this quadrature point to that of each
+  // electrode [F].
   Formula load_at(double x, const Formula& gap, const Formula& velocity, double weight, std::vector<Formula>& capacitances) {
     const Structure& s = device_.structure;
     const LocalSection local = section_at(s, x);
@@ -221,11 +224,11 @@ class SubcircuitWriter {
         model_.contact());
   }
 
-  // Writes the tension of a stretched middle line of the beam by the law of model/stretching.h.
+  // Writes the tension that stretching causes in the beam, by the law of model/stretching.h.
   void find_tension() {
     if (!model_.stretching()) return;
     const MidPlaneStretching& s = *model_.stretching();
-    const double q = c_.gap / unit_;  // modal coordinate q of the first mode at Y = 1
+    const double q = c_.gap / unit_;  // amplitude q of the first mode at which the contact point has moved by the contact gap
     std::vector<Formula> pulls;
     Formula strain = 0;
     for (std::size_t i = 0; i < s.modes; ++i) {
@@ -235,7 +238,8 @@ class SubcircuitWriter {
       pulls.push_back(pull);
     }
     const double scale = s.stiffness * c_.tau * c_.tau * unit_ / c_.gap;
-    c_.tension.push_back((Formula(scale) * strain).text());  // first the tension of the beam, then its pull on every mode
+    // First the tension of the beam, then its factor in the force on every mode.
+    c_.tension.push_back((Formula(scale) * strain).text());
     for (const Formula& pull : pulls) c_.tension.push_back(pull.text());
   }
 

@@ -2,11 +2,12 @@
 //
 //   tau dY_i/dt = U_i      tau dU_i/dt = -(tau omega_i)^2 Y_i - 2 zeta tau omega_i U_i + forces      tau = 1 / omega_1
 //
-// Y_i = q_i phi_1(x_c) / d_t is a modal coordinate over the contact gap d_t, about 1 where the switch closes. A capacitor of
-// tau farad holds each Y_i and U_i. The local gap at a quadrature point is a sum over the Y_i. The load at that point is a
-// formula of gap, velocity and voltages of the drives; the charge of an electrode is its capacitance times its voltage. The
-// laws are those of the simulator: their own code gives their formulas (reports/formula.h). Below a hundredth of the rest gap,
-// loads keep their value at a hundredth.
+// Y_i = q_i phi_1(x_c) / d_t is the scaled coordinate of mode i, and U_i its scaled velocity. The symbol q_i is the modal
+// coordinate, phi_1(x_c) the first mode shape at the contact, d_t the contact gap, zeta the damping ratio. Y_1 is about 1 when
+// the switch closes. A capacitor of tau farad holds each Y_i and U_i. The local gap at a quadrature point is a sum over the
+// Y_i. The load at that point is a formula of gap, velocity and voltages of the electrodes; the charge of an electrode is its
+// capacitance times its voltage. Formulas come from the simulator's own code of the laws (reports/formula.h). Below a hundredth
+// of the rest gap, loads keep their value at a hundredth.
 #pragma once
 
 #include <string>
