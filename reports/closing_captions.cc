@@ -24,7 +24,8 @@ bool bounces(const RunRecord& run) { return figure_of_run(run, &Metrics::bounce_
 
 bool is_clean_run(const ConfirmationRecord& check) { return check.figures && is_clean(*check.figures); }
 
-/// Describes the waveform of a drive: "runs between 0 V and 30 V, with a jump"; `both` is true if two runs have this waveform.
+/// Describes the waveform of an electrode, a piezo or the dispersion force: "runs between 0 V and 30 V, with a jump"; `both` is
+/// true if two runs have this waveform.
 std::string range_prose(const Points& waveform, const DriveScale& scale, bool both) {
   const DriveDemand demand = drive_demand(waveform, scale.rest);
   if (!std::isfinite(demand.lowest)) return {};
@@ -78,7 +79,7 @@ std::string names_of(const std::vector<ConfirmationRecord>& numerics) {
   return tolerance + (modes.empty() ? "" : (tolerance.empty() ? "" : " and with ") + modes + " modes");
 }
 
-// Returns a warning if the bounce-free closing depends on the number of modes.
+// Returns a warning if simulations with other numbers of modes find a bounce where the scene's number of modes finds none.
 std::string of_modes(const ClosingRecord& result) {
   if (!result.best.figures || !is_clean(*result.best.figures)) return {};
   std::vector<ConfirmationRecord> modes;
@@ -90,7 +91,8 @@ std::string of_modes(const ClosingRecord& result) {
                      worst.name.substr(worst.name.find(' ') + 1), course_of(worst));
 }
 
-// Returns the share of devices that fail under any waveform, as a sentence for the report of a search under process variation.
+// Returns a sentence on the devices that stay open, are not kept closed or are outside the model, for the report of a search
+// under process variation.
 std::string of_devices_that_fail(const ClosingRecord& result) {
   const std::optional<RobustFindings>& robust = result.search->robust;
   if (!robust || !(robust->failing > 0)) return {};
@@ -294,7 +296,7 @@ std::string waveform_caption(const ClosingRecord& result, const std::string& dri
 
 std::string search_caption(const ClosingRecord& result, const SearchRecord& search) {
   const std::string whole_name = search.course.value_name.empty() ? "cost" : search.course.value_name;
-  // Only "cost", without what follows a comma, such as ", on the nominal device".
+  // The name may have an addition, such as ", on the nominal device": the caption needs only "cost".
   const std::string name = whole_name.substr(0, whole_name.find(','));
   const double own = result.best.cost;
   double first = std::numeric_limits<double>::quiet_NaN();
@@ -305,7 +307,8 @@ std::string search_caption(const ClosingRecord& result, const SearchRecord& sear
     if (!std::isfinite(first)) first = value;
     if (value >= last) continue;
     last = value;
-    // Find the evaluation of the best waveform. It may not have the lowest cost: a waveform that meets the goal is preferred.
+    // Find the evaluation of the best waveform. It may not have the lowest cost: a waveform that meets all goals of the search
+    // is preferred.
     if (!(last < own)) found_at = index;
   }
   std::string words = capitalised(name) + " of every waveform tried (dots) and of the best so far (line)";

@@ -27,7 +27,7 @@ struct Headline {
 /// empty.
 [[nodiscard]] double evaluations_until(const std::vector<double>& indices, double index);
 
-/// The functions from gap_caption() on each return one or two sentences as the caption of a chart.
+/// The functions from gap_caption() to checks_caption() each return one or two sentences as the caption of a chart.
 [[nodiscard]] std::string gap_caption(const ClosingRecord& result);
 [[nodiscard]] std::string contact_caption(const ClosingRecord& result);
 [[nodiscard]] std::string landing_caption(const ClosingRecord& result);

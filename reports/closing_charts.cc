@@ -17,7 +17,8 @@
 namespace softland::internal {
 namespace {
 
-// A run of a record: the name of the table with its curves, and the role of the curves in charts.
+// A simulated run in the record of a closing: the name of the table with its curves, and the role that sets the style of its
+// lines.
 struct Drawn {
   const char* name;
   Role role;
@@ -28,8 +29,8 @@ const RunRecord& run_of(const ClosingRecord& result, const Drawn& drawn) {
   return drawn.role == Role::best ? result.best : result.baseline();
 }
 
-/// Returns the rows of a curve at finite times that do not decrease. Columns that are missing or whose length differs are left
-/// out.
+/// Returns the curves of a run as a table. Rows whose time is not finite or decreases are left out, and so are columns that are
+/// missing or have another length.
 CurveTable curve_table(const CurveRecord& curve) {
   std::vector<std::size_t> sound;
   double latest = -std::numeric_limits<double>::infinity();
@@ -162,7 +163,8 @@ std::optional<std::array<double, 2>> plane_band(const ClosingRecord& result, con
   return std::array{margin * lowest, margin * std::fmax(-2 * lowest, height)};
 }
 
-/// Adds the tables of curves and of drive waveforms to a picture; returns the names of the drives.
+/// Adds the curves and the drive waveforms of each run as tables to the description of the charts; returns the names of the
+/// drives.
 std::set<std::string> add_time_tables(const ClosingRecord& result, double window, Picture& out) {
   std::set<std::string> drives;
   for (const Drawn& drawn : runs) {
@@ -182,7 +184,7 @@ std::set<std::string> add_time_tables(const ClosingRecord& result, double window
   return drives;
 }
 
-/// Draws the charts over time of a picture that already has the tables of curves.
+/// Adds the charts over time to a description of charts, which already has the tables of curves.
 class TimeCharts {
  public:
   TimeCharts(const ClosingRecord& result, double window, Picture& out)
@@ -199,7 +201,7 @@ class TimeCharts {
     gap.height = 320;
     add_series(gap, "", "tip_gap_m");
     Chart near = gap;
-    constexpr double readable = 0.05;  // least share of the gap range for a label, which needs this height
+    constexpr double readable = 0.05;  // least gap with room for the label of its mark, as a share of the largest gap
     for (Mark& mark : gap.marks) {
       if (mark.y < readable * largest(out_.tables, "tip_gap_m")) mark.text.clear();
     }

@@ -74,7 +74,7 @@ std::vector<KeyNumber> key_numbers(const ClosingRecord& result) {
 }
 
 /// Adds rows for what the waveform of each drive demands of its voltage source (extreme voltages, slew rate) if there are
-/// several drives.
+/// several drives. With `pair`, the table also has the values of the plain step.
 void add_drive_rows(ReportTable& table, const ClosingRecord& result, bool pair) {
   if (result.best.waveforms.size() < 2) return;
   for (const auto& [drive, found] : result.best.waveforms) {
@@ -271,7 +271,7 @@ TableCell searched_cell(const ClosingRecord& result, const std::string& paramete
   if (box == result.search->bounds.end()) return "";
   const auto [low, high] = box->second;
   const double value = result.search->parameters.at(parameter);
-  // Largest distance of a parameter from a bound "at" which it lies, as a share of the searched range.
+  // Largest distance from a bound, as a share of the searched range, at which a parameter counts as lying at the bound.
   constexpr double near = 0.01;
   const char* bound = value - low <= near * (high - low)    ? "at its lower bound"
                       : high - value <= near * (high - low) ? "at its upper bound"

@@ -63,15 +63,17 @@ void figure_errors(A& a, FigureValues& errors) {
 [[nodiscard]] std::vector<IllConditioned> read_certified(const nlohmann::json& figures);
 [[nodiscard]] inline std::string integrator_name(Integrator integrator) { return std::string(to_string(integrator)); }
 [[nodiscard]] Integrator read_integrator(const nlohmann::json& name);
-/// These functions write figures of the structure for several numbers of modes, with the converged value. They write an
-/// eigenvalue, or the pull-in voltages of electrodes. JSON is null if the structure has no more modes than the scene.
+/// These functions write what was computed for the closed state with several numbers of modes: the least eigenvalue of the
+/// stiffness, or the voltage at which the beam collapses onto each electrode, with its limit for further modes. JSON is null if
+/// no modes could be added to those of the scene.
 [[nodiscard]] nlohmann::json eigenvalues_json(const std::optional<ByModes>& found);
 [[nodiscard]] nlohmann::json voltages_json(const std::map<std::string, ByModes>& of_electrodes);
 [[nodiscard]] std::map<std::string, ByModes> read_voltages(const nlohmann::json& of_electrodes);
 [[nodiscard]] HoldWindows read_windows(const nlohmann::json& windows);
-/// Writes each choice among the found waveforms with the quantiles of its row in the table of results.
+/// Writes the waveforms among which the user can choose, each with the percentiles of its figures over the devices.
 [[nodiscard]] nlohmann::json choices_json(const DevicesFindings& devices);
-/// Writes the common outcome of searches with several seeds.
+/// Writes how many searches with different seeds met their goal, were confirmed, or failed, and the spread of their costs and
+/// figures.
 [[nodiscard]] nlohmann::json seeds_summary(const SeedsFindings& seeds);
 
 }  // namespace internal
@@ -88,7 +90,7 @@ void members(A& a, MadeWith& made) {
   a("processor", OrNull{made.processor});
 }
 
-/// Every record of a study begins with the members of its origin.
+/// Writes or reads the origin of a record: verb, program, machine, command line and scene. Every record begins with it.
 template <class A>
 void members(A& a, Origin& origin) {
   a("kind", origin.kind);

@@ -11,11 +11,12 @@ namespace softland::internal {
 
 [[nodiscard]] bool touches(const FigureValues& figures);
 [[nodiscard]] bool settles(const FigureValues& figures);
-/// Returns true if a run reaches the contact plane but gives no later figures: the scene has no contact, or the run stopped.
+/// Returns true if a run reaches the contact plane but has no figures of the time after that: the scene has no contact, or the
+/// simulation stopped.
 [[nodiscard]] bool ends_at_touch(const FigureValues& figures);
 /// Returns true if one contact of several has touched, but the contacts that make the connection were never closed together.
 [[nodiscard]] bool touches_in_part(const RunRecord& run);
-/// Returns true if a run began closed: the run was complete, but without a first touch.
+/// Returns true if a run began with a closed contact: the run was complete, but without a first touch.
 [[nodiscard]] bool began_closed(const RunRecord& run);
 /// Returns true for a run in which the switch touches its contact and settles without a significant rebound.
 [[nodiscard]] bool is_clean(const FigureValues& figures);

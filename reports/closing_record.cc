@@ -48,7 +48,7 @@ std::map<std::string, Points> waveforms(const PreparedScene& p) {
   for (std::size_t k = 0; k < names.size(); ++k) {
     const double swing = signals[k].maximum(p.duration) - signals[k].minimum(p.duration);
     const bool is_factor = names[k] == dispersion_drive;
-    // The factor of the dispersion force is shown only if it differs from its nominal value.
+    // Leave out the factor of the dispersion force if it always has its nominal value 1.
     if (is_factor && signals[k].is_zero()) continue;
     for (const auto& [t, v] : polyline(signals[k], p.duration, 1e-3 * swing, 0))
       all[names[k]].push_back({t, is_factor ? 1 + v : v});

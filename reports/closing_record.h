@@ -33,14 +33,14 @@ struct EffectsLeftOut {
 };
 
 struct PullInOfElectrode {
-  /// Static and dynamic pull-in voltage of the electrode [V].
+  /// Static and dynamic pull-in voltage of one electrode [V].
   double static_pull_in = Metrics::unset, dynamic_pull_in = Metrics::unset;
-  /// Static pull-in voltage by number of modes; none if the structure has no more modes than the scene.
+  /// Static pull-in voltage by number of modes; none if no modes could be added to those of the scene.
   std::optional<ByModes> static_by_modes = {};
 };
 
 struct ClosingRecord {
-  Origin origin;  ///< source of the record, with the kind "simulate" or "optimize"
+  Origin origin;  ///< verb, program, machine, command line and scene of the result; its kind is "simulate" or "optimize"
   std::string status, message, title;
   RunRecord best;  ///< the single run, or the run under the best waveform of a search
   /// Figures by contact, if there are several; `best` has the figures of the electrical connection they make.
@@ -85,10 +85,10 @@ struct ClosingRecord {
 /// has only the evaluations that improved the best cost.
 [[nodiscard]] ClosingRecord record_of(const OptimizeResult& found, const OptimizeOptions& options, const std::string& command);
 
-/// Makes the record of a search under process variation.
+/// Makes the record of a search that minimises one statistic of the devices under process variation.
 [[nodiscard]] ClosingRecord record_of(const RobustResult& found, const OptimizeOptions& options, const std::string& command);
 
-/// Makes the record of a search over devices, with the best waveform of the search.
+/// Makes the record of a search that offers several waveforms for the devices under process variation, with the best of them.
 [[nodiscard]] ClosingRecord record_of(const RobustSearchResult& found, const OptimizeOptions& options, std::string next_command,
                                       const std::string& command);
 

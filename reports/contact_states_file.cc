@@ -126,9 +126,10 @@ void dump_resistance(const StateChannel& one, std::size_t place, std::vector<Dum
   }
 }
 
-// Returns the state or the resistance of a channel as a piecewise linear signal, with short edges in place of jumps.
+// Returns the state or the resistance of a channel as a piecewise linear signal. SPICE sources cannot jump: a jump becomes a
+// short ramp (edge).
 Signal on_edges(const StateChannel& one, bool is_resistance, double end) {
-  // Duration of an edge [s]; largest half of an edge as a share of the time to the next jump.
+  // Duration of an edge [s]; largest half of an edge as a share of the time to the next jump, so that edges do not meet.
   constexpr double edge = 1e-9, share = 0.25;
   const auto value = [&](const ClosedSpan* span, double time) {
     if (!is_resistance) return span != nullptr ? 1.0 : 0.0;

@@ -43,7 +43,7 @@ CycleRecord::Devices devices_of(const CycledDrive& drive, double rate) {
           .steady = static_cast<double>(steady) / static_cast<double>(rates.size())};
 }
 
-// Returns the waveforms of the drives in one cycle, without the factor of the dispersion force.
+// Returns the waveforms of electrodes and piezos in one cycle, without the factor of the dispersion force.
 std::map<std::string, Points> waveforms_of(const PreparedScene& given, const CycledDrive& drive, const CycleTimes& times) {
   std::map<std::string, Points> all;
   CycleTimes once = times;
@@ -75,7 +75,7 @@ const CycleRecord::Drive& found_of(const CycleRecord& r) { return r.drives.back(
 
 std::string rate_prose(double rate) { return std::isfinite(rate) ? quantity(rate, "Hz") : std::string("none"); }
 
-// Returns the largest value of a figure in the cycles that the report shows.
+// Returns the largest value of a figure of merit in the cycles that the report shows.
 double hardest(const CycleRecord::Drive& drive, double Metrics::*figure) {
   double most = 0;
   for (const CycleRecord::Cycle& cycle : drive.cycles) most = std::fmax(most, cycle.metrics.*figure);
@@ -373,8 +373,8 @@ std::string cycle_charts(const internal::Picture& drawn) {
   return charts;
 }
 
-// Draws the cycle rates that were simulated in a row for each pair of waveforms: a dot where the cycles are steady, a ring for
-// other rates.
+// Draws a row for each pair of a closing and an opening waveform, with the simulated cycle rates: a dot where all cycles are
+// alike (steady), a ring for other rates.
 std::string drawn_rates(const CycleRecord& r) {
   constexpr double left = 110, right = 780, row = 26;
   internal::Axis axis{.scale = internal::AxisScale::logarithmic, .low = 1e300, .high = 0, .pixel_low = left, .pixel_high = right};

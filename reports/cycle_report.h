@@ -18,8 +18,8 @@
 namespace softland {
 
 struct CycleRecord {
-  /// Largest cycle rates with steady cycles under process variation, and the share of devices whose cycles are steady at the
-  /// rate of the report.
+  /// Results under process variation: the largest rates at which all cycles are alike (steady), and the share of devices whose
+  /// cycles are steady at the rate of the report.
   struct Devices {
     std::uint64_t count = 0;
     /// 5th, 50th and 95th percentile over the devices of the largest rate with steady cycles [Hz].
@@ -31,7 +31,7 @@ struct CycleRecord {
     std::optional<std::vector<ClosedStretch>> closed;  ///< times in which the contact is closed [s]; not set if unknown
   };
   struct Cycle {
-    Metrics metrics;                  ///< figures of one cycle, as CycleFigures holds them
+    Metrics metrics;                  ///< figures of merit of one cycle: see CycleFigures
     double on_time = Metrics::unset;  ///< time in which the switch is electrically closed in the cycle [s]
   };
   struct Drive {
@@ -61,7 +61,7 @@ struct CycleRecord {
   std::optional<Search> search;         ///< search for the waveforms; none if the waveforms were given
   std::vector<std::string> warnings;    ///< warnings of the scene
 
-  std::map<std::string, Course> curves;  ///< gap over time, by the name of the pair of waveforms; only in files
+  std::map<std::string, Course> curves;  ///< gap over time, by the name of the pair of waveforms; --json leaves it out
 };
 [[nodiscard]] CycleRecord record_of(const PreparedScene& given, const Cycling& cycling, const std::string& command);
 [[nodiscard]] CycleRecord record_of(const CycleSearchResult& found, const CycleSearchOptions& options,

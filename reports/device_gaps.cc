@@ -101,7 +101,7 @@ std::string internal::gaps_html(const DevicesFindings& d) {
 std::string svg_devices(const ClosingRecord& result) {
   Picture drawn = gaps_picture(*result.devices());
   const std::string words = drawn.charts.empty() ? result.title : result.title + ". " + drawn.charts.front().caption;
-  // The waveforms of the drives are drawn below the contact gaps of the devices.
+  // Add the waveforms of the drives below the charts of the contact gaps.
   Picture others = gap_and_drives(result);
   for (Chart& chart : others.charts) {
     if (!chart.id.starts_with("drive")) continue;

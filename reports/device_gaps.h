@@ -1,4 +1,4 @@
-// Draws the contact gaps of varied devices over time under the plain step and under the waveform of best.toml, side by side.
+// Draws the contact gaps of varied devices over time, side by side: under the plain step and under the best waveform.
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@
 
 namespace softland {
 
-/// Returns a static SVG document on a search over varied devices: the headline, the contact gaps of the devices over time, and
-/// the waveforms of the drives.
+/// Returns a static SVG document on a search under process variation: the headline, the contact gaps of the devices over time,
+/// and the waveforms of the drives.
 [[nodiscard]] std::string svg_devices(const ClosingRecord& result);
 
 namespace internal {
 
-/// Returns two charts of the contact gap over time, under the plain step and under the waveform of best.toml: a curve per
-/// varied device, the median, and the band from 5 to 95 %. Returns none if no gaps were recorded.
+/// Returns two charts of the contact gap over time, under the plain step and under the best waveform: a curve per varied
+/// device, the median, and the band from 5 to 95 %. Returns none if no gaps were recorded.
 [[nodiscard]] Picture gaps_picture(const DevicesFindings& devices);
 /// Returns the charts of the contact gaps of varied devices over time, as gaps_picture() makes them, as HTML for a page.
 [[nodiscard]] std::string gaps_html(const DevicesFindings& devices);

@@ -24,19 +24,19 @@ std::string height_measure(double x, double top, double bottom, const std::strin
          drawn_line(x - 4, bottom, x + 4, bottom, "measure") + drawn_words(x + 8, (top + bottom) / 2 + 4, "start", text);
 }
 
-// The parameters of a waveform that a drawing of the waveform can label.
+// The parameters of a waveform, with the times at which a drawing labels them.
 struct Described {
   struct Place {
     std::string name;
-    double from, to;  // times between which the waveform is drawn [s]
+    double from, to;  // begin and end of the time span that the parameter sets [s]
   };
   std::vector<Place> spans;
   // Names of the voltage levels, each with the time at which its label stands [s].
   std::vector<std::pair<std::string, double>> levels;
 };
 
-/// Returns the parameters of the waveform of a drive, whose level is constant from `moves` on [s]. Empty if the waveform family
-/// has no such drawing, or its times are unknown.
+/// Returns the labelled parameters of the waveform of a drive, whose level is constant from the time `moves` on [s]. Empty if
+/// no labels exist for this waveform family, or if its times are unknown.
 Described described_parameters(const ClosingRecord& result, const std::string& drive, double moves) {
   const auto parameter = [&](const std::string& name) {
     const auto found = result.search->parameters.find(drive + "." + name);
@@ -132,7 +132,7 @@ std::string device_picture(const DrawnScene& scene) {
   std::string out = drawn_beam(scene, view) + drawn_electrodes(scene, view) + drawn_contacts(scene, view);
   const double measure = both_ends || plate ? right + 64 : right + 16;
   if (scene.contacts.empty()) {
-    // The contact is drawn at the centre of the contact pad; in the middle of a plate, or of a beam with two clamps.
+    // The contact is drawn at the centre of its pad at the tip; for a plate or a beam with two clamps, in the middle.
     const double pad = scene.pad_length;
     const double contact_at = plate || both_ends ? 0.5 : 1 - (pad > 0 ? std::min(1.0, pad / length) / 2 : 0);
     const double plane = plane_of(view, scene, scene.contact_gap);

@@ -27,7 +27,8 @@ using namespace internal;
 
 constexpr double half = 0.5;
 
-// A column with the 95th percentile of a figure over the devices and, with `with_99`, the 99th percentile beside it.
+// A column of a table: the 95th percentile of a figure of merit over the devices and, with `with_99`, the 99th percentile
+// beside it.
 struct Column {
   std::string_view key, heading, short_heading;
   bool with_99 = false;
@@ -75,8 +76,8 @@ std::string with_bracket(const std::string& value, const std::string& other) {
                  : fmt::format("{} ({})", value, other);
 }
 
-// Returns the cell "2.0 / 98 / 100 %": the shares of devices that rebound by at most each of the yield heights. Shares are
-// rounded down, so that 100 % means all devices.
+// Returns the cell "2.0 / 98 / 100 %": the shares of devices whose highest rebound is at most each height of yield_heights.
+// Shares are rounded down, so that 100 % means all devices.
 std::string yields_cell(const DevicesFindings::Row& row) {
   if (row.yield.empty()) return "—";
   std::string cell;
@@ -249,7 +250,8 @@ std::vector<KeyNumber> internal::devices_keys(const DevicesFindings& d) {
   const DevicesFindings::Row *step = d.row(plain_step_row), *own = d.row(for_the_devices);
   if (step == nullptr || own == nullptr) return {};
   std::vector<KeyNumber> keys;
-  for (std::size_t i = 0; i < 4; ++i) {  // the columns from the first one up to the time of steady contact force
+  // The key numbers are the first columns of the table, up to the time of steady contact force.
+  for (std::size_t i = 0; i < 4; ++i) {
     const std::string_view key = columns[i].key;
     keys.push_back({.name = capitalised(std::string(columns[i].heading)) + ", 95th percentile",
                     .value = cell_of(key, value_in(own->at_95, key)),

@@ -1,5 +1,5 @@
-// The results of a search over devices: the headline, the main table, and the Pareto front of closing time against impact
-// velocity, as text and as HTML.
+// The results of a search under process variation: the headline, the main table, and the Pareto front of closing time against
+// impact velocity, as text and as HTML.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ namespace internal {
 
 /// Describes how the nominal design closes with the waveform that was searched for it alone.
 [[nodiscard]] std::string drawing_prose(const DevicesFindings& devices);
-/// Describes in a sentence how the devices close with the waveform of best.toml.
+/// Describes in a sentence how the devices close with the best waveform.
 [[nodiscard]] std::string devices_headline(const ClosingRecord& result);
 /// Returns the key numbers at the top of a page: shares and 95th percentiles of the devices, under the plain step and under the
 /// best waveform.

@@ -50,7 +50,7 @@ struct DrawnScene {
   };
   struct Waveform {
     std::string family;
-    std::vector<double> times;  ///< times at which the parameters of the waveform act [s]
+    std::vector<double> times;  ///< switching times of the waveform family `pulse` [s]
     /// Duration of an edge (ramp) of the waveform; start and end of the waveform [s].
     double edge = Metrics::unset, start = Metrics::unset, end = Metrics::unset;
   };

@@ -21,12 +21,13 @@ namespace {
 using internal::json_number;
 using nlohmann::json;
 
-// Returns the relative change of a figure from the closing `own` of the complete scene to a closing without an effect.
+// Returns the relative change of a figure if an effect is left out: `metrics` are the figures without the effect, `own` the
+// figures of the complete scene.
 double change(const Figure& figure, const Metrics& metrics, const Metrics& own) {
   return relative_change(figure.value(metrics), figure.value(own));
 }
 
-// Writes each closing without an effect with its changes from the closing of the complete scene.
+// Writes each closing without an effect, with the changes of its figures from the closing of the complete scene.
 template <class Closing>
 json compared_json(const std::vector<Closing>& closings, const Metrics& own) {
   json all = json::array();
