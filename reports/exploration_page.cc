@@ -152,7 +152,7 @@ Choice chosen_points(const ExplorationReport& report, const std::optional<Explor
       }
       how = stride_prose(report, *grid, choice.strides);
     } else {
-      // Choose each point with the same probability, whatever its position in the list of the exploration's points.
+      // Choose each point at random with the same probability, wherever it is in the list of the exploration's points.
       const double part = static_cast<double>(most) / static_cast<double>(count);
       for (std::size_t k = 0; k < count; ++k)
         kept[k] = static_cast<char>(random_uniform(0, Stream::scene, static_cast<std::uint64_t>(report.points[k].number)) < part);
@@ -177,7 +177,8 @@ nlohmann::json grid_json(const ExplorationReport& report, const ExploredGrid& gr
     for (std::size_t k = 0; k < grid.values[d].size(); k += choice.strides[d]) values.push_back(grid.values[d][k]);
     out["values"].push_back(std::move(values));
   }
-  // Write the differences between the grid cells of consecutive points; a negative cell is not in the thinned grid.
+  // Write the grid cell of each point as the difference from the cell of the point before it, which takes few digits; a
+  // negative cell is not in the thinned grid.
   nlohmann::json cells = nlohmann::json::array();
   long expected = 0, before = 0;
   bool in_order = true;

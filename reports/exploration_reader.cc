@@ -33,7 +33,7 @@ ExplorationReport read_exploration(const StudyReader& store, const std::string& 
     try {
       extra.at("waveforms").get_to(report.waveforms[row.point]);
     } catch (const json::exception&) {
-      report.waveforms.erase(row.point);  // another version of the program wrote the waveform
+      report.waveforms.erase(row.point);  // leave out a waveform in the format of another version of the program
     }
   });
   if (!pareto.empty() || plan.is_search()) report.aims = explored_aims(report.columns, pareto.empty() ? plan.pareto() : pareto);

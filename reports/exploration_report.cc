@@ -33,7 +33,8 @@ using nlohmann::json;
 
 constexpr std::size_t most_front_rows = 40;  // largest number of rows of the table of the Pareto front
 
-/// Returns the factor that turns an aim into one to minimise: -1 for a figure to maximise, 1 otherwise.
+/// Returns the factor by which a figure to minimise or maximise becomes one to minimise: -1 for a figure to maximise, 1
+/// otherwise.
 double sign_of(const ExploredAim& aim) { return aim.is_largest ? -1 : 1; }
 
 std::string aim_name(const ExplorationReport& report, const ExploredAim& aim) {
@@ -178,7 +179,7 @@ TableCell column_head(const std::string& name) {
   return cell;
 }
 
-// Returns a table of points along the Pareto front, one per `stride`, with the knee (the best compromise) and the ends of the
+// Returns a table of every `stride`-th point along the Pareto front, with the knee (the best compromise) and the ends of the
 // front.
 ReportTable front_table(const ExplorationReport& report, const ExploredFront& front, std::size_t stride) {
   std::vector<std::size_t> columns;

@@ -18,7 +18,8 @@ constexpr int figure_digits = 4;  // significant digits of a figure in tables, u
 
 Change change(double before, double after, bool lower_is_better, ChangeKind kind) {
   if (!std::isfinite(before) || !std::isfinite(after)) return {};
-  constexpr double visible = 0.005;  // a figure within half a per cent of its value under the plain step counts as unchanged
+  // Relative difference from the value under the plain step up to which a figure counts as unchanged.
+  constexpr double visible = 0.005;
   if (std::abs(after - before) <= visible * std::abs(before)) return {"unchanged", Verdict::same};
   const bool lower = after < before;
   const Verdict verdict = !lower_is_better ? Verdict::neutral : lower ? Verdict::better : Verdict::worse;

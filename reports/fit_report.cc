@@ -25,7 +25,7 @@ using nlohmann::json;
 
 constexpr double unlikely = 3;  // number of standard errors from which a residual of a fit is unlikely
 
-// Describes a direction in which the data determine nothing: "+1 % of a with −2.1 % of b".
+// Describes a change of several unknowns that the data do not detect: "+1 % of a with −2.1 % of b".
 std::string direction_prose(const Fit& fit, const WeakDirection& weak) {
   std::vector<std::string> words;
   for (const std::size_t i : weak.unknowns) {

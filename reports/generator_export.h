@@ -18,10 +18,10 @@ namespace softland {
 
 /// The options for sampling a waveform as an arbitrary waveform generator does.
 struct Sampling {
-  /// Sample rate and number of bits of the generator, as text; they replace those of [driver].
+  /// Sample rate and number of bits of the generator, as text; they replace those of the scene's section [driver].
   std::optional<std::string> rate, bits;
   std::string drive = {};                ///< the only drive (electrode or piezo) that is exported; empty: all
-  std::optional<std::string> amplifier;  ///< volts at the switch per volt at the generator; not set: the value in [driver]
+  std::optional<std::string> amplifier;  ///< volts at the switch per volt at the generator; not set: that of the scene
   std::optional<std::string> marker;     ///< time at which the sync output of the generator falls, as text
 };
 
@@ -35,7 +35,7 @@ struct Sampling {
 /// Describes the factor from generator to switch voltage, which amplification() returns, in words; empty if the factor is 1.
 [[nodiscard]] std::string amplifier_prose(const Drive& drive, double factor);
 
-/// Writes the sample rate and the number of bits of the generator into [driver] of these drives.
+/// Writes the sample rate and the number of bits of the generator into the sections [driver.NAME] of these drives.
 void set_sampling(SceneFile& file, const std::vector<std::string>& drives, const Sampling& sampling);
 
 /// Throws InvalidRequest if the voltage source has no sample rate, which a file of this format needs.

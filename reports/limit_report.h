@@ -16,8 +16,8 @@ namespace softland {
 struct LimitRecord {
   struct QuasiStatic {
     std::string drive;
-    /// The width of the range of positions where 90 % of the devices touch [m]; the time from which the force under the plain
-    /// step is steady [s]; the impact velocity [m/s].
+    /// The quasi-static approach to the contact: width of the range of positions at which 90 % of the varied devices touch [m];
+    /// time from which the contact force under the plain step is steady [s]; impact velocity [m/s].
     double touch_places = Metrics::unset, steady = Metrics::unset, speed = Metrics::unset;
   };
   struct Check {
@@ -27,7 +27,7 @@ struct LimitRecord {
   struct Landing {
     LeastTime path;
     bool at_rest = false;
-    /// Times from first contact to the pull that keeps the switch closed, and to the hold levels [s].
+    /// Times from first contact to the voltages that pull the switch onto its contact, and to the hold levels [s].
     double catch_delay = Metrics::unset, catch_time = Metrics::unset;
     bool bounce_free = false;
     Metrics metrics;
@@ -49,7 +49,7 @@ struct LimitRecord {
   std::vector<std::string> warnings;
   std::optional<Landing> landing;
   std::vector<LeastTime> over_velocity, over_peak;
-  std::optional<ClosingRecord> landed;  ///< run of the closing with the least time; in files only
+  std::optional<ClosingRecord> landed;  ///< simulated run of the closing with the least time; --json leaves it out
 };
 [[nodiscard]] LimitRecord record_of(const Limit& limit, const std::string& command);
 

@@ -1,4 +1,5 @@
-// The results of `softland calibrate`: JSON with SI units in the names, and a table for a terminal.
+// The results of `softland calibrate`, the value of measuring each device: JSON with SI units in the names, and a table for a
+// terminal.
 #pragma once
 
 #include <nlohmann/json.hpp>

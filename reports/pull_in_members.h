@@ -1,5 +1,5 @@
-// Lists the members of pull-in voltages and of the stable path, which the verbs `pull-in` and `check` write: see
-// reports/record.h.
+// Lists the members of the pull-in voltages, and of the stable path by which one drive closes the switch, for the verbs
+// `pull-in` and `check`: see reports/record.h.
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace softland {
 
 namespace internal {
 
-/// Writes pull-in voltages by the number of modes; JSON is null if there are none.
+/// Writes pull-in, release and collapse voltages by the number of modes; JSON is null if they were not computed.
 [[nodiscard]] nlohmann::json voltages_by_modes_json(const std::optional<VoltagesByModes>& found);
 [[nodiscard]] std::optional<VoltagesByModes> read_voltages_by_modes(const nlohmann::json& from);
 

@@ -83,7 +83,8 @@ std::string shift_clause(const std::optional<VoltagesByModes>& found, ByModes Vo
   return shift.empty() ? shift : "; more modes change it by " + shift;
 }
 
-// Returns true if the scene has contacts; the face of a dielectric with a landing is also a contact.
+// Returns true if the scene has contacts. The face of a dielectric is also a contact if the key `landing` gives its contact
+// law.
 bool makes_contact(const json& scene) {
   const json electrodes = scene.value("electrode", json::object());
   return scene.contains("contact") || std::ranges::any_of(electrodes, [](const json& electrode) {
@@ -190,7 +191,7 @@ ElectrodeRecord record_of(const PreparedScene& p, std::size_t k, const Electrode
                                   .deflection = s.deflection,
                                   .neutral = p.model.neutral_voltage(k) != 0 ? p.model.neutral_voltage(k) : Metrics::unset,
                                   .dynamic_kind = dynamic_kind(p, k, s.voltage, d.voltage)}};
-  // False after an interruption, when no voltages of further numbers of modes were computed.
+  // After an interruption, leave out the voltages with further numbers of modes, which were not computed.
   const bool was_found = d.status != Status::interrupted;
   if (const ModeLadder ladder(p); was_found && ladder.exists() && std::isfinite(s.voltage))
     found.volts.by_modes = voltages_by_modes(ladder, p.scene, k, closed.pulled_through);

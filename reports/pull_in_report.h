@@ -1,5 +1,5 @@
 // The results of `softland pull-in`: JSON with SI units in the names, text, and a voltage sweep as CSV and picture. The verb
-// `check` also reports the voltages of an electrode and the stable path.
+// `check` also reports the voltages of an electrode, and the stable path by which one drive closes the switch.
 #pragma once
 
 #include <cstddef>
@@ -29,14 +29,15 @@ struct PullInRecord {
   double neutral = Metrics::unset;     ///< voltage that cancels the charge of a dielectric [V]; unset without charge
   /// Kind of dynamic pull-in: "overshoot", "overdamped", "unstable_rest"; empty if no voltage was found.
   std::string dynamic_kind;
-  /// Static voltages by number of modes; none if the structure has no more modes, or after an interruption.
+  /// Static voltages by number of modes; none if no modes could be added to those of the scene, or after an interruption.
   std::optional<VoltagesByModes> by_modes;
 };
 struct ElectrodeRecord {
   Status status = Status::not_run;
   PullInRecord volts;
   std::map<std::string, double> bias;         ///< levels of the other drives that are not at 0, by drive [V]
-  std::map<std::string, double> bias_factor;  ///< factor of the dispersion force by name of its drive, if the factor is not 1
+  /// Factor of the dispersion force by the name of its drive, if the factor is not 1.
+  std::map<std::string, double> bias_factor;
 };
 [[nodiscard]] ElectrodeRecord record_of(const PreparedScene& prepared, std::size_t k, const ElectrodePullIn& known);
 

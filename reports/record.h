@@ -60,14 +60,14 @@ Chosen(T&, const Rows&) -> Chosen<Rows>;
 
 template <class Record>
 [[nodiscard]] json record_json(const Record& record);
-/// Throws InvalidInput with the first difference, unless the JSON `written` from a record that was read equals the JSON that
-/// was `read`.
+/// Checks that JSON was read completely: throws InvalidInput with the first difference between the JSON `read` and the JSON
+/// `written` from the record that was read.
 void require_same(const json& written, const json& read);
 
 class JsonWriter {
  public:
   static constexpr bool reads = false;
-  /// Returns whether the writer writes members of a record that exist only if `where` holds.
+  /// Returns `where`, the condition under which the record has certain members: a writer writes them only then.
   [[nodiscard]] static bool has(bool where) { return where; }
 
   template <class T>

@@ -121,7 +121,8 @@ double shown_until(const ReleaseRecord& r, double window) {
   return std::min(window, longer * end);
 }
 
-// Returns a table of 95th percentiles of figures over the devices, for the plain and the found opening.
+// Returns a table of 95th percentiles of figures over the devices: for the plain opening, in which all drives drop to 0 V, and
+// for the found opening.
 ReportSection devices_section(const ReleaseRecord::Devices& found) {
   ReportTable table{.head = {"", plain_prose, "found"}, .rows = {}};
   table.rows = {{"come to rest in the open position", percent(found.plain.open), percent(found.best.open)},
@@ -335,7 +336,7 @@ std::string release_csv(const OpeningResult& r) {
   const std::string whole = csv(signals, o.voltages_end);
   const auto row_end = [&](std::size_t from) { return whole.find('\n', from) + 1; };
   const std::size_t first = row_end(0), second = row_end(first);
-  // A closing begins with the drives at 0 V, an opening with the drives at their hold levels.
+  // csv() starts the drives at 0 V, as in a closing. Replace this first row: an opening starts at the hold levels.
   const bool jumps = whole.compare(second, 2, "0,") == 0;
   std::string held = "0";
   bool begins_held = true;

@@ -49,14 +49,15 @@ struct ReleaseRecord {
   std::uint64_t seed = 1;
   std::string termination;
   std::vector<std::string> warnings;  ///< warnings of the scene, and about a contact force that few asperities carry
-  std::map<std::string, Gap> gaps;    ///< gap over time in each opening, "plain" or "best"; only in files
+  std::map<std::string, Gap> gaps;    ///< gap over time in each opening, "plain" or "best"; --json leaves it out
 };
 [[nodiscard]] ReleaseRecord record_of(const OpeningResult& release, const std::string& command);
 
 [[nodiscard]] nlohmann::json json_of(const ReleaseRecord& record);
 [[nodiscard]] ReleaseRecord read_release(const nlohmann::json& from);
 [[nodiscard]] std::string text_of(const ReleaseRecord& record);
-/// Draws the gap in the plain opening and in the best opening, and the drive waveforms; the record must have the gaps.
+/// Draws the gap in the plain opening, in which all drives drop to 0 V, and in the best opening, and the drive waveforms; the
+/// record must have the gaps.
 [[nodiscard]] std::string svg_of(const ReleaseRecord& record);
 /// Returns the drive waveforms of the best opening, or else of the plain opening, as CSV that begins at the hold levels. A
 /// header `time_s,<drive>,...` is followed by rows [s, V] with straight lines between them; rows of the same time are a jump.

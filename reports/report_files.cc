@@ -16,7 +16,7 @@ namespace {
 
 const RobustSearchResult& raced(const SearchReport& report) { return std::get<RobustSearchResult>(report.found.result); }
 
-// Adds the files of one part of the report on a search.
+// Adds the files of a part of the report on a search: of its result, or of the simulated devices.
 template <class Part>
 void add(std::vector<ReportFile<SearchReport>>& files, const Part& part, const Part& (*part_of)(const SearchReport&)) {
   for (ReportFile<Part>& file : files_of(part)) {

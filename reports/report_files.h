@@ -22,11 +22,11 @@ struct ReportFile {
 /// trajectory.
 [[nodiscard]] std::vector<ReportFile<ClosingRecord>> files_of(const ClosingRecord& result);
 
-/// Names of the files on simulated devices, by `robustness` or at the end of a search over devices.
+/// Names of the files on simulated devices, from `robustness` or from a search under process variation.
 inline constexpr std::array robustness_files{"robustness.html", "robustness.json", "devices.csv"};
 [[nodiscard]] std::vector<ReportFile<RobustnessReport>> files_of(const RobustnessReport& report);
 
-/// Names of further files of a search over devices.
+/// Names of further files of a search that offers several waveforms for the devices under process variation.
 inline constexpr std::array for_devices_files{"drawing.toml", "drawing.csv", "calibrated.toml", "calibrated.csv", "fast.toml",
                                               "fast.csv",     "soft.toml",   "soft.csv",        "devices.svg"};
 /// Lists the files of a search's result, of the waveforms found (as scenes and as commanded voltages), and of the report on the

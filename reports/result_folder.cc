@@ -60,7 +60,7 @@ ResultFolder::ResultFolder(const fs::path& folder, const std::string& called, co
 
 void ResultFolder::RemoveEmpty::operator()(const fs::path* folder) const {
   std::error_code ignored;
-  fs::remove(*folder, ignored);  // remove() has no effect on a folder with files
+  fs::remove(*folder, ignored);  // remove() keeps a folder that has files
   delete folder;
 }
 

@@ -30,8 +30,8 @@ class ResultFolder {
   void adopt(const std::filesystem::path& stage);
   /// Returns the paths that a file of this name may have in `folder`, among finished and unfinished results, the newest first.
   [[nodiscard]] static std::vector<std::filesystem::path> places(const std::filesystem::path& folder, const std::string& name);
-  /// Returns the final folder of the results of this run: the folder itself. Results of an interrupted run stay in their
-  /// subfolder if the folder has results of an earlier run.
+  /// Returns the final folder of the results of this run: the folder of --out, or the subfolder of unfinished results if the
+  /// run was interrupted and the folder has results of an earlier run.
   [[nodiscard]] std::filesystem::path destination(bool interrupted) const;
   /// Moves the results to destination(). In the folder, they replace results of earlier runs of the same kind: all of `files`,
   /// and unfinished results.

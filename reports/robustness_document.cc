@@ -394,7 +394,7 @@ Document robustness_document(const RobustnessReport& report) {
   if (report.found.devices == 0) return document;
   document.draw = [&report] { return picture_of(report); };
   document.sections.front().parts.emplace_back(internal::all_charts());
-  constexpr std::ptrdiff_t behind_figures = 3;  // number of sections of the page before the scatter plots
+  constexpr std::ptrdiff_t behind_figures = 3;  // number of sections after which the page shows the scatter plots
   document.sections.insert(document.sections.begin() + behind_figures, internal::device_scatter(report));
   return document;
 }

@@ -13,16 +13,16 @@
 
 namespace softland::internal {
 
-/// Returns the name by which reports show a set of waveforms: the file with the waveform that a search over devices found, or
-/// the name in the record.
+/// Returns the name by which reports show a set of waveforms: the file of a waveform found under process variation, or else the
+/// name in the record.
 [[nodiscard]] std::string shown_drive(const std::string& name);
 
 /// Describes the process variation in words: "structure.thickness ± 2 % (normal), ...".
 [[nodiscard]] std::string spread_prose(const DeviceSpread& spread);
 /// Returns a sentence about the errors of the voltage sources that vary between devices; empty for exact sources.
 [[nodiscard]] std::string_view error_prose(const DeviceSpread& spread);
-/// Returns the number of devices that are outside the limits of the model, and the reason for the first of them; empty if all
-/// devices are inside.
+/// Returns the number of devices whose varied values are outside the limits of the model, and the reason for the first of them;
+/// empty if all devices are inside.
 [[nodiscard]] std::string outside_prose(const Robustness& found);
 /// Describes the measurements of a per-device calibration with their errors: "Vdp ± 1 %, frequency ± 0.5 %".
 [[nodiscard]] std::string calibration_prose(const Calibration& calibration);
@@ -31,7 +31,8 @@ namespace softland::internal {
 /// Describes the hold voltages that keep 99 % of the devices closed; empty if they are unknown.
 [[nodiscard]] std::string window_prose(const HoldWindows& windows);
 
-/// Returns the varying quantities of device k, in the units of reports.
+/// Returns the varying quantities of device k for display: in SI units or as factors; jitter as the random time of the first
+/// edge [s].
 [[nodiscard]] std::vector<double> shown_values(const Ensemble& ensemble, std::size_t k);
 /// Returns true if a table has a row for this figure of device_figures. A figure that no closing device has, such as the peak
 /// force on a rigid contact, has no row.

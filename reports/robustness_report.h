@@ -21,7 +21,8 @@
 
 namespace softland {
 
-/// The input of a report. `sensitivity`, `derivatives` and `courses` are for the last set of waveforms, and may be empty.
+/// The input of a report. Three members are for the last set of waveforms and may be empty: `sensitivity`, `derivatives`, and
+/// `courses`, the motions of devices at quantiles of the highest rebound.
 struct RobustnessReport {
   const PreparedScene& nominal;
   const Robustness& found;
@@ -74,7 +75,7 @@ struct RobustnessRecord {
     };
     std::string_view key;
     std::size_t rows = 0, failed_rows = 0;
-    /// Sobol' indices of a figure by varied quantity; none where too many of their simulations failed.
+    /// Sobol' indices of a figure by varied quantity; none if too many of the simulations for the indices failed.
     std::map<std::string, Indices> variables;
   };
   struct Derived {

@@ -85,7 +85,7 @@ struct Measurements {
   Measured frequency{.name = measured_frequency, .due = dimension::frequency};
   // Measured deflection of the contact per volt of the piezo, divided by the contact gap.
   Measured piezo{.name = measured_piezo, .due = dimension::inverse_voltage};
-  // Measured closing time under a voltage step to closing_step times Vdp.
+  // Measured closing time under a voltage step to closing_step times Vdp, the dynamic pull-in voltage.
   Measured time{.name = measured_time, .due = dimension::time};
 
   explicit Measurements(const ExportRequest& request) {
@@ -117,7 +117,8 @@ struct Measurements {
   }
 };
 
-// Returns the relative error of a measurement on a device: that of [calibration], or the default, with a remark.
+// Returns the relative error of a measurement on a device: that of the scene's section [calibration], or a default, with a
+// remark.
 double error_of(const Measured& measured, const std::optional<double>& given, const NoteSink& note) {
   if (given && *given > 0) return *given;
   note(fmt::format("{}: its error is taken to be {}, because [calibration] gives none for {}", measured.said,
@@ -125,9 +126,9 @@ double error_of(const Measured& measured, const std::optional<double>& given, co
   return usual_error;
 }
 
-// Warns about a device that is unlike nearly all devices of [spread], whose standard deviation is `deviation`. The argument
-// `ratio` is the voltage or time unit from the measurement divided by that of the nominal device; `own` is the measured value
-// divided by the nominal value.
+// Warns if the measured device differs from the nominal device by much more than devices with the process variation of [spread]
+// do, whose standard deviation is `deviation`. The argument `ratio` is the voltage or time unit from the measurement divided by
+// that of the nominal device; `own` is the measured value divided by the nominal value.
 void warn_if_strange(const Measured& measured, double own, double ratio, double deviation, const std::optional<double>& error,
                      const NoteSink& note) {
   constexpr double strange = 4;

@@ -25,7 +25,7 @@ struct ExportRequest {
 };
 
 /// Returns the text of the exported file. `note` receives remarks, in lines, such as how the switch closes under the samples;
-/// remarks mark names of fields as requested() does. Throws InvalidRequest and Interrupted.
+/// they mark the names of options by requested() of base/require.h. Throws InvalidRequest and Interrupted.
 [[nodiscard]] std::string exported_text(const SceneFile& scene, const ExportRequest& request, const Progress& progress = {},
                                         const std::function<void(const std::string&)>& note = {});
 
@@ -34,15 +34,15 @@ struct SentFile {
   std::string ending;  ///< end of the exported file's name: ".csv" for all drives, "-main.arb" for one drive
   std::string text;
 };
-/// Returns the files with the signals of a shot in a format of `export`, in volts before the amplifiers of [driver], up to
-/// `end` [s]. Depending on the format, a file holds all drives, or one drive that is not always at 0 V. Throws the exceptions
-/// of exported_text().
+/// Returns the files with the signals of a shot (the voltages of one closing) in a format of `export`, in volts before the
+/// amplifiers of [driver], up to `end` [s]. Depending on the format, a file holds all drives, or one drive that is not always
+/// at 0 V. Throws the exceptions of exported_text().
 [[nodiscard]] std::vector<SentFile> sent_files(const std::string& format, const PreparedScene& scene, const SentSignals& sent,
                                                double end);
 /// Returns all values of SentFile::ending that files for the drives of this scene may have.
 [[nodiscard]] std::vector<std::string> sent_endings(const PreparedScene& scene);
-/// Throws InvalidRequest if sent_files() cannot write these drives in this format, for any waveforms: the format is unknown, is
-/// a circuit model, or needs samples that the [driver] of a drive does not give.
+/// Throws InvalidRequest if sent_files() can write no waveforms of these drives in this format: the format is unknown, is a
+/// circuit model, or needs samples that the [driver] of a drive does not give.
 void require_shots(const std::string& format, const PreparedScene& scene, const std::vector<std::string>& drives);
 
 }  // namespace softland

@@ -51,14 +51,15 @@ struct SearchRecord {
   std::vector<SearchedFamilyResult> families;  ///< results by waveform family; empty unless several families were searched
   std::optional<std::uint64_t> seed;
   std::optional<bool> goal_met, better_than_baseline, plain_step_wins;
-  /// Factor by which the best waveform exceeds the plain step in voltage or slew rate, whichever is larger.
+  /// Largest relative excess of the best waveform over the plain step in impact velocity, peak contact force or impact energy;
+  /// 0: none.
   double harder_than_step = Metrics::unset;
   double evaluations = Metrics::unset;
   RunRecord baseline;                                   ///< run under the plain step, with which the search compares
   std::map<std::string, double> parameters;             ///< parameters of the best waveform, by "drive.name" of the parameter
   std::map<std::string, std::array<double, 2>> bounds;  ///< lower and upper bound between which each parameter was searched
   std::vector<ConfirmationRecord> checks;
-  double evaluations_of_modes = Metrics::unset;  ///< number of further evaluations that simulated several numbers of modes
+  double evaluations_of_modes = Metrics::unset;  ///< number of further evaluations, each with several numbers of modes
   SearchCourse course;
   std::optional<RobustFindings> robust;
   std::optional<DevicesFindings> devices;

@@ -25,12 +25,12 @@ struct SearchReport {
   ClosingRecord result = {};
 };
 
-/// Adds the report on devices under process variation. After a search that minimises one statistic of the devices, this takes
-/// further simulations, which `progress` watches; an interruption marks the search as interrupted.
+/// Adds the report on devices under process variation. A search that minimises one statistic of the devices needs further
+/// simulations for this, which `progress` watches; an interruption marks the search as interrupted.
 void add_devices(SearchReport& report, const PlannedSearch& search, const std::string& command, const Progress& progress);
 
-/// Adds the record of the result. `folder` is the final folder of the files, for the command line that suggests how to use the
-/// measurements of a device.
+/// Adds the record of the result. `folder` is the final folder of the files: the record suggests a command that scales the
+/// waveform in the folder for a measured device.
 void add_result(SearchReport& report, const PlannedSearch& search, const std::filesystem::path& folder,
                 const std::string& command);
 

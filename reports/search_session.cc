@@ -64,7 +64,7 @@ void SearchSession::begin(const FamilyColumns& columns) {
   if (places_ == nullptr) places_ = &own_.emplace(output_, search_, known_, columns);
   search_.options.memory = &places_->evaluations();
   FamilyColumns of_log = columns;
-  // Waveform families that the search adds itself are not in evaluations.csv.
+  // evaluations.csv has only the requested waveform families, not those that a search under process variation adds.
   of_log.families.resize(families_of(search_.options.family).size());
   log_.emplace(places_->folder(), std::move(of_log));
 }

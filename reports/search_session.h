@@ -65,15 +65,15 @@ class SearchSession {
   SearchSession(StoredSearch& search, const std::optional<KnownSearch>& known, const SearchOutput& output,
                 SearchPlaces* places = nullptr);
 
-  /// Opens result folder, database file and log, and gives the search the evaluations in the database file. Call it when the
-  /// parameters of the searched waveforms are known. Throws the exceptions of ResultFolder, EvaluationStore and SearchLog.
+  /// Opens result folder, database file and log; the search then reuses evaluations that the database file holds. Call it when
+  /// the parameters of the searched waveforms are known. Throws the exceptions of ResultFolder, EvaluationStore and SearchLog.
   void begin(const FamilyColumns& columns);
   /// Adds an evaluation to the log. Throws the error if the database file could not be written.
   void evaluated(const Evaluation& evaluation);
   void improved(const SceneFile& best) { log_->improved(best); }
   /// Closes the database file; call it when the search has ended.
   void close();
-  /// Returns the folder that the result files have at the end.
+  /// Returns the final folder of the result files.
   [[nodiscard]] std::filesystem::path destination(const SearchReport& report) const;
   /// Adds the costs of all evaluations, and the command lines that reproduce the result, to the record of the search.
   void add_log(SearchRecord& search, const SearchReport& report) const;

@@ -51,8 +51,8 @@ struct TuningReport {
   std::optional<std::string> broken_assumption = {};
   double step_closing_time = 0;  ///< time of first touch under the plain step on the nominal device [s]
   Approach approach = Approach::fast;
-  double step_permanent_contact = Metrics::unset;  ///< time to permanent contact under the plain step [s]; set if the approach
-                                                   ///< to the contact is quasi-static
+  /// Time to permanent contact under the plain step [s]; NaN unless the waveform approaches the contact quasi-statically.
+  double step_permanent_contact = Metrics::unset;
   int bounce_free_in_a_row = 0;
   bool spread_assumed = false;
   std::uint64_t seed = 1;
