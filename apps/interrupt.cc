@@ -17,7 +17,7 @@ extern "C" void on_signal(int number) {
 
 void catch_signals() {
   struct sigaction action {};
-  action.sa_handler = on_signal;  // without SA_RESTART, a signal interrupts a write to a full pipe
+  action.sa_handler = on_signal;  // SA_RESTART is not set: a signal then ends a write that waits because the pipe is full
   sigemptyset(&action.sa_mask);
   for (const int number : stopping_signals) {
     struct sigaction before {};

@@ -10,8 +10,8 @@ namespace softland::apps {
 
 class LineReader {
  public:
-  /// Reads from a descriptor, which stays open. A line of more than `longest` bytes is cut to `longest` + 1 bytes, which marks
-  /// the line as too long; the rest of the line is skipped.
+  /// Reads from a file descriptor, which stays open. A line of more than `longest` bytes is cut to `longest` + 1 bytes, which
+  /// marks the line as too long; the rest of the line is skipped.
   explicit LineReader(int descriptor, std::size_t longest);
 
   enum class End { line, closed, late };

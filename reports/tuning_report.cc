@@ -28,7 +28,7 @@ std::string bounces_prose(int count) {
   return count == 0 ? "without a bounce" : count == 1 ? "with one bounce" : fmt::format("with {} bounces", count);
 }
 
-// Describes the record of a closing: "touched at 41.2 µs with 3 bounces".
+// Describes the contact record of a closing: "touched at 41.2 µs with 3 bounces".
 std::string record_prose(const ContactRecord& record) {
   if (!record.error.empty()) return "gave no record: " + record.error;
   const std::optional<double> touch = first_touch(record);

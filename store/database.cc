@@ -204,7 +204,7 @@ bool Statement::step() {
   const int code = sqlite3_step(handle_.get());
   if (code == SQLITE_ROW) return true;
   if (code != SQLITE_DONE) {
-    // Resets the statement at the end; after a reset, the message of the connection is no longer that of the failed step.
+    // Resets the statement at the end of this scope: a reset before that would change SQLite's message about a failed step.
     struct Reset {
       Statement* statement;
       ~Reset() { statement->reset(); }

@@ -28,7 +28,7 @@ class DamagedStore : public InvalidInput {
 class StatementFailed : public DamagedStore {
  public:
   StatementFailed(const std::string& message, std::string reason) : DamagedStore(message), reason_(std::move(reason)) {}
-  /// Returns SQLite's message about the failure.
+  /// Returns SQLite's message about why the statement failed.
   [[nodiscard]] const std::string& reason() const { return reason_; }
 
  private:
@@ -83,7 +83,7 @@ class Database {
 
   /// Returns true if the path still leads to the open database file, which was not removed, moved or replaced.
   [[nodiscard]] bool is_at(const std::filesystem::path& path) const;
-  /// Makes SQLite keep the write-ahead log on closing: a log of this name belongs to another database by now.
+  /// Makes SQLite leave a write-ahead log at the path when it closes the database: the log belongs to another database by now.
   void leave_log() const;
   /// Writes the whole content of the database into a new file, which must be empty or missing.
   void copy_to(const std::filesystem::path& file) const;

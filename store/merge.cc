@@ -111,7 +111,7 @@ std::vector<std::string> notes_on(const Parts& parts, const StoredPlan& plan, st
 // Writes the rows of all merged files in the order of their points.
 std::int64_t write_rows(const Database& database, std::int64_t number, Parts& parts, const StoredPlan& plan, std::int64_t session,
                         const Progress& progress) {
-  // Rows of equal points are read in the order in which the files to merge are given.
+  // The file with the smallest next point is read first; of files with the same next point, the one given first.
   const auto later = [&](std::size_t a, std::size_t b) {
     return std::pair(parts[a]->row().point, a) > std::pair(parts[b]->row().point, b);
   };

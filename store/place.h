@@ -18,8 +18,8 @@ inline constexpr std::int64_t store_application = 0x536F4C61;
 /// Throws InvalidInput with path and reason unless the path is a regular file that begins as a study database does.
 void require_store(const std::filesystem::path& path);
 
-/// Throws InvalidInput if a new database file at the path would replace an existing file, or if a file has the name of its log
-/// or journal.
+/// Throws InvalidInput if a new database file at the path would replace an existing file, or if SQLite would replace a log or
+/// journal left beside the path.
 void require_room(const std::filesystem::path& path);
 
 /// Locks the database file against other writers, also under another name of the file. Throws InvalidInput with a description

@@ -32,8 +32,8 @@ int authorize(void*, int action, const char* first, const char* second, const ch
   return SQLITE_DENY;
 }
 
-// Returns true when the parentheses of an SQL expression are balanced, none closes an outer parenthesis, and the expression
-// contains no comment and no second statement. Text in quotes is skipped.
+// Returns true if an SQL expression stays one expression inside the parentheses "WHERE (...)": its parentheses are balanced,
+// none closes an outer one, and it has no comment and no second statement. Text in quotes is skipped.
 bool is_closed(std::string_view where) {
   int depth = 0;
   for (std::size_t i = 0; i < where.size(); ++i) {

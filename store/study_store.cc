@@ -57,7 +57,8 @@ Shard shard_from(std::string_view text) {
 namespace {
 
 constexpr std::size_t rows_that_wait = 16 * rows_per_commit;
-constexpr std::uintmax_t checked_size = std::uintmax_t{64} << 20;  // size [byte] up to which a file is checked when opened
+// Size [byte] up to which a file's whole content is checked for damage when the file is opened.
+constexpr std::uintmax_t checked_size = std::uintmax_t{64} << 20;
 
 void require_only_name(const fs::path& path) {
   struct stat found {};

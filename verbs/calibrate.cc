@@ -53,7 +53,8 @@ void read_errors(const std::string& option, const std::string& list, Identificat
   }
 }
 
-// Reads the multiples of Vdp in --steps, such as "1.1,1.25".
+// Reads the voltage steps of --steps under which closing times are measured, as multiples of the dynamic pull-in voltage Vdp:
+// "1.1,1.25".
 void read_steps(const std::string& option, const std::string& list, std::vector<double>& all) {
   std::vector<double> steps;
   for (const std::string& one : split(list, ',')) {

@@ -106,7 +106,7 @@ double precision_of(const Switch& model) { return model.film_states() > 0 ? film
 
 ElectrodePullIn quick_pull_in(const Switch& model, std::size_t electrode, Bias bias, const Progress& progress) {
   if (model.film_states() == 0) return electrode_pull_in(model, electrode, bias, progress);
-  constexpr double tolerance = 1e-4;  // relative tolerance of the integrator
+  constexpr double tolerance = 1e-4;  // relative tolerance of the integrator, ten times finer than film_precision
   ElectrodePullIn found{.statically = static_pull_in(model, electrode, bias)};
   found.dynamically = dynamic_pull_in(model, electrode, found.statically, bias, progress, tolerance, film_precision);
   return found;
@@ -227,8 +227,8 @@ Outcome run(const Setting& setting, const CheckRequest&) {
   add_rest_shape(record, p.scene.device);
   add("natural frequencies", fmt::format("{}", fmt::join(frequencies, ", ")));
   if (p.model.has_contact()) add("in-contact period", quantity(p.model.basis().in_contact_period(), "s", 4));
-  std::map<std::string, PullInVoltages>
-      searched_to;  // pull-in voltages by electrode, from which a search computes missing voltage limits
+  // Pull-in voltages by electrode: a search takes the missing voltage limits of the scene from them.
+  std::map<std::string, PullInVoltages> searched_to;
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
     const std::string& name = p.scene.device.electrodes[k].name;
     if (!pulls_in(p.scene.device, k)) {

@@ -62,7 +62,8 @@ struct OptionRow {
   std::string type = {};     ///< type of the option in Python, "float | str | None"
   std::string value = {};    ///< default value of the option in Python, "None"
   std::string note = {};     ///< text in front of the help `about` in Python, such as the unit of a number
-  /// Python expression that returns the option's texts for Arguments, such as "_quantity(impact_velocity, 'm/s')".
+  /// Python expression that converts the argument of the method to the option's texts, such as "_quantity(impact_velocity,
+  /// 'm/s')".
   std::string told = {};
   bool is_positional = false;
 };

@@ -38,7 +38,7 @@ void add_numbers(Numbers& numbers, const std::string& key, const json& value) {
   if (!value.is_array() || value.size() > longest_list) return;
   for (std::size_t i = 0; i < value.size(); ++i) {
     const json& one = value[i];
-    // True for the description of an omitted or chosen physical effect.
+    // The description of an omitted or chosen physical effect is stored under the name of the effect, not under its position.
     const bool is_choice = one.is_object() && one.contains("section") && one.contains("choice");
     if (one.is_number() || is_choice)
       add_numbers(numbers, key + "." + (is_choice ? text(one["section"]) + "." + text(one["choice"]) : std::to_string(i + 1)),

@@ -179,8 +179,8 @@ Outcome run(const Setting& setting, const PullInRequest& request) {
   const Progress& progress = setting.progress;
   PullInMemory remembered;
   const PullInFinder find_pull_in = remembered.finder(file);
-  // Find the pull-in voltages before all other results, since a waveform in units of Vdp needs them; an interruption then does
-  // not lose them.
+  // Find the pull-in voltages before all other results: a waveform in multiples of the pull-in voltage Vdp needs them, and an
+  // interruption then does not lose them.
   const Scene scene = read_scene(file);
   const bool leaves_choices = scene.auto_modes || scene.simulate.automatic_effects;
   PreparedScene prepared = leaves_choices ? prepare_and_choose(file, false, progress) : prepare_statics(file);
@@ -192,7 +192,7 @@ Outcome run(const Setting& setting, const PullInRequest& request) {
   try {
     progress.throw_if_stopped();
     if (!leaves_choices) {
-      // Voltages of all drives in the scene, including the values of --bias.
+      // Constant voltages of all drives before t = 0, including the values of --bias.
       const std::vector<double> standing = prepared.scene.standing;
       prepared = prepare(file, false, progress, find_pull_in);
       prepared.scene.standing = standing;

@@ -66,8 +66,8 @@ std::string in_keywords(std::string words, const Study& study) {
   return words;
 }
 
-// Returns the Python call of a verb. A verb whose computation is written in Python gets the texts of the options, and Python
-// objects unchanged.
+// Returns the Python expression by which the method of a verb starts the computation. A verb whose computation is written in
+// Python gets the texts of the options, and Python objects unchanged.
 std::string call(const Study& study, const std::string& told, const std::string& objects) {
   return study.ask && study.returns == std::string_view("Outcome")
              ? fmt::format("self._study(\"{}\", {}, progress{})", study.name, told, objects)

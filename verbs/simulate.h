@@ -11,7 +11,8 @@ namespace softland::verbs {
 struct SimulateRequest {
   bool errors = true;
   bool certified = false;
-  int jobs = one_per_core();  ///< number of threads for the perturbed runs of a certified closing
+  /// Number of threads for the repeated runs by which --certify estimates how reliable the figures are.
+  int jobs = one_per_core();
 };
 /// Reads the options of `simulate` from the arguments. Throws InvalidRequest.
 [[nodiscard]] SimulateRequest simulate_request(const Arguments& arguments);

@@ -59,7 +59,7 @@ void read_touch(const std::string& option, const std::string& text, std::optiona
 }
 
 void read_patience(const std::string& option, const std::string& text, std::chrono::milliseconds& patience) {
-  constexpr double longest = 1e6;  // longest time that the option accepts [s]
+  constexpr double longest = 1e6;  // longest time that the option --timeout accepts [s]
   const double seconds = told_quantity(option, text, dimension::time);
   require_request(seconds > 0 && seconds <= longest,
                   [&] { return fmt::format("{} {}: must be above 0 s and at most {} s", option, text, number_text(longest)); });

@@ -55,7 +55,7 @@ ModeKeys keys_of(const ModesRequest& r) {
   ModeKeys keys{
       .axis = r.axis, .direction = r.direction, .mass_normalised = r.mass_normalised, .prefix = "--", .word_separator = '-'};
   keys.length_unit = unit_of("--length-unit", r.length_unit, dimension::length);
-  // A model in mm, s and N has masses in tonnes.
+  // The unit t is allowed because a model in mm, s and N has masses in tonnes.
   keys.mass_unit = r.mass_unit == "t" ? std::optional(1e3) : unit_of("--mass-unit", r.mass_unit, dimension::mass);
   if (!r.mass.empty()) {
     keys.mass = told_quantity("--mass", r.mass, dimension::mass);

@@ -39,8 +39,8 @@ constexpr const char* log_file = "closings.jsonl";
 
 using verbs::TuneRequest;
 
-// Writes the options about voltage sources into [driver] of the scene. Refuses a file format that cannot hold the shots before
-// any search begins.
+// Writes the options about voltage sources into [driver] of the scene. Throws InvalidRequest, before any search begins, for a
+// file format that cannot hold the voltages.
 void set_sources(SceneFile& file, const TuneRequest& request, Actuator actuator) {
   const PreparedScene drawn = prepare_and_choose(file, true);
   std::vector<std::string> shaped;
@@ -65,7 +65,7 @@ class Tuning {
  public:
   Tuning(const Common& common, const SceneFile& file, const TuneRequest& request);
 
-  /// Reads the closings of the device in the log of an earlier run of this tuning.
+  /// Learns from the closings of the device in the log of an earlier run of this tuning.
   void learn_log();
   /// Closes the device until enough closings in a row are bounce-free, the largest number of closings is reached, or the
   /// laboratory stops.
