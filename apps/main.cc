@@ -1,4 +1,4 @@
-// Main program: parses the command line and runs the requested verb.
+// Main program: parses the command line and runs the requested verb (subcommand).
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -78,7 +78,7 @@ bool parse(CLI::App& app, std::vector<std::string> words, const std::vector<std:
 
 int run(int argc, char** argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
-  // The program runs the verb `optimize` when it is called by that name.
+  // A link to the program with the name "optimize" runs the verb `optimize`.
   if (std::filesystem::path(argv[0]).filename() == "optimize") words.insert(words.begin(), "optimize");
 
   Common common{.command = command_line(words), .stop = &stop_requested()};

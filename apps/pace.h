@@ -13,7 +13,7 @@ struct Pace {
   std::int64_t computed = 0, reused = 0;
   /// Number of results of earlier explorations, an upper bound of the points that can still be copied.
   std::int64_t earlier = 0;
-  double seconds = 0;  ///< time since the first point that had to be computed was begun [s]
+  double seconds = 0;  ///< time since the first point without an earlier result was begun [s]
 
   /// Returns the estimated number of points still to compute, if the share of copied points stays as it is, and at most
   /// `earlier` points are copied. NaN before the first point is done.

@@ -40,7 +40,7 @@ void open_standard_streams() {
 
 void print(std::string_view text) {
   const std::string clean = printable(text);
-  // Time between two checks for a request to stop; longest wait for a reader after that request [ms].
+  // Time between two checks for a request to stop; longest wait, after that request, for a reader of standard output [ms].
   constexpr int check_interval = 200, patience = 600;
   int waited = 0;
   for (std::string_view rest = clean; !rest.empty();) {

@@ -1,4 +1,5 @@
-// The evaluator for Python: it computes the figures of closings of devices from arrays of the devices' varied values.
+// The evaluator for Python: it simulates the closings of devices, given by arrays of their varied values, and returns figures
+// of merit.
 #include "studies/devices/evaluator.h"
 
 #include <fmt/format.h>

@@ -82,7 +82,7 @@ class PythonWaveform final : public OwnWaveform {
   mutable FirstError first_;
 };
 
-/// An objective that a Python function computes from the figures of a closing and of an actuation by a plain step.
+/// An objective that a Python function computes from the figures of merit of a closing and of the closing under a plain step.
 class PythonObjective final : public OwnObjective {
  public:
   PythonObjective(std::string name, pybind11::object value, bool lands_first);

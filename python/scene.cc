@@ -151,7 +151,8 @@ py::tuple shapes_of(const PreparedScene& p, int places) {
 
 ClosingRecord record_of(const PyClosing& c) { return softland::record_of(*c.prepared, c.closing, c.command); }
 
-// Returns a dict of (value, error, unit) by figure, in the order of the table of figures. A yes or no has neither error nor unit.
+// Returns a dict of (value, error, unit) by figure of merit, in the order of the table of figures. A figure that is yes or no
+// has neither error nor unit.
 py::dict figures_of(const Closing& closing) {
   py::dict all;
   for (const Figure& figure : asked_among(all_figures, closing.metrics.asked)) {

@@ -17,7 +17,7 @@
 
 namespace softland::python {
 
-/// A scene file and its prepared forms, which are reused until the scene changes.
+/// A scene file, and the scene prepared for simulation, which is reused until the scene file changes.
 struct PyScene {
   SceneFile file;
   std::filesystem::path directory;  ///< folder to which relative paths in the scene refer

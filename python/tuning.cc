@@ -1,4 +1,5 @@
-// Tunings of a waveform on a device for Python: the shots of a session, and a simulated device that answers shots.
+// Tunings of a waveform on a device for Python: the shots (voltages for one closing each) of a tuning, and a simulated device
+// that answers them.
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 

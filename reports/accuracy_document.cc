@@ -1,4 +1,4 @@
-// Diagrams and document of `softland accuracy`.
+// Diagrams and document of `softland accuracy`, which compares errors and computing times of integrators.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -79,7 +79,7 @@ void add_drive_rows(ReportTable& table, const ClosingRecord& result, bool pair) 
   if (result.best.waveforms.size() < 2) return;
   for (const auto& [drive, found] : result.best.waveforms) {
     const DriveScale scale = drive_scale(drive);
-    if (scale.unit.empty()) continue;  // the waveform is a factor without unit, which no voltage source supplies
+    if (scale.unit.empty()) continue;  // the waveform is a factor of the dispersion force, which no voltage source supplies
     const DriveDemand own = drive_demand(found, scale.rest);
     const DriveDemand step = drive_demand(waveform(result.baseline(), drive), scale.rest);
     const auto add = [&, name = &drive](const Figure& what, const std::string& value, const std::string& before) {

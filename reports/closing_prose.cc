@@ -107,7 +107,7 @@ std::string opening_clause(const Actor& actor, const FigureValues& figures, cons
                      quantity(settling, "s"), quantity(figures[&Metrics::static_deflection], "m"));
 }
 
-// Describes how the switch opens on command in a run; empty if no drive commands an opening.
+// Describes how the switch opens on command in a run; empty if no waveform has a command to open.
 std::string opening_on_command(const FigureValues& figures) {
   const double command = figures[&Metrics::open_command], opening = figures[&Metrics::opening_time];
   if (!std::isfinite(command)) return {};

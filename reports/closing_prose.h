@@ -1,4 +1,4 @@
-// Clauses that describe a closing from the figures of one run.
+// Clauses for the sentences of reports: they describe a closing by the figures of merit of one run.
 #pragma once
 
 #include <optional>

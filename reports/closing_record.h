@@ -110,8 +110,8 @@ void require_reportable(const nlohmann::json& record);
 [[nodiscard]] ClosingRecord read_closing(const nlohmann::json& from);
 
 namespace internal {
-/// Returns a figure by number of modes as JSON: {"5": number, "10": ..., "20": ..., "converged": number}; a number that is not
-/// available is null.
+/// Returns a number that was computed with several numbers of modes, as JSON: {"5": number, "10": ..., "20": ..., "converged":
+/// number}; a number that is not available is null.
 [[nodiscard]] nlohmann::json by_modes_json(const ByModes& found);
 [[nodiscard]] std::optional<ByModes> read_by_modes(const nlohmann::json& found);
 }  // namespace internal

@@ -7,7 +7,7 @@
 //
 // CSV: two rows of the same time are a jump. The resistance is linear between rows, and empty while the contact is open.
 // VCD: times are multiples of 1 ps. The resistance has steps of at most 5 %, and is open_resistance while the contact is open.
-// Each device is a module. There is no date: the same record gives the same bytes.
+// Each device is a module. There is no date: equal contact states give equal bytes.
 // PWL: each channel is a source of 0 V and 1 V. An edge takes 1 ns, or half of its shorter neighbouring state if that is less.
 // The resistance is a source of one volt per ohm.
 #pragma once

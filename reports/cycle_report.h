@@ -1,4 +1,5 @@
-// The results of `softland cycle`: JSON with SI units in the names, tables for a terminal, a page and a picture.
+// The results of `softland cycle`, which closes and opens a switch many times: JSON with SI units in the names, tables for a
+// terminal, a page and a picture.
 #pragma once
 
 #include <array>

@@ -37,8 +37,8 @@ bool agrees(const FigureDerivatives& figure, const DriveRobustness& drive) {
   return figure.deviation <= most_apart * sampled && sampled <= most_apart * figure.deviation;
 }
 
-// Returns the cell of a figure and a varied quantity: relative derivative, and change for one standard deviation: "+0.52 %/%,
-// +1.2 µs".
+// Returns the table cell of a figure and a varied quantity: relative derivative, and change for one standard deviation: "+0.52
+// %/%, +1.2 µs".
 std::string derivative_cell(const Derived::Of& figure, const std::string& variable) {
   const auto slope = figure.by.find(variable);
   if (!figure.agrees || slope == figure.by.end() || !std::isfinite(slope->second.derivative)) return "—";

@@ -99,9 +99,10 @@ std::string shown_name(const DevicesFindings& d, const DevicesFindings::Row& row
   return row.name == for_the_devices ? "best.toml" : is_calibrated ? "per-device calibration: " + row.name : row.name;
 }
 
-constexpr double least_share = 0.0005;  // least share of failing devices that is shown
+// Least share of devices with a failure, such as a switch that stays open, for which a table has a column.
+constexpr double least_share = 0.0005;
 
-// Returns true if this share of devices is large enough in any row of the table to deserve a column.
+// Returns true if this share of the devices is large enough for a column in any row of the table.
 bool any_of(const std::vector<DevicesFindings::Row>& rows, double DevicesFindings::Row::*share) {
   return std::ranges::any_of(rows, [&](const DevicesFindings::Row& row) { return row.*share > least_share; });
 }

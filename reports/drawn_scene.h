@@ -44,7 +44,8 @@ struct DrawnScene {
   };
   struct Contact {
     std::string name;
-    double at = Metrics::unset;   ///< distance of the contact from the clamped end [m]; NaN: at the tip, or at the middle
+    /// Distance of the contact from the clamped end [m]; NaN: tip, or middle of a plate or of a beam with two clamps.
+    double at = Metrics::unset;
     double gap = Metrics::unset;  ///< rest gap of the contact [m]
     bool far_side = false;
   };

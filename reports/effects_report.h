@@ -1,4 +1,5 @@
-// The results of `softland effects`: JSON with SI units in the names, and a table for a terminal.
+// The results of `softland effects`, which leaves out each physical effect of the model in turn: JSON with SI units in the
+// names, and a table for a terminal.
 #pragma once
 
 #include <nlohmann/json.hpp>

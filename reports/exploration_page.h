@@ -1,4 +1,4 @@
-// The parts of a page on an exploration, computed from the points of the exploration.
+// The parts of a page on an exploration of a design space, computed from its points, the simulated variants of a scene.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Formats the figures of a result as text, one by one, for the tables of every report.
+// Formats the figures of merit of a result as text, one by one, for the tables of every report.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// The results of `softland fit`: JSON with SI units, and a document.
+// The results of `softland fit`, which fits unknown values of a scene to measurements: JSON with SI units, and a document.
 #pragma once
 
 #include <nlohmann/json.hpp>

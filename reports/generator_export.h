@@ -25,8 +25,8 @@ struct Sampling {
   std::optional<std::string> marker;     ///< time at which the sync output of the generator falls, as text
 };
 
-/// Returns the voltage drives to export: the drive `named`, or all drives that are not always at 0 V. Throws InvalidInput for a
-/// name that is not a voltage drive.
+/// Returns the drives (electrodes and piezos) to export: the drive `named`, or all drives that are not always at 0 V. Throws
+/// InvalidInput for any other name.
 [[nodiscard]] std::vector<std::string> exported_drives(const PreparedScene& prepared, const std::string& named);
 
 /// Returns the factor from the volts at the generator to the volts at the switch: that of `sampling`, else that of the drive in

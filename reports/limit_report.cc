@@ -46,7 +46,8 @@ TableRow least_row(const std::string& name, const LeastTime& least) {
           least.from_start ? "found from the waveform of --start" : ""};
 }
 
-// Returns a table of the least closing times of any waveform over a varied quantity, whose values `name` formats.
+// Returns a table of the least closing times of any waveform, with a row per value of a limit, such as the peak voltage; `name`
+// formats this value.
 template <class Name>
 ReportTable list_table(const char* title, const std::vector<LeastTime>& all, Name name) {
   ReportTable table{.head = {title, "least time", {"", "words"}}, .rows = {}};

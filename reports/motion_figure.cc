@@ -27,7 +27,7 @@ constexpr double right_end = 520, detail_left = 650,
 constexpr double figure_width = 820;
 constexpr double detail_top = 6, contact_wide = 12;
 
-// A run with a recorded motion, and its role in the figure.
+// A run with a recorded motion, and the role that sets the style of its lines.
 struct ShownRun {
   const char* role;
   std::string label;
@@ -290,7 +290,8 @@ json run_json(const ShownRun& run, const MotionView& view) {
           {"x", view.x_of(m)},        {"places", places}};
 }
 
-// Returns the duration of the highest rebound [s]; without rebounds, a fiftieth of the run.
+// Returns the duration of the highest rebound [s], which sets the slowest speed of the animation; without rebounds, a fiftieth
+// of the run.
 double slowest_stretch(const std::vector<ShownRun>& runs) {
   const Rebound* highest = nullptr;
   for (const ShownRun& run : runs) {

@@ -1,4 +1,4 @@
-// The origin of the record of a study, as every JSON and every page states it.
+// The origin of a result (verb, program, machine, command line and scene), as every JSON and every page states it.
 #pragma once
 
 #include <nlohmann/json.hpp>

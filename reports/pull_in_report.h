@@ -19,7 +19,8 @@ namespace softland {
 
 inline constexpr const char* no_open_state = "no pull-in voltage: the switch has no open state";
 
-/// The pull-in and release voltages of an electrode while the other drives have their constant levels of bias_of() [V].
+/// The pull-in and release voltages of an electrode [V] while the other drives have the constant voltages of the scene
+/// (bias_of()).
 struct PullInRecord {
   double static_pull_in = Metrics::unset, dynamic_pull_in = Metrics::unset, release = Metrics::unset,
          pulled_through = Metrics::unset;

@@ -31,7 +31,7 @@ using nlohmann::json;
 struct Count {
   double& value;
 };
-/// A number, or a map of numbers, of which null in JSON means infinite.
+/// A number, or a map of numbers; null in JSON means infinite.
 template <class T>
 struct OrInfinite {
   T& value;

@@ -28,7 +28,7 @@ json without_curves(json record) {
 }
 
 json parse_record(std::string_view content, const std::string& name) {
-  // Results of the program are 6 levels deep; code that reads a record recurses into the levels.
+  // Deepest nesting of JSON that is read, since reading recurses into the levels; results of the program have 6 levels.
   constexpr int deepest = 64;
   const auto watch_depth = [&](int around, json::parse_event_t event, const json&) {
     const bool opens = event == json::parse_event_t::object_start || event == json::parse_event_t::array_start;

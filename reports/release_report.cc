@@ -30,7 +30,7 @@ using nlohmann::json;
 constexpr const char* plain_prose = "plain opening";
 constexpr double curve_tolerance = 1e-4;  // largest error of the piecewise linear waveforms, as a share of the peak voltage
 
-// Returns the signals of all voltage drives in an opening, by name of the drive.
+// Returns the signals of all electrodes and piezos in an opening, by name.
 std::map<std::string, Signal> voltages(const OpeningResult& r, const Opening& o) {
   std::map<std::string, Signal> all;
   const std::vector<std::string> names = r.given.drive_names();

@@ -1,4 +1,5 @@
-// The results of `softland release`: JSON with SI units in the names, a table for a terminal, the drives as CSV, and a picture.
+// The results of `softland release`, which opens a closed switch without residual vibration: JSON with SI units in the names, a
+// table for a terminal, the drive waveforms as CSV, and a picture.
 #pragma once
 
 #include <map>

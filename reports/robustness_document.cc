@@ -1,4 +1,4 @@
-// The document of `softland robustness` with its diagrams.
+// The document of `softland robustness`, which simulates waveforms on devices under process variation, with its diagrams.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// The results of `softland robustness`: JSON with SI units in the names, one line per device as CSV, and a document.
+// The results of `softland robustness`, which simulates waveforms on devices under process variation: JSON with SI units in the
+// names, one line per device as CSV, and a document.
 #pragma once
 
 #include <cstddef>
@@ -48,7 +49,8 @@ struct RobustnessRecord {
   struct Varied {
     std::string name;
     std::vector<std::string> keys;
-    std::string distribution, unit;  ///< distribution of the quantity in words; unit of the quantity's first key
+    /// Distribution of the quantity in words; unit of the first scene key that the quantity varies.
+    std::string distribution, unit;
     bool is_factor = true;
     double mean = Metrics::unset, deviation = Metrics::unset;
   };

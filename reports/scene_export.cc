@@ -195,8 +195,8 @@ std::vector<Waveform> waveforms_of(const PreparedScene& p, const Measurements& m
   return own;
 }
 
-// Returns the waveforms of the drives whose source has a number of bits, as integers; `note` receives the names of the other
-// drives.
+// Returns the waveforms as a generator's integers, for drives whose source has a number of bits; `note` receives the names of
+// the other drives.
 std::map<std::string, Coded> coded(const PreparedScene& p, const SentSignals& sent, const NoteSink& note) {
   std::map<std::string, Coded> all;
   const std::vector<std::string> names = p.drive_names();

@@ -31,8 +31,8 @@ struct SearchCourse {
   Points evaluations;      ///< points (index, minimised value) of every evaluation; the value is NaN for an infeasible waveform
 };
 
-/// The least closing time of any waveform for the same drives and limits, with at most the impact velocity of the best
-/// waveform.
+/// The least closing time of any waveform on the same electrodes and piezos, within the same voltage limits, with at most the
+/// impact velocity of the best waveform.
 struct TouchLimit {
   /// Least closing time [s], permitted impact velocity [m/s].
   double least_time = Metrics::unset, impact_velocity = Metrics::unset;

@@ -25,7 +25,7 @@ void require_value(bool holds, std::string_view key, const json& value, std::str
   require(holds, [&] { return fmt::format("{} = {}: {}", key, shown(value), rule); });
 }
 
-// Throws InvalidInput for an unknown key: a record with a misspelt key would otherwise mean a contact that stayed open.
+// Throws InvalidInput for an unknown key: a contact record with a misspelt key would otherwise mean a contact that stayed open.
 void require_known(const json& object, const std::string& path, std::initializer_list<std::string_view> known) {
   for (const auto& [key, value] : object.items()) {
     require(std::find(known.begin(), known.end(), key) != known.end(), [&key = key, &path, &known] {

@@ -14,7 +14,7 @@ namespace softland {
 inline constexpr const char* origin_key = "tuning";
 
 /// The log file closings.jsonl: a line on the tuned device, a line with the candidate waveforms from which the tuning begins,
-/// then a line for each shot with its record.
+/// then a line for each shot (voltages of one closing) with its contact record.
 class TuningLog {
  public:
   struct Closing {

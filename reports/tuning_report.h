@@ -84,8 +84,8 @@ struct TuningReport {
 [[nodiscard]] TunedBelief tuned_belief(const nlohmann::json& written);
 /// Returns one line on the last closing of a tuning and the prediction for the next closing.
 [[nodiscard]] std::string closing_prose(const TuningReport& report);
-/// Returns the report on a tuning, with the estimate of the device, the measured and the predicted record of every closing, and
-/// the voltages of the kept and the proposed waveform.
+/// Returns the report on a tuning, with the estimate of the device, the measured and the predicted contact record of every
+/// closing, and the voltages of the kept and the proposed waveform.
 [[nodiscard]] Document tuning_document(const TuningReport& report);
 
 }  // namespace softland

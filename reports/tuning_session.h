@@ -1,8 +1,11 @@
-// A session runs a tuning from its first shot to its last: it proposes the next shot, reads the record of that shot, and stores
-// shot and record. Instruments, a person or a function apply the shots to the device.
+// A session runs a tuning from its first shot (the voltages of one closing) to its last: it proposes the next shot, reads the
+// contact record of that shot, and stores both. Instruments, a person or a function apply the shots to the device.
 //
 //   TuningSession tuning(scene, options);
-// each closing is on the disk before the next shot
+//   tuning.keep("closings.jsonl", false);                  // each closing is on the disk before the next shot
+//   tuning.begin();
+//   while (tuning.learn_kept()) {}                         // continues an earlier tuning
+//   while (!tuning.ends(usual_closings)) tuning.learn(measured(tuning.commanded()));
 #pragma once
 
 #include <filesystem>

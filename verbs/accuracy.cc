@@ -1,4 +1,5 @@
-// Verb `accuracy`: errors of the figures against the computing time of a closing.
+// Verb `accuracy`: compares the errors of the figures of merit with the computing time of a closing, for several settings of
+// the integrator.
 #include "studies/closing/accuracy.h"
 
 #include <algorithm>

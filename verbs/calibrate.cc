@@ -1,5 +1,5 @@
-// Verb `calibrate`: ranks the measurable figures of a device by how well they predict the waveform that closes the device
-// softly.
+// Verb `calibrate`: ranks the quantities that can be measured on a device by how well they predict the waveform that closes the
+// device softly.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -30,7 +30,7 @@ double signed_quantity(const std::string& option, const std::string& text, const
   return is_negative ? -size : size;
 }
 
-// Reads the drift of all voltages: "1 %/1000" is a change by 1 % in 1000 shots, "1 %" the change in one shot.
+// Reads the drift of all voltages: "1 %/1000" is a change by 1 % in 1000 shots (closings), "1 %" the change in one shot.
 void read_drift(const std::string& option, const std::string& text, double& drift) {
   const std::size_t stroke = text.find('/');
   const int shots =

@@ -299,7 +299,7 @@ class OptionReader {
   const Arguments& arguments_;
 };
 
-// Names the options that several verbs have, for an archive.
+// Declares the options that several verbs share, by an archive: OptionList or OptionReader.
 template <class Archive, class Seed>
 void seed_option(Archive& a, Seed& seed, const std::string& same) {
   const std::string about = "random seed, a whole number from 0 on (default: 1); the same seed gives " + same;

@@ -180,7 +180,8 @@ template <class Request>
 [[nodiscard]] Study simulate_study();
 [[nodiscard]] Study tune_study();
 
-/// Returns the verbs that need only a scene, or all verbs described as studies, in the order of --help.
+/// scene_studies() returns the verbs that need only a scene, all_studies() all verbs described as studies, in the order of
+/// --help.
 [[nodiscard]] const std::vector<Study>& scene_studies();
 [[nodiscard]] const std::vector<Study>& all_studies();
 /// Returns the study (verb) with this name. Throws InvalidInput for an unknown name.

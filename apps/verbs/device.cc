@@ -1,4 +1,5 @@
-// Verb `device`: a simulated device that answers shots as a device in a laboratory does, for practising the verb `tune`.
+// Verb `device`: a simulated device for practising the verb `tune`. It answers shots (the voltages for one closing) as a device
+// in a laboratory does.
 #include "verbs/device.h"
 
 #include <fmt/format.h>

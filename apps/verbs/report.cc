@@ -103,7 +103,7 @@ int report_exploration(const Common& given, const ReportRequest& request, const 
   return exit_done;
 }
 
-// Returns the JSON file that a verb wrote to a folder.
+// Returns the JSON file that a verb wrote to a folder. Throws InvalidInput if the folder has none.
 std::filesystem::path record_in(const std::filesystem::path& folder) {
   std::vector<std::string> names;
   for (const verbs::Study& study : verbs::all_studies()) {
@@ -116,7 +116,8 @@ std::filesystem::path record_in(const std::filesystem::path& folder) {
   throw InvalidInput(fmt::format("{}: must hold one of {}; name the folder of --out", folder.string(), fmt::join(names, ", ")));
 }
 
-// Writes the files of a report, except JSON, to --out or beside `record`, and prints the text of the report.
+// Writes the files of a report, except JSON, to --out or to the folder of the JSON file `record`, and prints the text of the
+// report.
 int leave(Common c, const std::filesystem::path& record, std::vector<verbs::Outcome::File> all, const std::string& text) {
   std::erase_if(all, [](const auto& file) { return file.name.ends_with(".json"); });
   std::vector<std::string> files;

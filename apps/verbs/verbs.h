@@ -1,5 +1,5 @@
-// Verbs that run differently on the command line than in Python, or only on the command line, in the order of --help. Each has
-// a file in this folder, with options and action.
+// Verbs that run differently on the command line than in Python, and verbs that only the command line has, in the order of
+// --help. Each has a file in this folder, with options and action.
 #pragma once
 
 #include <array>
