@@ -102,8 +102,8 @@ std::string chaos_prose(const BoxAndChaosRecord& ways) {
   return words;
 }
 
-// Makes the record of the device with the extreme value of a figure in the box of varied quantities. The values of the
-// quantities have the units of robustness_report.h.
+// Describes the device with the extreme value of a figure in the box of varied quantities. The values of the quantities have
+// the units of robustness_report.h.
 BoxAndChaosRecord::InBox in_box(const BoxDevice& device, const PreparedScene& nominal) {
   BoxAndChaosRecord::InBox record{.figure = device.figure,
                                   .values = {},

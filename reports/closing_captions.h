@@ -1,4 +1,4 @@
-// Captions for the report on a closing, computed from the numbers of its record.
+// Captions for the report on a closing or a search, computed from its results (closing_record.h).
 #pragma once
 
 #include <string>
@@ -19,9 +19,9 @@ struct Headline {
 };
 [[nodiscard]] Headline headline(const ClosingRecord& result);
 
-/// Returns the simulated time of the runs in a record [s]: the last time of any curve; NaN without curves.
+/// Returns the simulated time of the runs in the results of a closing [s]: the last time of any curve; NaN without curves.
 [[nodiscard]] double window_end(const ClosingRecord& record);
-/// Returns the indices of the evaluations that the record of a search lists, ascending; the list may leave out evaluations.
+/// Returns the indices of the evaluations that the results of a search list, ascending; the list may leave out evaluations.
 [[nodiscard]] std::vector<double> evaluation_indices(const SearchCourse& course);
 /// Returns the number of evaluations in the list `indices` with an index of at most `index`; `index` itself if the list is
 /// empty.

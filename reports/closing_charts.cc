@@ -17,7 +17,7 @@
 namespace softland::internal {
 namespace {
 
-// A simulated run in the record of a closing: the name of the table with its curves, and the role that sets the style of its
+// A simulated run in the results of a closing: the name of the table with its curves, and the role that sets the style of its
 // lines.
 struct Drawn {
   const char* name;

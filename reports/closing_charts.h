@@ -1,4 +1,4 @@
-// Charts for the record of a closing: curves over time, drives, and the course of a search.
+// Charts for the results of a closing or a search: curves over time, drive waveforms, and the best cost over the evaluations.
 #pragma once
 
 #include <string>
@@ -18,8 +18,8 @@ namespace softland {
 
 namespace internal {
 
-/// Returns all charts of a record, in the order of the page: gap, contact, enlarged rebounds, drives, velocity, force,
-/// resistance, search. Charts without data are left out.
+/// Returns all charts for the results of a closing or a search, in the order of the page: gap, contact, enlarged rebounds,
+/// drives, velocity, force, resistance, search. Charts without data are left out.
 [[nodiscard]] Picture picture(const ClosingRecord& result);
 /// Returns the columns "time_s" and "closed" for a chart of bars: "closed" is 1 while the contact is closed, 0 while it is
 /// open, until `window` [s].

@@ -1,5 +1,5 @@
-// Lists the members of the record of a closing and of its parts, with their names in JSON, for writing and reading: see
-// reports/record.h.
+// Lists the members of ClosingRecord (the results of a closing or a search) and of its parts, with their names in JSON, for
+// writing and reading: see reports/record.h.
 #pragma once
 
 #include <optional>
@@ -90,7 +90,8 @@ void members(A& a, MadeWith& made) {
   a("processor", OrNull{made.processor});
 }
 
-/// Writes or reads the origin of a record: verb, program, machine, command line and scene. Every record begins with it.
+/// Writes or reads the origin of results: verb, program, machine, command line and scene. The JSON of every verb begins with
+/// it.
 template <class A>
 void members(A& a, Origin& origin) {
   a("kind", origin.kind);

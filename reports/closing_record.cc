@@ -101,7 +101,7 @@ std::map<std::string, PullInOfElectrode> pull_in(const PreparedScene& p) {
   return all;
 }
 
-// Makes the part of the record that simulations and searches have in common: the scene, and the version of this program.
+// Makes the part of the results that simulations and searches have in common: the scene, and the version of this program.
 ClosingRecord begun(const char* kind, const PreparedScene& p, const std::string& command) {
   for (const auto& [drive, waveform] : p.drives.waveforms()) {
     if (const Own* own = std::get_if<Own>(&waveform))

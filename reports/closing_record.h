@@ -1,6 +1,6 @@
-// The record of a closing by `simulate`, or of a search by `optimize` with the closing that it found. Every output, also JSON,
-// is made from the record. record_of() makes the record; read_closing() reads it from JSON. A member that is not available is
-// NaN, empty or not set.
+// A ClosingRecord holds the results of `simulate`, or of a search by `optimize` with the closing that it found. Every output,
+// also JSON, is made from it. record_of() makes the record; read_closing() reads it from JSON. A member that is not available
+// is NaN, empty or not set.
 #pragma once
 
 #include <array>
@@ -49,12 +49,12 @@ struct ClosingRecord {
   std::optional<ClosedState> closed_state;  ///< state of the closed switch under the hold voltages; none without a contact
   std::map<std::string, PullInOfElectrode> pull_in;  ///< pull-in voltages by actuating electrode
   std::vector<double> natural_frequencies;           ///< natural angular frequencies of the structure [rad/s]
-  std::optional<Work> work;                          ///< numerical work (steps, evaluations) of the run that the record shows
+  std::optional<Work> work;                          ///< numerical work (steps, evaluations) of the run in `best`
   std::vector<std::string> warnings;
   DrawnScene scene;
   std::optional<EffectsLeftOut> effects;
-  double tolerance = Metrics::unset;   ///< relative tolerance of the integrator in the run that the record shows
-  std::optional<SearchRecord> search;  ///< the search that found the shown run; none for a single run
+  double tolerance = Metrics::unset;   ///< relative tolerance of the integrator in the run in `best`
+  std::optional<SearchRecord> search;  ///< the search that found the run in `best`; none for a single run
 
   /// Returns the run under the plain voltage step that a search compares with; an empty run if there was no search.
   [[nodiscard]] const RunRecord& baseline() const;
@@ -77,24 +77,24 @@ struct ClosingRecord {
 /// Returns the evaluations of a search; of a long search, the most_evaluations that draw the same picture.
 [[nodiscard]] Points drawn_evaluations(Points all);
 
-/// Makes the record of `simulate`; `command` is the command line. Curves have the resolution of the integration, up to
+/// Makes the results of `simulate`; `command` is the command line. Curves have the resolution of the integration, up to
 /// most_curve_rows.
 [[nodiscard]] ClosingRecord record_of(const PreparedScene& prepared, const Closing& closing, const std::string& command);
 
-/// Makes the record of `optimize`. Equal seeds give equal records, apart from the elapsed time and the command line. The record
-/// has only the evaluations that improved the best cost.
+/// Makes the results of `optimize`. Equal seeds give equal results, apart from the elapsed time and the command line. The
+/// results have only the evaluations that improved the best cost.
 [[nodiscard]] ClosingRecord record_of(const OptimizeResult& found, const OptimizeOptions& options, const std::string& command);
 
-/// Makes the record of a search that minimises one statistic of the devices under process variation.
+/// Makes the results of a search that minimises one statistic of the devices under process variation.
 [[nodiscard]] ClosingRecord record_of(const RobustResult& found, const OptimizeOptions& options, const std::string& command);
 
-/// Makes the record of a search that offers several waveforms for the devices under process variation, with the best of them.
+/// Makes the results of a search that offers several waveforms for the devices under process variation, with the best of them.
 [[nodiscard]] ClosingRecord record_of(const RobustSearchResult& found, const OptimizeOptions& options, std::string next_command,
                                       const std::string& command);
 
-/// Returns the record of a closing as JSON for programs: SI units in the names, non-finite numbers as null.
+/// Returns the results of a closing as JSON for programs: SI units in the names, non-finite numbers as null.
 [[nodiscard]] nlohmann::json json_of(const ClosingRecord& record);
-/// Returns the record of a closing as --json writes it: without large parts (curves, the text of the scene, the log of the
+/// Returns the results of a closing as --json writes them: without large parts (curves, the text of the scene, the log of the
 /// search) and without repetitions.
 [[nodiscard]] nlohmann::json summary_json(nlohmann::json record);
 /// Returns status and figures of a run as JSON, except figures of the drives.
@@ -103,9 +103,9 @@ struct ClosingRecord {
 /// Parses the content of a result.json: an object of kind "simulate" or "optimize"; all other members may be missing or of
 /// another type. `name` stands for the file in messages. Throws InvalidInput for anything else.
 [[nodiscard]] nlohmann::json parse_closing(std::string_view content, const std::string& name);
-/// Throws InvalidInput unless the record has figures and a scene, which a report needs.
+/// Throws InvalidInput unless the JSON of a result has figures of merit and a scene, which a report needs.
 void require_reportable(const nlohmann::json& record);
-/// Returns the record of a closing from its JSON. Every part is optional: a part that is missing, null or of another type is
+/// Returns the results of a closing from their JSON. Every part is optional: a part that is missing, null or of another type is
 /// not available. Throws InvalidInput when `from` is not an object.
 [[nodiscard]] ClosingRecord read_closing(const nlohmann::json& from);
 

@@ -72,10 +72,10 @@ struct CycleRecord {
 
 [[nodiscard]] nlohmann::json json_of(const CycleRecord& record);
 [[nodiscard]] CycleRecord read_cycles(const nlohmann::json& from);
-/// Returns a report with sentences and tables, and charts of the gap if the record has curves. The document keeps a reference
-/// to the record.
+/// Returns a report with sentences and tables, and charts of the gap if the results have curves. The document keeps a reference
+/// to `record`.
 [[nodiscard]] Document document_of(const CycleRecord& record);
-/// Draws the gap, the closed contact and the drive waveforms over the first cycles; the record must have curves.
+/// Draws the gap, the closed contact and the drive waveforms over the first cycles; the results must have curves.
 [[nodiscard]] std::string svg_of(const CycleRecord& record);
 
 }  // namespace softland

@@ -6,8 +6,8 @@
 
 namespace softland::internal {
 
-/// Makes the record of the derivatives of figures by the varied quantities. `drive` has the closings of the devices under the
-/// same waveforms.
+/// Makes the results on the derivatives of figures by the varied quantities, for the report. `drive` has the closings of the
+/// devices under the same waveforms.
 [[nodiscard]] RobustnessRecord::Derived record_of(const Derivatives& derivatives, const DriveRobustness& drive);
 /// Makes the section on the derivatives of all figures; the section is empty if no derivatives were computed.
 [[nodiscard]] ReportSection derivatives_section(const RobustnessRecord::Derived& derivatives,

@@ -16,7 +16,7 @@ struct EffectsRecord {
 };
 
 [[nodiscard]] nlohmann::json json_of(const EffectsRecord& record);
-/// Reads the record of `softland effects`. Throws InvalidInput for anything but the JSON of json_of().
+/// Reads the results of `softland effects`. Throws InvalidInput for anything but the JSON of json_of().
 [[nodiscard]] EffectsRecord read_effects(const nlohmann::json& from);
 [[nodiscard]] std::string text_of(const EffectsRecord& record);
 

@@ -1,6 +1,6 @@
-// The record of program and machine that gave a result has everything that can change the last digits of a result. The same
-// scene, seed and program give the same bits on the same kind of processor. Another compiler, other options or another
-// instruction set round differently; so do functions of the C library, which chooses their version by the processor.
+// Program and machine that gave a result, with everything that can change the last digits of the result. The same scene, seed
+// and program give the same bits on the same kind of processor. Another compiler, other options or another instruction set
+// round differently; so do functions of the C library, which chooses their version by the processor.
 #pragma once
 
 #include <nlohmann/json.hpp>

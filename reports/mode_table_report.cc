@@ -152,7 +152,7 @@ void members(A& a, ModesRecord::File& file) {
   a("notes", file.notes);
 }
 
-// In JSON, the members of the record's `file` are at the top level.
+// In JSON, the members of ModesRecord::file are at the top level.
 template <class A>
 void members(A& a, ModesRecord& record) {
   members(a, record.origin);

@@ -11,9 +11,9 @@
 
 namespace softland {
 
-/// The origin of the record of a study; `scene` is null if the study has no scene.
+/// The origin of the results of a study; `scene` is null if the study has no scene.
 struct Origin {
-  std::string kind;  ///< name of the verb that made the record, by which the verb `report` recognises the record
+  std::string kind;  ///< name of the verb that gave the results, by which the verb `report` recognises their JSON
   std::string version, command;
   MadeWith made_with;
   nlohmann::json scene = {};  ///< resolved scene (all defaults written out) as JSON, quantities as text
@@ -22,17 +22,17 @@ struct Origin {
 };
 [[nodiscard]] Origin origin_of(const char* kind, const std::string& command);
 [[nodiscard]] Origin origin_of(const char* kind, const PreparedScene& scene, const std::string& command);
-/// Makes the origin of a record, with the text of the scene in scene_toml.
+/// Makes the origin of results, with the text of the scene in scene_toml.
 [[nodiscard]] Origin whole_origin_of(const char* kind, const PreparedScene& scene, const std::string& command);
-/// Returns the data for computing the result of a document again: origin of the record, seed and tolerance.
+/// Returns the data for computing the result of a document again: origin of the result, seed and tolerance.
 [[nodiscard]] MadeAgain made_again(const Origin& origin, std::optional<std::uint64_t> seed = {},
                                    double tolerance = std::numeric_limits<double>::quiet_NaN());
-/// Returns the title of the scene from which a record was made; empty if the scene has none.
+/// Returns the title of the scene from which results were computed; empty if the scene has none.
 [[nodiscard]] std::string title_of(const Origin& origin);
 
-/// Returns the record with the members version, made_with and command.
+/// Adds the members version, made_with and command to the JSON of a result.
 [[nodiscard]] nlohmann::json with_origin(nlohmann::json record, const std::string& command);
-/// Returns the record with the members version, made_with, command and the resolved scene.
+/// Adds the members version, made_with, command and the resolved scene to the JSON of a result.
 [[nodiscard]] nlohmann::json with_origin(nlohmann::json record, const PreparedScene& scene, const std::string& command);
 
 /// Describes the writer of a database file: this program on this machine, run with the command line `command`.

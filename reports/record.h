@@ -1,5 +1,6 @@
-// One list of members serves to write and to read a record as JSON. `members(archive, record)`, a function template beside the
-// type of the record, names every member once. JsonWriter and JsonReader are archives, as in Drake's Serialize.
+// A record is a struct with the results of a verb. One list of its members serves to write and to read it as JSON:
+// `members(archive, record)`, a function template beside the type of the record, names every member once. JsonWriter and
+// JsonReader are archives, as in Drake's Serialize.
 //
 // A non-finite number is null in JSON. JsonReader reads the members that are present. A number that is missing or null becomes
 // NaN. Any other member that is missing or of another type keeps its value in the record.
@@ -329,8 +330,8 @@ json record_json(const Record& record) {
   return std::move(archive).take();
 }
 
-/// Returns the record of a study from its JSON. Throws InvalidInput if any part is missing, unknown, or not as json_of() would
-/// write it.
+/// Returns the results of a verb (a record) from their JSON. Throws InvalidInput if any part is missing, unknown, or not as
+/// json_of() would write it.
 template <class Record>
 [[nodiscard]] Record whole_record(const json& from) {
   Record record = JsonReader::read<Record>(from);

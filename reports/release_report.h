@@ -58,7 +58,7 @@ struct ReleaseRecord {
 [[nodiscard]] ReleaseRecord read_release(const nlohmann::json& from);
 [[nodiscard]] std::string text_of(const ReleaseRecord& record);
 /// Draws the gap in the plain opening, in which all drives drop to 0 V, and in the best opening, and the drive waveforms; the
-/// record must have the gaps.
+/// results must have the gaps.
 [[nodiscard]] std::string svg_of(const ReleaseRecord& record);
 /// Returns the drive waveforms of the best opening, or else of the plain opening, as CSV that begins at the hold levels. A
 /// header `time_s,<drive>,...` is followed by rows [s, V] with straight lines between them; rows of the same time are a jump.

@@ -18,7 +18,7 @@ struct ReportFile {
   std::function<std::string(const Report&)> text;
 };
 
-/// Lists the files of the report on a closing: report.html, gap.svg, result.json, and trajectory.csv if the record has a
+/// Lists the files of the report on a closing: report.html, gap.svg, result.json, and trajectory.csv if the results have a
 /// trajectory.
 [[nodiscard]] std::vector<ReportFile<ClosingRecord>> files_of(const ClosingRecord& result);
 

@@ -13,8 +13,8 @@
 
 namespace softland::internal {
 
-/// Returns the name by which reports show a set of waveforms: the file of a waveform found under process variation, or else the
-/// name in the record.
+/// Returns the name by which reports show a set of waveforms: the file of a waveform found under process variation, or else
+/// `name`.
 [[nodiscard]] std::string shown_drive(const std::string& name);
 
 /// Describes the process variation in words: "structure.thickness ± 2 % (normal), ...".

@@ -133,7 +133,7 @@ std::string about_prose(const RobustnessReport& report) {
       internal::error_prose(spread), internal::outside_prose(found));
 }
 
-// Writes or reads the parts of a record that belong to one figure each, in the order of `keys`.
+// Writes or reads the parts of the results that belong to one figure of merit each, in the order of `keys`.
 template <class A, class Part, class Keys>
 void by_figure(A& a, std::vector<Part>& parts, const Keys& keys) {
   if constexpr (A::reads) {

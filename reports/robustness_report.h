@@ -43,7 +43,7 @@ struct RobustnessReport {
 /// worst cases and polynomial chaos, which take further searches. Adds nothing after an interruption.
 void add_details(RobustnessReport& report, bool other_ways_too, const Progress& progress);
 
-/// The record of a robustness study, from which JSON, text and tables are made.
+/// The results of `softland robustness`, from which JSON, text and tables are made.
 struct RobustnessRecord {
   /// A quantity that varies from device to device.
   struct Varied {

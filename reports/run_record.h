@@ -1,4 +1,4 @@
-// The record of one run of a switch: its figures, its motion and its waveforms.
+// The results of one simulated run of a switch: its figures of merit, its motion and its waveforms.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@
 
 namespace softland {
 
-/// A time span in which a contact is closed, in the record of a run.
+/// A time span in which a contact is closed in a simulated run.
 struct ClosedStretch {
   double begin = 0;  ///< time at which the contact closes [s]
   /// Time at which the contact opens [s]; NaN: still closed at the end of the simulated time.

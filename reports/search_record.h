@@ -1,4 +1,4 @@
-// The record of a search, a part of the record of the closing that the search found.
+// The results of a search, a part of the results of the closing that the search found (closing_record.h).
 #pragma once
 
 #include <array>
@@ -45,7 +45,7 @@ struct SeedsFindings {
   std::size_t best = 0;                ///< index in `searches` of the best search
 };
 
-/// The record of a search. A member that is not available is NaN, empty or not set.
+/// The results of a search. A member that is not available is NaN, empty or not set.
 struct SearchRecord {
   std::string target, actuator, waveform, optimizer, termination, termination_message;
   std::vector<SearchedFamilyResult> families;  ///< results by waveform family; empty unless several families were searched

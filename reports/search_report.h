@@ -13,7 +13,8 @@
 
 namespace softland {
 
-/// A search result with its records. `result` and `devices` keep references to `found`: a SearchReport must not be moved.
+/// A search result with the data for reports. `result` and `devices` keep references to `found`: a SearchReport must not be
+/// moved.
 struct SearchReport {
   explicit SearchReport(FoundSearch search) : found(std::move(search)) {}
   SearchReport(const SearchReport&) = delete;
@@ -29,8 +30,8 @@ struct SearchReport {
 /// simulations for this, which `progress` watches; an interruption marks the search as interrupted.
 void add_devices(SearchReport& report, const PlannedSearch& search, const std::string& command, const Progress& progress);
 
-/// Adds the record of the result. `folder` is the final folder of the files: the record suggests a command that scales the
-/// waveform in the folder for a measured device.
+/// Sets `result`, from which reports are made. `folder` is the final folder of the files: a report suggests a command that
+/// scales the waveform in the folder for a measured device.
 void add_result(SearchReport& report, const PlannedSearch& search, const std::filesystem::path& folder,
                 const std::string& command);
 

@@ -75,7 +75,7 @@ class SearchSession {
   void close();
   /// Returns the final folder of the result files.
   [[nodiscard]] std::filesystem::path destination(const SearchReport& report) const;
-  /// Adds the costs of all evaluations, and the command lines that reproduce the result, to the record of the search.
+  /// Adds the costs of all evaluations, and the command lines that reproduce the result, to the results of the search.
   void add_log(SearchRecord& search, const SearchReport& report) const;
   /// Writes the result files and moves them to their final folder. Returns the names of these files, and of the files written
   /// during the search.

@@ -20,7 +20,7 @@ namespace softland {
 /// seed is best.
 void rank(SeedsFindings& seeds, const Aim& target, double significant, bool over_devices);
 
-/// The record of an interrupted study of several seeds.
+/// The results of an interrupted study of several seeds.
 struct SeedsRecord {
   Origin origin;
   SeedsFindings seeds;

@@ -1,4 +1,4 @@
-// Lists the members of the records of several studies, with their names in JSON: see reports/record.h.
+// Lists the members of the results of several verbs, with their names in JSON: see reports/record.h.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace softland {
 
-/// Lists status and figures of a run as members of a record, except figures of the drives.
+/// Lists status and figures of merit of a run as members for JSON, except figures of single drives.
 template <class A>
 void members(A& a, Metrics& metrics) {
   FigureValues values(metrics);

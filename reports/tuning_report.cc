@@ -160,7 +160,7 @@ void take(Shown& shown, const PredictedRecord& p) {
 }
 
 // Returns a time range that covers the touches of the contact and some time after them, from closing number `first` on; the
-// record predicted for an early shot may be much longer.
+// touches predicted for an early shot may last much longer.
 Shown shown_times(const TuningReport& report, std::size_t first) {
   // Ratio of the begin of the shown time to the first touch, and of its end to the last touch.
   constexpr double before = 0.8, after = 1.6;

@@ -30,7 +30,7 @@ struct TunedClosing {
   ContactRecord record;
 };
 
-/// The record of a tuning at its current state.
+/// The results of a tuning so far.
 struct TuningReport {
   /// The voltages of a shot (one closing of the real device), by drive; the factor of the dispersion force is not a voltage.
   struct Shot {

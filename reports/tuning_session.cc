@@ -63,7 +63,8 @@ struct TuningSession::State {
   std::filesystem::path log_file = {};
   std::unique_ptr<TuningLog> log = {};
   std::size_t behind = 0;     // number of closings of the log from which the tuner has learned
-  bool is_on_record = false;  // true while the log has the record of the next shot, but the tuner has not yet learned from it
+  // True while the log has the contact record of the next shot, but the tuner has not yet learned from it.
+  bool is_on_record = false;
   std::optional<Tuner> tuner = {};
   std::vector<TunedClosing> closings = {};
 

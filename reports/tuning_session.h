@@ -60,7 +60,7 @@ class TuningSession {
   /// Throws InvalidInput if the last three shots gave no contact record.
   void throw_if_failing() const;
 
-  /// Returns the record of the tuning that tune.json holds; `command` is the command line.
+  /// Returns the results of the tuning as tune.json holds them; `command` is the command line.
   [[nodiscard]] TuningReport report(TuningEnd end, const std::string& command = {}) const;
   /// Returns the texts of best.toml, best.csv, tune.json and tune.html for the current state of the tuning, by file name.
   [[nodiscard]] std::map<std::string, std::string> files(TuningEnd end, const std::string& command) const;

@@ -26,8 +26,8 @@ namespace {
 
 using nlohmann::json;
 
-// Closes the simulated device under the voltages of a shot, one JSON line. Returns the record of the contact as JSON, or a
-// message if the line is invalid.
+// Closes the simulated device under the voltages of a shot, one JSON line. Returns the times at which its contact closes and
+// opens as JSON, or a message if the line is invalid.
 json answer(const PracticeDevice& device, const json& line) {
   try {
     const CommandedShot shot = read_shot(line);

@@ -72,7 +72,8 @@ std::string map_of(const ExplorationReport& report, const std::string& words) {
   return exploration_map_svg(report, axes[0], axes[1], figure);
 }
 
-// Reports an exploration. `record` is the JSON file that named the database file; empty if the user named the database file.
+// Reports an exploration. `record` is the JSON of the verb `explore`, which names the database file; empty if the user named
+// the database file.
 int report_exploration(const Common& given, const ReportRequest& request, const std::filesystem::path& record = {}) {
   const std::filesystem::path path = request.result;
   const StudyReader store(path);
