@@ -24,8 +24,8 @@ struct PyScene {
   /// The prepared scene without and with the default voltage limits of a search; null until requested.
   std::shared_ptr<const PreparedScene> plain = {}, limited = {};
 
-  /// Returns the scene prepared for simulation; the first call prepares it. With `default_limits`, drives without limits in the
-  /// scene get the voltage limits of a search.
+  /// Returns the scene prepared for simulation; the first call prepares it. With `default_limits`, electrodes and piezos
+  /// without voltage limits in the scene get those of a search.
   [[nodiscard]] std::shared_ptr<const PreparedScene> ready(bool default_limits, InterruptibleRun& run);
   [[nodiscard]] std::shared_ptr<const PreparedScene> ready(bool default_limits = false) {
     InterruptibleRun run;

@@ -42,8 +42,8 @@ std::unique_ptr<PyTuning> made_tuning(const PyScene& scene, const verbs::Argumen
   return tuning;
 }
 
-// Returns (number, duration of the hold [s], (times, volts) by drive, line of text for a laboratory command) of a shot, the
-// voltages for one closing.
+// Returns (number, duration of the hold [s], (times, volts) by name of the electrode or piezo, line of text for a laboratory
+// command) of a shot, the voltages for one closing.
 py::tuple shot_of(const PyTuning& tuning) {
   const CommandedShot shot = tuning.session.commanded();
   py::dict drives;

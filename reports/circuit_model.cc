@@ -52,7 +52,8 @@ struct Point {
 
 // The parts of the switch as formulas in one circuit language.
 struct Circuit {
-  std::vector<std::string> drives;  // names of the circuit's pins for the drives, in the order of Switch::drives()
+  // Names of the pins of electrodes, piezos and dispersion force, as Switch::drives() sorts them.
+  std::vector<std::string> drives;
   double tau = 0;                   // time scale 1 / omega_1 of the model [s]
   double gap = 0;                   // rest gap of the contact [m]
   // Per mode: (tau omega)^2, 2 zeta tau omega, rest value of the modal coordinate Y, and deflection of the contact per Y.
@@ -256,8 +257,8 @@ std::string title(const PreparedScene& p) {
   return fmt::format("{}: {} modes, {} quadrature points", p.scene.file.name(), p.model.modes(), p.model.quadrature().points());
 }
 
-// Returns comment lines of the circuit file, which begin with `comment`, with the pins whose names differ from those of their
-// drives.
+// Returns comment lines of the circuit file, which begin with `comment`, for drives (electrodes, piezos, dispersion force)
+// whose pin has another name.
 std::string renamed_in(const PreparedScene& p, std::string_view comment) {
   std::string text;
   for (const std::string& line : renamed_pins(p.drive_names())) text += fmt::format("{} {}\n", comment, line);
@@ -407,7 +408,7 @@ std::string spice_model(const PreparedScene& p) {
 
 std::string spice_bench(const PreparedScene& p) {
   const Circuit c = SubcircuitWriter(p, spice).make();
-  std::map<std::string, Signal> driven;  // waveforms at the voltage sources, by pin of the drive
+  std::map<std::string, Signal> driven;  // waveform of the voltage source at each pin, by name of the pin
   const std::vector<std::string> names = circuit_pins(p.drive_names());
   const std::vector<Signal> signals = p.signals();
   std::string sources, pins;

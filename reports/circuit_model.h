@@ -17,19 +17,22 @@
 
 namespace softland {
 
-/// Returns the names of the pins for these drives, in the order of the drives. Letters become lower case; a character that is
-/// neither letter nor digit becomes an underscore. A name gets the prefix "drive_" if the model uses the name itself, if SPICE
-/// or Verilog-A reserve it, or if it cannot begin a name. A name that another drive has already gets a number at its end.
+/// Returns the names of the pins for these drives (electrodes, piezos, dispersion force), in the same order. Letters become
+/// lower case; a character that is neither letter nor digit becomes an underscore. A name gets the prefix "drive_" if the model
+/// uses the name itself, if SPICE or Verilog-A reserve it, or if it cannot begin a name. A name that another drive has already
+/// gets a number at its end.
 [[nodiscard]] std::vector<std::string> circuit_pins(const std::vector<std::string>& drives);
-/// Returns a text for each drive whose pin has another name than the drive: "drive g is the pin drive_g".
+/// Returns a text for each drive (electrode, piezo or dispersion force) whose pin has another name: "drive g is the pin
+/// drive_g".
 [[nodiscard]] std::vector<std::string> renamed_pins(const std::vector<std::string>& drives);
 
 /// Returns the reason why this switch has no circuit model: "a dielectric on an electrode and several contacts". The text lists
 /// all parts that a circuit model cannot describe; it is empty if there is a model.
 [[nodiscard]] std::string why_no_circuit(const Switch& model);
 
-/// Returns the circuit `.subckt softland_switch` with pins for the drives, their ground g, the contact s and d, and outputs y
-/// [um], vel [m/s], force [uN]. Throws InvalidInput for a switch without a circuit model: see why_no_circuit().
+/// Returns the circuit `.subckt softland_switch` with pins for electrodes, piezos and dispersion force, their ground g, the
+/// contact s and d, and outputs y [um], vel [m/s], force [uN]. Throws InvalidInput for a switch without a circuit model: see
+/// why_no_circuit().
 [[nodiscard]] std::string spice_model(const PreparedScene& prepared);
 /// Returns a complete file for ngspice: the model of spice_model(), sources with the waveforms of the scene, options, and
 /// measurements.

@@ -67,7 +67,7 @@ Points whole_waveform(const Points& waveform, double rest, double end) {
   return points;
 }
 
-/// Returns the last time at which the level of a drive changes; NaN if the level is constant.
+/// Returns the last time at which the level of a waveform changes; NaN if the level is constant.
 double last_move(const Points& points) {
   double time = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t i = 1; i < points.size(); ++i) {

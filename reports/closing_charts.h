@@ -19,7 +19,7 @@ namespace softland {
 namespace internal {
 
 /// Returns all charts for the results of a closing or a search, in the order of the page: gap, contact, enlarged rebounds,
-/// drives, velocity, force, resistance, search. Charts without data are left out.
+/// drive waveforms, velocity, force, resistance, search. Charts without data are left out.
 [[nodiscard]] Picture picture(const ClosingRecord& result);
 /// Returns the columns "time_s" and "closed" for a chart of bars: "closed" is 1 while the contact is closed, 0 while it is
 /// open, until `window` [s].

@@ -97,7 +97,7 @@ struct ClosingRecord {
 /// Returns the results of a closing as --json writes them: without large parts (curves, the text of the scene, the log of the
 /// search) and without repetitions.
 [[nodiscard]] nlohmann::json summary_json(nlohmann::json record);
-/// Returns status and figures of a run as JSON, except figures of the drives.
+/// Returns status and figures of merit of a run as JSON, except figures that the waveforms alone determine.
 [[nodiscard]] nlohmann::json metrics_json(const Metrics& metrics);
 
 /// Parses the content of a result.json: an object of kind "simulate" or "optimize"; all other members may be missing or of

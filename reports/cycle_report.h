@@ -43,7 +43,7 @@ struct CycleRecord {
     std::optional<Devices> devices;
     std::optional<std::string> status, message;  ///< status and message at the end of the run at the cycle rate of the report
     std::vector<Cycle> cycles;
-    std::map<std::string, Points> waveforms;  ///< waveforms of one cycle, by drive: time [s] and level [V]
+    std::map<std::string, Points> waveforms;  ///< waveforms of one cycle, by electrode or piezo: time [s] and level [V]
   };
   /// The search that found the waveforms for the cycle rate of the report.
   struct Search {

@@ -13,7 +13,7 @@
 
 namespace softland {
 
-/// The limits of the voltage source of a drive; a limit that the scene does not set is NaN.
+/// The limits of the voltage source of an electrode or a piezo; a limit that the scene does not set is NaN.
 struct DriveLimits {
   double lowest = Metrics::unset, highest = Metrics::unset;  ///< lowest and highest voltage that the source permits [V]
   double slew = Metrics::unset;                              ///< largest slew rate that the source permits [V/s]
@@ -64,7 +64,7 @@ struct DrawnScene {
   std::optional<Piezo> piezo;
   std::vector<Electrode> electrodes;
   std::vector<Contact> contacts;              ///< contacts that have names
-  std::map<std::string, Waveform> waveforms;  ///< waveforms by name of the drive
+  std::map<std::string, Waveform> waveforms;  ///< waveforms by name of the electrode, piezo or dispersion force
   std::map<std::string, DriveLimits> drivers;
   double significant_rebound = MetricsOptions{}.significant_rebound;  ///< least height of a significant rebound [m]
 };

@@ -14,7 +14,7 @@ struct DriveScale {
   std::string_view unit;  ///< unit of the quantity; empty: a plain number
   double rest = 0;        ///< level of the waveform before t = 0, in the unit of the quantity
 };
-/// Returns the quantity that a drive's waveform prescribes: a voltage; for the drive named "dispersion", a factor.
+/// Returns what the waveform of this drive prescribes: a voltage; for the drive named "dispersion", a factor.
 [[nodiscard]] DriveScale drive_scale(std::string_view drive);
 [[nodiscard]] DriveLimits drive_limits(const ClosingRecord& result, const std::string& drive);
 /// Returns the waveform of a drive in a run; empty if the run has none.

@@ -30,7 +30,7 @@ struct ExplorationReport {
   std::vector<ExploredPoint> points;
   std::int64_t planned = 0;       ///< number of points in the plan, the list of points to compute
   std::vector<ExploredAim> aims;  ///< figures to minimise or maximise, which define the Pareto front; may be empty
-  /// Drive waveforms by number of the point and drive, as far as known.
+  /// Waveforms by number of the point and name of the electrode or piezo, as far as known.
   std::map<std::int64_t, std::map<std::string, Points>> waveforms;
   std::string plan;       ///< text of the plan, the stored request of the exploration
   std::string command;    ///< command line that computed the points

@@ -29,25 +29,26 @@ struct Sampling {
 /// InvalidInput for any other name.
 [[nodiscard]] std::vector<std::string> exported_drives(const PreparedScene& prepared, const std::string& named);
 
-/// Returns the factor from the volts at the generator to the volts at the switch: that of `sampling`, else that of the drive in
-/// the scene, else 1. Throws InvalidInput unless the factor is above 0.
+/// Returns the factor from the volts at the generator to the volts at the switch: that of `sampling`, else that of the scene
+/// for this electrode or piezo, else 1. Throws InvalidInput unless the factor is above 0.
 [[nodiscard]] double amplification(const Drive& drive, const Sampling& sampling);
 /// Describes the factor from generator to switch voltage, which amplification() returns, in words; empty if the factor is 1.
 [[nodiscard]] std::string amplifier_prose(const Drive& drive, double factor);
 
-/// Writes the sample rate and the number of bits of the generator into the sections [driver.NAME] of these drives.
+/// Writes the sample rate and the number of bits of the generator into the sections [driver.NAME] of these electrodes or
+/// piezos.
 void set_sampling(SceneFile& file, const std::vector<std::string>& drives, const Sampling& sampling);
 
 /// Throws InvalidRequest if the voltage source has no sample rate, which a file of this format needs.
 void require_samples(std::string_view format, const std::string& drive, const DriverModel& source);
 
-/// Returns the samples of a drive as a file of this format; `told` is the signal commanded to the source of the drive, from t =
+/// Returns the samples of an electrode or piezo as a file of this format; `told` is the signal commanded to its source from t =
 /// 0 on. Throws InvalidInput if the source does not use samples, and the exceptions of generator_file().
 [[nodiscard]] std::string generator_text(const GeneratorFormat& format, const PreparedScene& prepared, const std::string& drive,
                                          const Signal& told, const Sampling& sampling);
 
-/// Describes how the nominal design closes under the samples of a drive. Adds a warning if the closing is worse than under the
-/// original waveform of the scene `drawn`; null: no comparison.
+/// Describes how the nominal design closes under the samples of a waveform. Adds a warning if the closing is worse than under
+/// the original waveform of the scene `drawn`; null: no comparison.
 [[nodiscard]] std::vector<std::string> sampled_prose(const PreparedScene& sampled, const PreparedScene* drawn,
                                                      const std::string& drive, const Progress& progress);
 

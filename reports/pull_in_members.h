@@ -1,5 +1,5 @@
-// Lists the members of the pull-in voltages, and of the stable path by which one drive closes the switch, for the verbs
-// `pull-in` and `check`: see reports/record.h.
+// Lists the members of the pull-in voltages, and of the stable path by which one electrode or piezo closes the switch, for the
+// verbs `pull-in` and `check`: see reports/record.h.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // The results of `softland pull-in`: JSON with SI units in the names, text, and a voltage sweep as CSV and picture. The verb
-// `check` also reports the voltages of an electrode, and the stable path by which one drive closes the switch.
+// `check` also reports the voltages of an electrode, and the stable path by which one electrode or piezo closes the switch.
 #pragma once
 
 #include <cstddef>
@@ -36,8 +36,8 @@ struct PullInRecord {
 struct ElectrodeRecord {
   Status status = Status::not_run;
   PullInRecord volts;
-  std::map<std::string, double> bias;         ///< levels of the other drives that are not at 0, by drive [V]
-  /// Factor of the dispersion force by the name of its drive, if the factor is not 1.
+  std::map<std::string, double> bias;         ///< voltages of the other electrodes and piezos that are not at 0, by name [V]
+  /// Factor of the dispersion force by its name in the scene, if the factor is not 1.
   std::map<std::string, double> bias_factor;
 };
 [[nodiscard]] ElectrodeRecord record_of(const PreparedScene& prepared, std::size_t k, const ElectrodePullIn& known);
@@ -56,15 +56,15 @@ struct ElectrodeRecord {
 /// Describes how the charge of the dielectric shifts the pull-in and release voltages of both polarities; empty without charge.
 [[nodiscard]] std::string charge_prose(const PullInRecord& found);
 
-/// The drive that moves the switch to its contact through stable equilibria, with all other drives at 0.
+/// The electrode or piezo that moves the switch to its contact through stable equilibria, with all others at 0 V.
 struct StablePathRecord {
   std::string drive;
-  /// Level at which the nominal design first touches its contact; limit of the drive's voltage source [V].
+  /// Voltage at which the nominal design first touches its contact; limit of the voltage source [V].
   double reaches = Metrics::unset, limit = Metrics::unset;
-  std::optional<double> share;  ///< share of the varied devices of [spread] that reach the contact by this drive alone
+  std::optional<double> share;  ///< share of the varied devices of [spread] that reach the contact in this way
 };
-/// Returns the drive that alone moves the switch to its contact through stable equilibria; none if no drive does, or if there
-/// is no contact.
+/// Returns the electrode or piezo that alone moves the switch to its contact through stable equilibria; none if no one does, or
+/// if there is no contact.
 [[nodiscard]] std::optional<StablePathRecord> stable_path_of(const PreparedScene& prepared, const Progress& progress);
 /// Describes the stable path to the contact: "the piezo alone reaches the contact at -0.9483 V through stable equilibria; 96.5
 /// % of devices do within -1 V".

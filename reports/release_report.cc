@@ -52,7 +52,7 @@ std::vector<std::pair<double, double>> line_of(const OpeningResult& r, const std
   const double size = std::max({std::abs(hold), signal.peak(), 1e-9});
   std::vector<std::pair<double, double>> points = polyline(signal, end, curve_tolerance * size, 0);
   if (points.size() > 1 && points[0].first == 0 && points[1].first == 0)
-    points.erase(points.begin());  // remove the start at 0 V: in an opening the drive has its hold level at t = 0
+    points.erase(points.begin());  // remove the start at 0 V: an opening starts at the hold level
   if (points.front().second != hold) points.insert(points.begin(), {0, hold});
   return points;
 }
@@ -308,11 +308,11 @@ std::string svg_of(const ReleaseRecord& r) {
   }
   drawn.charts.push_back(gap);
   for (const Drawn& run : runs) {
-    std::size_t place = 1;  // position of the drive's chart among the charts of the page
+    std::size_t place = 1;  // position of the chart of this waveform among the charts of the page
     for (const auto& [drive, points] : run.run->waveforms) {
       const std::string table = fmt::format("{}/{}", run.name, drive);
       Points line = points;
-      if (!line.empty() && line.back()[0] < shown) {  // the drive remains at its last level until the end of the chart
+      if (!line.empty() && line.back()[0] < shown) {  // the waveform remains at its last level until the end of the chart
         const bool is_flat = line.size() > 1 && line[line.size() - 2][1] == line.back()[1];
         if (!is_flat) line.push_back(line.back());
         line.back()[0] = shown;
@@ -336,7 +336,7 @@ std::string release_csv(const OpeningResult& r) {
   const std::string whole = csv(signals, o.voltages_end);
   const auto row_end = [&](std::size_t from) { return whole.find('\n', from) + 1; };
   const std::size_t first = row_end(0), second = row_end(first);
-  // csv() starts the drives at 0 V, as in a closing. Replace this first row: an opening starts at the hold levels.
+  // csv() starts all waveforms at 0 V, as in a closing. Replace this first row: an opening starts at the hold levels.
   const bool jumps = whole.compare(second, 2, "0,") == 0;
   std::string held = "0";
   bool begins_held = true;

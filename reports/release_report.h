@@ -18,8 +18,8 @@ struct ReleaseRecord {
   struct Run {
     OpeningFigures figures;
     std::string message;
-    double drives_end = Metrics::unset;  ///< time from which all drives stay at 0 V in the opening [s]
-    /// Waveforms of the opening by drive, beginning at the hold levels: time [s] and level [V].
+    double drives_end = Metrics::unset;  ///< time from which all electrodes and piezos stay at 0 V in the opening [s]
+    /// Waveforms of the opening by electrode or piezo, beginning at the hold levels: time [s] and level [V].
     std::map<std::string, Points> waveforms;
   };
   struct Gap {
@@ -35,7 +35,7 @@ struct ReleaseRecord {
   Origin origin;
   std::string status;
   Actuator actuator = Actuator::electrostatic;
-  std::map<std::string, double> hold_levels;  ///< hold levels before the opening, by drive [V]
+  std::map<std::string, double> hold_levels;  ///< hold levels before the opening, by electrode or piezo [V]
   /// Contact force before opening [N]; open rest position, and largest distance from it at which the switch is at rest [m].
   double contact_force = Metrics::unset, open_position = Metrics::unset, band = Metrics::unset;
   /// Largest distance from the open rest position at which the switch is at rest, as a share of the contact gap.

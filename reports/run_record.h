@@ -46,7 +46,7 @@ struct RunRecord {
   std::optional<FigureValues> figures;  ///< figures of merit of the run; none if there was no such run
   FigureValues errors;
   CurveRecord curve;
-  /// Waveforms by drive: time [s] and level [V]; for the dispersion force, its factor.
+  /// Waveforms by electrode or piezo: time [s] and level [V]; for the dispersion force, its factor.
   std::map<std::string, Points> waveforms;
   double cost = Metrics::unset;
   double collapse_time = Metrics::unset;  ///< time at which the beam touched the electrode [s]

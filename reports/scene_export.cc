@@ -195,8 +195,8 @@ std::vector<Waveform> waveforms_of(const PreparedScene& p, const Measurements& m
   return own;
 }
 
-// Returns the waveforms as a generator's integers, for drives whose source has a number of bits; `note` receives the names of
-// the other drives.
+// Returns the waveforms as a generator's integers, if the voltage source of the electrode or piezo has a number of bits; `note`
+// receives the names of the others.
 std::map<std::string, Coded> coded(const PreparedScene& p, const SentSignals& sent, const NoteSink& note) {
   std::map<std::string, Coded> all;
   const std::vector<std::string> names = p.drive_names();
@@ -241,7 +241,7 @@ Exported exported(SceneFile file, const ExportRequest& request, bool need_pull_i
   return {prepare_and_choose(file, need_pull_in, progress), std::move(drawn), std::move(drives)};
 }
 
-// Writes the drive signals as a file of the given format; the file of a generator has a single drive.
+// Writes the signals of the electrodes and piezos as a file of the given format; the file of a generator has a single signal.
 std::string sent_text(const std::string& format, const PreparedScene& p, const std::vector<std::string>& drives,
                       const SentSignals& sent, double end, const Sampling& sampling, const NoteSink& note) {
   if (format == "csv") return csv(sent.signals, end, sent.sample_rates);

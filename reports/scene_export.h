@@ -31,18 +31,19 @@ struct ExportRequest {
 
 /// A file that a waveform generator loads.
 struct SentFile {
-  std::string ending;  ///< end of the exported file's name: ".csv" for all drives, "-main.arb" for one drive
+  /// End of the exported file's name: ".csv" for all waveforms, "-main.arb" for that of the electrode `main`.
+  std::string ending;
   std::string text;
 };
 /// Returns the files with the signals of a shot (the voltages of one closing) in a format of `export`, in volts before the
-/// amplifiers of [driver], up to `end` [s]. Depending on the format, a file holds all drives, or one drive that is not always
-/// at 0 V. Throws the exceptions of exported_text().
+/// amplifiers of [driver], up to `end` [s]. Depending on the format, a file holds all signals, or that of one electrode or
+/// piezo which is not always at 0 V. Throws the exceptions of exported_text().
 [[nodiscard]] std::vector<SentFile> sent_files(const std::string& format, const PreparedScene& scene, const SentSignals& sent,
                                                double end);
-/// Returns all values of SentFile::ending that files for the drives of this scene may have.
+/// Returns all values of SentFile::ending that files for the electrodes and piezos of this scene may have.
 [[nodiscard]] std::vector<std::string> sent_endings(const PreparedScene& scene);
-/// Throws InvalidRequest if sent_files() can write no waveforms of these drives in this format: the format is unknown, is a
-/// circuit model, or needs samples that the [driver] of a drive does not give.
+/// Throws InvalidRequest if sent_files() can write no waveforms of these electrodes or piezos in this format: the format is
+/// unknown, is a circuit model, or needs samples that [driver.NAME] does not give.
 void require_shots(const std::string& format, const PreparedScene& scene, const std::vector<std::string>& drives);
 
 }  // namespace softland

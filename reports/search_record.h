@@ -56,7 +56,7 @@ struct SearchRecord {
   double harder_than_step = Metrics::unset;
   double evaluations = Metrics::unset;
   RunRecord baseline;                                   ///< run under the plain step, with which the search compares
-  std::map<std::string, double> parameters;             ///< parameters of the best waveform, by "drive.name" of the parameter
+  std::map<std::string, double> parameters;             ///< parameters of the best waveform, by names such as "main.level_1_V"
   std::map<std::string, std::array<double, 2>> bounds;  ///< lower and upper bound between which each parameter was searched
   std::vector<ConfirmationRecord> checks;
   double evaluations_of_modes = Metrics::unset;  ///< number of further evaluations, each with several numbers of modes

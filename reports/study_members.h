@@ -13,7 +13,7 @@
 
 namespace softland {
 
-/// Lists status and figures of merit of a run as members for JSON, except figures of single drives.
+/// Lists status and figures of merit of a run as members for JSON, except figures that the waveforms alone determine.
 template <class A>
 void members(A& a, Metrics& metrics) {
   FigureValues values(metrics);

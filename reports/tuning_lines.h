@@ -30,15 +30,17 @@ namespace softland {
 struct CommandedShot {
   int number = 0;                                 ///< number of the shot, counted from 1
   double hold_time = 0;                           ///< time for which the last levels are held and the contact recorded [s]
-  std::map<std::string, Table> drives;            ///< waveforms of the shot by drive, in volts at the switch
-  std::map<std::string, double> amplifiers = {};  ///< volts at the switch per volt of the source, by drive with an amplifier
+  std::map<std::string, Table> drives;            ///< waveforms of the shot by electrode or piezo, in volts at the switch
+  /// Volts at the switch per volt of the source, by electrode or piezo with an amplifier.
+  std::map<std::string, double> amplifiers = {};
 
-  /// Returns the time of the last row of any drive's waveform [s].
+  /// Returns the time of the last row of all waveforms [s].
   [[nodiscard]] double last_row() const;
   /// Returns the time from t = 0 for which the contact is recorded [s].
   [[nodiscard]] double duration() const { return last_row() + hold_time; }
-  /// Returns the waveforms in the order of the drives of a device. The factor of the dispersion force, which is not a voltage,
-  /// is that of the scene. Throws InvalidInput for a drive that the device does not have.
+  /// Returns the waveforms as Switch::drives() sorts electrodes, piezos and dispersion force. The factor of the dispersion
+  /// force, which is not a voltage, is that of the scene. Throws InvalidInput for an electrode or piezo that the device does
+  /// not have.
   [[nodiscard]] std::vector<Waveform> waveforms(const PreparedScene& nominal) const;
 };
 

@@ -212,7 +212,7 @@ TableRow record_row(const TuningReport::Closing& one, const Shown& shown) {
                      "picture")};
 }
 
-// Describes the delay between the drive voltages and the contact records; empty if the delay may be 0.
+// Describes the delay between the voltages and the contact records; empty if the delay may be 0.
 std::string delay_prose(const BeliefSummary& belief) {
   constexpr double certain = 2;  // least delay that is described, in its standard errors
   const auto delay = std::find_if(belief.quantities.begin(), belief.quantities.end(),

@@ -32,10 +32,11 @@ struct TunedClosing {
 
 /// The results of a tuning so far.
 struct TuningReport {
-  /// The voltages of a shot (one closing of the real device), by drive; the factor of the dispersion force is not a voltage.
+  /// The voltages of a shot (one closing of the real device); the factor of the dispersion force is not a voltage.
   struct Shot {
     int number = 0;
-    std::map<std::string, Points> waveforms = {};  ///< commanded voltages of the shot by drive: time [s] and voltage [V]
+    /// Commanded voltages of the shot by electrode or piezo: time [s] and voltage [V].
+    std::map<std::string, Points> waveforms = {};
     /// Time for which the last levels of the shot are held [s]; cost that the tuner expects of the shot.
     double hold_time = 0, expected_cost = 0;
     PredictedRecord predicted = {};

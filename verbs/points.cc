@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-// Members of a verb's JSON that an exploration does not store for a point: scene and drives, program and settings, computing
+// Members of a verb's JSON that an exploration does not store for a point: scene and waveforms, program and settings, computing
 // times, and tables by number of modes.
 constexpr std::array<std::string_view, 12> left_out{
     "scene",      "made_with",         "waveforms", "by_modes",  "pulled_through_by_modes_V", "seed", "tolerance",

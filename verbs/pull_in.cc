@@ -59,7 +59,7 @@ void read_sweep(const std::string& option, const std::string& text, std::optiona
   asked = range;
 }
 
-// Sets the level of a drive to the value of --bias NAME=V, which replaces the level in the scene.
+// Sets the bias of a drive, its constant voltage (or factor) while the voltage of an electrode varies, to the value of --bias.
 void set_bias(PreparedScene& p, const std::string& assignment) {
   const auto refuse = [&](std::string_view rule) {
     throw InvalidRequest(fmt::format("{} {}: {}", requested("bias"), visible(assignment), rule));
@@ -192,7 +192,7 @@ Outcome run(const Setting& setting, const PullInRequest& request) {
   try {
     progress.throw_if_stopped();
     if (!leaves_choices) {
-      // Constant voltages of all drives before t = 0, including the values of --bias.
+      // The bias: voltages of the other drives while that of an electrode varies, including the values of --bias.
       const std::vector<double> standing = prepared.scene.standing;
       prepared = prepare(file, false, progress, find_pull_in);
       prepared.scene.standing = standing;

@@ -47,13 +47,13 @@ struct Setting {
   std::string name;     ///< name of the scene as the user gave it
   std::string command;  ///< command line or Python call, recorded in results
   const Progress& progress;
-  /// Function that returns the scene prepared for simulation. With `default_limits`, drives without [driver] get the voltage
-  /// limits of a search.
+  /// Function that returns the scene prepared for simulation. With `default_limits`, electrodes and piezos without [driver] get
+  /// the voltage limits of a search.
   std::function<std::shared_ptr<const PreparedScene>(bool default_limits)> prepared;
   /// Function that loads a scene from a scene file or from a result.
   std::function<SceneFile(const std::string&)> load;
   /// Function that returns the waveforms of a result for the switch of `nominal`. Throws InvalidInput if the waveforms do not
-  /// fit the drives of the switch.
+  /// fit the electrodes and piezos of the switch.
   std::function<DriveWaveforms(const std::string& result, const PreparedScene& nominal)> waveforms_of;
   /// Function that returns the text of the scene file, with comments.
   std::function<std::string()> text;
