@@ -50,7 +50,7 @@ std::unique_ptr<Evaluator> made_evaluator(const PyScene& scene, const std::vecto
   });
 }
 
-// Returns (figures, status, reasons) of the closings of devices, with a row for each device.
+// Returns (figures of merit, status, reasons) of the closings of devices, with a row for each device.
 py::tuple evaluate(const Evaluator& evaluator, const Rows& rows, int jobs, const py::object& on_progress) {
   const auto keys = static_cast<py::ssize_t>(evaluator.keys().size()),
              figures = static_cast<py::ssize_t>(evaluator.figures().size());

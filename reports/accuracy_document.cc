@@ -72,8 +72,8 @@ void keep(Picture& drawn, Chart chart) {
   drawn.charts.push_back(std::move(chart));
 }
 
-// Returns the points (computing time, largest relative error of the well-conditioned figures) of an integrator, one per
-// tolerance.
+// Returns the points (computing time, largest relative error of the well-conditioned figures of merit) of an integrator, one
+// per tolerance.
 Points work_precision(const AccuracyStudy& study, const std::vector<AccuracyRow>& rows, Integrator integrator) {
   Points points;
   for (const AccuracyRow& row : rows) {

@@ -78,8 +78,8 @@ std::vector<Recommendation> read_recommendations(const json& from, const std::ve
   return all;
 }
 
-// Sets the error of a figure to infinity if the reference run has the figure and the row's run lacks the figure; the row was
-// read from JSON, which cannot express infinity.
+// Sets the error of a figure of merit to infinity if the reference run has the figure and the row's run lacks the figure; the
+// row was read from JSON, which cannot express infinity.
 void set_missing(std::vector<AccuracyRow>& rows, const Metrics& reference) {
   for (AccuracyRow& row : rows) {
     for (std::size_t i = 0; i < row.errors.size(); ++i) {

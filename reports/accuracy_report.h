@@ -18,10 +18,10 @@ struct AccuracyRecord {
 [[nodiscard]] nlohmann::json json_of(const AccuracyRecord& record);
 [[nodiscard]] AccuracyRecord read_accuracy(const nlohmann::json& from);
 /// Returns a document with recommended settings, work-precision diagrams, tables of errors, and the spread of ill-conditioned
-/// figures over many runs. If no setting of the integrator could be compared, the document gives the reason.
+/// figures of merit over many runs. If no setting of the integrator could be compared, the document gives the reason.
 [[nodiscard]] Document document_of(const AccuracyRecord& record);
 /// Draws three diagrams: error against computing time with a curve per integrator; error against computing time with and
-/// without a restart of the integrator at the contact; and error against quadrature points with a curve per figure.
+/// without a restart of the integrator at the contact; and error against quadrature points with a curve per figure of merit.
 [[nodiscard]] std::string svg_of(const AccuracyRecord& record);
 
 }  // namespace softland

@@ -17,7 +17,8 @@ using DriveRecord = RobustnessRecord::Drive;
 using BoxAndChaosRecord = RobustnessRecord::BoxAndChaosRecord;
 using RangeRecord = BoxAndChaosRecord::Range;
 
-constexpr double predicted_well = 0.1;  // largest share of the variance of a figure that a good polynomial chaos model may miss
+// Largest share of the variance of a figure of merit that a good polynomial chaos model may miss.
+constexpr double predicted_well = 0.1;
 
 const FigureStatistics& sampled(const DriveRecord& drive, std::string_view key) { return drive.figures[figure_of(key)]; }
 
@@ -69,7 +70,7 @@ std::string box_prose(const BoxAndChaosRecord& ways, std::size_t devices) {
       ways.half_width, 100 * ways.share, ways.sampled_inside, devices, 100 * ways.share, ways.closings);
 }
 
-/// Returns sentences on how well polynomial chaos describes each figure.
+/// Returns sentences on how well polynomial chaos describes each figure of merit.
 std::string chaos_prose(const BoxAndChaosRecord& ways) {
   std::vector<std::string> good, bad, none;
   for (const FigureChaos& c : ways.chaos) {
@@ -102,8 +103,8 @@ std::string chaos_prose(const BoxAndChaosRecord& ways) {
   return words;
 }
 
-// Describes the device with the extreme value of a figure in the box of varied quantities. The values of the quantities have
-// the units of robustness_report.h.
+// Describes the device with the extreme value of a figure of merit in the box of varied quantities. The values of the
+// quantities have the units of robustness_report.h.
 BoxAndChaosRecord::InBox in_box(const BoxDevice& device, const PreparedScene& nominal) {
   BoxAndChaosRecord::InBox record{.figure = device.figure,
                                   .values = {},

@@ -1,5 +1,5 @@
-// The section of the report of `softland robustness` that compares the figures of the simulated devices with those of a search
-// for worst cases and of polynomial chaos (studies/devices/box_and_chaos.h).
+// The section of the report of `softland robustness` that compares the figures of merit of the simulated devices with those of
+// a search for worst cases and of polynomial chaos (studies/devices/box_and_chaos.h).
 #pragma once
 
 #include "reports/robustness_report.h"

@@ -135,7 +135,8 @@ ReportTable figures_table(const ClosingRecord& result) {
   return table;
 }
 
-// Returns a table of the figures of each of several contacts; the main table is about the connection that the contacts make.
+// Returns a table of the figures of merit of each of several contacts; the main table is about the connection that the contacts
+// make.
 ReportTable contacts_table(const ClosingRecord& result) {
   constexpr std::array shown{&Metrics::initial_contact_time, &Metrics::impact_velocity, &Metrics::major_bounce_height,
                              &Metrics::peak_contact_force, &Metrics::hold_force};

@@ -97,7 +97,7 @@ std::map<std::string, PullInOfElectrode> internal::read_pull_in(const json& volt
   return JsonReader::read<std::map<std::string, PullInOfElectrode>>(volts);
 }
 
-// Writes the spread of each ill-conditioned figure over repeated runs with slightly changed settings.
+// Writes the spread of each ill-conditioned figure of merit over repeated runs with slightly changed settings.
 json internal::certified_json(const std::vector<IllConditioned>& figures) {
   json all = json::object();
   for (const IllConditioned& f : figures) all[std::string(f.figure.key)] = record_json(f.spread);

@@ -16,7 +16,7 @@ namespace internal {
 
 inline bool every_figure(const Figure&) { return true; }
 inline bool figure_of_no_drive(const Figure& figure) { return figure.conditioning != Conditioning::drives; }
-/// Returns true if each of several contacts has its own value of this figure.
+/// Returns true if each of several contacts has its own value of this figure of merit.
 inline bool figure_of_contact(const Figure& figure) {
   if (figure.key == key_of(&Metrics::drive_energy)) return false;
   const bool is_at_rest = figure.conditioning == Conditioning::rest || figure.conditioning == Conditioning::open;
@@ -24,7 +24,7 @@ inline bool figure_of_contact(const Figure& figure) {
 }
 inline bool figure_of_number(const Figure& figure) { return !figure.is_yes_or_no(); }
 
-// Lists status and figures of a run: in JSON, the status is a member of the object that holds the figures.
+// Lists status and figures of merit of a run: in JSON, the status is a member of the object that holds the figures.
 template <class A, class Asked>
 void figures_and_status(A& a, FigureValues& figures, std::string& status, const Asked& asked) {
   a.object("metrics", [&](auto& metrics) {
@@ -70,10 +70,10 @@ void figure_errors(A& a, FigureValues& errors) {
 [[nodiscard]] nlohmann::json voltages_json(const std::map<std::string, ByModes>& of_electrodes);
 [[nodiscard]] std::map<std::string, ByModes> read_voltages(const nlohmann::json& of_electrodes);
 [[nodiscard]] HoldWindows read_windows(const nlohmann::json& windows);
-/// Writes the waveforms among which the user can choose, each with the percentiles of its figures over the devices.
+/// Writes the waveforms among which the user can choose, each with the percentiles of its figures of merit over the devices.
 [[nodiscard]] nlohmann::json choices_json(const DevicesFindings& devices);
 /// Writes how many searches with different seeds met their goal, were confirmed, or failed, and the spread of their costs and
-/// figures.
+/// figures of merit.
 [[nodiscard]] nlohmann::json seeds_summary(const SeedsFindings& seeds);
 
 }  // namespace internal

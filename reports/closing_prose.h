@@ -11,8 +11,8 @@ namespace softland::internal {
 
 [[nodiscard]] bool touches(const FigureValues& figures);
 [[nodiscard]] bool settles(const FigureValues& figures);
-/// Returns true if a run reaches the contact plane but has no figures of the time after that: the scene has no contact, or the
-/// simulation stopped.
+/// Returns true if a run reaches the contact plane but has no figures of merit of the time after that: the scene has no
+/// contact, or the simulation stopped.
 [[nodiscard]] bool ends_at_touch(const FigureValues& figures);
 /// Returns true if one contact of several has touched, but the contacts that make the connection were never closed together.
 [[nodiscard]] bool touches_in_part(const RunRecord& run);
@@ -22,7 +22,7 @@ namespace softland::internal {
 [[nodiscard]] bool is_clean(const FigureValues& figures);
 /// Returns the height of the highest rebound [m]; 0 if the rebound is too low to be significant.
 [[nodiscard]] double rebound_height(const FigureValues& figures);
-/// Returns a figure of a run; NaN if the run has no figures.
+/// Returns a figure of merit of a run; NaN if the run has no figures.
 [[nodiscard]] double figure_of_run(const RunRecord& run, Figure::Member member);
 
 /// The subject and the object of a clause: "softland's waveform" closes "the switch"; "the plain step" closes "it".
@@ -33,7 +33,7 @@ struct Actor {
 /// Describes how a run closes, as a clause without full stop; `window` is the simulated time [s].
 [[nodiscard]] std::string closing_clause(const Actor& actor, const RunRecord& run, double window);
 /// Describes how the switch touches its contact in a run, and what follows, as a clause about `subject`, such as "with the
-/// plain step the switch"; empty if the run has no figures.
+/// plain step the switch"; empty if the run has no figures of merit.
 [[nodiscard]] std::string landing_clause(const std::string& subject, const RunRecord& run);
 
 inline constexpr const char* own_subject = "softland's waveform";

@@ -21,7 +21,7 @@
 namespace softland {
 namespace {
 
-// Replaces figures that are not finite by NaN: JSON has no infinity.
+// Replaces figures of merit that are not finite by NaN: JSON has no infinity.
 FigureValues finite(FigureValues values) {
   for (const Figure& figure : all_figures) {
     if (!std::isfinite(values[figure])) values[figure] = Metrics::unset;
@@ -76,7 +76,7 @@ RunRecord run(const PreparedScene& p, const Closing& closing, const MetricsOptio
           .collapse_time = closing.trajectory.collapse_time};
 }
 
-// Returns the figures by contact, if there are several contacts or if the beam touches the face of a dielectric.
+// Returns the figures of merit by contact, if there are several contacts or if the beam touches the face of a dielectric.
 std::map<std::string, ContactFigures> contacts(const Device& device, const Closing& closing) {
   std::map<std::string, ContactFigures> all;
   if (closing.contacts.empty() && device.lands_along_face())

@@ -29,7 +29,7 @@ struct EffectsLeftOut {
     double influence = Metrics::unset;
   };
   std::vector<LeftOut> left_out;
-  double influence = Metrics::unset;  ///< estimated relative influence of all omitted effects together on the figures
+  double influence = Metrics::unset;  ///< estimated relative influence of all omitted effects together on the figures of merit
 };
 
 struct PullInOfElectrode {
@@ -43,7 +43,7 @@ struct ClosingRecord {
   Origin origin;  ///< verb, program, machine, command line and scene of the result; its kind is "simulate" or "optimize"
   std::string status, message, title;
   RunRecord best;  ///< the single run, or the run under the best waveform of a search
-  /// Figures by contact, if there are several; `best` has the figures of the electrical connection they make.
+  /// Figures of merit by contact, if there are several; `best` has the figures of the electrical connection they make.
   std::map<std::string, ContactFigures> contacts;
   std::optional<Certificate> certificate;
   std::optional<ClosedState> closed_state;  ///< state of the closed switch under the hold voltages; none without a contact

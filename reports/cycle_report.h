@@ -47,7 +47,7 @@ struct CycleRecord {
   };
   /// The search that found the waveforms for the cycle rate of the report.
   struct Search {
-    std::string target, family;  ///< target figure of the search; waveform family of the closing waveform
+    std::string target, family;  ///< target figure of merit of the search; waveform family of the closing waveform
     std::uint64_t evaluations = 0;
     double cost = Metrics::unset, plain_cost = Metrics::unset;
     std::map<std::string, double> parameters;

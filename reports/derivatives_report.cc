@@ -19,7 +19,8 @@ const FigureStatistics& statistics_of(const DriveRobustness& drive, std::string_
   return drive.figures[figure_of(key)];
 }
 
-// Returns the relative change of a figure divided by the relative change of a varied quantity; NaN if figure or quantity is 0.
+// Returns the relative change of a figure of merit divided by the relative change of a varied quantity; NaN if figure or
+// quantity is 0.
 double elasticity(const FigureDerivatives& figure, const Derivatives::Variable& variable, double derivative) {
   const double size = figure.value / variable.nominal;
   return size != 0 && std::isfinite(size) ? derivative / size : Metrics::unset;
@@ -37,8 +38,8 @@ bool agrees(const FigureDerivatives& figure, const DriveRobustness& drive) {
   return figure.deviation <= most_apart * sampled && sampled <= most_apart * figure.deviation;
 }
 
-// Returns the table cell of a figure and a varied quantity: relative derivative, and change for one standard deviation: "+0.52
-// %/%, +1.2 µs".
+// Returns the table cell of a figure of merit and a varied quantity: relative derivative, and change for one standard
+// deviation: "+0.52 %/%, +1.2 µs".
 std::string derivative_cell(const Derived::Of& figure, const std::string& variable) {
   const auto slope = figure.by.find(variable);
   if (!figure.agrees || slope == figure.by.end() || !std::isfinite(slope->second.derivative)) return "—";
@@ -52,7 +53,7 @@ std::string deviation_cell(const Derived::Of& figure) {
   return none ? "—" : quantity(figure.deviation, figure_of(figure.key).unit);
 }
 
-// Explains to a reader of the report what a derivative of a figure means, and where it does not apply.
+// Explains to a reader of the report what a derivative of a figure of merit means, and where it does not apply.
 std::string meaning_of(const Derived& derivatives) {
   std::string words = fmt::format(
       "Exact derivatives at the nominal design under {}. A cell has the change of the figure in per cent for one per cent of the "

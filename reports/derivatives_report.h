@@ -1,15 +1,15 @@
-// The section of the report of `softland robustness` on the derivatives of the figures of the nominal device by the quantities
-// that process variation changes (studies/devices/derivatives.h).
+// The section of the report of `softland robustness` on the derivatives of the figures of merit of the nominal device by the
+// quantities that process variation changes (studies/devices/derivatives.h).
 #pragma once
 
 #include "reports/robustness_report.h"
 
 namespace softland::internal {
 
-/// Makes the results on the derivatives of figures by the varied quantities, for the report. `drive` has the closings of the
-/// devices under the same waveforms.
+/// Makes the results on the derivatives of figures of merit by the varied quantities, for the report. `drive` has the closings
+/// of the devices under the same waveforms.
 [[nodiscard]] RobustnessRecord::Derived record_of(const Derivatives& derivatives, const DriveRobustness& drive);
-/// Makes the section on the derivatives of all figures; the section is empty if no derivatives were computed.
+/// Makes the section on the derivatives of all figures of merit; the section is empty if no derivatives were computed.
 [[nodiscard]] ReportSection derivatives_section(const RobustnessRecord::Derived& derivatives,
                                                 const RobustnessRecord::Drive& drive);
 

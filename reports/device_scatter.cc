@@ -22,7 +22,7 @@ using namespace internal;
 constexpr std::size_t most_dots = 300;
 constexpr std::size_t groups = 16;  // number of groups into which the devices are sorted, each with a median
 constexpr std::size_t fewest_of_group = 5;
-constexpr double shown_share = 0.99;  // share of the devices with this figure that the axis shows
+constexpr double shown_share = 0.99;  // share of the devices with this figure of merit that the axis shows
 
 // A varied quantity by device; a factor is given as its deviation in percent.
 struct VariedQuantity {

@@ -21,8 +21,8 @@ namespace {
 using internal::json_number;
 using nlohmann::json;
 
-// Returns the relative change of a figure if an effect is left out: `metrics` are the figures without the effect, `own` the
-// figures of the complete scene.
+// Returns the relative change of a figure of merit if an effect is left out: `metrics` are the figures without the effect,
+// `own` the figures of the complete scene.
 double change(const Figure& figure, const Metrics& metrics, const Metrics& own) {
   return relative_change(figure.value(metrics), figure.value(own));
 }

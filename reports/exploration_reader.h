@@ -8,8 +8,8 @@
 
 namespace softland {
 
-/// Reads all rows of the database file, with the stored waveforms. `pareto` names the figures of the Pareto front, as the
-/// option --pareto does; empty: the figures that the plan minimises, if any. Throws InvalidInput as explored_aims() and
+/// Reads all rows of the database file, with the stored waveforms. `pareto` names the figures of merit of the Pareto front, as
+/// the option --pareto does; empty: the figures that the plan minimises, if any. Throws InvalidInput as explored_aims() and
 /// StudyReader do.
 [[nodiscard]] ExplorationReport read_exploration(const StudyReader& store, const std::string& pareto);
 

@@ -33,8 +33,8 @@ using nlohmann::json;
 
 constexpr std::size_t most_front_rows = 40;  // largest number of rows of the table of the Pareto front
 
-/// Returns the factor by which a figure to minimise or maximise becomes one to minimise: -1 for a figure to maximise, 1
-/// otherwise.
+/// Returns the factor by which a figure of merit to minimise or maximise becomes one to minimise: -1 for a figure to maximise,
+/// 1 otherwise.
 double sign_of(const ExploredAim& aim) { return aim.is_largest ? -1 : 1; }
 
 std::string aim_name(const ExplorationReport& report, const ExploredAim& aim) {

@@ -1,5 +1,5 @@
-// The report on an exploration: a document, the map of a figure as a picture, and the Pareto front as JSON. The points come
-// from any source, such as the database file of `softland explore`.
+// The report on an exploration: a document, the map of a figure of merit as a picture, and the Pareto front as JSON. The points
+// come from any source, such as the database file of `softland explore`.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct ExploredPoint {
   std::int64_t number = 0;
   std::string status;  ///< status of the point at the end of its computation: "done"
   std::string reason;
-  std::vector<double> values;  ///< values of variables and figures, one per column [SI]; NaN: unknown
+  std::vector<double> values;  ///< values of variables and figures of merit, one per column [SI]; NaN: unknown
 };
 
 struct ExplorationReport {
@@ -29,7 +29,7 @@ struct ExplorationReport {
   std::vector<ExploredColumn> columns;
   std::vector<ExploredPoint> points;
   std::int64_t planned = 0;       ///< number of points in the plan, the list of points to compute
-  std::vector<ExploredAim> aims;  ///< figures to minimise or maximise, which define the Pareto front; may be empty
+  std::vector<ExploredAim> aims;  ///< figures of merit to minimise or maximise, which define the Pareto front; may be empty
   /// Waveforms by number of the point and name of the electrode or piezo, as far as known.
   std::map<std::int64_t, std::map<std::string, Points>> waveforms;
   std::string plan;       ///< text of the plan, the stored request of the exploration
@@ -37,12 +37,12 @@ struct ExplorationReport {
   std::string made_with;  ///< version of the program, and processor, that computed the points
 };
 
-/// Returns true if a point with this status has valid figures: "done", or "not_settled", when the simulation ended before the
-/// last rebound.
+/// Returns true if a point with this status has valid figures of merit: "done", or "not_settled", when the simulation ended
+/// before the last rebound.
 [[nodiscard]] bool has_figures(std::string_view status);
 
-/// The Pareto front of several figures to minimise or maximise, among all points that have these figures and a status that
-/// permits comparison.
+/// The Pareto front of several figures of merit to minimise or maximise, among all points that have these figures and a status
+/// that permits comparison.
 struct ExploredFront {
   /// Indices in the report of the points on the front, sorted by the first aim (figure to minimise or maximise).
   std::vector<std::size_t> members;
@@ -55,9 +55,9 @@ struct ExploredFront {
 };
 [[nodiscard]] ExploredFront explored_front(const ExplorationReport& report);
 
-/// Returns a document with maps of every figure over two variables of a grid, parallel coordinates, a scatter matrix, the
-/// Pareto front with waveforms, the effect of each variable, and failures. The page is below 2 MB for any number of points. If
-/// not all points fit, the drawn points are thinned, and the page states the rule; counts, effects and the front are of all
+/// Returns a document with maps of every figure of merit over two variables of a grid, parallel coordinates, a scatter matrix,
+/// the Pareto front with waveforms, the effect of each variable, and failures. The page is below 2 MB for any number of points.
+/// If not all points fit, the drawn points are thinned, and the page states the rule; counts, effects and the front are of all
 /// points.
 [[nodiscard]] Document exploration_document(const ExplorationReport& report);
 [[nodiscard]] nlohmann::json exploration_json(const ExplorationReport& report);
@@ -65,8 +65,8 @@ struct ExploredFront {
 /// Returns the variables of the grid of points, in their order; none if the points are no grid of at least two variables.
 [[nodiscard]] std::vector<std::size_t> grid_variables(const ExplorationReport& report);
 
-/// Draws the map of a figure over two variables as an SVG file; each other variable has the middle one of its values. Throws
-/// InvalidInput if the points are no grid of these variables.
+/// Draws the map of a figure of merit over two variables as an SVG file; each other variable has the middle one of its values.
+/// Throws InvalidInput if the points are no grid of these variables.
 [[nodiscard]] std::string exploration_map_svg(const ExplorationReport& report, std::size_t x, std::size_t y, std::size_t figure);
 
 }  // namespace softland

@@ -27,7 +27,7 @@ std::vector<double> known(const MeasurableFigure& figure) {
   return values;
 }
 
-// Returns the standard deviation of a figure divided by its mean, over the devices that have the figure.
+// Returns the standard deviation of a measurable quantity divided by its mean, over the devices that have the quantity.
 double variation(const MeasurableFigure& figure) {
   const std::vector<double> values = known(figure);
   return values.size() < 2 ? Metrics::unset : sample_standard_deviation(values) / sample_mean(values);
@@ -132,7 +132,7 @@ MeasurementsRecord read_measurements(const json& from) { return internal::whole_
 
 std::string text_of(const MeasurementsRecord& study, std::size_t most) {
   using Row = MeasurementsRecord::Row;
-  // Returns true if a pair of measured figures predicts better than either figure of the pair alone.
+  // Returns true if a pair of measured quantities predicts better than either quantity of the pair alone.
   const auto is_better_than_its_figures = [&](const Row& p) {
     return std::ranges::all_of(p.measured, [&](const std::string& figure) {
       return std::ranges::all_of(study.predictions, [&](const Row& single) {

@@ -14,15 +14,15 @@ namespace softland {
 struct MeasurementsRecord {
   struct Figure {
     std::string name, unit;
-    double nominal = Metrics::unset;  ///< value of the figure on the nominal device [unit]
-    /// Standard deviation of the figure over the devices that have the figure, divided by its mean.
+    double nominal = Metrics::unset;  ///< value of the measurable quantity on the nominal device [unit]
+    /// Standard deviation of the quantity over the devices that have the quantity, divided by its mean.
     double variation = Metrics::unset;
-    double error = 0;         ///< relative error of a measurement of the figure
-    std::size_t devices = 0;  ///< number of devices with this figure
+    double error = 0;         ///< relative error of a measurement of the quantity
+    std::size_t devices = 0;  ///< number of devices that have the quantity
   };
   struct Row {
     Prediction found;
-    std::vector<std::string> measured;  ///< names of the measured figures
+    std::vector<std::string> measured;  ///< names of the measured quantities
   };
   Origin origin;
   std::uint64_t seed = 1;
@@ -36,7 +36,8 @@ struct MeasurementsRecord {
 
 [[nodiscard]] nlohmann::json json_of(const MeasurementsRecord& record);
 [[nodiscard]] MeasurementsRecord read_measurements(const nlohmann::json& from);
-/// Returns a table of at most `most` rows, without pairs of figures that predict no better than one figure of the pair alone.
+/// Returns a table of at most `most` rows, without pairs of quantities that predict no better than one quantity of the pair
+/// alone.
 [[nodiscard]] std::string text_of(const MeasurementsRecord& record, std::size_t most = 24);
 
 }  // namespace softland

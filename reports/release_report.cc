@@ -96,7 +96,7 @@ std::string finding(const ReleaseRecord& r) {
   return words + ".";
 }
 
-// Describes how the figures of the opening were computed and confirmed.
+// Describes how the figures of merit of the opening were computed and confirmed.
 std::string remarks(const ReleaseRecord& r) {
   std::string words = fmt::format(
       "At rest means that the contact point stays within {} of its open position ({} of the contact gap). The residual vibration "
@@ -121,8 +121,8 @@ double shown_until(const ReleaseRecord& r, double window) {
   return std::min(window, longer * end);
 }
 
-// Returns a table of 95th percentiles of figures over the devices: for the plain opening, in which all drives drop to 0 V, and
-// for the found opening.
+// Returns a table of 95th percentiles of figures of merit over the devices: for the plain opening, in which all drives drop to
+// 0 V, and for the found opening.
 ReportSection devices_section(const ReleaseRecord::Devices& found) {
   ReportTable table{.head = {"", plain_prose, "found"}, .rows = {}};
   table.rows = {{"come to rest in the open position", percent(found.plain.open), percent(found.best.open)},

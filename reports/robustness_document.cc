@@ -95,7 +95,7 @@ internal::Chart distribution_chart(const RobustnessReport& report, std::string_v
       table["x"].push_back(values[k]);
       table["y"].push_back(100 * static_cast<double>(k + 1) / all);
     }
-    // Choose the range of x of a figure so that it covers 99 % of the devices under every set of drive waveforms.
+    // Choose the range of x of a figure of merit so that it covers 99 % of the devices under every set of drive waveforms.
     most = std::max(most, values[std::min(values.size() - 1, values.size() * 99 / 100)]);
     chart.series.push_back(
         {.table = name, .column = "y", .label = shown_drive(drives[i].name), .role = role_of(i, drives.size())});
@@ -107,8 +107,8 @@ internal::Chart distribution_chart(const RobustnessReport& report, std::string_v
   return chart;
 }
 
-// Draws a histogram of a figure over the devices. All sets of waveforms share the bins, over the range of the cumulative
-// curves. Two kinds of closings appear as two peaks.
+// Draws a histogram of a figure of merit over the devices. All sets of waveforms share the bins, over the range of the
+// cumulative curves. Two kinds of closings appear as two peaks.
 internal::Chart histogram_chart(const RobustnessReport& report, std::string_view key, const internal::Chart& cumulative,
                                 internal::CurveTables& tables) {
   const Figure& f = figure_of(key);

@@ -34,20 +34,20 @@ namespace softland::internal {
 /// Returns the varying quantities of device k for display: in SI units or as factors; jitter as the random time of the first
 /// edge [s].
 [[nodiscard]] std::vector<double> shown_values(const Ensemble& ensemble, std::size_t k);
-/// Returns true if a table has a row for this figure of device_figures. A figure that no closing device has, such as the peak
-/// force on a rigid contact, has no row.
+/// Returns true if a table has a row for this figure of merit of device_figures. A figure that no closing device has, such as
+/// the peak force on a rigid contact, has no row.
 [[nodiscard]] bool is_had(const RobustnessRecord& found, const Figure& figure);
 /// Returns true if some waveform pulls the beam of a device onto the electrode.
 [[nodiscard]] bool some_collapse(const RobustnessRecord& found);
-/// A sentence of reports on how statistics count a device that lacks a figure.
+/// A sentence of reports on how statistics count a device that lacks a figure of merit.
 inline constexpr std::string_view worst_prose =
     "A device without a figure, because it does not close or has not settled, counts as the worst: ∞.";
 [[nodiscard]] const EstimatedQuantile& quantile_95(const RobustnessRecord::Drive& drive, std::string_view key);
 
 /// Returns a Sobol' index clamped to [0, 1], which its estimate may leave by chance.
 [[nodiscard]] inline double share_of(double index) { return std::clamp(index, 0.0, 1.0); }
-/// Returns the reason why a figure has no Sobol' indices. The indices need simulations of other devices than the sample, in
-/// `rows` rows; some of these devices may stay open although all devices of the sample close.
+/// Returns the reason why a figure of merit has no Sobol' indices. The indices need simulations of other devices than the
+/// sample, in `rows` rows; some of these devices may stay open although all devices of the sample close.
 [[nodiscard]] std::string why_no_indices(std::size_t rows, std::size_t failed_rows);
 
 }  // namespace softland::internal

@@ -412,8 +412,8 @@ RobustnessRecord record_of(const RobustnessReport& report) {
 
 json json_of(const RobustnessRecord& record) { return internal::record_json(record); }
 
-// Null in JSON stands for any non-finite number: figures over the box of varied quantities become infinite, as for a device
-// that does not close.
+// Null in JSON stands for any non-finite number: figures of merit over the box of varied quantities become infinite, as for a
+// device that does not close.
 RobustnessRecord read_robustness(const json& from) {
   RobustnessRecord record = internal::whole_record<RobustnessRecord>(from);
   require(!record.drives.empty(), "\"drives\" is empty");

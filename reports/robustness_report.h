@@ -58,7 +58,7 @@ struct RobustnessRecord {
     std::size_t number = 0;
     std::map<std::string, double> values;  ///< values of the varied quantities of a device, by name [SI unit, or factor]
     std::string status, failure;
-    std::map<std::string, double> figures;  ///< figures of the closing of a device, by key of device_figures
+    std::map<std::string, double> figures;  ///< figures of merit of the closing of a device, by key of device_figures
   };
   struct Drive {
     std::string name;
@@ -77,7 +77,7 @@ struct RobustnessRecord {
     };
     std::string_view key;
     std::size_t rows = 0, failed_rows = 0;
-    /// Sobol' indices of a figure by varied quantity; none if too many of the simulations for the indices failed.
+    /// Sobol' indices of a figure of merit by varied quantity; none if too many of the simulations for the indices failed.
     std::map<std::string, Indices> variables;
   };
   struct Derived {
@@ -95,7 +95,7 @@ struct RobustnessRecord {
       std::string_view key;
       double nominal = Metrics::unset, deviation = Metrics::unset, error = Metrics::unset;
       std::map<std::string, Slope> by;
-      /// True if the figure varies in the sample as much as the derivatives predict, or if its variation is unknown.
+      /// True if the figure of merit varies in the sample as much as the derivatives predict, or if its variation is unknown.
       bool agrees = false;
       std::string why_none;
     };
@@ -145,13 +145,14 @@ struct RobustnessRecord {
 /// Returns the report without diagrams: the text for a terminal, and the worst devices.
 [[nodiscard]] Document document_of(const RobustnessRecord& record);
 
-/// Returns CSV with a line per device: its number, the varying quantities, and status and figures under every set of waveforms.
-/// A quantity is in SI units or a factor; jitter is the time of the first edge. A figure that a device does not have is empty.
+/// Returns CSV with a line per device: its number, the varying quantities, and status and figures of merit under every set of
+/// waveforms. A quantity is in SI units or a factor; jitter is the time of the first edge. A figure that a device does not have
+/// is empty.
 [[nodiscard]] std::string robustness_csv(const RobustnessReport& report);
 
 /// Returns a document with statistics, cumulative distributions and histograms, the closings of typical devices, and every
-/// figure against every quantity. The document also has the value of measurements, the sources of the variation, derivatives at
-/// the nominal design, worst cases, polynomial chaos, the worst devices, and failures.
+/// figure of merit against every quantity. The document also has the value of measurements, the sources of the variation,
+/// derivatives at the nominal design, worst cases, polynomial chaos, the worst devices, and failures.
 [[nodiscard]] Document robustness_document(const RobustnessReport& report);
 
 namespace internal {

@@ -52,7 +52,7 @@ struct RunRecord {
   double collapse_time = Metrics::unset;  ///< time at which the beam touched the electrode [s]
 };
 
-/// Figures of one of several contacts, in the run with the best waveform or in the single run.
+/// Figures of merit of one of several contacts, in the run with the best waveform or in the single run.
 struct ContactFigures {
   double gap = Metrics::unset;  ///< rest distance from the contact's position to its contact plane [m]
   FigureValues figures;

@@ -17,7 +17,7 @@
 
 namespace softland {
 
-/// A repeated simulation of the best waveform with other settings, which confirms its figures.
+/// A repeated simulation of the best waveform with other settings, which confirms its figures of merit.
 struct ConfirmationRecord {
   std::string name, status;
   std::optional<FigureValues> figures;

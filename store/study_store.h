@@ -42,11 +42,12 @@ enum class ColumnKind { variable, figure };
 
 struct StoredColumn {
   std::string key;   ///< name of a column in the database and in the header of CSV, for example "gap_contact_m"
-  std::string name;  ///< key of a variable in the scene, such as "gap.contact", or readable name of a figure
+  std::string name;  ///< key of a variable in the scene, such as "gap.contact", or readable name of a figure of merit
   std::string unit;  ///< SI unit of a column, such as "m/s"; empty for a count, a ratio, yes or no
   ColumnKind kind = ColumnKind::figure;
   bool operator==(const StoredColumn&) const = default;
-  /// Returns true when both columns hold the same quantity. Two versions of softland may word the name of a figure differently.
+  /// Returns true when both columns hold the same quantity. Two versions of softland may word the name of a figure of merit
+  /// differently.
   [[nodiscard]] bool holds_as(const StoredColumn& other) const {
     return key == other.key && unit == other.unit && kind == other.kind && (kind == ColumnKind::figure || name == other.name);
   }

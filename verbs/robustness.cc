@@ -26,7 +26,7 @@ namespace {
 constexpr std::size_t most_worst = 3;
 
 std::string worst_file(std::size_t i) { return fmt::format("worst-{}.toml", i + 1); }
-// Returns the name of the file with the scene of the worst device in the box of varied quantities, for a figure.
+// Returns the name of the file with the scene of the worst device in the box of varied quantities, for a figure of merit.
 std::string box_file(std::string_view key) { return fmt::format("box-{}.toml", figure_of(key).symbol); }
 
 Outcome shown(const RobustnessRecord& record) {
@@ -54,13 +54,13 @@ struct RobustnessRequest : Usual {
     return all;
   }
 
-  // Shows the outcome again without its diagrams, which need the figures of all devices from devices.csv.
+  // Shows the outcome again without its diagrams, which need the figures of merit of all devices from devices.csv.
   static Outcome shown_again(const nlohmann::json& json) { return shown(read_robustness(json)); }
 
   RobustnessOptions options{.jobs = one_per_core(), .worth_of_measuring = true, .opens_on_command = true};
   std::vector<std::string> results;  ///< further results whose waveforms are evaluated on the devices
   std::string calibration;           ///< measurements that are made on every device; empty: those of the scene's [calibration]
-  /// True: the range of figures over a box of varied quantities, and polynomial chaos, are computed too.
+  /// True: the range of figures of merit over a box of varied quantities, and polynomial chaos, are computed too.
   bool box_and_chaos = false;
 };
 

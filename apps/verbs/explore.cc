@@ -160,8 +160,8 @@ StudyStore opened(const std::string& out, const Exploration& exploration, const 
           resume ? StudyStore::Opening::resume : StudyStore::Opening::fresh};
 }
 
-// Searches the Pareto front of the figures that the plan minimises or maximises; the search chooses the points one after
-// another.
+// Searches the Pareto front of the figures of merit that the plan minimises or maximises; the search chooses the points one
+// after another.
 int search_the_front(const Common& c, const ExploreRequest& r, Exploration& exploration, const std::string& out) {
   const Plan& plan = exploration.plan();
   const std::vector<ExploredAim> aims = aims_of(exploration);

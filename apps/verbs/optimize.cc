@@ -134,7 +134,7 @@ std::optional<TouchLimit> limit_of(const Asked& asked, const OptimizeResult& res
   }
 }
 
-// Returns the figures of the found waveform on simulated devices, as the text below the table of a result.
+// Returns the figures of merit of the found waveform on simulated devices, as the text below the table of a result.
 std::string words_on_devices(const Asked& asked, const SearchReport& report, const fs::path& place) {
   const FoundSearch& found = report.found;
   if (asked.search.robust && report.devices) return "\n" + terminal_text(robustness_document(*report.devices));

@@ -34,7 +34,7 @@ namespace {
 
 struct ReportRequest {
   std::string result;
-  std::string pareto;  ///< value of the option --pareto: figures to minimise or maximise in an exploration
+  std::string pareto;  ///< value of the option --pareto: figures of merit to minimise or maximise in an exploration
   std::string map;     ///< value of the option --map: the figure of merit to draw, and the two variables on the axes
 };
 
@@ -143,7 +143,7 @@ std::string store_of(const nlohmann::json& j, const std::filesystem::path& recor
                                  shortened(printable_line(named.string()))));
 }
 
-// Returns the figures that span the Pareto front in the JSON, in the form of the option --pareto.
+// Returns the figures of merit that span the Pareto front in the JSON, in the form of the option --pareto.
 std::string aims_of(const nlohmann::json& j) {
   std::string aims;
   for (const nlohmann::json& one : internal::JsonReader(internal::JsonReader(j).at("pareto")).at("aims")) {
