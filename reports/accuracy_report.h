@@ -20,8 +20,8 @@ struct AccuracyRecord {
 /// Returns a document with recommended settings, work-precision diagrams, tables of errors, and the spread of ill-conditioned
 /// figures of merit over many runs. If no setting of the integrator could be compared, the document gives the reason.
 [[nodiscard]] Document document_of(const AccuracyRecord& record);
-/// Draws three diagrams: error against computing time with a curve per integrator; error against computing time with and
-/// without a restart of the integrator at the contact; and error against quadrature points with a curve per figure of merit.
+/// Draws three diagrams of errors: against computing time, with a curve per integrator; against computing time, with and
+/// without a restart of the integrator at the contact; against quadrature points, with a curve per figure of merit.
 [[nodiscard]] std::string svg_of(const AccuracyRecord& record);
 
 }  // namespace softland

@@ -54,8 +54,8 @@ struct Point {
 struct Circuit {
   // Names of the pins of electrodes, piezos and dispersion force, as Switch::drives() sorts them.
   std::vector<std::string> drives;
-  double tau = 0;                   // time scale 1 / omega_1 of the model [s]
-  double gap = 0;                   // rest gap of the contact [m]
+  double tau = 0;  // time scale 1 / omega_1 of the model [s]
+  double gap = 0;  // rest gap of the contact [m]
   // Per mode: (tau omega)^2, 2 zeta tau omega, rest value of the modal coordinate Y, and deflection of the contact per Y.
   std::vector<double> stiffness, friction, start, at_contact;
   // Per mode: pins of the piezos, each with its dimensionless force on the mode per volt.

@@ -63,9 +63,9 @@ void figure_errors(A& a, FigureValues& errors) {
 [[nodiscard]] std::vector<IllConditioned> read_certified(const nlohmann::json& figures);
 [[nodiscard]] inline std::string integrator_name(Integrator integrator) { return std::string(to_string(integrator)); }
 [[nodiscard]] Integrator read_integrator(const nlohmann::json& name);
-/// These functions write what was computed for the closed state with several numbers of modes: the least eigenvalue of the
-/// stiffness, or the voltage at which the beam collapses onto each electrode, with its limit for further modes. JSON is null if
-/// no modes could be added to those of the scene.
+/// These functions write numbers of the closed state that were computed with several numbers of modes: the least eigenvalue of
+/// the stiffness, or for each electrode the voltage at which the beam collapses onto it. JSON is null if no modes could be
+/// added to those of the scene.
 [[nodiscard]] nlohmann::json eigenvalues_json(const std::optional<ByModes>& found);
 [[nodiscard]] nlohmann::json voltages_json(const std::map<std::string, ByModes>& of_electrodes);
 [[nodiscard]] std::map<std::string, ByModes> read_voltages(const nlohmann::json& of_electrodes);

@@ -8,7 +8,7 @@
 
 namespace softland::internal {
 
-/// What the waveform of a drive prescribes: the voltage of an electrode or a piezo, or the factor of the dispersion force.
+/// The quantity that a waveform prescribes: the voltage of an electrode or a piezo, or the factor of the dispersion force.
 struct DriveScale {
   std::string_view name;  ///< name of the quantity, as the first word of a sentence
   std::string_view unit;  ///< unit of the quantity; empty: a plain number

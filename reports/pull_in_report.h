@@ -36,7 +36,7 @@ struct PullInRecord {
 struct ElectrodeRecord {
   Status status = Status::not_run;
   PullInRecord volts;
-  std::map<std::string, double> bias;         ///< voltages of the other electrodes and piezos that are not at 0, by name [V]
+  std::map<std::string, double> bias;  ///< voltages of the other electrodes and piezos that are not at 0, by name [V]
   /// Factor of the dispersion force by its name in the scene, if the factor is not 1.
   std::map<std::string, double> bias_factor;
 };

@@ -13,11 +13,11 @@
 
 namespace softland {
 
-/// Sets SeedsFindings::best. On the nominal device, a search whose result the confirmations support is best, then a search that
-/// meets the goal, then a search whose switch settles. Further criteria are the figure of the target, then the cost; a rebound
-/// below `significant` [m] counts as `significant`, and for a sum of targets only the cost counts. Under process variation, a
-/// search whose result fulfils its conditions (such as a least yield) is best, then one with a lower cost. In a tie the lower
-/// seed is best.
+/// Sets SeedsFindings::best. The first criterion on the nominal device is a result that the confirmations support, then a
+/// result that meets the goal, then a switch that settles. Further criteria are the figure of merit of the target, then the
+/// cost; a rebound below `significant` [m] counts as `significant`, and for a sum of targets only the cost counts. Under
+/// process variation, a search whose result fulfils its conditions (such as a least yield) is best, then one with a lower cost.
+/// In a tie the lower seed is best.
 void rank(SeedsFindings& seeds, const Aim& target, double significant, bool over_devices);
 
 /// The results of an interrupted study of several seeds.

@@ -28,9 +28,9 @@ namespace softland {
 
 /// A shot, the voltages for one closing, as it is sent to a device.
 struct CommandedShot {
-  int number = 0;                                 ///< number of the shot, counted from 1
-  double hold_time = 0;                           ///< time for which the last levels are held and the contact recorded [s]
-  std::map<std::string, Table> drives;            ///< waveforms of the shot by electrode or piezo, in volts at the switch
+  int number = 0;                       ///< number of the shot, counted from 1
+  double hold_time = 0;                 ///< time for which the last levels are held and the contact recorded [s]
+  std::map<std::string, Table> drives;  ///< waveforms of the shot by electrode or piezo, in volts at the switch
   /// Volts at the switch per volt of the source, by electrode or piezo with an amplifier.
   std::map<std::string, double> amplifiers = {};
 

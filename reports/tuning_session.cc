@@ -62,7 +62,7 @@ struct TuningSession::State {
   Json origin = {};
   std::filesystem::path log_file = {};
   std::unique_ptr<TuningLog> log = {};
-  std::size_t behind = 0;     // number of closings of the log from which the tuner has learned
+  std::size_t behind = 0;  // number of closings of the log from which the tuner has learned
   // True while the log has the contact record of the next shot, but the tuner has not yet learned from it.
   bool is_on_record = false;
   std::optional<Tuner> tuner = {};
