@@ -6,7 +6,7 @@
 
 namespace softland::apps {
 
-/// A function that runs a verb whose computation differs between the command line and the Python module, on the command line.
+/// A function that runs a verb on the command line, for a verb whose computation differs in the Python module.
 using RunTold = int (*)(const Common&, const verbs::Arguments&);
 
 /// Runs a verb whose computation the command line and the Python module share; returns the exit status of the program.

@@ -104,7 +104,7 @@ std::string chaos_prose(const BoxAndChaosRecord& ways) {
 }
 
 // Describes the device with the extreme value of a figure of merit in the box of varied quantities. The values of the
-// quantities have the units of robustness_report.h.
+// quantities are in SI units, or factors.
 BoxAndChaosRecord::InBox in_box(const BoxDevice& device, const PreparedScene& nominal) {
   BoxAndChaosRecord::InBox record{.figure = device.figure,
                                   .values = {},

@@ -36,7 +36,7 @@ constexpr bool only_pushes =
 
 // A dialect writes operands of formulas in one language, SPICE or Verilog-A.
 struct Dialect {
-  std::string voltage;  // name of the operand for the voltage of a node: "v" in SPICE, "V" in Verilog-A
+  std::string voltage;  // name of the function for the voltage of a node: "v" in SPICE, "V" in Verilog-A
   bool has_variables;   // true if the circuit language has named numbers besides voltages of nodes
   [[nodiscard]] Formula node(const std::string& name) const { return Formula::named(fmt::format("{}({})", voltage, name)); }
   [[nodiscard]] Formula between(const std::string& name) const { return Formula::named(fmt::format("{}({},g)", voltage, name)); }
@@ -225,7 +225,7 @@ class SubcircuitWriter {
         model_.contact());
   }
 
-  // Writes the tension that stretching causes in the beam, by the law of model/stretching.h.
+  // Makes the formulas of the tension that stretching causes in the beam, by the law of model/stretching.h.
   void find_tension() {
     if (!model_.stretching()) return;
     const MidPlaneStretching& s = *model_.stretching();

@@ -79,7 +79,7 @@ std::string names_of(const std::vector<ConfirmationRecord>& numerics) {
   return tolerance + (modes.empty() ? "" : (tolerance.empty() ? "" : " and with ") + modes + " modes");
 }
 
-// Returns a warning if simulations with other numbers of modes find a bounce where the scene's number of modes finds none.
+// Returns a warning if the best waveform closes without a bounce, but not in all confirmations with other numbers of modes.
 std::string of_modes(const ClosingRecord& result) {
   if (!result.best.figures || !is_clean(*result.best.figures)) return {};
   std::vector<ConfirmationRecord> modes;

@@ -27,7 +27,7 @@ struct LimitRecord {
   struct Landing {
     LeastTime path;
     bool at_rest = false;
-    /// Times from first contact to the voltages that pull the switch onto its contact, and to the hold levels [s].
+    /// Times from first contact to the voltages that keep the switch closed, and to the hold levels [s].
     double catch_delay = Metrics::unset, catch_time = Metrics::unset;
     bool bounce_free = false;
     Metrics metrics;

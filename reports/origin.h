@@ -30,9 +30,9 @@ struct Origin {
 /// Returns the title of the scene from which results were computed; empty if the scene has none.
 [[nodiscard]] std::string title_of(const Origin& origin);
 
-/// Adds the members version, made_with and command to the JSON of a result.
+/// Returns the JSON of a result with the members version, made_with and command.
 [[nodiscard]] nlohmann::json with_origin(nlohmann::json record, const std::string& command);
-/// Adds the members version, made_with, command and the resolved scene to the JSON of a result.
+/// Returns the JSON of a result with the members version, made_with, command and the resolved scene.
 [[nodiscard]] nlohmann::json with_origin(nlohmann::json record, const PreparedScene& scene, const std::string& command);
 
 /// Describes the writer of a database file: this program on this machine, run with the command line `command`.

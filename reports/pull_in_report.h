@@ -63,8 +63,8 @@ struct StablePathRecord {
   double reaches = Metrics::unset, limit = Metrics::unset;
   std::optional<double> share;  ///< share of the varied devices of [spread] that reach the contact in this way
 };
-/// Returns the electrode or piezo that alone moves the switch to its contact through stable equilibria; none if no one does, or
-/// if there is no contact.
+/// Returns the electrode or piezo that alone moves the switch to its contact through stable equilibria; none if none of them
+/// does, or if there is no contact.
 [[nodiscard]] std::optional<StablePathRecord> stable_path_of(const PreparedScene& prepared, const Progress& progress);
 /// Describes the stable path to the contact: "the piezo alone reaches the contact at -0.9483 V through stable equilibria; 96.5
 /// % of devices do within -1 V".

@@ -33,8 +33,8 @@ class ResultFolder {
   /// Returns the final folder of the results of this run: the folder of --out, or the subfolder of unfinished results if the
   /// run was interrupted and the folder has results of an earlier run.
   [[nodiscard]] std::filesystem::path destination(bool interrupted) const;
-  /// Moves the results to destination(). In the folder of --out, results of earlier runs are removed: `files` that this run has
-  /// not written, and unfinished results of the same kind of run.
+  /// Moves the results to destination(). In the folder of --out they replace results of earlier runs; `files` that this run has
+  /// not written, and unfinished results of the same kind of run, are removed.
   void publish(bool interrupted);
 
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }

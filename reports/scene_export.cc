@@ -195,7 +195,7 @@ std::vector<Waveform> waveforms_of(const PreparedScene& p, const Measurements& m
   return own;
 }
 
-// Returns the waveforms as a generator's integers, if the voltage source of the electrode or piezo has a number of bits; `note`
+// Returns the waveforms of electrodes and piezos whose voltage source has a number of bits, for export as integers; `note`
 // receives the names of the others.
 std::map<std::string, Coded> coded(const PreparedScene& p, const SentSignals& sent, const NoteSink& note) {
   std::map<std::string, Coded> all;

@@ -112,7 +112,7 @@ bool takes_little(const Asked& asked, const OptimizeResult& result) {
 }
 
 // Computes the least closing time that any waveform can reach on the same electrodes and piezos, within the same voltage
-// limits, at the impact velocity of the found waveform. Returns none if the verb `limit` does not apply to the scene.
+// limits, with at most the impact velocity of the found waveform. Returns none if the verb `limit` does not apply to the scene.
 std::optional<TouchLimit> limit_of(const Asked& asked, const OptimizeResult& result) {
   if (!result.best || result.search.termination == Termination::interrupted) return std::nullopt;
   if (!asked.limit && !takes_little(asked, result)) return std::nullopt;
