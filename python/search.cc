@@ -50,7 +50,7 @@ PlannedSearch planned_search(const Request& request, const SceneFile& file, Inte
 }
 
 // Returns a search that is stored in a folder. Its stored request includes the start waveforms. Throws InvalidInput for Python
-// functions and for start waveforms, which a file cannot express.
+// functions, also as start waveforms: a file cannot express them.
 StoredSearch kept_search(const Request& request, const PyScene& scene, std::optional<KnownSearch>& known, InterruptibleRun& run) {
   require(!request.objective && request.own_waveforms.empty(),
           "out: must not be given for a search with Python functions, which cannot be stored in a file");
