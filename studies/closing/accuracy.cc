@@ -12,13 +12,14 @@
 namespace softland {
 namespace {
 
-constexpr double enough_seconds = 0.03;     // least total time of the timed runs of one setting [s]
+constexpr double enough_seconds = 0.03;     // least total computing time of the repeated runs of one setting [s]
 constexpr double reference_tighter = 1e-4;  // ratio of the reference run's tolerance to the tightest tolerance of the study
-constexpr double reference_looser =
-    100;  // ratio of the tolerances of the second reference run to the first, and of successive reference runs
-// Ratio of the computing times of successive reference runs, for an integrator of fifth order.
+// Ratio of the tolerance of a reference run to that of the next, tighter one; also of the run that checks the reference.
+constexpr double reference_looser = 100;
+// Expected ratio of the computing times of successive reference runs (integrator of fifth order). It shows whether the next
+// reference run still fits the time limit.
 constexpr double reference_growth = 2.5;
-// Ratio of the smallest error that the reference run resolves to the run's tolerance: 10, less rounding.
+// A reference run resolves errors above ten times its tolerance; 9.9 allows for rounding.
 constexpr double told_apart = 9.9;
 constexpr CloudOptions cloud_options{.runs = 8};
 
@@ -94,7 +95,8 @@ class Study {
             .stop = options_.stop};
   }
 
-  // Repeats the closing with one setting until its computing time is well known; stops a run after `most_seconds`.
+  // Repeats the closing with one setting (integrator, tolerance, quadrature points) `runs` times, or until the runs have taken
+  // `enough_seconds`. Stops a run after `most_seconds`.
   void measure(const Switch& model, AccuracyRow& row, int runs, double most_seconds) {
     if (stopped()) {
       row.missing = "interrupted";
@@ -139,7 +141,7 @@ class Study {
     return m;
   }
 
-  // Measures error and computing time of a setting if the time limit of the study permits.
+  // Measures error and computing time of one setting, unless the time limit of all runs is over.
   void try_out(const Switch& model, AccuracyRow& row) {
     if (seconds_since(start_) < options_.all_seconds) {
       measure(model, row, options_.runs, options_.most_seconds);
@@ -149,7 +151,7 @@ class Study {
     progress();
   }
 
-  // Measures error and computing time of a setting at every tolerance of the study.
+  // Measures error and computing time of an integrator with these quadrature points at every tolerance of the study.
   void sweep(const Switch& model, const AccuracyRow& given, std::vector<AccuracyRow>& rows) {
     bool cut = false;
     for (const double tolerance : options_.tolerances) {
@@ -182,7 +184,8 @@ class Study {
     return points ? Switch(prepared_.scene.device, {.points_per_length = *points}) : prepared_.model;
   }
 
-  // Tightens the reference run to the planned tolerance, or until rounding or the time limit prevents that.
+  // Tightens the reference run step by step to reference_tighter times the tightest tolerance of the study. Ends earlier at the
+  // time limit, or if a tighter run fails.
   void tighten_reference(const Switch& fine, std::optional<double> points, double& seconds_left) {
     const double planned = reference_tighter * options_.tolerances.back();
     int steps = 0;
@@ -194,8 +197,8 @@ class Study {
       if (found && (!touched(best.figures) || growth * best_seconds > seconds_left)) return;
       AccuracyRow next = setting(own_integrator_, points, planned * std::pow(reference_looser, steps));
       const double start = options_.clock();
-      // Share of the reference runs' time limit for the first reference; the rest is for a reference with fewer quadrature
-      // points.
+      // Share of the time limit that the first reference run may take. If this run takes longer, the remaining time is for a
+      // reference run with fewer quadrature points.
       constexpr double first_share = 1.0 / 3;
       measure(fine, next, 1, found ? seconds_left : first_share * seconds_left);
       const double seconds = seconds_since(start);
@@ -297,7 +300,8 @@ class Study {
   const PreparedScene& prepared_;
   const AccuracyOptions& options_;
   std::vector<Signal> signals_;
-  std::optional<double> own_points_;  // quadrature points per length of the beam that simulate() uses; none for a rigid plate
+  // Quadrature points over the length of the beam that simulate() uses; none for a rigid plate.
+  std::optional<double> own_points_;
   std::vector<double> other_points_;
   double tightest_ = 0;  // tightest tolerance whose errors the reference run can resolve
   int own_modes_ = 0;

@@ -30,15 +30,16 @@ namespace softland {
 /// Errors of the figures in `studied_figures`, in the same order.
 using FigureErrors = std::array<double, studied_figures.size()>;
 
-/// Returns the relative_difference() of each studied figure, after Figure::counted() has replaced insignificant values; NaN for
-/// a figure that the reference does not have.
+/// Returns the relative_difference() of each studied figure from that of `reference`, by the values of Figure::counted(): a
+/// height below the significant rebound counts as that height. NaN for a figure that `reference` lacks.
 [[nodiscard]] FigureErrors relative_errors(const Metrics& value, const Metrics& reference, const MetricsOptions& options);
 
 struct AccuracyOptions {
   /// Relative tolerances of the integrator, from loose to tight.
   std::vector<double> tolerances{1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9};
-  std::vector<double> points{6, 8, 12, 16, 24, 48};          ///< numbers of quadrature points per length of the beam, ascending
-  std::vector<double> wanted{1e-2, 1e-3, 1e-4, 1e-5, 1e-6};  ///< relative errors of figures for which a setting is recommended
+  std::vector<double> points{6, 8, 12, 16, 24, 48};  ///< numbers of quadrature points over the beam's length, ascending
+  /// Accuracies (relative errors of figures) for each of which a setting is recommended.
+  std::vector<double> wanted{1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
   int runs = 7;             ///< number of timed runs of a setting, whose median is reported; fewer if the runs take long
   double most_seconds = 2;  ///< time limit for one closing [s]; a longer closing is stopped, and tighter tolerances are skipped
   /// Time limit for the reference runs [s], in order from loose to tight; later runs are skipped.
@@ -54,7 +55,7 @@ struct AccuracyOptions {
 struct AccuracyRow {
   Integrator integrator = Integrator::automatic;
   double tolerance = 0;
-  std::optional<double> points_per_length = {};  ///< quadrature points per length of the beam; none for a rigid plate
+  std::optional<double> points_per_length = {};  ///< quadrature points over the length of the beam; none for a rigid plate
   int modes = 0;
   bool restart = true;       ///< true if the integrator is restarted at make and break of contact
   std::string missing = {};  ///< reason why the run has no figures; empty if the figures exist

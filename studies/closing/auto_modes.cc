@@ -21,7 +21,8 @@ namespace softland {
 namespace {
 
 constexpr double run_tolerance = 1e-6;  // relative tolerance of the integrator, whose errors are far below auto_modes_tolerance
-constexpr double least_share = 0.01;    // share of a figure's scale in a closing below which the figure counts as zero
+// Smallest size to which the change of a figure is relative, as a share of the figure's scale.
+constexpr double least_share = 0.01;
 
 struct Judged {
   double value, scale;
@@ -75,8 +76,8 @@ Judgement judged(const SceneFile& file, int modes, const Progress& progress) {
   return {.figures = std::move(list), .scene = p};
 }
 
-// Returns the largest relative change of any figure between two closings; 1 for a figure that exists in one of the two closings
-// only.
+// Returns the largest relative change of any figure between two closings; a figure that exists in only one of them changes by
+// 1.
 double change(const std::vector<Judged>& from, const std::vector<Judged>& to) {
   double most = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {
@@ -101,7 +102,7 @@ double statics_moved(const Scene& scene, int modes) {
   return most;
 }
 
-// True if the stability of the closed state under the hold levels is the same with more modes as with the scene's number.
+// True if the closed state under the hold levels is as stable with more modes as with the scene's number, or does not exist.
 bool agrees_on_stability(const PreparedScene& p) {
   const ModeLadder ladder(p);
   const auto closed = closed_equilibria(ladder, hold_levels(p.signals()));

@@ -25,7 +25,7 @@ inline constexpr double auto_modes_tolerance = 0.03;
 struct AutoModes {
   int modes = 0;
   bool touches = true;  ///< true if the switch reaches its contact in the simulated time
-  double moved = 0;     ///< largest relative change of a figure when the model has further modes
+  double moved = 0;     ///< largest relative change of a compared figure when the model gets more modes
   [[nodiscard]] bool settled() const { return moved <= auto_modes_tolerance; }
   /// Returns a sentence about the chosen number of modes, for results.
   [[nodiscard]] std::string note() const;

@@ -19,7 +19,8 @@ constexpr double found_to = 1e-5;  // relative precision to which a static volta
 // modes are extrapolated as a geometric series (Aitken). The last value is the limit if it hardly differs from the previous
 // value, or if it belongs to the largest number of modes and changed little.
 double extrapolated(const std::map<int, double>& values) {
-  // Largest relative changes of the last value, and largest ratio of successive changes, at which values converge.
+  // The last value is the limit if its relative change is at most `rounding`, or at most `left` with the largest number of
+  // modes. Values are extrapolated if the ratio of successive changes is at most `fastest`.
   constexpr double rounding = 3 * found_to, fastest = 0.5, left = 0.02;
   if (values.size() < 2) return std::nan("");
   const auto last = std::prev(values.end()), before = std::prev(last);
@@ -35,11 +36,11 @@ double extrapolated(const std::map<int, double>& values) {
 // Rounds to ten digits: with many modes further digits are rounding errors, which depend on how a program is linked.
 double to_ten_digits(double value) { return std::isfinite(value) ? std::stod(fmt::format("{:.9e}", value)) : value; }
 
-// Computes a value by the number of modes: calls find(switch) for each switch of the ladder (the scene's switch with rising
-// numbers of modes), and for the switch with the most modes if the last value still changes much.
+// Computes a value with several numbers of modes by find(switch): for each switch of the ladder, in rising number of modes. If
+// the last value still changes by more than `much`, the switch with the most modes follows.
 template <class Find>
 ByModes value_by_modes(const ModeLadder& ladder, Find&& find) {
-  // Relative change of the last value from which on the switch with the most modes is computed too.
+  // Relative change of the last value above which the value is also computed with the most modes.
   constexpr double much = 5e-3;
   std::map<int, double> values;
   double change = 0, last = std::nan("");

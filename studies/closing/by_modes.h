@@ -19,7 +19,7 @@
 
 namespace softland {
 
-/// Smallest relative change of a static voltage by more modes that is reported, together with the converged voltage.
+/// Smallest relative change of a static voltage with the number of modes that is reported, together with the converged voltage.
 inline constexpr double mode_shift_worth_telling = 0.01;
 
 /// A number, such as a voltage or an eigenvalue, computed with several numbers of modes.
@@ -59,8 +59,8 @@ class ModeLadder {
   mutable std::optional<Switch> finest_;
 };
 
-/// Returns the closed equilibria under constant voltages for all switches, the scene's own switch first. Each search starts
-/// from the previous equilibrium.
+/// Returns the closed equilibrium under constant voltages for every switch of the ladder, the scene's own switch first; none
+/// where it does not exist. Each search starts from the equilibrium with fewer modes.
 [[nodiscard]] std::vector<std::optional<ClosedEquilibrium>> closed_equilibria(const ModeLadder& ladder,
                                                                               std::span<const double> volts);
 
@@ -68,7 +68,8 @@ class ModeLadder {
 /// stable.
 struct StabilityByModes {
   ByModes eigenvalues;  ///< smallest eigenvalue of the equilibrium, by number of modes [rad^2/s^2]
-  /// True if the equilibrium is stable with every number of modes that is large enough to decide, and in the limit.
+  /// True if the equilibrium is stable with every number of modes that suffices to decide (judges_stability()), and in the
+  /// limit of many modes. Unset if no number suffices.
   std::optional<bool> stable;
   /// True if the equilibrium is stable with some of the computed numbers of modes and unstable with others.
   bool flips = false;
@@ -82,8 +83,8 @@ struct VoltagesByModes {
   /// Voltages by number of modes; `pulled_through` is the collapse voltage; without values if the switch has no contact.
   ByModes static_pull_in, release, pulled_through;
 };
-/// Returns the pull-in, release and collapse voltages of an electrode. `pulled_through` is the collapse voltage of the scene's
-/// own switch, above its release voltage.
+/// Returns the pull-in, release and collapse voltages of an electrode. The argument `pulled_through` is the known collapse
+/// voltage of the scene's own switch, NaN without one; the collapse voltages with more modes are computed.
 [[nodiscard]] VoltagesByModes voltages_by_modes(const ModeLadder& ladder, const Scene& scene, std::size_t electrode,
                                                 double pulled_through);
 [[nodiscard]] ByModes static_pull_in_by_modes(const ModeLadder& ladder, const Scene& scene, std::size_t electrode);
@@ -93,8 +94,8 @@ struct VoltagesByModes {
                                               double own);
 
 /// Returns the capacitance of the electrode that closes the switch, in the closed state under these drive voltages [F], for a
-/// switch that closes onto a dielectric. Adds a value with the most modes that a closing uses, if more modes change the
-/// capacitance by at least mode_shift_worth_telling.
+/// switch that closes onto a dielectric. If more modes change the capacitance by at least mode_shift_worth_telling, the values
+/// include one with Structure::most_modes, the largest number of a closing.
 [[nodiscard]] ByModes closed_capacitance_by_modes(const ModeLadder& ladder, std::span<const double> volts);
 /// Returns the smallest computed number of modes from which on values stay within mode_shift_worth_telling of the limit. None
 /// if the value with the most modes differs by more, or if the values do not converge.

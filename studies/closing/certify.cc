@@ -14,26 +14,28 @@
 namespace softland {
 namespace {
 
-// Error that a run and its more accurate judge share, as a share of the figure, divided by the tolerance.
+// Error of a figure that a run and its judge (a more accurate run) have in common, so that their difference does not show it.
+// Relative to the figure, per unit of the relative tolerance.
 constexpr double shared = 0.01;
-constexpr double parted = 0.1;  // relative difference of a rebound's height above which two runs have diverged
+constexpr double parted = 0.1;  // relative difference of a rebound's heights in two runs above which the runs have diverged
 
-// True if changes in the last digits of the drive voltages change a figure visibly, or decide its existence, in the closing or
-// in the more accurate run `better`.
+// True if a figure is ill-conditioned: imperceptible changes of the drive voltages (the runs of `cloud`) change it visibly, or
+// it exists in some of the runs only. `better` has the figures of the more accurate run.
 bool ill_conditioned(const Figure& figure, const std::vector<Metrics>& cloud, const Metrics& own, const Metrics& better,
                      const MetricsOptions& options) {
   std::vector<double> values;
   for (const Metrics& m : cloud) values.push_back(figure.counted(m, options));
-  // A loose tolerance changes the values of a figure in the runs `own` and `better` by its error, which is no sign of
-  // ill-conditioning: only the existence of the figure in both runs counts.
+  // The values of the figure in `own` and `better` differ by the error of the looser tolerance, which is no sign of
+  // ill-conditioning. Hence only the existence of the figure in these runs counts.
   const bool own_has = std::isfinite(figure.value(own)), better_has = std::isfinite(figure.value(better));
   const auto have = std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); }) + own_has + better_has;
   if (have == 0 || cloud.empty()) return false;
   return have < static_cast<std::ptrdiff_t>(cloud.size() + 2) || ill_conditioned(spread(std::move(values)));
 }
 
-// Returns the figures of the closing after each pull-in voltage that is a unit of the drives is increased, and decreased, by
-// its error. The error is a multiple of the change with a finer quadrature, plus the width of the bracket of the voltage.
+// Returns the figures of the closing after a pull-in voltage in which drives are given (unit Vsp or Vdp) is decreased, and
+// increased, by its error: two entries per electrode. The error is a multiple of the change with a finer quadrature, plus the
+// width of the bracket of the voltage.
 std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switch& fine, const SwitchOptions& quadrature,
                                       const ClosingOptions& options, const MetricsOptions& figures, const Progress& progress) {
   const Scene& written = prepared.effects ? prepared.effects->described : prepared.scene;
@@ -43,7 +45,8 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
     const auto at = std::find_if(electrodes.begin(), electrodes.end(), [&](const Electrode& e) { return e.name == name; });
     const auto k = static_cast<std::size_t>(at - electrodes.begin());
     const auto known = prepared.pull_in.find(name);
-    if (known == prepared.pull_in.end()) continue;  // a pull-in voltage without an entry is a unit of voltage limits only
+    // Only voltage limits, which do not change the closing, are in units of this pull-in voltage.
+    if (known == prepared.pull_in.end()) continue;
     const Switch model(written.device, quadrature);
     const std::vector<double> bias = bias_of(written, k);
     const StaticPullIn statically = static_pull_in(model, k, bias);
@@ -59,9 +62,9 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
       PreparedScene moved = prepared;
       try {
         moved.drives = written.drives(units).of(prepared.drive_names());
-        // The capacitance that loads a voltage source stays as in `prepared`.
+        // Scene::drives() does not know the capacitances that load the voltage sources: copy them.
         for (std::size_t i = 0; i < moved.drives.size(); ++i) moved.drives[i].source.load = prepared.drives[i].source.load;
-        // No figures: a drive is at a limit of its voltage source, or no better pull-in voltage exists.
+        // No figures: a drive exceeds a limit of its voltage source, or the finer quadrature finds no pull-in voltage.
       } catch (const InvalidInput&) {
         found.emplace_back();
         continue;
@@ -113,7 +116,7 @@ std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, 
                           .impact_velocity = first.impacts[k],
                           .at_threshold = at_threshold};
   };
-  // The touch of the contact with the smallest impact velocity is assumed to be the one that tiny changes add or remove.
+  // Of the touches before the runs diverge, the one with the smallest impact velocity is assumed to exist in some runs only.
   const auto gentlest = [&](std::size_t count) {
     const auto found = std::min_element(first.impacts.begin(), first.impacts.begin() + static_cast<std::ptrdiff_t>(count));
     return named(static_cast<std::size_t>(found - first.impacts.begin()), false);
@@ -145,7 +148,7 @@ Closing certify(const PreparedScene& prepared, const Progress& progress, int job
     return c;
   }
   const std::vector<Signal> signals = prepared.signals();
-  // The judge is a second run of the closing. The more accurate of the two runs has the tighter tolerance.
+  // The judge is a second run of the closing, tighter or looser than the first. The tighter of the two runs is more accurate.
   const bool judge_is_better = c.judge->tolerance < c.tolerance;
   const SwitchOptions& quadrature = judge_is_better ? c.judge->quadrature : c.quadrature;
   const Switch fine(prepared.scene.device, quadrature);
@@ -182,7 +185,7 @@ Closing certify(const PreparedScene& prepared, const Progress& progress, int job
     const double own = figure.value(c.metrics), other = figure.value(better);
     double error = error_safety * std::abs(own - other) + shared * c.tolerance * std::abs(own);
     const double unmoved = judge_is_better ? other : own;
-    // Pairs of runs: the figures with a pull-in voltage increased, then decreased.
+    // Pairs of figures: with a pull-in voltage decreased by its error, then increased.
     for (std::size_t i = 0; i + 1 < moved.size(); i += 2) {
       error += std::fmax(std::abs(figure.value(moved[i]) - unmoved), std::abs(figure.value(moved[i + 1]) - unmoved));
     }

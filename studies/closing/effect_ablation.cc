@@ -223,7 +223,8 @@ void add_omissible_contact(const PreparedScene& prepared, std::vector<OmissibleE
   const Contact& contact = d.contacts.front();
   const auto section = [](const Contact& c) { return c.name.empty() ? std::string("contact") : "contact." + c.name; };
   if (contact.distribution == ContactDistribution::pad) {
-    // The slope at the contact, times the pad length, for a uniform beam bent by a force at its end.
+    // Height difference between the ends of the pad: pad length times slope of a cantilever that a force at its end bends by
+    // the contact gap.
     const double rise = 1.5 * d.contact_gap() / d.structure.length * contact.pad_length;
     list.push_back({.effect = section(contact) + ".distribution",
                     .magnitude = {.name = "tilt of the pad", .unit = "m", .value = rise},
@@ -276,11 +277,11 @@ PreparedScene copy_without(const PreparedScene& prepared, const std::vector<Omis
   SceneFile file = frozen.again(prepared.scene.file.name());
   file.assign("simulate.effects", std::string("all"));
   for (const OmissibleEffect& e : effects) {
-    // A key inside of a section that is left out is removed together with the section.
+    // A key inside a section that is left out needs no change of its own: it is removed together with the section.
     const bool inside = std::any_of(effects.begin(), effects.end(),
                                     [&](const OmissibleEffect& other) { return e.effect.starts_with(other.effect + "."); });
     if (inside) continue;
-    file.erase(fmt::format("spread.\"{}\"", e.effect));  // [spread] has nothing to vary under a removed key
+    file.erase(fmt::format("spread.\"{}\"", e.effect));  // [spread] must not vary a key that the scene no longer has
     if (e.instead) {
       file.assign(e.effect, *e.instead);
     } else {
@@ -290,14 +291,14 @@ PreparedScene copy_without(const PreparedScene& prepared, const std::vector<Omis
   const auto drops_contact = [&](const OmissibleEffect& e) {
     return std::ranges::any_of(prepared.scene.device.contacts, [&](const Contact& c) { return e.effect == "contact." + c.name; });
   };
-  // If one contact remains after the others are left out, it makes the connection alone.
+  // Key metrics.closed says how several contacts make the connection; a single contact makes it alone.
   const auto left =
       prepared.scene.device.contacts.size() - static_cast<std::size_t>(std::ranges::count_if(effects, drops_contact));
   if (left < 2) file.erase("metrics.closed");
   PreparedScene p = prepare(file);
   p.scene.warnings = prepared.scene.warnings;
   p.pull_in = prepared.pull_in;
-  p.drives = prepared.drives.of(p.drive_names());  // the capacitive loads of the voltage sources stay as in `prepared`
+  p.drives = prepared.drives.of(p.drive_names());  // keeps the loads of the voltage sources, and so the applied voltages
   p.duration = prepared.duration;
   p.held_from = prepared.held_from;
   p.tolerance = prepared.tolerance;

@@ -79,7 +79,8 @@ struct EffectAblation {
 /// count as effects.
 [[nodiscard]] std::vector<OmissibleEffect> omissible_effects(const PreparedScene& prepared);
 
-/// Returns the scene without these effects; the waveforms keep their voltages in volts.
+/// Returns the scene without these effects. Its waveforms have the same voltages in volts, although its pull-in voltages may
+/// differ.
 [[nodiscard]] PreparedScene copy_without(const PreparedScene& prepared, const std::vector<OmissibleEffect>& effects);
 
 /// Returns the largest relative difference between two closings of initial contact time t_i, impact velocity v_i and highest

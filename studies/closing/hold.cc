@@ -37,13 +37,13 @@ double conductance_at(const Switch& model, const Eigen::VectorXd& q, double forc
   return contact.conductance(model.contact_deflection(q.data(), c) - model.contact_gap(c), force);
 }
 
-// Computes the forces of several contacts of a switch at rest under these levels of its drives, and the resistance of their
-// connection.
+// Computes the hold of a switch with several contacts at rest under these levels of its drives: the force and resistance of
+// each contact, and of the connection (the electrical path through the contacts).
 Hold hold_of_connection(const Switch& model, const std::vector<double>& levels, Hold hold) {
   const bool needs_all = model.device().connection == Connection::all;
   std::optional<Eigen::VectorXd> rest;
   if (keeps_closed(model, hold.closed)) rest = hold.closed->q;
-  // Search an equilibrium of the closed switch on a contact other than the first contact.
+  // If any contact makes the connection: search an equilibrium of the closed switch on a contact other than the first.
   for (std::size_t c = 1; c < model.contacts() && !rest && !needs_all; ++c) {
     if (!model.device().contacts[c].connects) continue;
     const Switch other(with_first_contact(model.device(), c));

@@ -27,12 +27,13 @@ inline constexpr std::string_view not_held =
 /// The effect of the hold levels of drives on a closed switch.
 struct Hold {
   std::optional<ClosedEquilibrium> closed;  ///< equilibrium of the closed switch; none if the switch has no closed equilibrium
-  /// Contact force in a stable closed equilibrium [N]; for several contacts, that of the connection.
+  /// Contact force in a stable closed equilibrium [N]. With several contacts it is the least of their forces if the connection
+  /// needs all contacts, else the largest.
   double force = Metrics::unset;
   /// Contact force of each of several contacts [N]; empty if the hold levels do not keep the switch closed.
   std::vector<double> forces = {};
-  double resistance =
-      Metrics::unset;  ///< contact resistance [Ohm]; for several contacts, that of the connection; NaN if open or unknown
+  /// Contact resistance [Ohm]; for several contacts, that of the electrical path through them; NaN if open or unknown.
+  double resistance = Metrics::unset;
   /// Resistance of each of several contacts [Ohm]; empty if the hold levels do not keep the switch closed.
   std::vector<double> resistances = {};
   /// True if the hold levels keep the switch closed; false if the closed equilibrium of a switch with a contact is unstable. A
@@ -51,9 +52,9 @@ struct Hold {
                                   const std::optional<ClosedEquilibrium>& near = {}) {
   return hold_under(model, hold_levels(signals), near);
 }
-/// Sets the hold force, and whether the hold levels keep the switch closed, in `trajectory`.
+/// Stores in `trajectory` the hold force, and whether the hold levels keep the switch closed.
 void set_hold(Trajectory& trajectory, const Hold& hold);
-/// Sets the members that set_hold() sets, and the capacitance of the switch at rest under the hold levels, in `trajectory`.
+/// Stores in `trajectory` the members that set_hold() sets, and the capacitance of the switch at rest under the hold levels.
 void set_rest(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals, const Hold& hold);
 /// Returns the options of metrics() with the load circuit of the switch. The run begins in the state `start`; `held` has the
 /// drive signals until the command to open.

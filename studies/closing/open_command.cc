@@ -10,7 +10,7 @@
 namespace softland {
 namespace {
 
-constexpr int most_samples = 4000;  // largest number of samples of a curved piece (sine, decay) of a drive's signal
+constexpr int most_samples = 4000;  // largest number of samples of a curved piece (sine or decay) of a drive signal
 constexpr int halvings = 40;
 constexpr double tail = 40;  // number of time constants after which an exponential decay of a signal has ended
 
@@ -27,8 +27,8 @@ std::vector<double> levels_at(const std::vector<Signal>& signals, const Instant&
   return levels;
 }
 
-// Returns the number of parts into which a piece of a signal is divided. In one part, no term of the piece has two extrema; 1
-// for a straight piece.
+// Returns the number of parts into which a piece of a signal is divided for sampling: so many that no term of the piece has two
+// extrema in one part. Returns 1 for a straight piece.
 int parts_of(const Signal& signal, double begin, double end) {
   const double step = signal.resolving_step(begin);
   return std::isfinite(step) ? std::clamp(static_cast<int>(std::ceil((end - begin) / step)), 1, most_samples) : 1;
@@ -75,7 +75,7 @@ class Holding {
     std::vector<double> levels = levels_at(signals_, instant);
     if (is_weaker(levels, last_) || is_weaker(levels, lost_)) return false;
     if (hold_under(model_, levels).is_held) return true;
-    // Levels under which the switch lost its closed state; the levels at the next instants are probably no higher.
+    // Remember levels that do not keep the switch closed: weaker levels need no further search for an equilibrium.
     lost_ = std::move(levels);
     return false;
   }
@@ -125,7 +125,7 @@ std::optional<double> loses_hold(const Switch& model, const std::vector<Signal>&
   if (start == StartState::closed) {
     for (std::size_t i = 0; i < all.size() && holding.at(all[i]); ++i) held = i;
   } else {
-    for (std::size_t i = all.size(); i-- > 1 && !held;) {  // the levels of the drives before t = 0 have not closed the switch
+    for (std::size_t i = all.size(); i-- > 1 && !held;) {  // leaves out all[0], before t = 0, when the switch is open
       if (holding.at(all[i])) held = i;
     }
   }

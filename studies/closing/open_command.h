@@ -16,11 +16,11 @@ struct OpenCommand {
   std::vector<Signal> held;
 };
 
-/// Finds the command to open that these drives give, one per drive of the switch. The command is the beginning of the last fall
-/// of the drives to levels under which no closed state is stable and the open state is stable. The levels up to the end of the
-/// waveforms count. If the switch starts closed, the first such fall is the command. A fall is a time in which the voltages of
-/// the electrodes that cause the opening only approach 0 V; a downward jump begins a fall. None if the hold levels keep the
-/// switch closed or collapse it, and if the drives never kept it closed.
+/// Finds the command to open that these drive signals, one per drive of the switch, give. The command is the beginning of the
+/// last fall of the drives to levels under which no closed state is stable and the open state is stable. If the switch starts
+/// closed, the first such fall is the command. Levels after the simulated time, up to the end of the waveforms, count as well.
+/// A fall is a time in which the voltages of the electrodes that cause the opening only approach 0 V; a downward jump begins a
+/// fall. None if the hold levels keep the switch closed or collapse it, or if the drives never kept it closed.
 [[nodiscard]] std::optional<OpenCommand> open_command(const Switch& model, const std::vector<Signal>& signals, StartState start);
 
 /// Finds the command to open that these drive signals give; its time is simulate.open_at if the scene has this key. The command

@@ -39,7 +39,7 @@ bool stays_open(const Switch& model, const std::vector<Signal>& signals, double 
       if (extreme != levels[k] && !model.open_equilibrium(values)) return false;
     }
     if (model.drive_kind(k) == DriveKind::piezo || !pulls_in(model.device(), k)) continue;
-    // An electrode attracts the beam at either polarity of its voltage.
+    // An electrode attracts the beam at either sign of its voltage: take the extreme that pulls more.
     const double pull = std::max(model.strength(k, range.minimum), model.strength(k, range.maximum));
     const double most = model.drive_kind(k) == DriveKind::electrode ? model.value_of_strength(k, pull) : range.maximum;
     if (step_closes(model, k, most, levels, progress)) return false;

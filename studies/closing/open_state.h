@@ -22,10 +22,10 @@ inline constexpr double settled_share = 0.02;
 /// is done if it has settled.
 void set_open_figures(Metrics& metrics, const Trajectory& run, const Switch& model, const std::vector<Signal>& signals);
 
-/// True if these drives are not meant to close the switch: a stable open equilibrium exists under the hold levels, and under
-/// the least and the largest value of each drive within `duration` [s], with the others at their hold levels. Moreover, no step
-/// of an electrode, or of the dispersion force, to its largest value may reach the contact plane, since its largest value would
-/// be at or above the dynamic pull-in voltage.
+/// True if these drives are not meant to close the switch. A stable open equilibrium must exist under the hold levels, and
+/// under the least and the largest value of each drive within `duration` [s], with the others at their hold levels. A step of a
+/// single electrode (or of the factor of the dispersion force) to its largest value must not reach the contact plane, as a step
+/// above dynamic pull-in does.
 [[nodiscard]] bool stays_open(const Switch& model, const std::vector<Signal>& signals, double duration,
                               const Progress& progress = {});
 

@@ -41,7 +41,7 @@ DriveWaveforms plain_step(const PreparedScene& prepared, Actuator actuator) {
     DriveWaveforms others = plain;
     others.merge(prepared.drives.waveforms());
     others.erase(piezo);
-    // A piezo must close the switch if all other drives are at 0 V.
+    // If all other drives stay at 0 V, only the piezo can close the switch.
     const bool alone = std::ranges::all_of(others, [](const auto& one) { return signal(one.second).is_zero(); });
     plain[piezo] = alone ? step_of(prepared, piezo) : step_to(prepared, piezo, 0);
   }

@@ -163,9 +163,9 @@ double periods_of(const Waveform& waveform, double window) {
   return 0;
 }
 
-/// Returns the default simulated time (window) of a scene that closes [s]. This time contains the closing under steps to the
-/// hold levels, which gas may slow down, and some time after contact. A damped switch moves slowly just above pull-in, so the
-/// search for first contact ends after ten times this time, or a thousand if no open equilibrium exists under the levels.
+/// Returns the default simulated time (window) of a scene that closes [s]. It is six periods of the first mode, or four times
+/// the time of first contact under steps to the hold levels if this is longer, as in a thick gas. A damped switch moves slowly
+/// just above pull-in, so first contact is searched for ten times six periods; a thousand times if no open equilibrium exists.
 double default_window(const Switch& model, const std::vector<Signal>& signals) {
   constexpr double periods = 6, closings = 4, loose = 1e-4;
   constexpr long most_steps = 100'000;
@@ -179,8 +179,8 @@ double default_window(const Switch& model, const std::vector<Signal>& signals) {
   return closing.touches.empty() ? usual : std::max(usual, closings * closing.touches.front().begin);
 }
 
-/// Returns the default simulated time (window) of a scene that opens a closed switch from `begin` on [s]. This time contains
-/// the time until the switch is at rest in its open state, at most ten times six periods of the first mode.
+/// Returns the default simulated time (window) of a scene that opens a closed switch from `begin` on [s]. It ends two periods
+/// of the first mode after the switch is at rest in its open state, but at least six and at most sixty periods after `begin`.
 double default_window_of_opening(const Switch& model, const std::vector<Signal>& signals, StartState start, double begin) {
   constexpr double periods = 6, longest = 10, loose = 1e-4, settled = 0.02, margin = 2;
   constexpr long most_steps = 100'000;
@@ -228,7 +228,8 @@ void check_open_at(const PreparedScene& p) {
     file.refuse("simulate.open_at", fmt::format("must lie in the window, which ends at {}", engineering(p.duration, "s")));
 }
 
-/// Throws InvalidInput for a simulated time that is too long, and for waveforms with too many periods in it.
+/// Throws InvalidInput for a simulated time above longest_window, and for waveforms with more than 1e5 sine periods in this
+/// time.
 void check_window(const PreparedScene& p) {
   const SceneFile& file = p.scene.file;
   if (!(p.duration <= longest_window)) {
@@ -278,7 +279,8 @@ void check_landing(const PreparedScene& p) {
       const UniformAsperityContact per_area = uniform_contact(rough->summits, rough->height, {.width = 1, .length = 1});
       key = "asperity_density", unit = "1/m^2";
       own = rough->summits.density;
-      // Least value of the key that sets the contact pressure, which is proportional to it.
+      // Least density of the summits at which the face withstands the electric field: the voltage that it withstands grows with
+      // the root of the contact pressure, which is proportional to the density.
       least = own * std::pow(most / most_face_voltage(per_area, depth), 2);
     }
     if (own > least) continue;
@@ -348,9 +350,9 @@ ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, Bi
 
 namespace {
 
-// Computes the pull-in voltages in which voltage limits are given with the other drives at 0 V, if the switch has no open state
-// under the levels of the other drives. A limit belongs to the source, at any level of the other drives. A waveform in units of
-// these pull-in voltages is not defined in this case.
+// Computes the pull-in voltages with the other drives at 0 V, as units of an electrode's voltage limits, if the switch has no
+// open state under the levels of the other drives. A limit belongs to the source, at any level of the other drives; a waveform
+// in these units would be undefined. False if the limits do not need the voltages, or if none exist.
 bool take_limits_at_rest(PreparedScene& p, std::size_t electrode, const PullInFinder& find_pull_in, const Progress& progress) {
   const std::vector<std::string> names = p.drive_names();
   if (std::ranges::find(p.scene.limits_in_pull_in, names[electrode]) == p.scene.limits_in_pull_in.end()) return false;

@@ -26,8 +26,8 @@ struct ElectrodePullIn {
   DynamicPullIn dynamically;
 };
 
-/// Returns the bias [V] of the other drives for the pull-in voltages of drive number `drive`: Scene::standing, with this drive
-/// at 0 V.
+/// Returns the constant voltages (bias) of the other drives under which pull-in voltages of drive number `drive` are computed
+/// [V]: those of Scene::standing, with this drive at 0 V.
 [[nodiscard]] std::vector<double> bias_of(const Scene& scene, std::size_t drive);
 
 /// Note about an electrode with a face on either side of the beam that pulls the switch at rest away from the contact.
@@ -38,7 +38,7 @@ struct DescribedEffects;
 struct PreparedScene {
   Scene scene;
   Switch model;
-  std::map<std::string, ElectrodePullIn> pull_in;  ///< pull-in voltages by electrode, for the electrodes that need them
+  std::map<std::string, ElectrodePullIn> pull_in;  ///< pull-in voltages by electrode, if waveforms or limits need them as units
   /// Pull-in voltages with the other drives at 0 V, for voltage limits. An electrode has an entry if only its limits are in Vsp
   /// or Vdp, and if it has no pull-in voltages under the levels of the other drives.
   std::map<std::string, PullInVoltages> pull_in_of_limits = {};
@@ -107,8 +107,8 @@ void require_open_start(const Scene& scene, std::string_view study);
 /// key or is not at 0 V before t = 0, else of the first drive that has a waveform.
 [[nodiscard]] std::string before_state_path(const PreparedScene& scene);
 
-/// Returns a hint for messages at the other state in which runs may start: "; waveform.main.before_state = "closed" begins
-/// there".
+/// Returns a hint for error messages that says how to start runs in the other state, open or closed:
+/// "; waveform.main.before_state = "closed" begins there".
 [[nodiscard]] std::string other_start_hint(const PreparedScene& scene);
 
 /// Describes the state in which runs begin, or the other start state if the requested state does not exist. Empty if runs begin

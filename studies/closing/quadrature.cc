@@ -10,7 +10,7 @@ namespace softland {
 namespace {
 
 // Returns the modal forces of every drive at unit strength, then the modal forces of the gas on the moving beam. Each modal
-// force is divided by the frequency of its mode.
+// force is divided by the frequency of its mode, so that the square of a column is twice its static energy.
 Eigen::MatrixXd loads_at(const Switch& model, const Eigen::VectorXd& q) {
   const Eigen::Index n = model.modes(), drives = static_cast<Eigen::Index>(model.drives());
   Switch::Workspace work = model.workspace();
@@ -45,7 +45,8 @@ std::vector<Eigen::VectorXd> at_touch(const Switch& model) {
 }  // namespace
 
 SwitchOptions quadrature_for(double accuracy, int modes) {
-  // Quadrature points per decimal digit of accuracy; fewest points, to which each mode (half a wave) adds two.
+  // Quadrature points per decimal digit of accuracy, and least number of points. A mode has as many half waves as its number,
+  // each with two points.
   constexpr double points_per_digit = 4, fewest = 8;
   return {.points_per_length = std::max({fewest, points_per_digit * -std::log10(accuracy), 2.0 * modes + 4})};
 }
@@ -89,7 +90,7 @@ ResolvedSwitch resolved_switch(const Device& device, double accuracy, std::optio
     ResolvedSwitch next = best;
     for (int vain = 0; next.error > accuracy && vain < most_in_vain && next.quadrature.points_per_length < most_points;) {
       SwitchOptions q = next.quadrature;
-      ++q.points_per_panel;  // a short panel (interval of the quadrature) needs few further points
+      ++q.points_per_panel;  // more points in the short panels (intervals of the quadrature) only
       ResolvedSwitch more = switch_with(q);
       if (more.model.quadrature().points() > next.model.quadrature().points()) set_error(more);
       if (!(more.error < helps * next.error) || more.model.quadrature().points() == next.model.quadrature().points()) {

@@ -10,7 +10,7 @@
 
 namespace softland {
 
-/// Returns the voltages of the scene as its sources apply them, by name of the drive, without the dispersion force's factor.
+/// Returns the applied voltages of the scene by name of the drive. A dispersion force is left out: its drive is not a voltage.
 [[nodiscard]] std::map<std::string, Signal> named_signals(const PreparedScene& prepared);
 
 /// The kind of exported signals: commanded signals (samples for sources that take samples), or outputs of the voltage sources.

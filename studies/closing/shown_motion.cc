@@ -30,8 +30,8 @@ class MotionSampler final : public ClosingObserver {
       keep(times_[next_] <= begin.time ? begin.state : times_[next_] == end.time ? end.state : between(begin, end));
     last_ = end.state;
   }
-  /// Returns the recorded modal coordinates, ordered by time, then by mode [m kg^(1/2)]. Times after the last step get the
-  /// state at the end of this step.
+  /// Returns the recorded modal coordinates, ordered by time, then by mode [m kg^(1/2)]. Requested times after the end of the
+  /// run get the last state.
   [[nodiscard]] std::vector<double> take() {
     for (; next_ < times_.size() && !last_.empty(); ++next_) keep(last_);
     return std::move(all_);

@@ -27,8 +27,9 @@ struct ShownMotion {
   };
   std::vector<double> time;                     ///< increasing times of the recorded motion [s]
   std::vector<std::vector<double>> amplitudes;  ///< largest deflection of each mode at each time [m]: its amplitude
-  std::vector<double> places;               ///< positions x along the structure at which shapes are given, contacts included [m]
-  std::vector<double> rest;                 ///< height of the beam's lower face at rest at each position [m]
+  std::vector<double> places;  ///< positions x along the structure at which shapes are given, contacts included [m]
+  /// Height of the lower face of the beam at rest, at each of the positions `places` [m].
+  std::vector<double> rest;
   std::vector<std::vector<double>> shapes;  ///< shape of each mode at the positions `places`, scaled to a largest size of 1
   std::vector<Contact> contacts;
   std::vector<Pad> electrodes;

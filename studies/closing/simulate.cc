@@ -19,10 +19,11 @@
 namespace softland {
 namespace {
 
-// Returns the difference of two runs of one closing, plus rounding that both share. For permanent contact time, bounce time and
-// bounce count, certify() estimates the errors instead.
+// Returns the differences of the figures of two runs of one closing, at least the error that both runs have in common. For
+// permanent contact time, bounce time and bounce count, certify() estimates the errors instead.
 FigureValues difference(const Metrics& a, const Metrics& b, double tolerance, double contact_gap) {
-  constexpr double shared = 0.01;  // error that two runs of one closing share, as a share of a figure, divided by the tolerance
+  // Error that two runs have in common, relative to a figure, per unit of the relative tolerance.
+  constexpr double shared = 0.01;
   // Separation in a rebound below which metrics() ignores the rebound, as a share of the contact gap.
   constexpr double lowest_separation = 1e-12;
   FigureValues d;
@@ -31,7 +32,7 @@ FigureValues difference(const Metrics& a, const Metrics& b, double tolerance, do
     const double own = figure.value(a);
     d[figure] = std::max(std::abs(own - figure.value(b)), shared * tolerance * std::abs(own));
   }
-  // The time of the first rebound is 0 because neither run has a rebound: it has no error.
+  // Neither run has a rebound, so that both times of the first rebound are 0. Such a time has no error.
   if (a.first_rebound_time == 0 && b.first_rebound_time == 0) d[&Metrics::first_rebound_time] = Metrics::unset;
   double& height = d[&Metrics::major_bounce_height];
   height = std::max(height, lowest_separation * contact_gap);
@@ -84,9 +85,9 @@ double energy_after(const std::vector<Touch>& touches, double parting) {
   return sum;
 }
 
-// Removes the errors of chaotic figures. After the time at which two runs diverge the figures are random, and only many
-// perturbed runs (a cloud) give their errors. Figures that depend on every touch count as chaotic if the runs differ by a
-// thousand times the tolerance.
+// Removes the errors of chaotic figures: after the runs diverge these figures are random, and only many perturbed runs (a
+// cloud) give their errors. A figure that depends on every touch counts as chaotic if its relative difference between the runs
+// is above a thousand times the tolerance.
 void forget_what_is_chaotic(FigureValues& errors, const EvaluatedRun& best, const EvaluatedRun& other,
                             const MetricsOptions& options) {
   constexpr double magnified = 1000;
@@ -95,8 +96,8 @@ void forget_what_is_chaotic(FigureValues& errors, const EvaluatedRun& best, cons
     if (figure.conditioning != Conditioning::every_touch) continue;
     if (errors[figure] > visible * std::abs(figure.value(best.metrics))) errors[figure] = Metrics::unset;
   }
-  // Runs may also diverge in insignificant rebounds; the energy of the impacts after that is an upper bound of the difference
-  // between the runs.
+  // Runs may also diverge in insignificant rebounds. The energy of the impacts after that time bounds the difference of the
+  // runs in impact energy.
   for (const EvaluatedRun* run : {&best, &other}) {
     double& energy = errors[&Metrics::impact_energy];
     energy = std::max(energy, energy_after(run->trajectory.touches, parting_time(best, other, 0)));
@@ -128,7 +129,8 @@ double error(const EvaluatedRun& run, const EvaluatedRun& other, const PreparedS
 
 constexpr double tighter_by = 100;
 constexpr double loosest_tolerance = 0.1;  // largest relative tolerance that simulate_closing() accepts
-// Smallest relative tolerance: smaller errors are rounding; just below 1e-13, since quotients are rounded.
+// Smallest relative tolerance, since smaller errors are rounding. A tolerance of 1e-13 that divisions have rounded down is
+// still accepted.
 constexpr double least_tolerance = 0.99e-13;
 // An integrator of fifth order needs 2.5 times the steps for a hundredth of the tolerance. A run that needs `most_growth` times
 // the steps is stopped.
@@ -234,8 +236,8 @@ class ClosingRuns {
            !(r.metrics.initial_contact_time < command.time);
   }
 
-  // Returns a recorder of the contacts that make the connection, and of each contact if there are several. Contacts on a back
-  // stop are recorded to the end.
+  // Returns a recorder of the figures of the connection (the electrical path through the contacts), and of each contact if
+  // there are several. Contacts on a back stop are recorded to the end of the run, also after the command to open.
   [[nodiscard]] CourseRecorder recorder_of(const Switch& model, const std::optional<OpenCommand>& command) const {
     const MetricsOptions& plain = prepared_.scene.metrics;
     const MetricsOptions options = with_load(with_opening(plain, model, signals_, command), model, prepared_.start(), held());
@@ -291,7 +293,7 @@ JudgedRun with_judge(EvaluatedRun own, ClosingRuns& runs, const PreparedScene& p
   constexpr double enough = 0.2;  // ratio of two runs' tolerances above which their difference shows no integration error
   if (judge_is_tighter() && e > accuracy && may_tighten) std::swap(own, judge);
   const double ratio = judge.tolerance / own.tolerance;
-  // Only the quadrature of the judge (the second run) differs from that of the run.
+  // Only the quadrature of the two runs differs: take the finer run, and judge it by a run with a looser tolerance.
   if (came_to_its_end(judge.trajectory) && ratio > enough && ratio < 1 / enough) {
     if (ratio <= 1) own = std::move(judge);
     judge = runs.looser_than(own);
@@ -465,7 +467,7 @@ void set_drive_figures(Metrics& metrics, const PreparedScene& prepared, const st
   const bool piezo_only = prepared.scene.device.electrodes.empty();
   for (std::size_t k = 0; k < signals.size(); ++k) {
     const DriveKind kind = prepared.model.drive_kind(k);
-    if (kind == DriveKind::dispersion) continue;  // the drive of a dispersion force is a factor, not a voltage
+    if (kind == DriveKind::dispersion) continue;  // the drive of a dispersion force is a factor on the force, not a voltage
     if (kind == DriveKind::electrode || piezo_only)
       metrics.peak_voltage = std::max(metrics.peak_voltage, signals[k].peak(prepared.duration));
     metrics.peak_slew = std::max(metrics.peak_slew, signals[k].peak_slew(prepared.duration));

@@ -19,7 +19,7 @@ class SlowSwitch {
 
   SweepPoint follow(double voltage, bool is_up) {
     values_[drive_] = voltage;
-    // No law describes how a beam that has collapsed onto the electrode leaves it.
+    // The sweep cannot continue: no law describes how a beam that has collapsed onto the electrode leaves it.
     if (state_ == SweepState::none) return {.voltage = voltage, .is_up = is_up};
     std::optional<Eigen::VectorXd> q;
     const bool was_closed = state_ == SweepState::closed;
