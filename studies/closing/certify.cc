@@ -19,8 +19,8 @@ namespace {
 constexpr double shared = 0.01;
 constexpr double parted = 0.1;  // relative difference of a rebound's heights in two runs above which the runs have diverged
 
-// True if a figure is ill-conditioned: imperceptible changes of the drive voltages (the runs of `cloud`) change it visibly, or
-// it exists in some of the runs only. `better` has the figures of the more accurate run.
+// True if a figure is ill-conditioned. Imperceptible changes of the drive voltages (the runs of `cloud`) change such a figure
+// visibly, or it exists in some of the runs only. `better` has the figures of the more accurate run.
 bool ill_conditioned(const Figure& figure, const std::vector<Metrics>& cloud, const Metrics& own, const Metrics& better,
                      const MetricsOptions& options) {
   std::vector<double> values;

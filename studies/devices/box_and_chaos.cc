@@ -43,7 +43,7 @@ class Box {
   }
 
   const Ensemble* ensemble_;
-  std::vector<EnsembleDrive> drives_;  // drive signals of the closings; `closer_` keeps a reference to this member
+  std::vector<EnsembleDrive> drives_;  // set of waveforms of the closings, a member since `closer_` keeps a reference to it
   DeviceCloser closer_;
 };
 

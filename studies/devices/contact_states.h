@@ -1,9 +1,9 @@
 // When the contact of a switch is closed and open in a run, and its resistance while closed, as a circuit or firmware observes
 // the contact. The run is that of a scene, or those of devices of its [spread].
 //
-// Closed means electrically closed (model/closing/electrical_record.h). A scene with neither metrics.closed_force nor
-// metrics.closed_resistance is closed while in contact. Openings that last no longer than metrics.closed_after are ignored. An
-// impact on a rigid contact has no duration, and so is not a closed state.
+// Closed means electrically closed (model/closing/electrical_record.h). Without metrics.closed_force and
+// metrics.closed_resistance, a contact is closed while it touches. Openings that last no longer than metrics.closed_after are
+// ignored. An impact on a rigid contact has no duration, and so is not a closed state.
 #pragma once
 
 #include <cstddef>
@@ -48,7 +48,7 @@ struct StateRecord {
   std::vector<StateChannel> channels;
 };
 
-/// Receives a message about a run that ended early, or about a device that cannot be described.
+/// Receives a message about a run that ended early, or about a device with impossible values.
 using NoteSink = std::function<void(const std::string&)>;
 
 /// Returns when the contacts are closed in the run that simulate() makes with error estimates. The channels are the connection

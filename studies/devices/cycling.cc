@@ -25,7 +25,7 @@ constexpr int most_slower = 6;  // largest number of reductions of the first cyc
 // Number of periods of the first mode within which the switch must come to rest after opening.
 constexpr double periods_of_opening = 60;
 
-// Appends the pieces of a signal that begin before `until`, shifted in time by `later`.
+// Appends the pieces of `signal` that begin before `until`, delayed by `later` [s].
 void append(std::vector<SignalPiece>& pieces, const Signal& signal, double until, double later) {
   for (SignalPiece piece : signal.pieces()) {
     if (piece.begin >= until) break;
@@ -173,9 +173,9 @@ RateScan scan_rates(const CycledSwitch& cycled, const ScanOptions& options, cons
   double lowest = rate_of(times.rest_on, times.rest_off);
   const double highest = rate_of(times.least_on, times.least_off);
   if (!(lowest > 0)) return scan;
-  // At the lowest rate a remaining vibration may still affect the next closing: lower the rate until the cycles are alike.
+  // At the lowest rate a remaining vibration may still affect the next closing: lower the rate until all cycles are alike.
   for (int k = 0; k < most_slower && !progress.stopped() && !is_steady_at(lowest); ++k) lowest /= slower;
-  bool is_below = true;  // true for rates below the first rate at which cycles differ from the first one
+  bool is_below = true;  // true for rates below the first rate at which a cycle differs from the first one
   for (double rate = lowest; rate <= highest && !progress.stopped(); rate *= 1 + options.step) {
     const bool is_steady = is_steady_at(rate);
     progress.tell("rates", std::log(rate / lowest) / std::log(highest / lowest));

@@ -1,5 +1,5 @@
-// A switch that is closed and opened periodically: the figures of its cycles, and the largest rate at which it closes as from
-// rest. At higher rates the beam is not at rest before the next cycle, or the closing is cut short.
+// A switch that is closed and opened periodically: the figures of its cycles, and the largest rate at which every cycle is like
+// the first one, which starts from rest. At higher rates the beam still moves when a cycle begins, or the closing is cut short.
 #pragma once
 
 #include <cstddef>
@@ -45,7 +45,7 @@ struct CycleTolerances {
   double rebound = 1e-9;  ///< absolute difference of the highest rebound that is always permitted [m]
 };
 
-/// True if the switch closes and opens in `cycle`, with the impact velocity and rebound height of the first cycle.
+/// True if the switch closes and opens in `cycle` with the impact velocity and rebound height of the first cycle.
 [[nodiscard]] bool lands_alike(const CycleFigures& cycle, const CycleFigures& first, const CycleTolerances& tolerances);
 
 /// The cycles of one switch: the nominal design of a scene, or one of the devices of its [spread].
@@ -54,14 +54,14 @@ class CycledSwitch {
   /// Keeps references to its arguments. `driven` is the scene whose voltage sources apply the waveforms to `model`.
   CycledSwitch(const PreparedScene& driven, const Switch& model, const CycleWaveforms& waveforms);
 
-  /// Simulates cycles. With `is_told` the result also has the gap over time and the touches, and the figures include those of a
-  /// load and of the electrical state.
+  /// Simulates cycles. With `is_told` the result also has the contact gap over time and the touches, and its figures include
+  /// the charge through the load circuit and the electrical state of the contact.
   [[nodiscard]] Cycles run(const CycleTimes& times, bool is_told, const Progress& progress = {}) const;
   /// True if the switch closes and opens in every cycle as in the first cycle. The run ends at the first cycle that differs.
   [[nodiscard]] bool is_steady(const CycleTimes& times, const CycleTolerances& tolerances, const Progress& progress = {}) const;
-  /// Times that a cycle needs for its closing (`on`) and for its opening (`off`) [s]: `rest` until the switch is at rest, in a
-  /// simulation that is long enough; `least` until the first contact or the end of the waveform. A time is infinite if the
-  /// switch does not reach that state.
+  /// Times that the closing part (`on`) and the opening part (`off`) of a cycle take [s]. A `rest` time lasts until the switch
+  /// is at rest; a `least` time until first contact or the end of the waveform, the least that a part needs. A time is infinite
+  /// if the switch does not reach that state.
   struct PartTimes {
     double rest_on = std::numeric_limits<double>::infinity(), rest_off = std::numeric_limits<double>::infinity();
     double least_on = std::numeric_limits<double>::infinity(), least_off = std::numeric_limits<double>::infinity();
@@ -85,7 +85,8 @@ struct RateScan {
     bool is_steady = false;
   };
   std::vector<Rate> rates;  ///< simulated cycle rates, in increasing order
-  /// Largest rate up to which the cycles at every simulated rate are alike (steady) [Hz]; NaN if there is no such rate.
+  /// Largest rate up to which all cycles are like the first one (steady) at every simulated rate [Hz]; NaN if the cycles are
+  /// steady at no rate.
   double largest = std::numeric_limits<double>::quiet_NaN();
   /// Ranges of rates above `largest` at which the cycles are steady again [Hz].
   std::vector<std::pair<double, double>> windows = {};
@@ -104,8 +105,9 @@ struct ScanOptions {
 [[nodiscard]] RateScan scan_rates(const CycledSwitch& cycled, const ScanOptions& options, const Progress& progress = {});
 
 struct CyclingOptions {
-  std::optional<double> rate = {};  ///< rate of the cycles to report [Hz]; none: the largest steady rate of the last waveforms
-  bool scans = true;                ///< false to simulate only the cycles at `rate`, without a scan of rates
+  /// Rate of the cycles to report [Hz]; none: the largest steady rate under the given waveforms.
+  std::optional<double> rate = {};
+  bool scans = true;  ///< false to simulate only the cycles at `rate`, without a scan of rates
   double duty = ScanOptions{}.duty;
   std::size_t cycles = ScanOptions{}.cycles;
   std::uint64_t devices = 50;  ///< number of devices of [spread] whose cycle rates are scanned as well; 0 for none
@@ -128,7 +130,8 @@ struct Cycling {
   bool interrupted = false;
 };
 
-/// Completes the waveforms of a cycle: a missing closing steps to the start of the opening, a missing opening to 0 V.
+/// Completes the waveforms of a cycle. A missing closing waveform becomes a step to the level at which the opening starts, a
+/// missing opening waveform a step to 0 V.
 void complete(CycleWaveforms& waveforms, const PreparedScene& given);
 /// Returns a cycle of plain steps. Every drive goes at once, as fast as its voltage source permits, to the last level of its
 /// closing waveform, and on the command to open to the last level of its opening waveform.

@@ -30,7 +30,8 @@ PreparedScene without_jitter(const PreparedScene& scene) {
   return own;
 }
 
-// Returns the changes of switch and drives by the varied quantities at the nominal device, for quantities with derivatives.
+// Returns the derivatives of switch and drive signals by the varied quantities at the nominal device. Variable::why_none gets
+// the reason if a quantity has none.
 DeviceChanges changes_near(NearbyDevices& near, const Switch& model, std::vector<Derivatives::Variable*>& variables,
                            const Progress& progress) {
   std::vector<std::string> why_none(variables.size());
@@ -63,10 +64,10 @@ struct NominalClosing {
   Eigen::MatrixXd gradient = {};
 };
 
-// Changes of the switch and of its drive signals by the varied quantities or waveform parameters, from which derivatives of
+// Derivatives of the switch and of its drive signals by varied quantities or waveform parameters, from which derivatives of
 // figures follow.
 struct Changes {
-  SwitchSlopes* of_switch = nullptr;  // changes of the switch; null if the switch does not change
+  SwitchSlopes* of_switch = nullptr;  // derivatives of the switch; null if the switch does not depend on the quantities
   const SignalSlopes& of_signals;
 };
 
@@ -114,8 +115,8 @@ std::vector<Derivatives::Variable> variables_of(const DeviceSpread& spread) {
   return all;
 }
 
-// Computes the derivatives of the figures under these drive signals. `places` are the indices of the changes `by` among the
-// varied quantities.
+// Computes the derivatives of the figures under these drive signals. `by` has the derivatives of switch and signals; `places`
+// are the indices of its quantities among the varied quantities.
 void derive(Derivatives& found, const PreparedScene& nominal, const std::vector<Signal>& signals, const Changes& by,
             const std::vector<std::size_t>& places, const Eigen::MatrixXd& correlation, const DerivativeOptions& options,
             const Progress& progress) {

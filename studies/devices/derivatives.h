@@ -64,8 +64,9 @@ struct DerivativeOptions {
   int refinement = 4;    ///< number of parts into which an integrator step is divided (LinearizedClosing)
 };
 
-/// Returns derivatives of the figures under the waveforms of `drive`, with each device's scale factors as exact. None for a
-/// compressible film, for devices that are sorted into classes, if the nominal device does not close, and if interrupted.
+/// Returns derivatives of the figures under the waveforms of `drive`. The scale factors that a calibration measures on each
+/// device count as exact. There are no derivatives for a compressible film, for devices that are sorted into classes, if the
+/// nominal device does not close, and after an interruption.
 [[nodiscard]] Derivatives derivatives(const PreparedScene& scene, const EnsembleDrive& drive,
                                       const DerivativeOptions& options = {}, const Progress& progress = {});
 

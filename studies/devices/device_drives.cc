@@ -9,9 +9,9 @@
 namespace softland {
 namespace {
 
-// Returns a number for an edge (jump or ramp) of a drive's waveform that is unique over all drives.
+// Returns a number for an edge (jump or ramp) of a drive's waveform, unique over all drives, from which its jitter is drawn.
 std::uint64_t number_of_edge(std::size_t drive, std::size_t edge) {
-  // Largest number of edges (jumps or ramps) in the waveform of one drive.
+  // Largest number of edges (jumps or ramps) in the waveform of one drive, so that numbers of different drives differ.
   constexpr std::uint64_t most_edges = std::uint64_t{1} << 32;
   return drive * most_edges + edge;
 }
@@ -62,9 +62,11 @@ struct DeviceDrives::Driven {
   std::vector<Waveform> waveforms;
   std::vector<Signal> signals;  // commanded voltages of the drives
   std::vector<SourceErrors> errors;
-  double origin = 0;  // start of the device's time axis at its first edge, on the time axis of the waveforms [s]
+  // Beginning of the device's time axis in time of the waveforms [s]: 0, or the first edge that errors move before 0.
+  double origin = 0;
 
-  // Returns the commanded signal of drive k with jitter, and the start of the signal on the time axis of the waveform [s].
+  // Returns the commanded signal of drive k with jitter, and its beginning in time of the waveform [s]: 0, or the first edge if
+  // jitter moves this edge before 0.
   [[nodiscard]] std::pair<Signal, double> jittered(std::size_t k) const {
     const SourceErrors jitter{.edges = errors[k].edges};
     const double begin = std::min(0.0, first_edge(signals[k], jitter));
@@ -183,11 +185,12 @@ std::optional<std::vector<double>> DeviceDrives::gains(const DeviceUnits& units,
   for (std::size_t k = 0; k < sources_.size(); ++k) {
     const SourceErrors own = errors(k, values);
     all.push_back(own.gain);
-    if (own.delay < 0) return std::nullopt;  // a delay of the source below 0 shifts the start of the time axis of all drives
+    // A delay below 0 shifts the time axis of all drives, so that signals differ by more than a factor.
+    if (own.delay < 0) return std::nullopt;
     if (sources_[k].empty() && own.gain == 1) continue;
     const bool is_gain = std::ranges::all_of(sources_[k], [](const Source& one) { return one.error == DriveError::gain; });
-    // A gain of a voltage source scales neither the voltage before t = 0 nor an offset: the signals then differ by more than a
-    // factor.
+    // A gain of a voltage source scales neither the voltage before t = 0 nor an offset: the signals with and without the gain
+    // then differ by more than a factor.
     if (!is_gain || own.offset != 0 || nominal_->values_before()[k] != 0) return std::nullopt;
   }
   return all;

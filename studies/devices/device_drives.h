@@ -14,11 +14,12 @@
 
 namespace softland {
 
-/// Scale factors of a device relative to the nominal device: for the voltages and the times of the device's drives.
+/// Scale factors of a device relative to the nominal device, by which the voltages and times of its waveforms are multiplied.
 struct DeviceUnits {
   double volts = 1, time = 1;
   double piezo = 1;  ///< factor for the voltages of a piezo, which do not scale with the pull-in voltage Vdp
-  /// Derivative of the relative change of `volts` by the measured closing time from which `volts` is computed [1/s].
+  /// Derivative of ln(volts) by the measured closing time from which `volts` is computed [1/s]. It converts an error of the
+  /// time into an error of the factor.
   double volts_by_time = 0;
 
   /// True if the voltage factors are finite numbers.
@@ -26,8 +27,8 @@ struct DeviceUnits {
 };
 
 /// Returns the waveforms, in the order of Switch::drives(), scaled by the factors of one device. Voltages before t = 0 are not
-/// scaled. The voltages of a piezo have a separate factor, since they do not scale with the pull-in voltage. The factor of a
-/// dispersion force is not scaled.
+/// scaled, nor is the drive of a dispersion force. The voltages of a piezo have a separate factor, since they do not scale with
+/// the pull-in voltage.
 [[nodiscard]] std::vector<Waveform> in_units(const std::vector<Waveform>& waveforms, const Device& device,
                                              const DeviceUnits& units);
 
@@ -44,8 +45,8 @@ class DeviceDrives {
   /// nominal device, in the order of Switch::drives() [V].
   [[nodiscard]] std::vector<Signal> signals(const std::vector<Waveform>& nominal, const DeviceUnits& units,
                                             const std::vector<double>& values) const;
-  /// Returns the factors between signals() and without_gains(), one per drive. None if the two differ by more than factors, as
-  /// with scale factors of the device, offsets, delays and jitter.
+  /// Returns the ratios of signals() to without_gains(), one per drive. None if the signals differ by more than a constant
+  /// factor, because of scale factors of the device, offsets, delays or jitter.
   [[nodiscard]] std::optional<std::vector<double>> gains(const DeviceUnits& units, const std::vector<double>& values) const;
   /// Returns the drives of a device as for the nominal device (unscaled), with sources whose gain is 1; `nominal` as in
   /// signals().
@@ -72,7 +73,7 @@ class DeviceDrives {
   [[nodiscard]] std::vector<double> shown(std::vector<double> values) const;
 
  private:
-  /// A varied quantity of [spread] that is an error of the source of a drive.
+  /// A key of a varied quantity in [spread] that is an error of the voltage source of a drive.
   struct Source {
     std::size_t variable, key;  // indices of the varied quantity in [spread], and of the key among its keys
     DriveError error;

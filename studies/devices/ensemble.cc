@@ -20,7 +20,7 @@
 namespace softland {
 namespace {
 
-// Number of devices of one task: enough to fill a SIMD lane, few enough to check the Progress often.
+// Number of devices of one task: enough to fill the SIMD lanes, few enough to notice an interruption soon.
 constexpr std::size_t chunk = 128;
 
 // Records the figures of the closings of several devices that are simulated together in SIMD lanes.
@@ -60,7 +60,8 @@ Ensemble::Ensemble(const PreparedScene& nominal, std::uint64_t size, std::functi
   require(!nominal.scene.spread.empty(), [&] {
     return fmt::format("{}: a [spread] section must say how devices differ (softland new writes one)", nominal.scene.file.name());
   });
-  // A varied key of a rigid plate changes another member: the plate's length depends on its area and width.
+  // Read the scene of each device again if a varied key determines further numbers: the length of a rigid plate follows from
+  // its area and width.
   reads_anew_ = nominal.scene.device.structure.is_rigid();
   for (const SpreadVariable& variable : nominal.scene.spread.variables) {
     for (const VariedKey& key : variable.keys) reads_anew_ = reads_anew_ || (!key.member && !key.drive);

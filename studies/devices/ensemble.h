@@ -1,4 +1,5 @@
-// An ensemble of devices with process variation: the switches of a scene's [spread]. Each switch depends only on its number.
+// An ensemble of devices with process variation: the switches of a scene's [spread]. Each switch depends only on the scene, the
+// seed and its number.
 #pragma once
 
 #include <atomic>
@@ -28,8 +29,8 @@ namespace softland {
 /// A device of an ensemble, with its varied quantities and its model.
 struct SampledDevice {
   std::vector<double> values;   ///< values of the varied quantities, in the order of [spread], as DeviceSpread::to_values
-  std::optional<Switch> model;  ///< model of the device; none if the device cannot be described
-  std::string refusal;          ///< reason why the device cannot be described
+  std::optional<Switch> model;  ///< model of the device; none if its values are impossible
+  std::string refusal;          ///< rule that the values violate if the device is impossible
 };
 
 class Ensemble {
@@ -47,7 +48,7 @@ class Ensemble {
   [[nodiscard]] std::vector<double> point(std::uint64_t k) const;
   /// Returns the values of the varied quantities of device k.
   [[nodiscard]] std::vector<double> values(std::uint64_t k) const;
-  /// True if a varied key may change other members of a scene. The scene of each device is then read again from its keys.
+  /// True if a varied key determines further numbers of a scene, so that the scene of each device is read again from its keys.
   [[nodiscard]] bool reads_anew() const { return reads_anew_; }
   /// Returns the scene of the device with these values, in volts and without [spread]. `simulate` gives this scene the figures
   /// that the ensemble gives the device. The figures differ within the tolerance if the ensemble is closed in SIMD lanes
@@ -61,7 +62,7 @@ class Ensemble {
   std::uint64_t size_;
   std::function<void(std::uint64_t, std::span<double>)> point_;
   SceneFile resolved_;  // scene of the nominal device, with every default written out
-  // True if a varied key may change other members of a scene, so that each device's scene is read again.
+  // True if a varied key determines further numbers of a scene, so that the scene of each device is read again.
   bool reads_anew_ = false;
 };
 
@@ -84,7 +85,7 @@ class DeviceBuilder {
 /// The result of the closing of one device.
 struct DeviceOutcome {
   Metrics metrics;
-  /// Reason why the device has no figures: it cannot be described, or its closing cannot be simulated.
+  /// Reason why the device has no figures: its values are impossible, or its closing cannot be simulated.
   std::string failure = {};
   /// False if the hold levels do not keep the device closed. DeviceCloser checks this for settled devices only, RobustCost for
   /// every device.
@@ -114,7 +115,7 @@ struct MeasuredQuantities {
   }
 };
 
-/// Reason, for messages, why the scale factors of a device are not known.
+/// Reason, for messages, why a calibration has no scale factors for a device.
 inline constexpr const char* not_measured = "its pull-in voltage, or what its piezo does, cannot be measured";
 
 /// Measures devices relative to the nominal device, with the errors of a calibration. A closing time gives the factor s of a
@@ -123,8 +124,8 @@ inline constexpr const char* not_measured = "its pull-in voltage, or what its pi
 class PullInMeter {
  public:
   /// Keeps a reference to `nominal`, whose closing electrode is measured. `precision` is the relative precision of pull-in
-  /// voltages; that of the nominal device is at least dynamic_pull_in_precision. Throws InvalidInput if a measurement needs an
-  /// electrode, a pull-in voltage or a piezo that the switch lacks, or if the piezo does not move the contact point.
+  /// voltages; the nominal device's is found to dynamic_pull_in_precision or better. Throws InvalidInput if a measurement needs
+  /// an electrode, a pull-in voltage or a piezo that the switch lacks, or if the piezo does not move the contact point.
   PullInMeter(const PreparedScene& nominal, const MeasuredQuantities& quantities, double precision = dynamic_pull_in_precision);
   /// Return the pull-in voltage [V] and the first frequency [Hz] of the nominal device.
   [[nodiscard]] double pull_in() const { return pull_in_; }
@@ -153,7 +154,8 @@ class PullInMeter {
   [[nodiscard]] double time_of(const Switch& model, double step) const;
 
   struct ToldVolts {
-    // Closing time under a step [s]; voltage factor of a device that closes in this time under the nominal step.
+    // Closing time of the nominal device under a step [s]; voltage factor of a device that closes in this time under
+    // closing_step Vdp.
     double time, volts;
   };
 
@@ -221,7 +223,7 @@ struct EnsembleRun {
   bool opens_on_command = false;
 };
 
-/// Closes one device. The figures are those of the run; the options `run` may end it before the simulated time is over.
+/// Closes one device and returns the figures of the run, which the options `run` may end early.
 [[nodiscard]] DeviceOutcome close_device(const SampledDevice& device, const std::vector<Signal>& signals,
                                          const MetricsOptions& options, const ClosingOptions& run);
 
@@ -258,8 +260,8 @@ class DeviceCloser {
   /// Keeps references to `nominal` and `drives`. Throws the exceptions of the constructor of PullInMeter.
   DeviceCloser(const PreparedScene& nominal, const std::vector<EnsembleDrive>& drives, const EnsembleRun& run,
                const std::atomic<bool>* stop = nullptr);
-  /// Returns the outcomes of the devices `first`, first + 1, ..., by set of waveforms, then by device. After an interruption,
-  /// missing outcomes are unset.
+  /// Returns the outcomes of the devices `first`, first + 1, ..., by set of waveforms, then by device. Outcomes that an
+  /// interruption prevented are unset.
   [[nodiscard]] std::vector<std::vector<DeviceOutcome>> operator()(std::span<const SampledDevice> devices,
                                                                    std::uint64_t first) const;
 

@@ -23,7 +23,7 @@
 namespace softland {
 namespace {
 
-// Number of rows of one task: enough to fill a SIMD lane, few enough to check the Progress often.
+// Number of rows of one task: enough to fill the SIMD lanes, few enough to notice an interruption soon.
 constexpr std::size_t rows_of_task = 64;
 
 }  // namespace
@@ -277,7 +277,7 @@ void Evaluator::evaluate(std::span<const double> rows, std::span<double> figures
 
 namespace {
 
-// The units in which the voltages of drives are written in the scene. Voltages in Vdp scale with the device.
+// The units in which the scene file gives the voltages of the electrodes' waveforms. Voltages in Vdp scale with the device.
 struct WrittenVolts {
   bool in_volts = false, in_pull_in = false, in_other_units = false;
 };
@@ -333,7 +333,7 @@ struct Evaluator::Place {
   PreparedScene scene;                 ///< scene whose [spread] has the input columns that vary the device
   std::vector<std::size_t> of_device;  ///< index of the input column for each varied quantity of the [spread] of `scene`
   std::vector<WaveformKey> of_waveforms;
-  MeasuredUnits known;  ///< factors by which the voltages of the waveforms are scaled on the device
+  MeasuredUnits known;  ///< scales the voltages of the waveforms with the Vdp of a device; empty for voltages that do not scale
 };
 
 Evaluator::Place Evaluator::place_of(std::span<const double> row, const Progress& progress) const {

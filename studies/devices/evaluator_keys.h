@@ -20,15 +20,15 @@ namespace softland {
 /// Splits the key of a waveform parameter into drive and parameter: "waveform.main.level" into "main" and "level"; none for
 /// other keys.
 [[nodiscard]] std::optional<std::pair<std::string, std::string>> waveform_key(const std::string& path);
-/// Returns the parameter of a waveform with this name, with its kind; null if the waveform family has none. Adds the names of
-/// the family's parameters, up to the one found, to `names`, for a message.
+/// Returns the parameter of a waveform with this name, and writes its kind (level, time, ...) into `kind`; null if the waveform
+/// family has none. Adds the names of the family's parameters, up to the one found, to `names`, for a message.
 [[nodiscard]] double* waveform_parameter(Waveform& waveform, const std::string& name, std::size_t element,
                                          std::vector<std::string_view>& names, ParameterKind& kind);
 /// Returns the SI unit of a waveform parameter; empty for a ratio.
 [[nodiscard]] std::string unit_of_parameter(ParameterKind kind, const std::string& drive);
 /// Returns the quantity that the scene has at a key; none if the key is missing or is not a quantity.
 [[nodiscard]] std::optional<Quantity> written_quantity(const SceneFile& file, const std::string& path, std::size_t element);
-/// Returns a scene in which these keys vary, each by its own value: a factor would be inexact because of rounding.
+/// Returns a scene whose [spread] varies these keys, each by its value: a value computed from a factor would be rounded.
 [[nodiscard]] SceneFile scene_that_varies(SceneFile file, const std::vector<std::string>& keys);
 
 }  // namespace softland

@@ -16,7 +16,7 @@ namespace {
 
 bool is_held(const ClosedRange& device, double level) { return device.release <= level && !(device.pulled_through < level); }
 
-// Starting point for the collapse voltage of a device: a level a little below the collapse voltage of the nominal device.
+// Starting point of the search for the collapse voltage of a device: a level just below that of the nominal device.
 struct Nominal {
   double level = std::numeric_limits<double>::quiet_NaN();  // level of the electrode a little below the collapse voltage [V]
   std::optional<ClosedEquilibrium> closed;                  // closed equilibrium of the nominal device at this level
@@ -51,8 +51,8 @@ HoldWindow hold_window(std::span<const ClosedRange> devices) {
     const auto lost = std::ranges::count_if(devices, [&](const ClosedRange& one) { return !is_held(one, level); });
     return static_cast<double>(lost) <= most_lost;
   };
-  // The range of levels that keep enough devices closed begins at the release voltage of one device, and ends at the collapse
-  // voltage of another device.
+  // The share of devices that stay closed changes only at release and collapse voltages. Hence the window begins at the release
+  // voltage of one device, and ends at the collapse voltage of another.
   HoldWindow window;
   double beyond_all = 0;
   for (const ClosedRange& one : devices) {

@@ -35,7 +35,7 @@ struct HoldWindows {
 [[nodiscard]] HoldWindow hold_window(std::span<const ClosedRange> devices);
 
 /// Returns the windows of hold levels [V] for the first devices of robustness() under the same options; calibrations are
-/// ignored. Every other drive is at its bias for pull-in voltages. A device that cannot be described counts as not held at any
+/// ignored. Every other drive is at its bias for pull-in voltages. A device with impossible values counts as not held at any
 /// level. Returns no windows if the scene has no contact, or if `progress` asks to stop.
 [[nodiscard]] HoldWindows hold_windows(const PreparedScene& nominal, const RobustnessOptions& options,
                                        const Progress& progress = {});

@@ -72,7 +72,7 @@ struct Instrument {
 /// Reads the devices of a scene, each given by the values of its varied quantities.
 class DeviceReader {
  public:
-  /// The scene's [spread] must have no jitter. Keeps a reference to `nominal`.
+  /// The scene's [spread] must not vary jitter, which has no single value per device. Keeps a reference to `nominal`.
   explicit DeviceReader(const PreparedScene& nominal) : nominal_(nominal), near_(nominal) {}
 
   /// Selects the device with these values of the varied quantities (DeviceSpread::to_values). Returns false if that device is

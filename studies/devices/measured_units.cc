@@ -1,4 +1,5 @@
-// What is measured on devices: their pull-in voltage, closing time, period and piezo, with errors, and classes of equal devices.
+// Measurements on devices for a calibration: pull-in voltage, closing time, period and piezo, with errors, and the classes into
+// which devices are sorted.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -91,7 +92,7 @@ double PullInMeter::time_of(const Switch& model, double step) const {
   return softland::closing_time(model, electrode_, step, bias_of(nominal_->scene, electrode_), periods_to_close / frequency());
 }
 
-// Measures the closing times of the nominal device under steps to closing_step Vdp / s, for s from 0.75 to 1.19.
+// Measures the closing times of the nominal device under steps to closing_step Vdp / s, for voltage factors s in [0.75, 1.19].
 void PullInMeter::learn_times() {
   constexpr double least = 0.75, most = 1.19;
   constexpr int steps = 88;
@@ -125,7 +126,7 @@ double PullInMeter::piezo_unit(const Switch& model) { return std::abs(model.basi
 double PullInMeter::frequency() const { return nominal_->model.basis().angular_frequencies()[0] / (2 * pi); }
 
 double PullInMeter::pull_in(const Switch& model, double precision) const {
-  // Ratio of the integrator's tolerance to the requested precision of the pull-in voltage, since measurements are less precise.
+  // Ratio of the integrator's tolerance to the precision of the pull-in voltage: measurements need no tighter integrator.
   constexpr double looser = 10;
   const std::vector<double> bias = bias_of(nominal_->scene, electrode_);
   const StaticPullIn statically = static_pull_in(model, electrode_, bias);
@@ -142,7 +143,8 @@ DeviceUnits PullInMeter::exact(const Switch& model) const {
 }
 
 DeviceUnits PullInMeter::measured(const DeviceUnits& exact, const Calibration& calibration, std::uint64_t seed, std::uint64_t k) {
-  constexpr double least_volts = 0.1;  // lower bound of a measured voltage: the measurement error must not make it negative
+  // Lower bound of a measured factor, which a large measurement error must not make negative.
+  constexpr double least_volts = 0.1;
   const auto reading = [&](double error, Stream stream, std::uint64_t counter) {
     return std::max(least_volts, 1 + error * random_normal(seed, stream, counter));
   };
@@ -195,8 +197,9 @@ MeasuredUnits MeasuredUnits::without_errors() const {
 
 std::vector<MeasuredUnits> measured_units(const PreparedScene& nominal, std::span<const Calibration> calibrations, int jobs,
                                           const Progress& progress) {
-  // Voltage factors from a measured closing time differ from those from a measured Vdp.
-  std::map<bool, std::vector<DeviceUnits>> references;  // scale factors; key: true if a closing time gives the voltage
+  // Voltage factors from a measured closing time differ from those from a measured Vdp, so both kinds need reference devices.
+  // Scale factors of the reference devices; key: true for a measured closing time.
+  std::map<bool, std::vector<DeviceUnits>> references;
   for (const bool by_time : {false, true}) {
     std::size_t size = 0;
     MeasuredQuantities quantities;

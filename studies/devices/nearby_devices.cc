@@ -12,7 +12,7 @@
 namespace softland {
 namespace {
 
-// Returns the scale of a varied quantity, from which the step of finite differences follows [SI unit, or factor].
+// Returns the typical size of a varied quantity, of which the step of finite differences is a share [SI unit, or factor].
 double size_of(const SpreadVariable& variable, double value) {
   double size = variable.is_added ? std::numeric_limits<double>::infinity() : std::abs(value);
   for (const VariedKey& key : variable.keys) {
@@ -49,7 +49,7 @@ bool NearbyDevices::changes_switch(std::size_t i) const {
   return std::any_of(keys.begin(), keys.end(), [](const VariedKey& key) { return !key.drive; });
 }
 
-// Returns the two devices one step beside the current device. Throws InvalidInput if one of these devices cannot be described.
+// Returns the two devices one step beside the current device. Throws InvalidInput if the values of one of them are impossible.
 SwitchSlopes::Neighbours NearbyDevices::neighbours(std::size_t i) {
   Switch above = device_beside(i, 1), below = device_beside(i, -1);
   SwitchOptions finer = nominal_.quadrature;
@@ -89,8 +89,8 @@ bool NearbyDevices::changes_signals(std::size_t i) const {
   return meter_ || std::any_of(keys.begin(), keys.end(), [](const VariedKey& key) { return key.drive.has_value(); });
 }
 
-// True if the drive signals at a smaller and at a larger value of varied quantity i have the same pieces. It is not a small
-// change if a step of a waveform appears, disappears or becomes the first edge of the time axis.
+// True if the drive signals one step below and above the current device in quantity i have as many pieces as its own. Otherwise
+// they have no derivative: an edge of a waveform appears, disappears or becomes the first edge of the time axis.
 bool NearbyDevices::keeps_pieces(std::size_t i) {
   const auto pieces = [&](double side) {
     std::vector<std::size_t> counts;

@@ -38,14 +38,14 @@ class NearbyDevices {
   /// Selects the device with these values of the varied quantities (DeviceSpread::to_values) as the current device.
   void move_to(const std::vector<double>& values);
   [[nodiscard]] const std::vector<double>& values() const { return values_; }
-  /// Returns the current device. Throws InvalidInput if the device cannot be described.
+  /// Returns the current device. Throws InvalidInput if its values are impossible.
   [[nodiscard]] Switch device() { return device_at(values_); }
   /// Returns the size of the finite-difference step in varied quantity i [unit of the quantity].
   [[nodiscard]] double step(std::size_t i) const { return steps_[i]; }
   /// Returns the device one step above the current device in quantity i (`side` 1) or below it (-1). Throws the exceptions of
   /// device().
   [[nodiscard]] Switch device_beside(std::size_t i, double side) { return device_at(beside(i, side)); }
-  /// Return the drive signals of the current device, and of the device that differs by one step in varied quantity i.
+  /// Return the drive signals of the current device, and of the device one step beside it in quantity i (`side` 1 or -1).
   [[nodiscard]] std::vector<Signal> signals() { return signals_of(values_); }
   [[nodiscard]] std::vector<Signal> signals_beside(std::size_t i, double side) { return signals_of(beside(i, side)); }
 

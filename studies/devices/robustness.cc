@@ -110,7 +110,7 @@ void allow(SceneFile& file, const std::string& driver, const Signal& signal, con
   if (std::isfinite(signal.peak_slew())) {
     file.assign(driver + ".max_slew", signal.peak_slew());
   } else {
-    file.erase(driver + ".max_slew");  // an offset of the voltage source is applied at once, with an infinite slew rate
+    file.erase(driver + ".max_slew");  // the signal has a jump (offset of the source), which no finite limit permits
   }
 }
 
@@ -156,7 +156,7 @@ std::vector<NamedDrive> by_knowledge(const NamedDrive& drive) {
   };
   for (std::size_t i = 0; i < measured.size() && measured.size() > 1; ++i)
     add(std::string(measured[i].name), exactly(std::span(measured).subspan(i, 1)));
-  if (measured.size() > 2 && drive.calibration.piezo_error) {  // all measurements except that of the piezo
+  if (measured.size() > 2 && drive.calibration.piezo_error) {  // also all measurements but that of the piezo
     const auto others = std::span(measured).first(measured.size() - 1);
     add(named(others), exactly(others));
   }
@@ -198,7 +198,8 @@ Robustness robustness(const PreparedScene& nominal, const std::vector<NamedDrive
   NamedDrive plain{.name = "plain step", .waveforms = plain_step(nominal, driven)};
   plain.waveforms.merge(nominal.drives.waveforms());  // add the waveforms of drives that the plain step does not name
   std::vector<NamedDrive> all;
-  const auto is_judged = [&](const NamedDrive& drive) {  // true if the set of waveforms `drive` repeats one of `all`
+  // True if `drive` and a set in `all` have the same signals, without calibration.
+  const auto is_judged = [&](const NamedDrive& drive) {
     const std::vector<Signal> own = nominal.commanded(waveforms_of(nominal, drive));
     return drive.calibration.is_empty() && std::any_of(all.begin(), all.end(), [&](const NamedDrive& other) {
              return other.calibration.is_empty() && same_drives(own, nominal.commanded(waveforms_of(nominal, other)));
@@ -272,7 +273,7 @@ std::vector<DeviceCourse> device_courses(const PreparedScene& nominal, const Dri
            .device = k,
            .trajectory = simulate_closing(own.model, own.signals(), {.duration = found.duration, .tolerance = found.tolerance})});
     } catch (const InvalidInput&) {
-      continue;  // a device that cannot be described has no gap over time
+      continue;  // a device with impossible values has no motion
     }
   }
   return courses;
@@ -290,7 +291,7 @@ GapCourses gap_courses(const PreparedScene& nominal, const DriveRobustness& driv
           const Trajectory closing = simulate_closing(
               own.model, own.signals(), {.duration = end, .tolerance = std::max(own.tolerance, EnsembleRun{}.tolerance)});
           all[k] = sampled_gap(closing, instants, end);
-        } catch (const InvalidInput&) {  // a device that cannot be described has no motion
+        } catch (const InvalidInput&) {  // a device with impossible values has no motion
         }
       },
       progress.stop);

@@ -48,7 +48,7 @@ struct Yield {
 struct DriveRobustness {
   std::string name;
   DriveWaveforms waveforms;             ///< waveforms for the nominal device, in volts
-  MeasuredUnits known = {};             ///< scale factors of the waveforms that the calibration assigns to the devices
+  MeasuredUnits known = {};             ///< scale factors that the calibration assigns to the waveforms of each device
   std::vector<DeviceOutcome> outcomes;  ///< outcomes of the closings, by device
   PerFigure<FigureStatistics> figures;  ///< statistics of the figures in device_figures
   Yield closing;      ///< share of devices that touch their contact and are simulated to the end of the simulated time
@@ -73,8 +73,8 @@ struct RobustnessOptions {
 
 struct Robustness {
   std::vector<DriveRobustness> drives;  ///< results of the sets of waveforms, the plain step first
-  std::vector<DriveRobustness> by_knowledge =
-      {};                   ///< results of the last set of waveforms with other calibrations: the value of its measurements
+  /// Results of the last set of waveforms with other calibrations, which show what each measurement is worth.
+  std::vector<DriveRobustness> by_knowledge = {};
   std::size_t devices = 0;  ///< number of simulated devices; fewer than requested if interrupted
   bool interrupted = false;
   double duration = 0;   ///< simulated time of the closings [s]
@@ -134,8 +134,8 @@ struct NamedDrive {
 [[nodiscard]] std::vector<DeviceCourse> device_courses(const PreparedScene& nominal, const DriveRobustness& drive,
                                                        const Robustness& found, const RobustnessOptions& options);
 
-/// Returns the contact gaps of the first `devices` devices until `end` [s], at `instants` instants. Devices that cannot be
-/// described are left out. Throws Interrupted if `progress` asks to stop.
+/// Returns the contact gaps of the first `devices` devices until `end` [s], at `instants` instants. Devices with impossible
+/// values are left out. Throws Interrupted if `progress` asks to stop.
 [[nodiscard]] GapCourses gap_courses(const PreparedScene& nominal, const DriveRobustness& drive, std::size_t devices,
                                      std::size_t instants, double end, const RobustnessOptions& options,
                                      const Progress& progress = {});
@@ -150,7 +150,7 @@ namespace internal {
 
 /// Returns the statistics of a set of waveforms from the outcomes of the devices, which are ordered by device.
 [[nodiscard]] DriveRobustness summarised(NamedDrive drive, MeasuredUnits known, std::vector<DeviceOutcome> outcomes);
-/// Returns the options for further closings under a set of waveforms that robustness() has simulated.
+/// Returns the options with which robustness() closes devices, for further closings under the same waveforms.
 [[nodiscard]] EnsembleRun run_of(const PreparedScene& nominal, const RobustnessOptions& options);
 /// Returns the set of waveforms with its calibration as if measured without error.
 [[nodiscard]] EnsembleDrive exactly_measured(const PreparedScene& nominal, const DriveRobustness& drive);

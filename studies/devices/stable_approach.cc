@@ -84,8 +84,8 @@ class Finder {
         return touching_voltage(nominal_, builder.device(std::move(u)), found);
       };
       const std::optional<double> above = at(one_above), below = at(one_below);
-      // If the device on one side has no stable path to contact, use the difference to the device on the other side, or else to
-      // the limit of the voltage source.
+      // If the device on one side has no stable path to contact, use the difference between the other device and the nominal
+      // design. If both have none, use the distance to the limit of the voltage source.
       const double slope = above && below ? (*above - *below) / 2
                            : above        ? *above - found.reaches
                            : below        ? found.reaches - *below

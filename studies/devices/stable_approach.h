@@ -4,8 +4,8 @@
 // A drive has a path of stable equilibria if all static equilibria from rest to the contact plane are stable and within the
 // limits of its voltage source. A piezo may have such a path, and so may an electrode whose contact plane comes before the
 // pull-in instability. The other drives are constant. An electrode that holds the closed switch is at a low level until
-// contact. A slow waveform along the path closes every device, with an impact velocity that is the spread of the touching
-// voltages over the available time.
+// contact. A slow waveform along the path closes every device. Its impact velocity is the width of the range of positions at
+// which devices touch, divided by the available time.
 #pragma once
 
 #include <cstdint>
@@ -35,8 +35,8 @@ struct StableApproach {
 /// Returns the shortest time in which a two-impulse input shaper brings the switch near its contact without vibration [s].
 [[nodiscard]] double shortest_rise(const PreparedScene& nominal);
 /// Returns a reference speed for slow approaches that close every device without a bounce with one waveform [m/s]:
-/// touch_places() divided by the time that the shortest rise leaves until `steady` [s]. The contact point passes the touching
-/// positions at this constant speed. Infinite if no time is left.
+/// touch_places() divided by the time between the shortest rise and `steady`, when the contact must be steady [s]. The contact
+/// point passes the touching positions at this constant speed. Infinite if no time is left.
 [[nodiscard]] double quasi_static_speed(const StableApproach& approach, const PreparedScene& nominal, double steady);
 
 /// Finds a stable approach by a drive that a search with this actuator may vary; none if no drive has a path of stable
