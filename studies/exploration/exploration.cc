@@ -26,15 +26,15 @@
 namespace softland {
 namespace {
 
-constexpr std::uint64_t default_devices =
-    500;  // default number of devices of a robustness study at a point; the verb's 2000 are for a single scene
+// Default number of devices of a robustness study at a point; the command `robustness` takes 2000 for its single scene.
+constexpr std::uint64_t default_devices = 500;
 constexpr std::array shown_quantiles{0.5, 0.95};
 constexpr std::array step_figures{figure_of(&Metrics::permanent_contact_time), figure_of(&Metrics::bounce_count),
                                   figure_of(&Metrics::major_bounce_height), figure_of(&Metrics::impact_velocity)};
 
 struct OptionRow {
   std::string_view name;
-  PointStudy study;  // study (verb run at every point) to which the option belongs
+  PointStudy study;  // study (command that is run at every point) to which the option belongs
 };
 constexpr std::array options{OptionRow{"certify", PointStudy::simulate},  OptionRow{"samples", PointStudy::robustness},
                              OptionRow{"target", PointStudy::optimize},   OptionRow{"actuator", PointStudy::optimize},
@@ -97,8 +97,8 @@ std::vector<std::size_t> pulling_drives(const Device& device) {
   return drives;
 }
 
-/// Returns the drive voltages of a scene as straight lines: exact for steps and pulses, within a thousandth of the voltage
-/// range for sines.
+/// Returns the drive voltages of a scene over time as the ends of straight lines: exact for steps and pulses, within a
+/// thousandth of the voltage range for sines.
 std::map<std::string, std::vector<std::pair<double, double>>> lines_of(const PreparedScene& p) {
   std::map<std::string, std::vector<std::pair<double, double>>> all;
   const std::vector<std::string> names = p.drive_names();
@@ -170,8 +170,8 @@ PointFigure figure_of_key(const std::string& key) {
                                                                                     {"_J", "J"},
                                                                                     {"_F", "F"},
                                                                                     {"_W", "W"}}};
-  // In the key of a figure, the unit may be before an index of a list, or before the name of an electrode:
-  // "natural_frequencies_rad_s.1".
+  // The unit may be followed by an index or the name of an electrode, as in "natural_frequencies_rad_s.1": try the whole key,
+  // then shorter beginnings.
   for (std::size_t end = key.size(); end != std::string::npos && end > 0; end = key.rfind('.', end - 1)) {
     const std::string_view head = std::string_view(key).substr(0, end);
     for (const auto& [suffix, unit] : suffixes) {
@@ -391,7 +391,8 @@ PointRow Exploration::pulled_in(const SceneFile& scene, const Progress& progress
     const ElectrodePullIn found = known != p.pull_in.end() ? known->second : electrode_pull_in(p.model, k, bias, progress);
     const Status status = found.statically.status == Status::done ? found.dynamically.status : found.statically.status;
     if (status != Status::done) row.status = to_string(status);
-    const double offset = is_electrode ? 0 : 1;  // the commanded value of a dispersion force is its factor less one
+    // The drive of a dispersion force is its factor less one; the row has the factor.
+    const double offset = is_electrode ? 0 : 1;
     row.figures.push_back(finite(offset + found.statically.voltage));
     row.figures.push_back(finite(offset + found.dynamically.voltage));
     if (!is_electrode) continue;
@@ -401,8 +402,8 @@ PointRow Exploration::pulled_in(const SceneFile& scene, const Progress& progress
   return row;
 }
 
-// Returns the numbers of a verb's record as the row of a point. A number that only the record of the exploration's own scene
-// has stays unset.
+// Returns the numbers of a command's record as the row of a point. A column is unset if this record lacks the number, although
+// the record of the plan's scene, from which the columns come, has it.
 PointRow Exploration::recorded(const SceneFile& scene, int jobs, const Progress& progress) {
   const OtherStudy::Record record = other_->record(scene, plan_.options(), plan_.seed(), jobs, progress);
   PointRow row{.status = record.status, .reason = {}, .figures = std::vector<double>(figures_.size(), Metrics::unset)};
@@ -433,7 +434,7 @@ PointRow Exploration::on_devices(const SceneFile& scene, int jobs, const Progres
 
 PointRow Exploration::optimized(const SceneFile& scene, int jobs, const Progress& progress) {
   OptimizeOptions search = planned(request_of(plan_.options()), scene, {}).options;
-  // All points of an exploration have the same budget, so a search does not begin with half of it.
+  // All points have the same budget: one undivided search finds more than a search that begins with half its budget.
   search.begins_with_half = false;
   search.seed = plan_.seed();
   search.jobs = jobs;

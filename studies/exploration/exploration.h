@@ -1,6 +1,6 @@
 // The computation of an exploration at one point of its plan, the stored list of points: a row of figures, and a status. The
-// row depends only on the scene of the point and on the options of the study. It is bit for bit the result of the verb of the
-// same name for that scene.
+// row depends only on the scene of the point and on the options of the study. It is bit for bit the result of the command
+// (verb) of the same name for that scene.
 //
 //   simulate    every figure of merit of the closing under the scene's waveforms, with `certify` also the errors of the
 //               figures. Closings run one at a time: in SIMD lanes (model/ensemble/ensemble_closings.h) their last digits would
@@ -10,12 +10,12 @@
 //   robustness  yields and quantiles of the figures over `samples` varied devices of [spread], under the scene's own
 //               waveforms
 //   limit, release, effects, check
-//               the numbers of the verb's record; the columns come from the record of the plan's own scene
-//   optimize    a whole search on the nominal device: the figures of the found waveform, its parameters, the goal, and the
-//               figures of the plain step. Unlike the verb it does not begin with half its budget.
+//               the numbers of the command's record (its results); the record of the plan's own scene gives the columns
+//   optimize    a whole search on the nominal device: the figures of the found waveform, its parameters, whether it meets
+//               the goal, and the figures of the plain step. Unlike the command it never begins with half its budget.
 //
-// A point whose scene fails throws no exception: an impossible scene has the status `infeasible` with the reason, a numerical
-// failure the status of that failure.
+// A point whose scene fails throws no exception: the status is `infeasible`, with the reason, for an impossible scene, and
+// otherwise that of the numerical failure.
 #pragma once
 
 #include <cstdint>
@@ -43,19 +43,20 @@ inline constexpr auto point_studies = std::to_array<Named<PointStudy>>({{PointSt
                                                                         {PointStudy::optimize, "optimize"}});
 static_assert(is_complete<point_studies>());
 
-/// A verb that takes one scene and is registered from outside of this file as a study of explorations.
+/// A command (verb) that takes one scene and is registered from outside of this file as a study of explorations.
 struct OtherStudy {
   using Options = std::map<std::string, std::string>;
-  /// The numbers of a verb's record, such as "touch.least_time_s", and its status. Flags are 1 for true and 0 for false.
+  /// The numbers of a command's record (its results), such as "touch.least_time_s", and its status. Flags are 1 for true, 0 for
+  /// false.
   struct Record {
     std::string status;
     std::vector<std::pair<std::string, double>> numbers;
   };
 
   std::string name;
-  /// A function that throws InvalidInput for an option that the study lacks, and for a value that violates the option's rule.
+  /// A function that throws InvalidInput for an option that the study does not have, and for an invalid value of an option.
   std::function<void(const Options&)> check;
-  /// A function that returns the record of the verb for a scene. Throws InvalidInput for a scene without a record, and
+  /// A function that returns the record of the command for a scene. Throws InvalidInput for a scene without a record, and
   /// Interrupted if `progress` asks to stop.
   std::function<Record(const SceneFile&, const Options&, std::uint64_t seed, int jobs, const Progress&)> record;
 };
@@ -85,7 +86,8 @@ class Exploration {
 
   [[nodiscard]] const Plan& plan() const { return plan_; }
   [[nodiscard]] const std::vector<PointFigure>& figures() const { return figures_; }
-  /// Returns a text that contains everything on which the row of a scene depends: equal texts have equal rows.
+  /// Returns a text that contains everything on which the row of a scene depends: equal texts have equal rows, which are
+  /// computed once.
   [[nodiscard]] std::string content(const SceneFile& scene) const;
   /// Returns the drive waveforms of a scene of the plan as the ends of straight lines [s, V]; none for an impossible scene.
   [[nodiscard]] std::map<std::string, std::vector<std::pair<double, double>>> waveforms(const SceneFile& scene,
@@ -110,7 +112,7 @@ class Exploration {
   std::vector<PointFigure> figures_;
   AskedFigures asked_ = {};              // figures that the scene of the exploration requests
   std::vector<std::string> parameters_;  // names of the waveform parameters that a search at a point varies
-  bool shares_switches_ = false;         // true if several points of the exploration may have the same switch
+  bool shares_switches_ = false;         // true to remember pull-in voltages, since several points may have the same switch
   PullInMemory pull_in_;
 };
 

@@ -65,7 +65,7 @@ class ExplorationRunner {
   bool reuses_;
   int inner_jobs_ = 1;
   Progress progress_;
-  mutable std::mutex mutex_;  // guards the progress, and the time at which the computation was begun
+  mutable std::mutex mutex_;  // guards the progress `told_`, and the time `first_computed_`
   ExplorationProgress told_;
   std::atomic<double> store_seconds_ = 0;
   Clock::time_point begin_ = Clock::now();

@@ -86,7 +86,7 @@ class FrontSearch {
     {
       const std::scoped_lock lock(mutex_);
       const auto found = fresh_.find(evaluation.x);
-      if (found == fresh_.end()) return;  // no row: the search was stopped, or the point failed
+      if (found == fresh_.end()) return;  // the point has no row: the search was stopped, or its computation failed
       row = std::move(found->second);
       fresh_.erase(found);
       ++found_.asked;

@@ -11,14 +11,14 @@
 
 namespace softland {
 
-/// Returns the description that a database file stores of its part of the exploration.
+/// Returns the description of one part (shard) of the exploration, which the database file of this part stores.
 [[nodiscard]] StoredPlan stored_plan(const Exploration& exploration, const Shard& shard);
 /// Returns the exploration that `plan` (its stored request) describes, for the database file `store`. If the file already
 /// stores this exploration, the columns are those in the file.
 [[nodiscard]] Exploration exploration_for(Plan plan, const std::filesystem::path& store, const Progress& progress = {},
                                           const OtherStudies& others = {});
-/// Throws InvalidRequest about the field `shard` if the exploration cannot have this part: a search for a Pareto front cannot
-/// be divided.
+/// Throws InvalidRequest about the field `shard` if the exploration cannot be divided into parts, as a search for a Pareto
+/// front.
 void require_part(const Exploration& exploration, const Shard& shard);
 /// Returns the plan (stored request) of the exploration in a database file. Throws InvalidInput if the file contains a search
 /// instead.
