@@ -8,11 +8,11 @@
 //   pull-in     static and dynamic pull-in voltage and release voltage; for a switch without electrodes the factors of the
 //               dispersion force
 //   robustness  yields and quantiles of the figures over `samples` varied devices of [spread], under the scene's own
-//               waveforms
+//               waveforms.
 //   limit, release, effects, check
-//               the numbers of the command's record (its results); the record of the plan's own scene gives the columns
+//               the numbers of the command's record (its results); the record of the plan's own scene gives the columns.
 //   optimize    a whole search on the nominal device: the figures of the found waveform, its parameters, whether it meets
-//               the goal, and the figures of the plain step. Unlike the command it never begins with half its budget.
+//               the goal, and the figures of the plain step; the search never begins with half its budget.
 //
 // A point whose scene fails throws no exception: the status is `infeasible`, with the reason, for an impossible scene, and
 // otherwise that of the numerical failure.

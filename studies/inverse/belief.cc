@@ -20,8 +20,8 @@ using Eigen::VectorXd;
 
 constexpr std::size_t sampled_devices = 160;
 
-// Returns the part of the time span (touch, touch + span) in which the contact is open [s], from openings that last at least
-// `least` [s].
+// Returns how long the contact is open within `span` after first contact at the time `touch` [s]. Openings shorter than `least`
+// [s] are not counted.
 double open_time(double touch, std::span<const ContactOpening> openings, double span, double least) {
   double sum = 0;
   for (const ContactOpening& o : openings) {
@@ -135,7 +135,7 @@ std::vector<VectorXd> Belief::resampled(std::size_t count, Draws& draws) const {
 
 namespace {
 
-// Residuals of the first contact times, and their derivatives by the device's coordinates z.
+// Residuals of the first contact times of one device in all shots, and their derivatives by its coordinates z.
 struct LinearTouches {
   VectorXd residuals;
   MatrixXd slopes;
@@ -158,7 +158,8 @@ class BeliefUpdate {
     return misfits(std::vector<VectorXd>{fitted(start).first}).front();
   }
   [[nodiscard]] double misfit_of(const VectorXd& z) const { return misfits(std::vector<VectorXd>{z}).front(); }
-  /// Returns the least misfit |z|^2 + sum of r^2 of all searches. The searches end when the misfit is at most `enough`.
+  /// Searches from several starts until the misfit |z|^2 + sum of r^2 is at most `enough`. Returns the least misfit of all
+  /// searches.
   [[nodiscard]] double least_misfit(const Belief& belief, double enough);
 
  private:
@@ -194,7 +195,8 @@ class BeliefUpdate {
   [[nodiscard]] LinearTouches linear_touches(const VectorXd& z) const;
   [[nodiscard]] std::pair<VectorXd, MatrixXd> fitted(VectorXd z) const;
   [[nodiscard]] std::vector<double> misfits(std::span<const VectorXd> points) const;
-  // Returns the residual of a fixed gap ratio: a thousandth of the ratio's standard deviation gives a residual of 1.
+  // Returns the residual that fixes the gap ratio at that of the scene: 1 for a deviation by a thousandth of the ratio's
+  // standard deviation; 0 if the ratio is free.
   [[nodiscard]] double ratio_residual(const VectorXd& z) const {
     constexpr double stiff = 1000;
     return pins_ratio_ ? stiff * scene_.gap_ratio_coordinate(z).value_or(0) : 0;
@@ -217,8 +219,8 @@ class BeliefUpdate {
   double best_ = -std::numeric_limits<double>::infinity();
 };
 
-// Returns the residuals of first contact times for the device z, those beyond 4 compressed, and their derivatives by finite
-// differences. The closings of all neighbouring devices are simulated together.
+// Returns the residuals of first contact times for the device z, and their derivatives by finite differences. Residuals beyond
+// 4 grow only logarithmically, so that no single record dominates. All neighbouring devices are simulated together.
 LinearTouches BeliefUpdate::linear_touches(const VectorXd& z) const {
   constexpr double apart = 0.01, steepest = 3000;
   const auto touches = static_cast<Eigen::Index>(shots_.size()), m = touches + (pins_ratio_ ? 1 : 0), n = scene_.size();
@@ -272,8 +274,8 @@ std::pair<VectorXd, MatrixXd> BeliefUpdate::fitted(VectorXd z) const {
   return {best, curvature};
 }
 
-// Searches the device of largest posterior from the `most` likeliest of these starts, until the end of a search has at least
-// the log posterior `enough`.
+// Searches the device of largest posterior from the `most` likeliest of these starts. Ends early when a search has reached a
+// log posterior above `enough`.
 void BeliefUpdate::climb_from(const std::vector<VectorXd>& starts, std::size_t most, double enough) {
   const std::vector<double> before = log_posteriors(starts);
   std::vector<std::size_t> order(starts.size());
@@ -338,8 +340,8 @@ double BeliefUpdate::least_misfit(const Belief& belief, double enough) {
     starts = std::move(ranked);
   };
   rank();
-  // A contact that stays open has no derivative by z. The least misfit is then searched between a device with such a contact
-  // and the nominal device.
+  // A device whose contact stays open has no derivative of the contact time by z, so that no search can leave it. Hence devices
+  // between each start and the nominal device are starts as well.
   for (std::size_t q = 0, count = starts.size(); q < count; ++q) {
     for (const double share : nearer) starts.push_back(own(share * starts[q]));
   }
@@ -387,7 +389,8 @@ Belief BeliefUpdate::sampled() {
 
 TouchMisfit touch_misfit(const TuningModel& scene, std::span<const LearnedShot> shots, const Belief& belief, Draws& draws,
                          const Progress& progress) {
-  constexpr double one_in_a_thousand = 3.0902;  // 0.999 quantile of the standard normal distribution
+  // 0.999 quantile of the standard normal distribution, for the bound that one device in a thousand exceeds.
+  constexpr double one_in_a_thousand = 3.0902;
   const auto stayed_open = [](const LearnedShot& shot) { return !first_touch(shot.record).has_value(); };
   std::vector<LearnedShot> counted(shots.begin(), shots.end());
   if (std::ranges::count_if(counted, stayed_open) == 1) std::erase_if(counted, stayed_open);

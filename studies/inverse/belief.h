@@ -3,17 +3,21 @@
 //
 //   -ln p(z | records) = |z|^2 / 2 + sum over records L(record, closing of the device z in the same shot) + const
 //
-// first touch r = (t - t_record) / s, s^2 = edge_error^2 + (g / 2000 v)^2 + (T_0 / 3400)^2, L = r^2 / 2, linear beyond 6;
-//                v impact velocity of the first touch: g / 2000 is the error of the model in position, T_0 / 3400 that in time
-//   edges        open time u within 0.09, 0.3 and 0.9 T_0 of the first touch,
+// with t, u, v of the simulated closing, and t_record, u_record of the contact record:
+//
+//   first touch  r = (t - t_record) / s, t time of first contact, s^2 = edge_error^2 + (g / 2000 v)^2 + (T_0 / 3400)^2,
+//                v impact velocity: g / 2000 is the error of the model in position, T_0 / 3400 that in time; L = r^2 / 2, but
+//                linear in |r| beyond 6
+//   edges        u time for which the contact is open within 0.09, 0.3 and 0.9 T_0 after first touch,
 //                L = 1.2 ln(1 + q^2 / 3),  q = (u - u_record) / (0.0045 T_0 + 0.2 max(u, u_record)): the closing is chaotic after
 //                its first rebounds, so single edges are not compared
-//   count        if edges are not known: L as for edges, q the difference of the numbers of visible openings over
-//                1 + 0.3 times the larger one
-//   loudness     ln loudness is a + b ln v_max, one a and one b in [0.5, 2] for all records, with an error of 0.3
+//   count        if edges are not known: L as for edges, q the difference of the numbers of openings that are long enough to
+//                be recorded, over 1 + 0.3 times the larger number
+//   loudness     ln loudness is a + b ln v_max, v_max largest impact velocity, with one a and one b in [0.5, 2] for all
+//                records, and an error of 0.3
 //
-// T_0 is the closing time of the plain step, g the contact gap. The constants were chosen on the shipped scene mem-gold, as
-// shares of its scales.
+// T_0 is the closing time of the plain step, g the contact gap. The constants were chosen on the scene scenes/mem-gold.toml, as
+// shares of these scales.
 #pragma once
 
 #include <Eigen/Core>
@@ -71,7 +75,8 @@ struct Belief {
   std::vector<double> weights;          ///< weights of the devices that represent the belief; their sum is 1
   NormalBelief moments;                 ///< mean and covariance of the coordinates z
   Eigen::VectorXd mode;                 ///< coordinates z of the device with the largest posterior
-  /// Effective number of devices: 1 / (sum of the squared weights), with weights from the likelihood.
+  /// Effective number of devices, 1 / (sum of the squared weights), for weights by the posterior. If the number is small,
+  /// `weights` are more even than the posterior.
   double effective_devices = 0;
   double log_posterior = 0;  ///< log posterior of the device `mode`, without its constant
 

@@ -23,8 +23,8 @@ CapacitanceEdges::CapacitanceEdges(const Switch& model, std::size_t drive, doubl
 
 double CapacitanceEdges::above(const double* q) { return model_.capacitance(drive_, q, work_) - threshold_; }
 
-// Returns the capacitance less the threshold between two knots (points between integrator steps). Each mode is the cubic
-// through its positions and velocities at the knots (Hermite).
+// Returns the capacitance less the threshold at the share `part` of the integrator step between two knots. Each mode is the
+// cubic through its positions and velocities at the knots (Hermite).
 double CapacitanceEdges::above(const Knot& begin, const Knot& end, double part) {
   const std::size_t n = between_.size();
   const double span = end.time - begin.time, s = part, r = 1 - part;

@@ -66,7 +66,7 @@ std::vector<std::vector<double>> starts_of(const FitProblem& problem, const FitO
 std::vector<std::string> doubts_of(const Fit& fit, const ManyEnds& all, const LeastSquaresEnd& best) {
   constexpr double far = 4;          // permitted distance of a fitted unknown from its prior [standard deviations of the prior]
   constexpr double largest_rms = 3;  // permitted root mean square of a fit's residuals [errors of the data]
-  // Largest excess of another minimum's cost at which that minimum is as good as the best: two standard deviations.
+  // Another minimum is as good as the best if its cost, half of chi-squared, is larger by at most 2 (two standard deviations).
   constexpr double as_good = 2;
   // Distance from which on another minimum of the fit differs from the best, in standard errors.
   constexpr double standard_errors = 4;
@@ -90,7 +90,8 @@ std::vector<std::string> doubts_of(const Fit& fit, const ManyEnds& all, const Le
   return doubts;
 }
 
-// One stage of a fit: the problem with the data of this stage, and the ends of the searches from several starts.
+// One stage of a fit, with the rows of traces up to some time: the problem with these data, and the ends of the searches from
+// several starts.
 struct Stage {
   std::unique_ptr<const FitProblem> problem;
   ManyEnds all = {};
@@ -112,8 +113,8 @@ Stage solved(FitProblem problem, const std::vector<std::vector<double>>& starts,
   return stage;
 }
 
-// Returns the distinct ends of the searches of a fit, the best first. When more rows of the recorded curves (traces) are
-// fitted, another of these ends may become the best.
+// Returns the distinct ends of the searches of a stage, the best first, as starts of the next stage. When more rows of the
+// recorded curves (traces) are fitted, another of these ends may become the best.
 std::vector<std::vector<double>> best_ends(const ManyEnds& all) {
   constexpr std::size_t most = 5;
   std::vector<const LeastSquaresEnd*> ranked;
@@ -132,7 +133,8 @@ std::vector<std::vector<double>> best_ends(const ManyEnds& all) {
   return starts;
 }
 
-// Returns the first contact time of the nominal design, by measurement; NaN for a measurement that is not a curve over time.
+// Returns, for each measurement that is a curve over time, the first contact time of the nominal design; only rows up to this
+// time are fitted at first. NaN for other measurements.
 std::vector<double> nominal_touches(const FitProblem& problem, std::size_t measurements) {
   std::vector<double> touches(measurements, Metrics::unset);
   for (const Datum& datum : problem.data) {
@@ -152,7 +154,7 @@ std::vector<double> nominal_touches(const FitProblem& problem, std::size_t measu
 // The residuals of each recorded curve (trace) in units of the errors, over all used rows or over the rows that were added
 // last.
 struct TraceMisfit {
-  std::vector<double> rms;  // root mean square of the residuals, by measurement; infinite if the device cannot be read
+  std::vector<double> rms;  // root mean square of the residuals, by measurement; infinite if the prediction fails
   std::vector<double> rows;
 };
 

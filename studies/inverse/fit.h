@@ -95,7 +95,8 @@ struct Fit {
   bool spread_assumed = false;
   std::vector<std::string> devices;
   std::vector<FittedUnknown> unknowns;
-  /// Estimate of the unknowns; its weak directions are those of the mean device, in the unknowns of the first device.
+  /// Estimate of the unknowns. Its weak directions are those of the Fisher information averaged over the devices, in the
+  /// unknowns of the first device.
   Estimate estimate;
   std::vector<FitResidual> residuals;
   std::vector<FittedTrace> traces = {};
@@ -110,7 +111,7 @@ struct Fit {
   /// data, or another minimum describes the data as well. A result in doubt has no standard errors.
   std::vector<std::string> doubts = {};
 
-  /// Return the sum of the squared normalized residuals, without robust weights, after and before the fit.
+  /// Return the sum of the squared residuals, in errors of the data and without robust weights, after and before the fit.
   [[nodiscard]] double chi_squared() const;
   [[nodiscard]] double chi_squared_before() const;
   /// A key of the scene and its fitted value, which replaces the value of the given scene in the fitted scene of a device.

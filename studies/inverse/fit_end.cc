@@ -71,8 +71,8 @@ void EndOfFit::add_residuals(const VectorXd& values) {
   }
 }
 
-// Returns the weak directions of the mean device: a direction that is weak on one device is weak on all devices, with different
-// components.
+// Returns the weak directions of the Fisher information averaged over the devices, in the unknowns of the first device. A
+// direction that is weak on one device is weak on all devices, with different components.
 std::vector<WeakDirection> EndOfFit::weak_of_a_device() const {
   const auto n = static_cast<Index>(problem_.parameters.size());
   const std::vector<std::size_t>& first = problem_.of_device.front();

@@ -23,7 +23,7 @@ void set_spread(SceneFile& file, const Fit& fit) {
       keys.push_back('"' + key.name() + '"');
       weights.push_back(number_text(key.weight));
     }
-    // The width of a distribution in [spread] is a share of the mean, which is the scene's fitted value.
+    // The width of a distribution of factors is relative to its mean, which becomes the fitted value in the scene.
     const std::string width =
         variable.is_factor
             ? fmt::format("cov=\"{:.4g} %\"", 100 * all.deviation[i] / all.mean[i])

@@ -120,8 +120,8 @@ std::span<const Factor> factors_of(bool drives_piezo) { return std::span(all_fac
 
 constexpr DeviceUnits no_factors{.volts = unknown, .time = unknown};
 
-// Searches the factors of the waveform (of voltages and times) that are best for device k, starting from the device's own
-// units.
+// Searches the factors of the waveform (of voltages and times) that are best for device k. The search starts from `own`, the
+// factors that its pull-in voltage, period and piezo give.
 DeviceUnits best_factors(const RobustCost& cost, const std::vector<Waveform>& recipe, std::size_t k, const DeviceUnits& own,
                          std::span<const Factor> factors) {
   const auto units_at = [&](std::span<const double> x) {
@@ -230,7 +230,8 @@ GivenUnits fitted(const IdentificationStudy& study, std::uint64_t seed, std::str
   return given_units;
 }
 
-// Returns predictions for comparison: no factors, the best factors, factors from all figures, and the device's own units.
+// Returns predictions for comparison: no factors, the best factors, factors fitted to all figures, and factors computed
+// directly from Vdp, frequency and piezo (the device's own units).
 std::vector<GivenUnits> reference_predictions(const IdentificationStudy& study, std::uint64_t seed) {
   std::vector<GivenUnits> all;
   const auto given = [&](std::string name, std::vector<DeviceUnits> units) {

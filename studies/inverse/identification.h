@@ -2,20 +2,20 @@
 // time that a waveform needs on a device. The devices are then closed with the predicted factors.
 //
 //   best factors   (s_V, s_t) of device k minimise  s_k + (ln s_V)^2 + (ln s_t)^2,   s_k its score for `bounce` (robust_cost.h)
-//                  under V(t) = s_V V_0(t / s_t), the recipe V_0 being the scene's own drive; searched by Nelder and Mead's
-//                  simplex from the factors of its Vdp and its period. If the recipe drives a piezo, its voltages have
-//                  a separate factor s_p, from the device's own unit: the deflection by a volt over the contact gap.
-//   predicted      ln s = a + sum_i b_i ln x_i, the figures of the device being x_i. Least squares over one half of the devices
+//                  under V(t) = s_V V_0(t / s_t), with the scene's own waveform V_0 (the recipe). Nelder and Mead's simplex
+//                  starts from the factors that the device's Vdp and period give. If the recipe drives a piezo, its voltages
+//                  have a separate factor s_p; its start is the ratio of the deflections per volt, each over the contact gap.
+//   predicted      ln s = a + sum_i b_i ln x_i, with the figures x_i of the device. Least squares over one half of the devices
 //   factors        give a and b_i for the other half, and vice versa.
 //
 // The score is flat if a device already closes without a bounce, and the best factors would be arbitrary. The squared
-// logarithms select the smallest change of the waveform that closes it without a bounce, and are too small to spoil a soft
-// closing. All factors are fitted by the same figures, so that the fit does not depend on the weight of either error. Only
-// closings rate the fit: figures are ranked by the 95th percentile of the scores of all devices, each with factors fitted to
-// the other half.
+// logarithms select the smallest change of the waveform that closes it without a bounce; they are too small to make a soft
+// closing bounce. The same figures predict all factors, so that the fit does not depend on the relative weight of the errors of
+// the factors. Only simulated closings judge a prediction: figures are ranked by the 95th percentile of the scores of all
+// devices, each with factors fitted to the other half.
 //
 // Closing times are measured under steps to multiples of the nominal device's Vdp, with the same voltages for all devices. Each
-// measured figure has its error, both in the fit and in the prediction.
+// figure has a measurement error, both in the fit and in the prediction.
 #pragma once
 
 #include <cstddef>
@@ -43,9 +43,9 @@ struct Prediction {
   std::string name;
   /// Indices in IdentificationStudy::figures of the figures from which the factors are predicted.
   std::vector<std::size_t> figures;
-  /// Errors of the predicted logarithms of the best factors of volts, of time and of a piezo's volts: the root mean square over
-  /// devices that were not fitted, and its square over the variance of the logarithm. NaN if nothing is fitted; for a piezo
-  /// also if it is not driven.
+  /// Errors of the predicted logarithms of the best factors of volts, of time and of a piezo's volts. The first is the root
+  /// mean square over the devices to which the prediction was not fitted; the second is its square over the variance of the
+  /// logarithm. NaN if nothing is fitted; for a piezo also if it is not driven.
   double volts_miss = Metrics::unset, time_miss = Metrics::unset, piezo_miss = Metrics::unset;
   double volts_unexplained = Metrics::unset, time_unexplained = Metrics::unset, piezo_unexplained = Metrics::unset;
   /// True if closings with the predicted factors were simulated; only then are `score` and the members after it set.

@@ -39,14 +39,14 @@ struct LeastSquares {
   std::size_t unknowns = 0, residuals = 0;
   std::size_t robust = 0;  ///< number of residuals, from the first on, to which the robust loss is applied
   Loss loss = Loss::huber;
-  /// Writes the residuals at x and, if `jacobian` is not null, their derivatives, row by row. Returns false if the residuals do
-  /// not exist.
+  /// Writes the residuals at x and, if `jacobian` is not null, their derivatives, row by row. Returns false if the residuals
+  /// cannot be computed at x.
   std::function<bool(std::span<const double> x, std::span<double> residuals, double* jacobian)> evaluate;
 };
 
 struct LeastSquaresEnd {
   bool converged = false;      ///< true if the search of the minimum converged
-  std::vector<double> x = {};  ///< x at the end of the search; empty if the residuals do not exist at its start
+  std::vector<double> x = {};  ///< x at the end of the search; empty if the residuals cannot be computed at its start
   double cost = 0;             ///< half of the minimised sum of losses and squares at the end of the search
   long evaluations = 0, with_jacobian = 0;
   std::string message = {};  ///< message of the Ceres solver about the end of the search

@@ -18,14 +18,15 @@ class MeasurementModel {
   explicit MeasurementModel(const FitProblem& problem);
 
   /// Computes the predicted values of all measurements and, if `slopes` is not null, their derivatives by z, one row per datum.
-  /// Returns false if a device is impossible or cannot be read.
+  /// Returns false if the values of a device are impossible, or if it lacks a measured figure.
   [[nodiscard]] bool predict(std::span<const double> z, Eigen::VectorXd& values, Eigen::MatrixXd* slopes);
 
   struct Prediction {
     double value = 0;
     Eigen::VectorXd slopes;  ///< derivatives of the predicted value by the scaled unknowns z
   };
-  /// Predicts the reading of an instrument that is not among the data; none if the instrument cannot read the device.
+  /// Predicts the reading of an instrument that is not among the data; none if the device lacks the figure that the instrument
+  /// reads.
   [[nodiscard]] std::optional<Prediction> predict(std::size_t device, std::span<const double> z, const Instrument& instrument);
 
  private:

@@ -77,7 +77,7 @@ PreparedScene with_model(const PreparedScene& nominal, const PracticeModel& mode
   return own;
 }
 
-// Returns the first random device of the seed that can be described.
+// Returns the first random device of the seed whose values are possible.
 SampledDevice drawn(const PreparedScene& own, std::uint64_t seed) {
   constexpr std::uint64_t most = 100;
   const Ensemble ensemble(own, 1);

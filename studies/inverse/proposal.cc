@@ -240,7 +240,7 @@ struct ProposalSearch {
   const char* optimizer;
   std::size_t devices;
   long evaluations;
-  double step;  // first step of the search, as a share of the width of the box of variables
+  double step;  // first step of the search, as a share of the range of each variable
   bool fine;    // true to vary only the waveform variables that affect the closing strongly
 };
 
@@ -273,9 +273,11 @@ namespace {
 
 std::vector<CandidateWaveform> searched_recipes(const TuningModel& scene, const TuningSpace& space, std::size_t count,
                                                 const Progress& progress) {
-  // Scatter of the devices for which recipes are searched, in standard deviations of the prior.
+  // Scatter of the devices for which recipes are searched, in standard deviations of the prior: of the quantities that change
+  // the units of voltage and time, and of the other quantities (nuisances).
   constexpr double narrow = 0.1, narrow_nuisances = 0.5;
-  constexpr double headroom = 0.92;  // limit of levels, as a share of the highest level that the voltage source permits
+  // Limit of levels, as a share of the source's highest level: leaves room for devices that need more.
+  constexpr double headroom = 0.92;
   constexpr double hopeless = 0.9;
   constexpr std::array deviations{0.0, -1.0, 1.0, -2.0, 2.0};
   const std::size_t devices = scene.is_in_lanes() ? 48 : 12;

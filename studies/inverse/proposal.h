@@ -7,8 +7,8 @@
 //
 // Recipes are candidate waveforms that are searched once per scene, by CMA-ES on devices whose remaining uncertainty is that
 // after one recorded closing. One recipe is for the nominal device. On request there are further recipes for devices whose unit
-// of voltage is one and two standard deviations away. Scaled by the factors of a device, recipes are starting points of the
-// searches for this device, beside the waveforms of earlier shots.
+// of voltage is one or two standard deviations from the nominal one. Scaled by the factors of a device, recipes are starting
+// points of the searches for this device, beside the waveforms of earlier shots.
 #pragma once
 
 #include <cstdint>
@@ -40,7 +40,8 @@ class TuningSpace {
   [[nodiscard]] TuningSpace within(double highest, double hold) const;
 
   [[nodiscard]] const std::vector<Variable>& variables() const { return variables_; }
-  /// True for a waveform variable that hardly affects the closing: level and duration of the last pull.
+  /// True for a waveform variable that hardly affects the closing: duration of the edges, and level and duration of the third
+  /// level.
   [[nodiscard]] bool is_coarse(std::size_t k) const { return coarse_[k]; }
   [[nodiscard]] std::vector<std::vector<double>> starts() const;
   /// Returns the waveforms for the variables x, in the order of Switch::drives() [V]. Variables beyond their bounds are
@@ -54,8 +55,8 @@ class TuningSpace {
   [[nodiscard]] bool is_allowed(const std::vector<Waveform>& waveforms) const;
   /// Returns the highest level of the closing electrode that its voltage source permits [V]; infinite for a piezo.
   [[nodiscard]] double highest_level() const;
-  /// Returns the largest factor for all voltages of the waveforms that exceeds neither the limits of the voltage sources nor
-  /// the highest level.
+  /// Returns the largest factor by which all voltages of the waveforms may be multiplied within the limits of the voltage
+  /// sources and the limit `highest` of within().
   [[nodiscard]] double largest_factor(const std::vector<Waveform>& waveforms) const;
 
  private:

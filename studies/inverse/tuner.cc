@@ -40,7 +40,7 @@ constexpr std::size_t proposal_devices = 32;
 constexpr double enough_devices = 8;  // effective number of devices from which on a belief can predict a closing
 // Number of standard errors from which on the ratio of contact to electrode gap differs from the scene's.
 constexpr double certain = 3.5;
-// Numbers of first and last contact records from which the belief (estimate of the device) is computed.
+// The belief (estimate of the device) is computed from this many first and last contact records; those between are left out.
 constexpr std::size_t first_ones = 4, last_ones = 8;
 
 std::optional<BelievedQuantity> believed_gap_ratio(const TuningModel& scene, const Belief& belief) {
@@ -59,7 +59,7 @@ std::optional<BelievedQuantity> believed_gap_ratio(const TuningModel& scene, con
                           .deviation = of_ratio.deviation(0)};
 }
 
-// Returns the index of the first random number to use after `closings` closings.
+// Returns the index of the first random number for the proposal after `closings` closings: each proposal has 2^20 numbers.
 std::uint64_t first_draw(int closings) { return (static_cast<std::uint64_t>(closings) + 1) << 20; }
 
 }  // namespace
@@ -176,8 +176,8 @@ double surprise(const PredictedRecord& predicted, const ContactRecord& record, d
   return both_sides * (*seen - predicted.touch_median) / (edge - predicted.touch_median);
 }
 
-// True if the contact opened for so long that an error of the model cannot be the reason. A mode that the model lacks causes
-// short openings, of a nanometre.
+// True if the contact opened for so long that an error of the model cannot be the reason: a mode that the model lacks causes
+// only short openings, with a height of a nanometre.
 bool has_long_bounce(const TuningModel& scene, const ContactRecord& record) {
   constexpr double share = 0.04;  // least duration of a long opening, as a share of the closing time of the plain step
   if (record.edges.empty()) return bounce_count(record).value_or(0) > 0;
@@ -275,8 +275,8 @@ void Tuner::State::propose_next(Knowledge& known, const Progress& progress) cons
   if (known.in_a_row >= 2 && proposal.cost.landing < calm) repeat(known, forecast);
 }
 
-// Updates the best shot so far: one whose waveform did not bounce when last applied, unless the next waveform is clearly
-// better.
+// Updates the best shot so far: the shot of least expected cost among those whose waveform did not bounce when last applied. It
+// is the next shot if that is expected to cost clearly less.
 void Tuner::State::keep_best(Knowledge& known, const OutcomeForecast& forecast, double expected) const {
   constexpr double clearly = 0.15;
   known.kept = known.next;
@@ -310,7 +310,7 @@ void Tuner::State::repeat(Knowledge& known, const OutcomeForecast& forecast) con
 
 void Tuner::State::fire_kept_again() {
   const auto fired = std::ranges::find(now.fired, now.kept.number, [](const Fired& one) { return one.as_proposed.number; });
-  if (fired == now.fired.end() || now.controller) return;  // the repeated waveform is already that of the shot `kept`
+  if (fired == now.fired.end() || now.controller) return;  // the shot `kept` was not applied yet, or is being repeated anyway
   now.x = fired->x;
   now.next_waveform = fired->waveform;
   const int number = now.next.number;

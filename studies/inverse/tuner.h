@@ -154,7 +154,7 @@ class Tuner {
   Tuner(Tuner&&) noexcept;
   Tuner& operator=(Tuner&&) noexcept;
 
-  /// Returns a tuner of the same scene in its state before the first closing, for the next device.
+  /// Returns a tuner of the same scene for the next device, in the state before its first closing.
   [[nodiscard]] Tuner restarted() const;
 
   /// Returns the scene on which the belief is based, with nominal device, drives and limits.
@@ -201,8 +201,8 @@ class Tuner {
   /// devices of the belief predicted.
   [[nodiscard]] int unexpected_bounces() const;
   /// Returns the reason why the device does not match the model; none if it may match. Reasons are: no device of [spread]
-  /// closes at the recorded times, closings bounced against the prediction, or contact and electrode gap have another ratio
-  /// than in the scene.
+  /// closes at the recorded times, closings bounced although no bounce was predicted, or the ratio of contact gap to electrode
+  /// gap is not that of the scene.
   [[nodiscard]] std::optional<std::string> broken_assumption() const;
 
  private:

@@ -56,7 +56,8 @@ std::vector<std::string> shaped_drives_of(const PreparedScene& prepared, Actuato
   return names;
 }
 
-// Returns the keys `key` of the contacts that make the connection; contact.KEY if there is one contact.
+// Returns the keys with the name `key` in the sections of all near-side contacts that make the connection, if the scene has
+// them: "contact.KEY", or "contact.NAME.KEY" for several contacts.
 std::vector<std::string> contact_keys(const SceneFile& file, const Device& device, std::string_view key) {
   std::vector<std::string> keys;
   for (const Contact& contact : device.contacts) {
@@ -72,7 +73,7 @@ std::vector<std::string> contact_gaps(const PreparedScene& prepared) {
   return contact_keys(prepared.scene.file, prepared.scene.device, "gap");
 }
 
-// Returns the name of the varied quantity of these contact gaps.
+// Returns the name of the quantity in [spread] that varies these contact gaps.
 std::string gap_name(const std::vector<std::string>& gaps) { return gaps.size() == 1 ? gaps.front() : "contact gaps"; }
 
 // Returns the scene in volts, with every default written out, and with the further quantities that a belief varies.
@@ -159,8 +160,8 @@ class SingleClosing final : public ClosingObserver {
 
 }  // namespace
 
-// Removes the contact gaps from the variable that they share with other gaps. The contact gaps then vary together with the
-// other gaps, but with an additional deviation, as correlated normal factors.
+// Gives the contact gaps a variable of their own if they share a variable with other gaps. The two variables are correlated
+// normal factors: the contact gaps vary with the other gaps, with an additional deviation gap_ratio_deviation.
 void TuningModel::loosen_contact_gap(DeviceSpread& spread, const std::vector<std::string>& gaps) {
   for (std::size_t i = 0; i < spread.variables.size(); ++i) {
     SpreadVariable& shared = spread.variables[i];
@@ -221,7 +222,7 @@ TuningModel::TuningModel(const SceneFile& file, const TunerOptions& options, con
   drives_ = std::make_unique<const DeviceDrives>(nominal_);
   const std::vector<Signal> signals = nominal_.applied(nominal_.waveforms(plain_step(nominal_, options.actuator)));
   const double longest = periods_to_close * 2 * std::numbers::pi / nominal_.model.basis().angular_frequencies()[0];
-  // The connection of several contacts may close later than the first of its contacts.
+  // The connection of several contacts may close later than the first of them: simulate beyond first contact.
   const double after_contact = nominal_.model.contacts() > 1 ? longest : 0;
   const Trajectory closing = simulate_closing(
       nominal_.model, signals,
@@ -238,7 +239,7 @@ TuningModel::TuningModel(const SceneFile& file, const TunerOptions& options, con
     step_stays_from_ = std::isfinite(step.permanent_contact_time) ? step.permanent_contact_time : scales_.closing_time;
   }
   if (options.touch) scales_.latest_touch = beside_step(*options.touch, scales_.closing_time).limit;
-  // Largest error of a recorded contact time, as a share of the closing time of the plain step.
+  // Largest permitted error of a recorded contact time, as a share of the closing time of the plain step.
   constexpr double coarsest = 0.1;
   require(options.laboratory.edge_error < coarsest * scales_.closing_time, [&] {
     return fmt::format("the error of edges, {}, must be below a tenth of the closing time of the plain step, {}",
@@ -444,7 +445,8 @@ TuningModel::Units TuningModel::units(const Eigen::VectorXd& z) const {
 }
 
 double TuningModel::safe_level(const NormalBelief& belief) const {
-  constexpr double one_in_a_thousand = 3.0902;  // 0.999 quantile of the standard normal distribution
+  // 0.999 quantile of the standard normal distribution, for a level below which one in a thousand collapses.
+  constexpr double one_in_a_thousand = 3.0902;
   const NormalBelief own = in_spread(belief);
   const double deviation = std::sqrt(std::max(0.0, pulled_through_slope_.dot(own.covariance * pulled_through_slope_)));
   return pulled_through_ * std::exp(pulled_through_slope_.dot(own.mean) - one_in_a_thousand * deviation);

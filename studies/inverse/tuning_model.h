@@ -7,11 +7,11 @@
 //   gain of each tuned drive               normal, LaboratoryErrors::gain_error
 //   gas.viscosity                          lognormal, 5 %
 //   stiffness or modulus of the contacts   lognormal, 10 %
-//   contact gaps over electrode gap        normal, 3 %, beside the factor that they may share
+//   contact gaps over electrode gap        normal, 3 %, also if [spread] varies both gaps by a common factor
 //   trigger delay                          normal, LaboratoryErrors::trigger_delay, plus 0.3 % of the closing time of the plain
 //                                          step
 //
-// Contacts that make the connection together share one quantity of each kind. If devices of the same wafer were tuned before,
+// Several contacts that make the connection share one quantity of each kind. If devices of the same wafer were tuned before,
 // the coordinates are those of the prediction for the next device (wafer.h). Jitter is left out, since it is random for every
 // edge and not a quantity of the device.
 #pragma once
@@ -63,8 +63,8 @@ struct Particle {
 template <class Openings>
 struct SeenClosing {
   double touch = std::numeric_limits<double>::quiet_NaN();  ///< time of first contact after the drive waveforms begin [s]
-  /// Impact velocity at the time `touch` [m/s]. If the capacitance is recorded instead of the contact, this is the rate of the
-  /// capacitance over TuningScales::rise, times the contact gap.
+  /// Impact velocity at the time `touch` [m/s]. If the capacitance is recorded instead of the contact, the velocity is
+  /// estimated: time derivative of the capacitance, divided by TuningScales::rise, times the contact gap.
   double speed = std::numeric_limits<double>::quiet_NaN();
   Openings openings = {};  ///< time spans in which the contact is open, by time after the drive waveforms begin [s]
 };

@@ -13,7 +13,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// The measurement y = J z + n that the tuning of a device amounts to.
+// The result of tuning a device as a linear measurement y = J z + n of its coordinates z: `rows` is J, `values` is y.
 struct LinearMeasurement {
   MatrixXd rows;
   VectorXd values;
@@ -42,7 +42,7 @@ LinearMeasurement measurement_of(const TunedBelief& tuned) {
                         .values = VectorXd(static_cast<Index>(measured.size()))};
   for (Index i = 0; i < all.values.size(); ++i) {
     const Index k = measured[static_cast<std::size_t>(i)];
-    // Precision (inverse variance) from the records alone, without the prior.
+    // Precision (inverse variance) that the records alone give: that of the prior, 1 in these units, is subtracted.
     const double variance = eigen.values[k], precision = 1 / variance - 1;
     const VectorXd direction = eigen.vectors.col(k);
     all.rows.row(i) = std::sqrt(precision) * direction.transpose() * inverse;
