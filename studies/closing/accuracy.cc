@@ -134,7 +134,8 @@ class Study {
     row.errors = relative_errors(row.figures, found_.reference.figures, prepared_.scene.metrics);
   }
 
-  // Returns the figures of a run. A run of a switch without a contact law ends at first contact.
+  // Returns the figures of a run. A run of a switch without a contact law ends at first contact, so that rebound and contact
+  // force stay unset.
   [[nodiscard]] Metrics figures(const Trajectory& t) const {
     Metrics m = metrics(t, prepared_.scene.metrics);
     if (!prepared_.model.has_contact()) m.major_bounce_height = m.peak_contact_force = Metrics::unset;

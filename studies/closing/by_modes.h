@@ -25,8 +25,8 @@ inline constexpr double mode_shift_worth_telling = 0.01;
 /// A number, such as a voltage or an eigenvalue, computed with several numbers of modes.
 struct ByModes {
   std::map<int, double> values = {};  ///< values of the voltage or eigenvalue, by number of modes; NaN: no value
-  /// Limit of the values for further modes: by Aitken's extrapolation of a geometric series, or for statics the value with the
-  /// most modes. NaN if the values do not converge.
+  /// Limit of the values for many modes: the last value if it hardly changed, else Aitken's extrapolation of a geometric
+  /// series. NaN if the values do not converge.
   double converged = std::numeric_limits<double>::quiet_NaN();
   /// Relative change from the first value to the limit, or to the value with the most modes if the limit is not known. Infinite
   /// if the number exists with some numbers of modes only, NaN without values.

@@ -22,7 +22,7 @@ std::string hold_warning(const Switch& model, const std::vector<Signal>& signals
 
 namespace {
 
-// Returns the device with contact number `c` moved to the first place.
+// Returns the device with contact number `c` in the first place, for closed_equilibrium(), which takes the first contact.
 Device with_first_contact(Device device, std::size_t c) {
   device.contacts.front().gap = device.gap.contact;
   std::swap(device.contacts.front(), device.contacts[c]);

@@ -96,8 +96,8 @@ class Holding {
   std::vector<double> last_, lost_;
 };
 
-// Returns the beginning of the fall of a voltage that brings an electrode to its level just before `time` [s]. Returns `time`
-// if the signal jumps at this time or does not fall.
+// Returns the time at which the fall of an electrode's voltage to its level at `time` begins [s]. Returns `time` if the signal
+// jumps at this time or does not fall.
 double begin_of_fall(const Switch& model, std::size_t electrode, const Signal& signal, double time) {
   if (signal.voltage_before(time) != signal.voltage(time)) return time;
   const std::vector<SignalPiece>& pieces = signal.pieces();

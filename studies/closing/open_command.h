@@ -28,7 +28,7 @@ struct OpenCommand {
 [[nodiscard]] std::optional<OpenCommand> open_command(const PreparedScene& prepared, const std::vector<Signal>& signals);
 
 /// Returns the drive signals unchanged until their command to open, and constant at their levels just before the command from
-/// then on. Returns all signals unchanged if there is no command.
+/// then on. Returns all signals unchanged if there is no command, and if the scene starts closed.
 [[nodiscard]] std::vector<Signal> until_command(const PreparedScene& prepared, std::vector<Signal> signals);
 
 /// Returns the scene without its opening: the simulated time ends at the command to open at the latest, and the drives stay at
@@ -39,8 +39,8 @@ struct OpenCommand {
 /// receive it (model/closing/connection.h) [m].
 [[nodiscard]] double connection_deflection(const Switch& model, const Eigen::VectorXd& q);
 
-/// Returns the options of metrics() for a run that opens on command under these drive signals. The options contain the
-/// deflection at which the connection comes to rest.
+/// Returns the options of metrics() for a run that opens on command under these drive signals. The options contain the time of
+/// the command, and the deflection of the connection at rest in the open switch.
 [[nodiscard]] MetricsOptions with_opening(MetricsOptions options, const Switch& model, const std::vector<Signal>& signals,
                                           const std::optional<OpenCommand>& command);
 

@@ -99,8 +99,8 @@ struct PreparedScene {
 [[nodiscard]] std::string initial_state_difference(const DriveWaveforms& waveforms, const std::map<std::string, double>& before,
                                                    const PreparedScene& scene);
 
-/// Throws InvalidInput about the scene's key if runs begin closed. Studies that close the switch from its open state call this
-/// function. `study` says in the third person what the study does: "accuracy closes the switch".
+/// Throws InvalidInput, with the key that sets the start state, if runs begin closed. Studies that close the switch from its
+/// open state call this function. `study` says in the third person what the study does: "accuracy closes the switch".
 void require_open_start(const Scene& scene, std::string_view study);
 
 /// Returns the key of the state in which a run begins, such as "waveform.main.before_state": of the first drive that has this
@@ -130,8 +130,8 @@ using PullInFinder =
 /// tolerance are not computed, and there are no warnings about the quadrature. Throws the exceptions of read_scene().
 [[nodiscard]] PreparedScene prepare_statics(const SceneFile& file);
 
-/// Reads, composes and resolves a scene. Pull-in voltages are computed for the electrodes that need them, and with
-/// `default_limits` for all electrodes that have no written limit. Choices that the scene leaves open are not made yet
+/// Reads, composes and resolves a scene. Pull-in voltages are computed for the electrodes whose waveforms or
+/// limits are in units of them, and with `default_limits` for all electrodes. Choices that the scene leaves open are not made yet
 /// (auto_settings.h): modes = "auto" stands for a default number, and effects = "auto" for all effects. Throws InvalidInput for
 /// an invalid scene, and for a scene whose pull-in voltage is needed and does not exist. Throws Interrupted if `progress` asks
 /// to stop.

@@ -108,7 +108,8 @@ ResolvedSwitch resolved_switch(const Device& device, double accuracy, std::optio
 }
 
 Switch switch_like(const Device& device, const Switch& nominal, const SwitchOptions& quadrature, double accuracy) {
-  // Ratio of the gap at contact to that of the nominal switch below which the number of points is checked again.
+  // Ratio of the electrode gap that remains at contact to that of the nominal switch, below which the number of points is
+  // checked again.
   constexpr double nearer = 0.95;
   const auto gap_at_touch = [](const Device& d) { return 1 - d.gap.contact / d.gap.electrode; };
   Switch own(device, quadrature, &nominal);

@@ -132,8 +132,8 @@ constexpr double loosest_tolerance = 0.1;  // largest relative tolerance that si
 // Smallest relative tolerance, since smaller errors are rounding. A tolerance of 1e-13 that divisions have rounded down is
 // still accepted.
 constexpr double least_tolerance = 0.99e-13;
-// An integrator of fifth order needs 2.5 times the steps for a hundredth of the tolerance. A run that needs `most_growth` times
-// the steps is stopped.
+// With an integrator of fifth order a hundredth of the tolerance needs 2.5 times the steps. A tighter run is stopped after
+// `most_growth` times the steps of the looser run plus `least_steps`.
 constexpr long most_growth = 10, least_steps = 100;
 // Ratio of the error of a run with tighter tolerance to the previous error; below this ratio tightening helped.
 constexpr double helps = 1.0 / 3;

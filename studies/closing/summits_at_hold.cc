@@ -31,7 +31,7 @@ double touching_share(const Law& law, double d) {
 
 std::optional<SummitsAtHold> summits_at_hold(const Switch& model, const ClosedEquilibrium& closed) {
   const Device& device = model.device();
-  // A beam that touches along a pad or a face has a different interference of the surfaces at every point.
+  // The summits cannot be counted along a pad or a face: the interference of the surfaces differs from point to point.
   if (!device.has_contact() || device.touches_along_pad() || device.contacts.front().along_face) return std::nullopt;
   const double d = model.contact_deflection(closed.q.data()) - device.contact_gap();
   return std::visit(

@@ -36,9 +36,8 @@ struct SweepRange {
 
 /// Returns the points of the sweep in order: `range.points` up to the last voltage and as many down, so that the last voltage
 /// occurs twice. The switch begins open if an open equilibrium exists, stays open while that equilibrium is stable, and stays
-/// closed while it has a closed equilibrium that it does not leave. The electrode must pull towards the contact. If `progress`
-/// asks to stop, the points so far are returned. Throws InvalidInput for fewer than 2 points, and the exceptions of
-/// static_pull_in().
+/// closed while its closed equilibrium is stable. The electrode must pull towards the contact. If `progress` asks to stop, the
+/// points so far are returned. Throws InvalidInput for fewer than 2 points, and the exceptions of static_pull_in().
 [[nodiscard]] std::vector<SweepPoint> static_sweep(const Switch& model, std::size_t drive, Bias bias, const SweepRange& range,
                                                    const Progress& progress = {});
 

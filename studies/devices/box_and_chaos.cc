@@ -65,7 +65,8 @@ SampledInside sampled_inside(const Ensemble& ensemble, std::size_t sampled, doub
   return inside;
 }
 
-/// Returns the middle of the box of varied quantities, and all its corners if these take at most a fifth of the evaluations.
+/// Returns starts for a search: the middle of the box of varied quantities, and all its corners if their evaluation takes at
+/// most a fifth of the evaluations.
 std::vector<std::vector<double>> corners(std::size_t d, double half_width, std::size_t evaluations) {
   std::vector<std::vector<double>> points{std::vector<double>(d, 0)};
   constexpr std::size_t most_bits = 16;
@@ -97,7 +98,8 @@ double predicted_share(const PolynomialChaos& chaos, const Eigen::MatrixXd& poin
   return all > 0 ? 1 - missed / all : Metrics::unset;
 }
 
-/// Varied quantities, and values of a figure, of those of the devices [first, last) that have the figure.
+/// Inputs (varied quantities) and outputs (values of a figure) of those devices with indices in [first, last) that have the
+/// figure.
 struct TrainingSet {
   Eigen::MatrixXd points;
   std::vector<double> figures;

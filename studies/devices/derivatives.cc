@@ -17,7 +17,7 @@ namespace {
 
 constexpr double no_derivative = Metrics::unset;
 constexpr double usual_tolerance = 1e-8;
-// Permitted relative change of a figure's derivatives with the tolerance of the integrator.
+// Permitted relative change of a figure's derivatives when the integrator gets a looser tolerance.
 constexpr double largest_disagreement = 0.05;
 // A derivative counts as 0 if its error, times the standard deviation of the quantity, is below this share of the figure.
 constexpr double no_change = 1e-5;

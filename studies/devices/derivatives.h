@@ -52,7 +52,7 @@ struct Derivatives {
   std::vector<Variable> variables;         ///< varied quantities in the order of [spread]
   std::vector<FigureDerivatives> figures;  ///< figures among device_figures that have derivatives
   /// Smallest speed at which the contact point crosses the contact plane in the nominal closing, as a share of that at first
-  /// contact.
+  /// contact. Near 0 a small change of the device adds or removes a touch.
   double grazing = 1;
   std::string why_none = {};  ///< reason why no figure has derivatives; empty if some exist
 

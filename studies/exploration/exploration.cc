@@ -439,7 +439,7 @@ PointRow Exploration::optimized(const SceneFile& scene, int jobs, const Progress
   search.seed = plan_.seed();
   search.jobs = jobs;
   search.stop = progress.stop;
-  // Stop here: an interrupted search would otherwise verify results that are not stored.
+  // End an interrupted search here, before it verifies results that are not stored.
   search.on_preparation = [&progress](std::string_view, double) { progress.throw_if_stopped(); };
   const OptimizeResult found = optimize(scene, search);
   if (found.search.termination == Termination::interrupted) throw Interrupted();

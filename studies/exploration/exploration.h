@@ -6,7 +6,7 @@
 //               figures. Closings run one at a time: in SIMD lanes (model/ensemble/ensemble_closings.h) their last digits would
 //               differ.
 //   pull-in     static and dynamic pull-in voltage and release voltage; for a switch without electrodes the factors of the
-//               dispersion force
+//               dispersion force.
 //   robustness  yields and quantiles of the figures over `samples` varied devices of [spread], under the scene's own
 //               waveforms.
 //   limit, release, effects, check

@@ -21,7 +21,8 @@ struct WeakDirection {
   double information = 0;     ///< eigenvalue of the Fisher information H of the data for this direction
   /// Indices of the unknowns whose component of `direction` is at least a tenth of the largest.
   std::vector<std::size_t> unknowns;
-  /// Root of the sum of squared changes of the data when z moves along `direction`, in units of the errors of the data.
+  /// Root of the sum of squared changes of the predicted data when z moves along `direction`, in units of the errors of the
+  /// data.
   double seen = 0;
 };
 

@@ -174,8 +174,8 @@ TraceMisfit misfit(const Stage& stage, std::size_t measurements, const TraceWind
   return of;
 }
 
-// Returns, by measurement, whether the model describes the rows of a recorded curve added last as well as the earlier rows,
-// within chance.
+// Returns, by measurement, whether the model describes the rows of a recorded curve that were added last as well as the earlier
+// rows: the root mean square of their residuals is larger by chance at most.
 std::vector<bool> described(const TraceMisfit& newest, const TraceMisfit& before) {
   constexpr double least = 0.15, deviations = 3;
   std::vector<bool> all;

@@ -179,7 +179,8 @@ std::vector<DeviceUnits> predicted_factors(const Eigen::MatrixXd& x, const std::
       const bool inside = k >= begin && k < end;
       if (!inside && x.row(k).allFinite() && std::isfinite(best[static_cast<std::size_t>(k)].volts)) fitted.push_back(k);
     }
-    if (static_cast<Eigen::Index>(fitted.size()) < x.cols() + 2) continue;  // too few devices for fitting the prediction
+    // Skip this half: too few devices are left for fitting the prediction.
+    if (static_cast<Eigen::Index>(fitted.size()) < x.cols() + 2) continue;
     Eigen::MatrixXd logarithms(fitted.size(), count);
     for (std::size_t i = 0; i < fitted.size(); ++i) {
       const DeviceUnits& units = best[static_cast<std::size_t>(fitted[i])];

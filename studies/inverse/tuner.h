@@ -9,7 +9,7 @@
 //   1. The posterior of all records is computed anew: Levenberg-Marquardt on the first contact times from many starts, then
 //      rounds of weighted samples with the likelihood of the whole record (belief.h).
 //   2. The waveform with the least expected cost over the belief is searched (proposal.h). From the second closing on the hold
-//      level of the waveform is in the device's own unit of volts.
+//      level of the waveform scales with the device's own unit of volts.
 //
 // The cost of a closing is
 //
@@ -23,7 +23,7 @@
 // No shot exceeds the limits of the voltage sources, or has a level at which more than one in a thousand devices of the belief
 // would collapse onto the electrode. The same shot is repeated after two closings without a bounce, if no bounce is expected.
 // Its voltages are then multiplied by a factor s that corrects t_i, s <- s [1 - 0.2 (t_i - t_ref) / (dt_i / d ln s)], until the
-// device bounces. Then all records but the last eight are dropped.
+// device bounces; t_ref is the mean of t_i in the first repetitions. Then all records but the last eight are dropped.
 //
 // All numbers depend only on scene, options and the pairs of shot and record. A tuner that receives the records of a log again,
 // shot by shot, has bit for bit the same state, for any number of jobs.

@@ -271,7 +271,7 @@ NormalBelief TuningModel::in_spread(const NormalBelief& belief) const {
 }
 
 std::vector<double> TuningModel::values(const Eigen::VectorXd& point) const {
-  constexpr double furthest = 8;  // bound of the coordinates z of a device, in standard deviations
+  constexpr double furthest = 8;  // limit of z in standard deviations, for finite values of the varied quantities
   const Eigen::VectorXd z = spread_point(point);
   std::vector<double> u(static_cast<std::size_t>(size() - 1));
   for (std::size_t k = 0; k < u.size(); ++k)
