@@ -19,7 +19,7 @@
 
 namespace softland {
 
-/// Smallest relative change of a static voltage with the number of modes that is reported, together with the converged voltage.
+/// Least relative change of a static voltage by more modes that results report, together with the converged voltage.
 inline constexpr double mode_shift_worth_telling = 0.01;
 
 /// A number, such as a voltage or an eigenvalue, computed with several numbers of modes.

@@ -124,8 +124,8 @@ inline constexpr const char* not_measured = "its pull-in voltage, or what its pi
 class PullInMeter {
  public:
   /// Keeps a reference to `nominal`, whose closing electrode is measured. `precision` is the relative precision of pull-in
-  /// voltages; the nominal device's is found to dynamic_pull_in_precision or better. Throws InvalidInput if a measurement needs
-  /// an electrode, a pull-in voltage or a piezo that the switch lacks, or if the piezo does not move the contact point.
+  /// voltages; that of the nominal device is found to dynamic_pull_in_precision or better. Throws InvalidInput if a measurement
+  /// needs an electrode, a pull-in voltage or a piezo that the switch lacks, or if the piezo does not move the contact point.
   PullInMeter(const PreparedScene& nominal, const MeasuredQuantities& quantities, double precision = dynamic_pull_in_precision);
   /// Return the pull-in voltage [V] and the first frequency [Hz] of the nominal device.
   [[nodiscard]] double pull_in() const { return pull_in_; }
@@ -154,7 +154,7 @@ class PullInMeter {
   [[nodiscard]] double time_of(const Switch& model, double step) const;
 
   struct ToldVolts {
-    // Closing time of the nominal device under a step [s]; voltage factor of a device that closes in this time under
+    // Closing time of the nominal device under a step [s]; voltage factor of a device that takes this time under a step to
     // closing_step Vdp.
     double time, volts;
   };

@@ -197,8 +197,8 @@ MeasuredUnits MeasuredUnits::without_errors() const {
 
 std::vector<MeasuredUnits> measured_units(const PreparedScene& nominal, std::span<const Calibration> calibrations, int jobs,
                                           const Progress& progress) {
-  // Voltage factors from a measured closing time differ from those from a measured Vdp, so both kinds need reference devices.
-  // Scale factors of the reference devices; key: true for a measured closing time.
+  // Scale factors of the reference devices. The key is true for a measured closing time, which gives other voltage factors than
+  // a measured Vdp.
   std::map<bool, std::vector<DeviceUnits>> references;
   for (const bool by_time : {false, true}) {
     std::size_t size = 0;

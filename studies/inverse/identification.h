@@ -4,7 +4,7 @@
 //   best factors   (s_V, s_t) of device k minimise  s_k + (ln s_V)^2 + (ln s_t)^2,   s_k its score for `bounce` (robust_cost.h)
 //                  under V(t) = s_V V_0(t / s_t), with the scene's own waveform V_0 (the recipe). Nelder and Mead's simplex
 //                  starts from the factors that the device's Vdp and period give. If the recipe drives a piezo, its voltages
-//                  have a separate factor s_p; its start is the ratio of the deflections per volt, each over the contact gap.
+//                  have a separate factor s_p, which starts at the ratio of nominal to own deflection per volt and contact gap.
 //   predicted      ln s = a + sum_i b_i ln x_i, with the figures x_i of the device. Least squares over one half of the devices
 //   factors        give a and b_i for the other half, and vice versa.
 //
