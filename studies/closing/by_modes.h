@@ -88,8 +88,8 @@ struct VoltagesByModes {
 [[nodiscard]] VoltagesByModes voltages_by_modes(const ModeLadder& ladder, const Scene& scene, std::size_t electrode,
                                                 double pulled_through);
 [[nodiscard]] ByModes static_pull_in_by_modes(const ModeLadder& ladder, const Scene& scene, std::size_t electrode);
-/// Returns the collapse voltage pull_through_voltage() with several numbers of modes [V]; `own` is the voltage of the scene's
-/// switch, NaN without one.
+/// Returns the collapse voltage pull_through_voltage() with several numbers of modes [V]. The argument `own` is the collapse
+/// voltage of the scene's switch, NaN if it has none.
 [[nodiscard]] ByModes pulled_through_by_modes(const ModeLadder& ladder, std::size_t electrode, std::vector<double> volts,
                                               double own);
 

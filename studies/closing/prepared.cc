@@ -261,7 +261,7 @@ void load_sources(PreparedScene& p) {
   }
 }
 
-/// Throws InvalidInput for a dielectric with such a soft face that the electric field pulls the beam through the face.
+/// Throws InvalidInput for a dielectric whose face is so soft that the electric field pulls the beam through the face.
 void check_landing(const PreparedScene& p) {
   const Landing* landing = p.scene.device.landing();
   if (landing == nullptr || landing->is_wall()) return;

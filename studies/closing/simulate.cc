@@ -270,8 +270,8 @@ struct JudgedRun {
 };
 
 // Returns a run with its judge, a more accurate run from whose difference errors follow. If runs may be tightened, the judge
-// replaces the run and gets its own judge, until the error is within the requested accuracy or tightening no longer helps. In
-// the latter case the tightest run is returned, and a looser run is its judge. If rounding forbids a tighter integrator, only
+// replaces the run and gets its own judge, until the error is within the requested accuracy or tightening no longer helps. If
+// it does not help, the tightest run is returned, and a looser run is its judge. If rounding forbids a tighter integrator, only
 // the quadrature is refined.
 JudgedRun with_judge(EvaluatedRun own, ClosingRuns& runs, const PreparedScene& prepared, bool may_tighten) {
   const double accuracy = prepared.scene.simulate.accuracy;

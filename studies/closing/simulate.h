@@ -23,7 +23,7 @@ struct Certificate;
 struct Judge {
   Status status = Status::not_run;
   bool came_to_its_end = false;
-  std::string message = {};  ///< reason why the run of the judge is not complete; empty if it is
+  std::string message = {};  ///< reason why the run of the judge is not complete; empty if it is complete
   Metrics metrics;
   double tolerance = 0;
   SwitchOptions quadrature;

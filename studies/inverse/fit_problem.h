@@ -15,7 +15,7 @@ namespace softland {
 /// A measured value of the bench file, with its place in the reading of an instrument.
 struct Datum {
   std::size_t device = 0;
-  std::size_t instrument = 0;    ///< index of the instrument among those of the device
+  std::size_t instrument = 0;    ///< index of the instrument among the device's instruments
   Eigen::Index row = 0;          ///< row of the measured value in the reading of the instrument
   std::size_t measurement = 0;   ///< number of the value's measurement in the bench file
   double time = Metrics::unset;  ///< time of the row if the value belongs to a trace (curve over time) [s]; NaN otherwise

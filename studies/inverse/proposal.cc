@@ -273,8 +273,8 @@ namespace {
 
 std::vector<CandidateWaveform> searched_recipes(const TuningModel& scene, const TuningSpace& space, std::size_t count,
                                                 const Progress& progress) {
-  // Scatter of the devices for which recipes are searched, in standard deviations of the prior: of the quantities that change
-  // the units of voltage and time, and of the other quantities (nuisances).
+  // Scatter of the devices for which recipes (candidate waveforms) are searched, in standard deviations of the prior: of the
+  // quantities that change the units of voltage and time, and of the other quantities (nuisances).
   constexpr double narrow = 0.1, narrow_nuisances = 0.5;
   // Limit of levels, as a share of the source's highest level: leaves room for devices that need more.
   constexpr double headroom = 0.92;

@@ -74,8 +74,9 @@ struct TunerOptions {
   std::uint64_t seed = 1;
   int jobs = 1;  ///< number of threads; does not change the results
   LaboratoryErrors laboratory = {};
-  int most_recipes = 1;  ///< number of voltage units of devices for which candidate waveforms (recipes) are searched, 1 to 5
-  double effort = 1;     ///< factor on the usual number of evaluations of every search in the tuning
+  /// Number of candidate waveforms (recipes) to search, each for devices with another unit of voltage, 1 to 5.
+  int most_recipes = 1;
+  double effort = 1;  ///< factor on the usual number of evaluations of every search in the tuning
   /// Limit of the first contact time of the tuned waveform: before or by a time; none for no limit.
   std::optional<Condition> touch = {};
   /// Beliefs about (estimates of) devices of the same wafer that were tuned before. They determine the prior of the device to
