@@ -11,33 +11,37 @@
 namespace softland::internal {
 namespace {
 
-// Shares of the evaluation budget that the steps of one epoch (cycle of sampling, local searches and refinement) may use.
-// Share of the evaluation budget for the refinement of the best point; with a gradient this share is spent twice.
+// Shares of the evaluations of an epoch, which is one cycle of sampling, local searches and refinement. `refining` is for the
+// user's starts; with a gradient method it is spent twice: before and after the change to that method.
 constexpr double refining = 0.2;
 constexpr double sampling = 0.15;
-// Share of the remaining evaluation budget for local searches near the best point, with a gradient after an earlier search.
+// Share of the remaining evaluations for local searches near the best point (hops), if the search has a gradient and continues
+// an earlier search.
 constexpr double hopping = 0.6;
 constexpr double first_heat = 0.4;
 constexpr double later_heat = 0.2;
 
-constexpr long longest_epoch = 5000;  // budget of one epoch; further start points promise more than longer local searches
+// Largest budget of one epoch; a further epoch with new starts promises more than longer local searches.
+constexpr long longest_epoch = 5000;
 constexpr long epochs_with_gradient = 4, shortest_epoch = 600;
 constexpr std::size_t searches_at_once = 4;
 constexpr std::size_t starts_refined = 2;
 constexpr long shortest_refinement = 125;  // least budget for refining the best point [evaluations]
-// Least budget of a local search [evaluations]; a simplex or a quadratic model of 7 variables needs as many.
+// Least budget of a local search [evaluations]: a first simplex or quadratic model of 7 variables needs about 20 points.
 constexpr long shortest_heat = 20;
 
 // Standard deviations of the distance between the best point and the random start of a local search near it (a hop), as
 // fractions of the box of the variables.
 constexpr std::array hop_sizes = {0.0005, 0.002, 0.008, 0.03};
-// Least number of variables for which hops near the best point beat sampling the box.
+// Least number of variables from which on hops near the best point succeed more often than sampling the box of the variables.
 constexpr std::size_t fewest_hopping = 16;
-// Iterations of a local search, plus one per variable, enough for a model of the curvature.
+// Iterations of one hop (a local search near the best point), added to one iteration per variable: enough for a quasi-Newton
+// model of the curvature.
 constexpr long iterations_of_hop = 8;
 constexpr long evaluations_of_iteration = 1 + evaluations_of_gradient;
 
-// Distances between start points, and first steps, of local searches, as fractions of the box of the variables.
+// Largest separation of two start points, first step of a local search, and of a refining search, as fractions of the box of
+// the variables.
 constexpr double largest_separation = 0.15;
 constexpr double first_step = 0.25;
 constexpr double polishing_step = 0.02;
@@ -59,8 +63,8 @@ double distance(const Point& a, const Point& b) {
   return farthest;
 }
 
-/// Returns the best evaluated points that are apart from each other and from the points already explored; the required distance
-/// shrinks until there are enough points.
+/// Returns up to searches_at_once of the best evaluated points that are apart from each other and from the points already
+/// explored; the required distance is halved until there are enough points.
 std::vector<Point> promising_points(std::vector<EvaluationRecord::Known> known, const std::vector<Point>& explored) {
   std::stable_sort(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.answer.value < b.answer.value; });
   std::vector<Point> chosen;
@@ -142,8 +146,8 @@ void hop(EvaluationRecord& record, const Method& method, long budget) {
   }
 }
 
-/// Searches by epochs: sampling, local searches, refinement. `finisher`, if not null, continues the local searches after their
-/// first round.
+/// Searches by epochs, cycles of sampling, local searches and refinement by `polisher`. `finisher`, if not null, is the
+/// gradient method that continues the local searches after their first round.
 void search(EvaluationRecord& record, const std::array<const Method*, searches_at_once>& methods, const Method* finisher,
             const Method& polisher) {
   std::uint64_t points_sampled = 0;
@@ -162,7 +166,7 @@ void search(EvaluationRecord& record, const std::array<const Method*, searches_a
     const long budget = std::min(record.remaining(), longest_epoch);
     std::vector<Point> starts = promising_points(record.known(), explored);
     starts.resize(std::min(starts.size(), starts_refined));
-    std::vector<LocalSearch> refined;  // refined local searches; empty when stopped before the first evaluation
+    std::vector<LocalSearch> refined;  // searches from the starts; empty when stopped before the first evaluation
     const auto go_on = [&] {
       if (refined.empty()) return;
       advance(record, refined, std::max(share_of(budget, refining, refined.size()), shortest_refinement));

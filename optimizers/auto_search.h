@@ -20,8 +20,9 @@ namespace softland::internal {
 /// Searches by the optimizer `auto` until the record accepts no more evaluations (EvaluationRecord::over), or until an epoch
 /// makes no new evaluation.
 void search_auto(EvaluationRecord& record);
-/// Searches with a gradient method, which alone would end at the first kink of the objective. cma-es makes the first round of
-/// every local search; `finisher` continues from the best points found, and then searches near the best point.
+/// Searches with a gradient method, `finisher`, which would end at the first kink of the objective if it ran alone. cma-es
+/// makes the first round of every local search; `finisher` continues from the best points found, and then searches near the
+/// best point.
 void search_and_finish(EvaluationRecord& record, const Method& finisher);
 
 }  // namespace softland::internal

@@ -12,14 +12,15 @@ namespace softland::internal {
 
 enum class Backend { search_auto, cma_es, nlopt, ipopt };
 
-/// A local method converges to a minimum nearby and may start again from another point; a global method runs once.
+/// A local method converges to a nearby minimum, and is started again from another point; a global method searches the whole
+/// box and runs once.
 enum class Reach { local, global };
 
 struct Method {
   std::string_view name;
   Backend backend;
   Reach reach;
-  int nlopt_algorithm;  ///< method of NLopt, a value of nlopt::algorithm
+  int nlopt_algorithm;  ///< algorithm of NLopt as a number, a value of nlopt::algorithm
   bool uses_gradient;
   std::string_view description;
 };
@@ -30,8 +31,8 @@ struct Method {
 
 struct RunOptions {
   Point start;
-  double step = 0.25;      ///< first step of the search as a fraction of the box of the variables
-  double population = 1;   ///< points of a generation of cma-es, as a multiple of the usual number
+  double step = 0.25;      ///< first step of the method as a fraction of the box of the variables
+  double population = 1;   ///< number of points in a generation of cma-es, as a multiple of its default
   std::uint64_t seed = 0;  ///< seed of the random numbers of the optimizer
 };
 
@@ -40,9 +41,9 @@ struct RunReport {
   std::string message;     ///< message of the optimizer about the end of the run
 };
 
-/// Runs a method of NLopt. It always returns, whatever the objective does, like run_ipopt(). A repeated run with the same
-/// arguments evaluates the same points in the same order. So a search that ran out of budget continues by repeating its run:
-/// the objective at points of the earlier run is read from memory.
+/// Runs a method of NLopt. It always returns, even if the objective throws or is never finite, as run_ipopt() does. A repeated
+/// run with the same arguments evaluates the same points in the same order. So a search that ran out of budget continues by
+/// repeating its run: the record of evaluations then returns the stored values at points of the earlier run.
 [[nodiscard]] RunReport run_nlopt(const Method& method, const RunOptions& run, BudgetedObjective& budgeted);
 [[nodiscard]] RunReport run_cma_es(const RunOptions& run, BudgetedObjective& budgeted);
 [[nodiscard]] RunReport run_ipopt(const RunOptions& run, BudgetedObjective& budgeted);

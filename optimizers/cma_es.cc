@@ -1,7 +1,7 @@
 // Covariance matrix adaptation evolution strategy, (mu/mu_w, lambda) with rank-one and rank-mu updates and cumulative step
-// length control. It draws lambda points m + sigma A z from a normal distribution, moves its mean m to the weighted best half
-// and adapts its shape to the steps that succeeded. Only the order of the values counts, so that it follows curved valleys over
-// kinks and jumps. Points beyond a bound are mirrored back into the box.
+// length control. It draws lambda points m + sigma A z with z standard normal, moves the mean m to the weighted mean of the
+// better half, and adapts step length sigma and shape A to the steps that succeeded. Only the order of the objective values
+// counts, so that the method follows curved valleys over kinks and jumps. Points beyond a bound are mirrored back into the box.
 // Source: N. Hansen, "The CMA evolution strategy: a tutorial", arXiv:1604.00772, algorithm and default parameters of appendix
 // A, without negative weights.
 #include <Eigen/Core>
@@ -21,14 +21,15 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Smallest standard deviation of the sampled points in units of the box. A smaller one would hide the differences of the points
-// in the noise of the objective.
+// Standard deviation of the sampled points, in units of the box, below which CMA-ES has converged: between closer points the
+// noise of the objective would hide the differences.
 constexpr double smallest_spread = 1e-7;
 
 /// Folds the real line onto [0, 1], by mirroring at both ends.
 double mirror(double u) { return std::abs(std::remainder(u, 2.0)); }
 
-/// Returns the weights of the better half of lambda children, the best child first; the weights add up to 1.
+/// Returns the weights by which the better half of lambda sampled points (children) enter the new mean, for the best point
+/// first; the weights add up to 1.
 VectorXd recombination_weights(Eigen::Index lambda) {
   const Eigen::Index mu = lambda / 2;
   const Eigen::ArrayXd rank = Eigen::ArrayXd::LinSpaced(mu, 1, static_cast<double>(mu));
@@ -104,7 +105,7 @@ class Distribution {
       lower.rankUpdate(children[static_cast<std::size_t>(j)].step, s.c_mu * s.weights[j]);
     const SymmetricEigen eigen = symmetric_eigen(covariance_);
     axes_ = eigen.vectors;
-    // Eigenvalues of the covariance below this are rounding errors of the largest eigenvalue.
+    // Smaller eigenvalues of the covariance than this limit are rounding errors of the largest eigenvalue.
     const double smallest = std::numeric_limits<double>::epsilon() * eigen.values.maxCoeff();
     lengths_ = eigen.values.cwiseMax(smallest).cwiseSqrt();
 

@@ -19,8 +19,8 @@ using Eigen::VectorXd;
 
 constexpr Index stages = 3;
 
-// The Radau points of a piece of the mesh, scaled to [0, 1], and the slopes at these points of the polynomials that are 1 at
-// one of (0, points) and 0 at the others.
+// The nodes of a piece of the mesh, scaled to [0, 1]: its beginning and its three Radau points. `slopes` are the derivatives,
+// at the Radau points, of the Lagrange polynomials, each of which is 1 at one node and 0 at the others.
 struct Radau {
   std::array<double, stages + 1> points = {0, (4 - std::sqrt(6.0)) / 10, (4 + std::sqrt(6.0)) / 10, 1};
   Eigen::Matrix<double, stages, stages + 1> slopes;
@@ -52,16 +52,16 @@ const Radau& radau() {
   return rule;
 }
 
-// Weight of one variable of the nonlinear program in the value of a control at a point of the mesh.
+// The control at a point of the mesh is a weighted sum of the program's control variables; this is one term of the sum.
 struct ControlWeight {
-  Index column;  // column of the matrix of control values
+  Index column;  // column of the control variables: one per interval between knots, or per knot
   double weight;
 };
 
 struct Place {
   Index piece, stage;
-  double length;  // length of the piece of the mesh, a fraction of the final time T
-  double at;      // place in the piece of the mesh, a fraction of the final time T
+  double length;  // length of the piece of the mesh that contains the point, a fraction of the final time T
+  double at;      // time of the point, a fraction of the final time T
   std::vector<ControlWeight> parts;
 };
 
@@ -115,7 +115,7 @@ class Program final : public Ipopt::TNLP {
 
   bool get_bounds_info(Ipopt::Index n, Ipopt::Number* lower, Ipopt::Number* upper, Ipopt::Index, Ipopt::Number* row_lower,
                        Ipopt::Number* row_upper) override {
-    constexpr double none = 2e19;  // bound beyond which Ipopt takes a variable as unbounded
+    constexpr double none = 2e19;  // Ipopt takes a bound beyond 1e19 as no bound
     std::fill_n(lower, n, -none);
     std::fill_n(upper, n, none);
     lower[0] = problem_.shortest;
@@ -269,7 +269,7 @@ class Program final : public Ipopt::TNLP {
   [[nodiscard]] VectorXd state_of(const double* x, Index point) const {
     return Eigen::Map<const VectorXd>(x + state(point, 0), n_);
   }
-  // Returns the states at the beginning of a piece of the mesh for j = 0, otherwise at its Radau point j.
+  // Returns the states at node j of a piece of the mesh: its beginning for j = 0, otherwise its Radau point j.
   [[nodiscard]] VectorXd node_of(const double* x, Index piece, Index j) const {
     const Index point = piece * stages + j - 1;
     return point < 0 ? problem_.start : state_of(x, point);
@@ -301,8 +301,8 @@ class Program final : public Ipopt::TNLP {
     }
   }
 
-  // Calls entry(row, column, value) for the entries of the Jacobian of the constraints, in the order of the sparse matrix. The
-  // values have no meaning when `rates` is empty.
+  // Calls entry(row, column, value) for the entries of the Jacobian of the constraints, in the order of the sparse matrix. With
+  // empty `rates` only rows and columns count, which Ipopt requests once for the sparsity pattern.
   template <class F>
   void for_jacobian(const std::vector<ControlledSystem::Rates>& rates, const double* x, F&& entry) const {
     Index row = 0;
@@ -349,8 +349,8 @@ class Program final : public Ipopt::TNLP {
     });
   }
 
-  // Calls entry(row, column, value) for the lower triangle of the Lagrangian's second derivatives; the objective is linear. The
-  // values have no meaning when x is null.
+  // Calls entry(row, column, value) for the lower triangle of the Lagrangian's second derivatives, to which the linear
+  // objective adds nothing. With x null only rows and columns count, for Ipopt's sparsity pattern.
   template <class F>
   void for_hessian(const double* x, double time, const double* multipliers, F&& entry) {
     MatrixXd curvature = MatrixXd::Zero(n_ + nc_, n_ + nc_);
@@ -392,7 +392,8 @@ class Program final : public Ipopt::TNLP {
   Index columns_ = 0;
   std::vector<Place> points_;
   std::vector<bool> depends_;
-  std::vector<ControlledSystem::Rates> rates_;  // rates f(x, c) of the states and their derivatives at the Radau points
+  // Rates f(x, c) of the states, and derivatives of the rates, at every Radau point.
+  std::vector<ControlledSystem::Rates> rates_;
 };
 
 void check(const ControlProblem& p, const ControlledCourse& guess) {
@@ -462,15 +463,16 @@ ControlledCourse solve(const ControlProblem& problem, const ControlledCourse& gu
   options->SetIntegerValue("print_level", 0);
   options->SetStringValue("sb", "yes");
   options->SetNumericValue("tol", problem.tolerance);
-  options->SetNumericValue("compl_inf_tol", problem.tolerance);  // a looser tolerance keeps controls away from their bounds
+  // Tighter than Ipopt's default, which would leave controls visibly inside their bounds.
+  options->SetNumericValue("compl_inf_tol", problem.tolerance);
   options->SetIntegerValue("max_iter", static_cast<int>(problem.max_iterations));
   options->SetNumericValue("bound_relax_factor", 0.0);
   options->SetNumericValue("mu_init", 1e-3);
   options->SetNumericValue("bound_push", 1e-4);
   options->SetNumericValue("bound_frac", 1e-4);
-  // With its default pivot tolerance of 1e-6 the linear solver MUMPS miscounts the signs of the eigenvalues when states differ
-  // by decades, and Ipopt adds ever more to the Hessian. Minimum degree ordering fills these matrices less than the ordering
-  // that MUMPS would choose.
+  // With its default pivot tolerance of 1e-6 the linear solver MUMPS miscounts negative eigenvalues if the states differ by
+  // orders of magnitude; Ipopt then regularises the Hessian more and more. Minimum degree ordering fills these matrices less
+  // than the ordering that MUMPS would choose.
   options->SetNumericValue("mumps_pivtol", 1e-3);
   options->SetIntegerValue("mumps_pivot_order", 0);
   // The name is empty because otherwise Ipopt would read a file ipopt.opt from the working directory.

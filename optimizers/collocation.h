@@ -28,16 +28,16 @@ class ControlledSystem {
   virtual ~ControlledSystem() = default;
   [[nodiscard]] virtual Eigen::Index states() const = 0;
   [[nodiscard]] virtual Eigen::Index controls() const = 0;
-  /// Returns true when the rate of state `r` can depend on entry `k` of (states x, controls c); other entries are left out of
-  /// the sparse matrices.
+  /// Returns true when the rate of state `r` can depend on variable `k`, counted through the states x and then the controls c.
+  /// Derivatives by other variables are left out of the sparse matrices.
   [[nodiscard]] virtual bool depends(Eigen::Index r, Eigen::Index k) const = 0;
   struct Rates {
     Eigen::VectorXd value;  ///< rates x' = f(x, c) of the states x under the controls c
-    Eigen::MatrixXd slope;  ///< derivatives of the rates f by states and controls (x, c), one row per state
+    Eigen::MatrixXd slope;  ///< derivatives of the rates f: a row per state, a column per state and then per control
   };
   [[nodiscard]] virtual Rates rates(const Eigen::VectorXd& x, const Eigen::VectorXd& c) = 0;
-  /// Returns the second derivatives of multipliers.f, the weighted sum of the rates f of the states, by states and controls (x,
-  /// c): a symmetric matrix.
+  /// Returns the second derivatives of multipliers.f, a weighted sum of the rates f of the states, as a symmetric matrix over
+  /// the states x and then the controls c.
   [[nodiscard]] virtual Eigen::MatrixXd curvature(const Eigen::VectorXd& x, const Eigen::VectorXd& c,
                                                   const Eigen::VectorXd& multipliers) = 0;
 };
@@ -56,18 +56,19 @@ struct ControlBound {
   /// control is constant between its knots, with jumps.
   double slew = std::numeric_limits<double>::infinity();
   double before = 0;
-  /// Value that a control with a bounded slew must have at the final time T; the value is free when absent.
+  /// Value at the final time T of a control with a bounded slew; the control may end at any value when absent.
   std::optional<double> after = {};
 };
 
 struct ControlProblem {
   ControlledSystem* system = nullptr;
   Eigen::VectorXd start = {};                   ///< states at t = 0
-  std::vector<ControlBound> bounds = {};        ///< bounds of each control; all controls have jumps, or all a bounded slew
-  std::vector<StateCondition> on_the_way = {};  ///< conditions on the states at the ends of all pieces of the mesh but the last
+  std::vector<ControlBound> bounds = {};  ///< bounds of each control; the slews must be finite for all controls or for none
+  /// Conditions on the states at the end of every piece of the mesh except the last.
+  std::vector<StateCondition> on_the_way = {};
   std::vector<StateCondition> at_the_end = {};
   double shortest = 0, longest = 0;  ///< bounds of the final time T
-  /// Weights e of the minimised e.x(T), of the final states; when absent the time T is minimised.
+  /// If set, the solver minimises e.x(T), a weighted sum of the final states, with these weights e; otherwise the time T.
   std::optional<Eigen::VectorXd> ends_best = {};
   std::vector<double> knots = {};  ///< times at which the controls jump or bend, as fractions of T from 0 to 1
   double longest_piece = 1;        ///< longest piece of the mesh of the states, a fraction of the final time T
@@ -80,7 +81,7 @@ struct ControlProblem {
 struct ControlledCourse {
   bool converged = false;
   bool interrupted = false;
-  std::string message = {};  ///< message of Ipopt about the end of the solution
+  std::string message = {};  ///< message of Ipopt why the solution ended
   int iterations = 0;
   double time = 0;                 ///< final time T [unit of time of the problem]
   std::vector<double> knots = {};  ///< times at which the controls jump or bend, fractions of the final time T
@@ -93,8 +94,9 @@ struct ControlledCourse {
   [[nodiscard]] Eigen::VectorXd control_at(double fraction) const;
 };
 
-/// Solves the control problem from a guess with as many states and controls, which need not fulfil any condition. Throws
-/// InvalidInput for a problem or a guess whose sizes or bounds do not fit; a numerical failure is reported in the result.
+/// Solves the control problem from a guess, which must have the numbers of states and controls of the problem but need not
+/// fulfil any condition. Throws InvalidInput for a problem or a guess whose sizes or bounds do not fit; a numerical failure is
+/// reported in the result.
 [[nodiscard]] ControlledCourse solve(const ControlProblem& problem, const ControlledCourse& guess);
 
 /// Returns the knots of `course`, the times at which its controls jump or bend, with further knots in the middle of some

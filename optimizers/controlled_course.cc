@@ -9,7 +9,8 @@ namespace {
 
 using Eigen::Index;
 
-// Returns the index of the interval that contains a fraction of the final time T, and the relative place inside this interval.
+// Returns the index of the interval between the times `at` that contains the time `fraction`, both as fractions of the final
+// time T, and the place within this interval from 0 to 1.
 std::pair<std::size_t, double> interval_of(const std::vector<double>& at, double fraction) {
   const auto above = std::upper_bound(at.begin() + 1, at.end() - 1, fraction);
   const auto i = static_cast<std::size_t>(above - at.begin()) - 1;
@@ -34,7 +35,7 @@ Eigen::VectorXd ControlledCourse::control_at(double fraction) const {
 std::vector<double> refined_knots(const ControlledCourse& course, const std::vector<ControlBound>& bounds, double shortest) {
   const std::vector<double>& knots = course.knots;
   const std::size_t intervals = knots.size() - 1;
-  constexpr double near = 0.01;  // distance of a control to its bound, as a share of its range, that counts as on the bound
+  constexpr double near = 0.01;  // a control is on a bound if closer than this share of its range
   std::vector<bool> changes(intervals, false);
   for (std::size_t i = 0; i < intervals; ++i) {
     for (std::size_t k = 0; k < bounds.size(); ++k) {

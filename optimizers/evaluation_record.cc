@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t no_task = std::numeric_limits<std::size_t>::max();
 
-// Size of an objective value above which the value is compressed, in the same order: libraries square and subtract values,
+// Objective values beyond this size are mapped monotonically to smaller ones: optimizer libraries square and subtract values,
 // which must not overflow.
 constexpr double large_value = 1e12;
 double compress(double value) {
@@ -24,23 +24,25 @@ double compress(double value) {
   if (size <= large_value) return value;
   return std::copysign(large_value * (1 + std::log(size / large_value)), value);
 }
-// First penalty of an infeasible point: above compress(x) for every finite x (the largest compress(x) is 6.8e14).
+// Penalty of an infeasible point while no feasible point is known: above compress(x) for every finite x, which is at most
+// 6.8e14.
 constexpr double first_penalty = 1e15;
 
-// Step of finite differences, a fraction of the box. The smooth parts of an objective may be short: those of the cost of a
-// switch closing are narrower than 1e-3. A noise of 1e-9 in the objective then gives an error of 1e-4 in a slope of order 1.
+// Step of finite differences, a fraction of the box of the variables. Smooth parts of an objective may be narrow: those of the
+// cost of a switch closing are narrower than 1e-3. With this step a noise of 1e-9 in the objective gives an error of 1e-4 in a
+// slope of order 1.
 constexpr double difference_step = 1e-5;
 
-// Moves a point of a library into [0, 1]: libraries exceed a bound by a rounding error, and pass NaN after a NaN of the
-// objective. Adding 0 turns -0 to 0.
+// Returns the point that a library requests, moved into [0, 1]: libraries exceed a bound by a rounding error, and pass NaN
+// after a NaN of the objective. Adding 0 turns -0 to 0, so that both have the same hash.
 Point inside(std::span<const double> point) {
   Point moved(point.begin(), point.end());
   for (double& coordinate : moved) coordinate = std::isnan(coordinate) ? 0.5 : std::clamp(coordinate, 0.0, 1.0) + 0.0;
   return moved;
 }
 
-// Evaluations of already evaluated points in succession that a search may make. The limit grows with the number of evaluated
-// points, since a continued search first repeats its own evaluations.
+// Number of requests in succession for points that were evaluated before, after which a search is ended as going in circles.
+// The number of evaluated points is added to this limit, since a continued search first repeats its own evaluations.
 constexpr long circles_allowed = 1000;
 
 }  // namespace
@@ -113,8 +115,8 @@ Answer BudgetedObjective::remember(const Point& point, double value) {
   return answer;
 }
 
-// Penalty of an infeasible point: above every value seen, but of the same size. Some methods fit models to the objective, which
-// a penalty of 1e15 next to values of order 1 would spoil.
+// Returns the penalty of an infeasible point: above every value seen, but of the same order of magnitude. Some methods fit
+// models to the objective, which a penalty of 1e15 next to values of order 1 would spoil.
 double BudgetedObjective::penalty() const {
   if (worst_seen_ < best_seen_) return first_penalty;
   const double spread = worst_seen_ - best_seen_;
@@ -133,8 +135,8 @@ Values BudgetedObjective::values(std::span<const double> point) {
   return {found->second, answer.feasible};
 }
 
-// Writes the gradients that the problem itself computes at a point, NaN where unknown; returns false when the problem computes
-// none.
+// Writes the gradients that the problem itself provides at a point, with NaN for each unknown entry. Returns false when the
+// problem provides no gradients.
 bool BudgetedObjective::known_gradients(const Point& point, std::span<double> gradients) {
   if (!record_.has_gradient()) return false;
   const auto recall = [&](const Numbers& known) {
@@ -162,7 +164,7 @@ void BudgetedObjective::gradients(std::span<const double> point, std::span<doubl
     const auto of = [&](std::size_t value) -> double& { return gradients[value * n + i]; };
     const auto is_finite = [&](std::size_t value) { return std::isfinite(of(value)); };
     if (are_known && std::ranges::all_of(all, is_finite)) continue;
-    // Take the difference between two offsets, both on the same side if the point is next to a bound.
+    // Take the difference quotient from two neighbours of the point, both on the same side if the point is next to a bound.
     double a = -difference_step;
     double b = difference_step;
     if (point[i] + a < 0) a = 2 * difference_step;
@@ -181,7 +183,7 @@ void BudgetedObjective::gradients(std::span<const double> point, std::span<doubl
       if (!here.feasible) {
         of(value) = at_a.feasible && at_b.feasible ? (at_b.all[value] - at_a.all[value]) / (b - a) : 0;
       } else if (at_a.feasible && at_b.feasible) {
-        of(value) = (slope_a * b - slope_b * a) / (b - a);  // exact when the value is a parabola
+        of(value) = (slope_a * b - slope_b * a) / (b - a);  // slope of the parabola through the three values
       } else {
         of(value) = at_a.feasible ? slope_a : at_b.feasible ? slope_b : 0;
       }
@@ -206,7 +208,7 @@ Point EvaluationRecord::to_point(std::span<const double> x) const {
   Point point;
   for (const std::size_t i : free_) {
     const Variable& variable = problem_.variables[i];
-    // The bounds are halved before the subtraction: the width of the widest box would overflow.
+    // The bounds are halved before the subtraction, since upper - lower overflows for bounds near the largest double.
     const double part = (0.5 * x[i] - 0.5 * variable.lower) / (0.5 * variable.upper - 0.5 * variable.lower);
     point.push_back(std::clamp(part, 0.0, 1.0) + 0.0);
   }
@@ -308,7 +310,8 @@ long EvaluationRecord::run(const std::vector<Task>& tasks) {
   return evaluations_ - before;
 }
 
-// Returns the objective, then the conditions g_i, at a point; after an exception, the conditions are 0.
+// Returns the objective, then the conditions g_i, at a point. The conditions are 0, which counts as fulfilled, if the point is
+// infeasible or its conditions cannot be computed.
 std::vector<double> EvaluationRecord::values(BudgetedObjective& budgeted, const Point& point, const Answer& answer) const {
   std::vector<double> kept(1 + problem_.conditions.count, 0.0);
   kept[0] = answer.value;
@@ -324,7 +327,8 @@ std::vector<double> EvaluationRecord::values(BudgetedObjective& budgeted, const 
   return kept;
 }
 
-// Returns the gradients by the variables scaled to [0, 1]. After an exception, finite differences replace the gradients.
+// Returns the gradients of objective and conditions by the variables scaled to [0, 1]; NaN, which finite differences then
+// replace, after an exception of the problem.
 std::vector<double> EvaluationRecord::gradients(BudgetedObjective& budgeted, const Point& point) const {
   std::vector<double> scaled((1 + problem_.conditions.count) * free_.size(), std::numeric_limits<double>::quiet_NaN());
   try {

@@ -2,9 +2,9 @@
 //
 // Work comes in rounds of tasks. A task is sequential and has a fixed budget; the tasks of a round run in parallel. The order
 // of evaluations is (round, task, position within the task), whichever thread makes an evaluation, and when. "First", "best so
-// far" and "already seen" refer to this order, so results do not depend on the number of jobs. When a task reaches the target,
-// later tasks of the round are stopped and ignored, and earlier tasks complete. Tasks that run one after the other give the
-// same result.
+// far" and "already seen" refer to this order, so results do not depend on the number of jobs. When a task reaches the target
+// value of the objective, later tasks of the round are stopped and ignored, and earlier tasks complete. Tasks that run one
+// after the other give the same result.
 #pragma once
 
 #include <atomic>
@@ -28,8 +28,8 @@ using Point = std::vector<double>;
 /// Exception by which a BudgetedObjective ends the run of a library. Each backend translates Cut as its library requires.
 struct Cut {};
 
-/// Value of the objective at a point as a search receives it. An infeasible point has a finite penalty above all values seen
-/// before.
+/// Value of the objective at a point, as an optimizer library receives it: an infeasible point has a finite penalty above all
+/// values seen before.
 struct Answer {
   double value;
   bool feasible;
@@ -46,7 +46,7 @@ struct PointHash {
 };
 using Memory = std::unordered_map<Point, Answer, PointHash>;
 using Numbers = std::unordered_map<Point, std::vector<double>, PointHash>;
-/// Cost of computing the gradients of the problem at one point, in evaluations.
+/// Cost of one computation of the problem's gradients, as a number of evaluations of the objective.
 inline constexpr long evaluations_of_gradient = 3;
 
 class EvaluationRecord;
@@ -55,7 +55,7 @@ class EvaluationRecord;
 class BudgetedObjective {
  public:
   /// Returns the objective at a point. A point that was evaluated before is read from memory and costs nothing. Throws Cut when
-  /// the task's share of the budget is used up, the minimisation is over, or a search repeats evaluated points very often in
+  /// the budget of the task is used up, the minimisation is over, or a search repeats evaluated points very often in
   /// succession.
   Answer operator()(std::span<const double> point);
   /// Returns the objective and the conditions of the problem at a point; the objective alone if the problem has no conditions.
@@ -69,7 +69,7 @@ class BudgetedObjective {
 
   /// Returns true when every further evaluation would throw Cut.
   [[nodiscard]] bool over() const;
-  /// Resets the count of repeated points. Call it before every run of an optimizer library.
+  /// Sets the count of repeated requests for the same points to 0; call this before every run of an optimizer library.
   void begin_search() { repeats_ = 0; }
   [[nodiscard]] long evaluations() const { return static_cast<long>(records_.size()); }
   /// Returns the lowest feasible objective that this task has found; infinite if it has found none.
@@ -81,7 +81,7 @@ class BudgetedObjective {
   struct Record {
     Point point;
     Answer answer;
-    double value;  ///< objective as the problem returned it, before compression or penalty
+    double value;  ///< objective as the problem returned it, not compressed and without a penalty
   };
   BudgetedObjective(EvaluationRecord& record, std::size_t task, long budget, long first_index);
 
@@ -110,7 +110,8 @@ class EvaluationRecord {
  public:
   struct Task {
     long budget;
-    /// Work of the task; it may end by the exception Cut; any other exception is a failure.
+    /// The work of the task, which evaluates points. The exception Cut ends the task normally; any other exception is a
+    /// failure.
     std::function<void(BudgetedObjective&)> body;
   };
   struct Known {
@@ -163,7 +164,7 @@ class EvaluationRecord {
   std::chrono::steady_clock::time_point begin_;
   std::vector<std::size_t> free_;  ///< indices of the variables whose bounds differ
   std::vector<Point> starts_;
-  /// Exact values of the user's starts, by scaled point; scaling back would round the values.
+  /// The user's starts to the last digit, by scaled point, since scaling a point back to the user's units would round.
   std::unordered_map<Point, std::vector<double>, PointHash> exact_;
 
   // Only the code between rounds changes the following members.

@@ -51,7 +51,8 @@ class StrandProblem final : public Ipopt::TNLP {
     if (m > 0) std::copy_n(strand_.values(view(x, n)).all.begin() + 1, m, values);
     return true;
   }
-  // Without `values`, Ipopt asks for the positions of the entries of the Jacobian of the conditions: all entries, row by row.
+  // Provides the gradients of the conditions g_i; their Jacobian is dense. If `values` is null, Ipopt requests the row and
+  // column of every entry instead.
   bool eval_jac_g(Ipopt::Index n, const Ipopt::Number* x, bool, Ipopt::Index m, Ipopt::Index, Ipopt::Index* rows,
                   Ipopt::Index* columns, Ipopt::Number* values) override {
     if (m == 0) return true;
@@ -118,11 +119,12 @@ RunReport run_ipopt(const RunOptions& run, BudgetedObjective& budgeted) {
   options->SetStringValue("sb", "yes");
   options->SetStringValue("hessian_approximation", "limited-memory");
   options->SetNumericValue("bound_relax_factor", 0.0);  // 0: Ipopt never evaluates points outside the bounds
-  // Starts are good points, some of them near a bound: Ipopt's default barrier would first push them to the middle of the box.
+  // Starts are good points, some of them near a bound. With Ipopt's default barrier parameter, the first steps would move a
+  // start to the middle of the box.
   options->SetNumericValue("mu_init", 1e-4);
   options->SetNumericValue("bound_push", 1e-6);
   options->SetNumericValue("bound_frac", 1e-6);
-  options->SetNumericValue("tol", 1e-6);  // tolerance for gradients that may be finite differences
+  options->SetNumericValue("tol", 1e-6);  // convergence tolerance, reachable with gradients from finite differences
   options->SetIntegerValue("max_iter", 1000);
   // The name is empty because otherwise Ipopt would read a file ipopt.opt from the working directory.
   if (const auto status = application->Initialize(""); status != Ipopt::Solve_Succeeded) return report_of(status);

@@ -46,8 +46,8 @@ void check(const Problem& problem, const OptimizerOptions& options) {
   require(!std::isnan(options.target), "target must not be NaN");
 }
 
-// Number of infeasible start points that a search skips: it would see only the constant penalty, and another start costs
-// little.
+// Number of infeasible starts in succession that are skipped. From an infeasible start a local method sees only the constant
+// penalty, while the next start costs one evaluation.
 constexpr std::uint64_t infeasible_starts_skipped = 20;
 
 // Number of local searches in succession without a new evaluation after which the minimisation ends.

@@ -18,16 +18,18 @@
 namespace softland::internal {
 namespace {
 
-// Step below which a local method of NLopt has converged, in units of the box. It is far below what the noise of an objective
-// allows to resolve, so that no method ends too early in a narrow valley.
+// Step below which a local method of NLopt has converged, in units of the box of the variables. Differences of the objective
+// over such a step are below its noise, so that no method ends too early in a narrow valley.
 constexpr double step_tolerance = 1e-7;
-// Step below which a local search inside MLSL has converged; MLSL finds many minima and needs only to distinguish them.
+// Step below which a local search inside MLSL has converged, in units of the box of the variables; MLSL finds many minima and
+// needs only to distinguish them.
 constexpr double step_tolerance_inside_mlsl = 1e-4;
 
 struct Callback {
   BudgetedObjective& budgeted;
   bool with_conditions;             ///< true when the method uses the conditions of the problem
-  std::vector<double> bent_middle;  ///< place to which the nonlinear scale moves 0.5; empty for a linear scale
+  /// For DIRECT: the value that NLopt's middle, 0.5, of each variable means; empty: NLopt's values are used as they are.
+  std::vector<double> bent_middle;
 
   [[nodiscard]] Point to_point(const std::vector<double>& x) const {
     Point point = x;
@@ -55,7 +57,7 @@ double call(const std::vector<double>& x, std::vector<double>& gradient, void* d
   }
 }
 
-// Evaluates the conditions g_i <= 0 for NLopt's methods with a gradient, whose variables have a linear scale.
+// Evaluates the conditions g_i <= 0 for NLopt's methods with a gradient. The nonlinear scale of DIRECT does not apply here.
 void call_conditions(unsigned count, double* values, unsigned dimension, const double* x, double* gradient, void* data) {
   BudgetedObjective& budgeted = static_cast<Callback*>(data)->budgeted;
   const std::span<const double> point(x, dimension);

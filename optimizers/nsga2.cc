@@ -21,7 +21,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int idle_generations_allowed = 100;
-constexpr double least_difference = 1e-14;  // difference of two parents, as a share of the box, below which they count as equal
+// Variables of two parents that differ by less than this share of the box are not crossed.
+constexpr double least_difference = 1e-14;
 
 using Point = std::vector<double>;  // variables of a candidate, each scaled to [0, 1]
 
@@ -120,8 +121,9 @@ const Member& tournament(const std::vector<Member>& members, Draws& draws) {
   return b.crowding > a.crowding ? b : a;
 }
 
-/// Returns the distance of the children from the middle of their parents, in halves of the distance of the parents. `room` is
-/// the distance of the nearest bound from the middle, in the same unit; it limits the distribution of the children.
+/// Returns a random distance of the children from the middle of their parents, from a uniform `u` and the distribution index.
+/// `room` is the distance from the middle to the nearer bound, beyond which no child lies. Distances are in halves of the
+/// parents' distance.
 double spread_factor(double u, double room, double index) {
   const double all = 2 - std::pow(room, -(index + 1));
   const double part = u * all;
@@ -165,7 +167,7 @@ class Evaluations {
   [[nodiscard]] bool over() const { return ended_ != Termination::not_run; }
   [[nodiscard]] Termination ended() const { return ended_; }
 
-  /// Returns the members of a population at these points, except points for which evaluations or time did not suffice.
+  /// Returns the population at these points, without the points for which evaluations or time ran out.
   std::vector<Member> members_at(const std::vector<Point>& points) {
     std::vector<std::vector<double>> fresh;
     std::set<std::vector<double>> seen;

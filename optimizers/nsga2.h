@@ -35,8 +35,8 @@ struct ParetoProblem {
   std::vector<Variable> variables = {};
   std::size_t objectives = 2;
   /// Returns the objectives at a point; called from several threads at once when jobs > 1, and must return equal values for
-  /// equal x. A value that is not finite, a wrong number of values, or an exception make the point infeasible beyond any
-  /// violation; the result has the message of the first exception.
+  /// equal x. A value that is not finite, a wrong number of values, or an exception make the point infeasible, and worse than
+  /// any violation of constraints; the result has the message of the first exception.
   std::function<ParetoValue(std::span<const double>)> evaluate = {};
   /// Members of the first population; points outside the bounds are moved to the bounds.
   std::vector<std::vector<double>> starts = {};
@@ -55,7 +55,7 @@ struct ParetoOptions {
   std::uint64_t seed = 1;
   int jobs = 1;
   double crossover_probability = 0.9;
-  /// Distribution index of simulated binary crossover: the larger, the closer children are to their parents.
+  /// Distribution index of simulated binary crossover: the larger the index, the closer are children to their parents.
   double crossover_index = 15;
   double mutation_index = 20;  ///< distribution index of polynomial mutation; on average, one variable of each child mutates
   const std::atomic<bool>* stop = nullptr;  ///< set by another thread; ends the search with the Pareto front found so far

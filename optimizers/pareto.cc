@@ -24,13 +24,13 @@ void require_length(std::span<const double> point, std::size_t objectives) {
           fmt::format("a point has {} objectives; it must have {}, as the others have", point.size(), objectives));
 }
 
-/// The part of the plane of two objectives, below a corner, that the points dominate. Its boundary is stored as steps (x, y):
-/// from x to the next step all points above y are dominated.
+/// The part of the plane of two minimised objectives that a set of points dominates, up to the reference point. Its boundary is
+/// stored as steps (x, y): from x to the next step, all points above y are dominated.
 class Staircase {
  public:
   Staircase(double x_reference, double y_reference) : steps_{{-unbounded, y_reference}, {x_reference, -unbounded}} {}
 
-  /// Adds a point that is below the corner of the region in both objectives.
+  /// Adds a point that is below the reference point in both objectives.
   void insert(double x, double y) {
     auto step = std::prev(steps_.upper_bound(x));
     if (step->second <= y) return;
@@ -83,12 +83,12 @@ std::vector<std::size_t> pareto_front(std::span<const Objectives> points) {
     require_length(points[k], points.front().size());
     if (is_finite(points[k])) order.push_back(k);
   }
-  // No point dominates an earlier point in this order.
+  // In lexicographic order no point dominates an earlier point.
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return points[a] < points[b]; });
   std::vector<std::size_t> front;
   for (const std::size_t k : order) {
     const auto covers = [&](std::size_t other) { return points[other] == points[k] || dominates(points[other], points[k]); };
-    // Check the last points of the Pareto front first: they are the nearest to point k.
+    // Compare with the last points of the Pareto front first: they are the nearest to point k, and most likely dominate it.
     if (std::none_of(front.rbegin(), front.rend(), covers)) front.push_back(k);
   }
   std::sort(front.begin(), front.end());

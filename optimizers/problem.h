@@ -18,15 +18,15 @@ struct Variable {
   double upper = 1;
 };
 
-/// Conditions g(x) <= 0 of a minimisation. Only the methods with a gradient use the conditions. The other methods, and every
-/// comparison of points, use the objective alone: so the objective must rise with the violation.
+/// Conditions g(x) <= 0 of a minimisation. Methods with a gradient treat the conditions as constraints. Other methods, and
+/// every comparison of points, use the objective alone: so the objective must contain a penalty that rises with the violation.
 struct Conditions {
   std::size_t count = 0;
   /// Returns {objective, g_1, ... g_count} at a point at which the objective is finite; called from several threads at once,
   /// like the objective.
   std::function<std::vector<double>(std::span<const double>)> values = {};
-  /// Returns the derivatives of the objective, of g_1 and so on, by the variables x. Finite differences replace a NaN, and the
-  /// whole function when it is null.
+  /// Returns the derivatives of the objective, of g_1 and so on, by the variables x. A NaN entry is replaced by a finite
+  /// difference, and so is every entry when this function is null.
   std::function<std::vector<double>(std::span<const double>)> gradients = {};
 };
 
@@ -50,8 +50,8 @@ struct Problem {
 };
 
 struct Evaluation {
-  /// Number of the evaluation: unique, and increasing in an order that does not depend on the number of jobs. Numbers are left
-  /// out where a search ended before its share of the budget did, so the number may exceed the number of evaluations.
+  /// Number of the evaluation: unique, and increasing in an order that does not depend on the number of jobs. A part of a
+  /// search that ends before its budget leaves its other numbers unused, so a number may exceed the count of evaluations.
   long index = 0;
   double value = 0;  ///< value of the objective; non-finite at an infeasible point (NaN after an exception)
   std::vector<double> x;
@@ -63,27 +63,27 @@ struct OptimizerOptions {
   long max_evaluations = 2000;
   double max_seconds = std::numeric_limits<double>::infinity();  ///< time budget of the search [s]
   std::uint64_t seed = 1;
-  double step = 0.25;     ///< first step of a local method, as a share of the box; `auto` uses its own
-  double population = 1;  ///< points of a generation of cma-es, as a multiple of the usual number
+  double step = 0.25;     ///< first step of a local method, as a share of the box; `auto` has its own steps
+  double population = 1;  ///< number of points in a generation of cma-es, as a multiple of its default
   int jobs = 1;           ///< number of threads, including the calling one; `auto` uses all of them
-  /// True when the starts are the best points of an earlier search. `auto` with a gradient then spends most of its budget on
-  /// local searches from points near the best start.
+  /// True when the starts are the best points of an earlier search. If the problem has a gradient, `auto` then spends most of
+  /// its budget on local searches from points near the best start.
   bool goes_on = false;
-  /// True when the objective is smooth around the starts: `auto` then begins with a gradient method from the starts.
+  /// True when the objective is smooth near the starts: `auto` then runs a gradient method from the starts first.
   bool smooth = false;
   double target = -std::numeric_limits<double>::infinity();  ///< the search stops once the objective is at or below the target
   const std::atomic<bool>* stop = nullptr;  ///< set by another thread (Ctrl-C); ends the search with its result so far
   /// Called under a lock after every evaluation, in the order in which evaluations end. With jobs > 1 this order may vary
-  /// between runs, and the calls may include evaluations that the result leaves out (beyond the target in the job-independent
-  /// order). An exception ends the search with Termination::failure.
+  /// between runs, and the calls may include evaluations that the result leaves out, as they follow the one that reached the
+  /// target in the job-independent order. An exception ends the search with Termination::failure.
   std::function<void(const Evaluation&)> on_evaluation = {};
   /// Called under the lock of on_evaluation whenever an evaluation is the best so far.
   std::function<void(const Evaluation&)> on_improvement = {};
 };
 
 /// The reason why a search ended. A search that ended by interrupted, time_budget or evaluation_budget has the best point so
-/// far; x is empty when no point was feasible. no_feasible_point: the search was completed and every evaluation was non-finite
-/// or threw an exception.
+/// far; x is empty when no point was feasible. no_feasible_point: the search used its budget or converged and every evaluation
+/// was non-finite or threw an exception.
 enum class Termination {
   not_run,
   converged,
@@ -122,9 +122,10 @@ struct OptimizerResult {
 ///
 /// `auto` searches near the best of the starts, samples the box and runs local searches from well separated good points. The
 /// promising searches continue, and a last search improves the best point, with the problem's gradient when there is one;
-/// `auto` uses several jobs. The methods with a gradient continue from the best points of such a search after its first two
-/// fifths. Another local method runs from the starts in turn and then from random points, each time until it converges, as long
-/// as the budget lasts; infeasible points are skipped. A global method runs once.
+/// `auto` uses several jobs. A method with a gradient first runs the sampling and local searches of `auto` with cma-es, for two
+/// fifths of each epoch, and continues from the best points found. Another local method runs from the starts in turn and then
+/// from random points, each time until it converges, as long as the budget lasts; infeasible points are skipped. A global
+/// method runs once.
 ///
 /// If the problem has no gradient, central differences are used, which count as evaluations; a gradient of the problem counts
 /// as three, with those of its conditions. Ipopt solves one problem at a time in a process, and other calls wait, so an

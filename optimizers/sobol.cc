@@ -8,8 +8,8 @@
 namespace softland::internal {
 namespace {
 
-// Boost's tables end at 3667 dimensions; far earlier, a Sobol sequence of any affordable length is no better than random
-// points.
+// Boost has direction numbers up to dimension 3667. The limit is lower, since in many dimensions a Sobol sequence of any
+// affordable length is no better than random points.
 constexpr std::size_t most_dimensions = 64;
 
 }  // namespace

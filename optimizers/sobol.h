@@ -7,8 +7,9 @@
 
 namespace softland::internal {
 
-/// Returns `count` points of a Sobol sequence in [0, 1)^dimension, from number `first` on. They are shifted digit by digit
-/// (exclusive or) by the seed: each point is uniform over the box, and together they keep the even spread of the sequence.
+/// Returns `count` points of a Sobol sequence in [0, 1)^dimension, from number `first` on. A random shift from the seed is
+/// applied to the binary digits (exclusive or): each point is then uniform over the box, and together they keep the even spread
+/// of the sequence.
 [[nodiscard]] std::vector<std::vector<double>> sobol_points(std::uint64_t seed, std::size_t dimension, std::uint64_t first,
                                                             std::size_t count);
 
