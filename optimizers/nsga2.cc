@@ -122,7 +122,7 @@ const Member& tournament(const std::vector<Member>& members, Draws& draws) {
 }
 
 /// Returns a random distance of the children from the middle of their parents, from a uniform `u` and the distribution index.
-/// `room` is the distance from the middle to the nearer bound, beyond which no child lies. Distances are in halves of the
+/// `room` is the distance from the middle to the bound on the side of the child. Distances are in halves of the
 /// parents' distance.
 double spread_factor(double u, double room, double index) {
   const double all = 2 - std::pow(room, -(index + 1));

@@ -66,8 +66,8 @@ struct OptimizerOptions {
   double step = 0.25;     ///< first step of a local method, as a share of the box; `auto` has its own steps
   double population = 1;  ///< number of points in a generation of cma-es, as a multiple of its default
   int jobs = 1;           ///< number of threads, including the calling one; `auto` uses all of them
-  /// True when the starts are the best points of an earlier search. If the problem has a gradient, `auto` then spends most of
-  /// its budget on local searches from points near the best start.
+  /// True when the starts are the best points of an earlier search. If the problem has a gradient and many variables, `auto`
+  /// then spends most of its budget on local searches from points near the best start.
   bool goes_on = false;
   /// True when the objective is smooth near the starts: `auto` then runs a gradient method from the starts first.
   bool smooth = false;
@@ -82,8 +82,8 @@ struct OptimizerOptions {
 };
 
 /// The reason why a search ended. A search that ended by interrupted, time_budget or evaluation_budget has the best point so
-/// far; x is empty when no point was feasible. no_feasible_point: the search used its budget or converged and every evaluation
-/// was non-finite or threw an exception.
+/// far; x is empty when no point was feasible. no_feasible_point: the search ended by itself or by its evaluation budget, and
+/// every evaluation was non-finite or threw an exception.
 enum class Termination {
   not_run,
   converged,
@@ -122,10 +122,9 @@ struct OptimizerResult {
 ///
 /// `auto` searches near the best of the starts, samples the box and runs local searches from well separated good points. The
 /// promising searches continue, and a last search improves the best point, with the problem's gradient when there is one;
-/// `auto` uses several jobs. A method with a gradient first runs the sampling and local searches of `auto` with cma-es, for two
-/// fifths of each epoch, and continues from the best points found. Another local method runs from the starts in turn and then
-/// from random points, each time until it converges, as long as the budget lasts; infeasible points are skipped. A global
-/// method runs once.
+/// `auto` uses several jobs. A method with a gradient samples and searches by cma-es for about half of every epoch, and
+/// continues from the best points found. Another local method runs from the starts in turn and then from random points, each
+/// time until it converges, as long as the budget lasts; infeasible points are skipped. A global method runs once.
 ///
 /// If the problem has no gradient, central differences are used, which count as evaluations; a gradient of the problem counts
 /// as three, with those of its conditions. Ipopt solves one problem at a time in a process, and other calls wait, so an

@@ -7,8 +7,9 @@
 namespace softland {
 namespace {
 
-/// Computes the time [s] of the motion between rest at `rest` and the position `to`; `fallen(x)` is the kinetic energy at x.
-/// Near rest the speed grows as the root of the distance, so that the integrand is smooth in u with x = rest + (to - rest) u^2.
+/// Returns the time [s] of the motion of `mass` between rest at the position `rest` and the position `to`; `fallen(x)` is the
+/// kinetic energy at x. Near `rest` the speed is proportional to the root of the distance, so that the integrand is smooth in u
+/// with x = rest + (to - rest) u^2.
 double time_from_rest(const std::function<double(double)>& fallen, double mass, double rest, double to) {
   static const GaussRule rule = gauss_rule(40);
   const double way = to - rest;
@@ -25,8 +26,8 @@ double time_from_rest(const std::function<double(double)>& fallen, double mass, 
 
 std::optional<double> switching_position(const Potential& driven, const Potential& coasting, double from, double contact) {
   const double at_start = driven(from), at_contact = coasting(contact);
-  // Kinetic energy at the contact if the drive jumps to its coasting value at x; negative if the switch does not reach the
-  // contact.
+  // Kinetic energy left at the contact if the drive jumps from its pulling to its coasting value at x; negative if the switch
+  // does not reach the contact.
   const auto left = [&](double x) { return at_start - driven(x) - (at_contact - coasting(x)); };
   if (!(left(from) < 0) || !(left(contact) > 0)) return std::nullopt;
   double low = from, high = contact;
@@ -44,7 +45,7 @@ std::optional<BangBang> bang_bang(const Potential& driven, const Potential& coas
   const BangBang found{.switching_position = *at,
                        .driven_time = time_from_rest([&](double x) { return at_start - driven(x); }, mass, from, *at),
                        .coasting_time = time_from_rest([&](double x) { return at_contact - coasting(x); }, mass, contact, *at)};
-  // The times are not finite if a potential barrier stops the switch between `from` and `contact`.
+  // The times are not finite if a potential barrier between `from` and `contact` stops the switch.
   if (!std::isfinite(found.driven_time) || !std::isfinite(found.coasting_time)) return std::nullopt;
   return found;
 }

@@ -29,12 +29,13 @@ namespace softland {
 /// Potential energy [J] as a function of the position [m].
 using Potential = std::function<double(double)>;
 
-/// Returns the position x_s [m] where the drive jumps to its coasting value, or nothing if no solution exists.
+/// Returns the position x_s [m] where the drive has to jump from its pulling to its coasting value, or nothing if no solution
+/// exists.
 [[nodiscard]] std::optional<double> switching_position(const Potential& driven, const Potential& coasting, double from,
                                                        double contact);
 
 struct BangBang {
-  double switching_position = 0;  ///< position x_s of the switch where the drive jumps to its coasting value [m]
+  double switching_position = 0;  ///< position x_s where the drive jumps from pulling to coasting [m]
   double driven_time = 0;         ///< time of the motion from rest at x_0 to x_s [s]
   double coasting_time = 0;       ///< time of the motion from x_s to rest at the contact [s]
 };
@@ -45,8 +46,8 @@ struct BangBang {
                                                 double contact);
 
 /// Computes the closing with zero speed at the contact of a switch that moves in its first mode alone, from rest under the
-/// drive values `before` (none: 0). The drives have the values `driven` up to the switching position x_s, and `coasting` after
-/// it.
+/// drive values `before` (none: 0). The drives pull with the values `driven` up to the switching position x_s, and have the
+/// values `coasting` after it.
 [[nodiscard]] std::optional<BangBang> bang_bang(const Switch& model, const std::vector<double>& driven,
                                                 const std::vector<double>& coasting, std::span<const double> before = {});
 

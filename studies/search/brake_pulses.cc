@@ -72,8 +72,8 @@ std::vector<std::vector<double>> BrakePulses::starts() const {
   return all;
 }
 
-// Returns the point of the search at which the drive `braking` gives `pulse_train`, whose times are in periods of the first
-// mode; the other drives stay at 0 V.
+// Returns the point of the search at which only the drive `braking` gives pulses: wait, level and duration of each of two, with
+// times in periods of the first mode. The other drives stay at 0 V.
 std::vector<double> BrakePulses::start(const Brake& braking, const std::array<double, 6>& pulse_train) const {
   std::vector<double> x;
   for (const Brake& b : brakes_) {

@@ -23,8 +23,8 @@ using Corners = std::vector<std::pair<double, double>>;
 class BrakePulses {
  public:
   /// Keeps a reference to `given`. `holds` are the commanded voltages before the command to open, in the order of
-  /// Switch::drives() [V]; error messages begin with `asker`. Throws InvalidRequest if the scene lacks the actuator,
-  /// InvalidInput if no drive of the actuator has limits.
+  /// Switch::drives() [V]; error messages begin with the command `asker`. Throws InvalidRequest if the scene lacks the
+  /// actuator, InvalidInput if no drive of the actuator has limits.
   BrakePulses(const PreparedScene& given, Actuator actuator, std::vector<double> holds, std::string_view asker);
 
   [[nodiscard]] const std::vector<Variable>& variables() const { return variables_; }
@@ -41,7 +41,7 @@ class BrakePulses {
   // A drive that may brake the opening, and the index of its parameters in a point of the search.
   struct Brake {
     std::size_t drive = 0;
-    // Index of the drive's first parameter in the point: edge, then wait, level, duration of every pulse.
+    // Index of the drive's first parameter in the point: duration of all edges, then wait, level and duration of every pulse.
     std::size_t first = 0;
     DriverLimits limits;
   };

@@ -14,17 +14,19 @@ namespace softland {
 namespace {
 
 constexpr std::uint64_t measured_devices = 128;  // number of devices in a search with a per-device calibration
-// Relative measurement errors of Vdp and period in the two calibrations that are searched.
+// Relative errors of the measured dynamic pull-in voltage Vdp and period of each device: of Vdp alone, and of both if the
+// closing time cannot be measured.
 constexpr double coarse_error = 0.01, fine_error = 0.002;
 constexpr double least_times_of_error = 20;
-// Relative errors of measured Vdp for which results are computed.
+// Relative errors of the measured dynamic pull-in voltage Vdp, for each of which the performance of the waveforms is computed.
 constexpr std::array errors_of_pull_in{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02};
-constexpr double most_rows = 4;  // largest number of rows of results with a per-device calibration
-// Number of fresh devices (new to the search) for the results by error of the measured Vdp.
+constexpr double most_rows = 4;  // most rows of results with a calibration, for progress
+// Number of fresh devices (new to the search) that show the effect of each error of the measured dynamic pull-in voltage Vdp.
 constexpr std::size_t devices_by_error = 256;
-// Bounce-free share of devices under the best waveform from which on searches maximise this share.
+// Share of bounce-free devices under the best uncalibrated waveform from which on the searches with a calibration maximise this
+// share.
 constexpr double ranked_by_share = 0.25;
-// Number of this set of random devices, which differ from the devices of robust_search.cc.
+// Number of the random stream of the devices on which searches with a calibration try waveforms; robust_search.cc uses others.
 constexpr std::uint64_t which_measured = 2;
 
 }  // namespace
@@ -52,20 +54,20 @@ bool DevicesRow::is_worth_measuring(const DevicesRow& uncalibrated) const {
   return speed(*this) < worth_choosing * speed(uncalibrated);
 }
 
-// Computes in advance the measured quantities of the fresh devices (new to the search), for the rows of results with a
-// per-device calibration.
+// Measures the fresh devices (new to the search) in advance, in parallel with other work: the final evaluation with a
+// per-device calibration needs their pull-in voltages and closing times.
 void RobustSearch::measure_ahead() {
   try {
     meter_.emplace(first().given, MeasuredQuantities{.closing_time = true});
   } catch (const InvalidInput&) {
-    return;  // without a pull-in voltage devices cannot be measured: there is nothing to compute
+    return;  // devices without a pull-in voltage cannot be calibrated
   }
   (void)calibrated({.pull_in_error = coarse_error});
   if (tells_time()) (void)calibrated({.time_error = usual_time_error});
 }
 
-// True if the closing time under the slow step is long enough to distinguish devices despite its measurement error. For a
-// quicker switch, Vdp and period are measured more precisely instead.
+// True if devices are calibrated by the closing time under a slow voltage step: this time is then many times its measurement
+// error. For a quicker switch, a precise measurement of pull-in voltage and period replaces the closing time.
 bool RobustSearch::tells_time() const { return meter_->closing_time() > least_times_of_error * usual_time_error; }
 
 CalibratedSearch RobustSearch::in_measured_units(const ChosenFrom& winner, const DriveWaveforms& drawing) {
@@ -95,8 +97,8 @@ CalibratedSearch RobustSearch::in_measured_units(const ChosenFrom& winner, const
   return all;
 }
 
-// Searches a waveform for each of the calibrations, in parallel. The result has no waveforms for a calibration whose search
-// found none.
+// Searches a waveform for each of the calibrations, in parallel. An element of the result is empty if its search found no
+// waveform.
 std::array<RobustSearch::Found, 2> RobustSearch::searched_in(const ChosenFrom& winner, const DriveWaveforms& drawing,
                                                              const std::array<Calibration, 2>& calibrations) {
   const auto family = std::ranges::find(names_, winner.family);
@@ -111,7 +113,7 @@ std::array<RobustSearch::Found, 2> RobustSearch::searched_in(const ChosenFrom& w
             first(), aims_.tail,
             own_devices(first(), known[i], measured_devices, options_.seed, which_measured, options_.jobs, progress_));
         RaceOptions own = race_options();
-        own.memory = nullptr;  // do not use the memory of evaluations: its keys do not depend on the measured units
+        own.memory = nullptr;  // no memory of evaluations: its keys would not distinguish calibrations
         own.progress = [&, i](double part) {
           parts[i] = part;
           progress_.tell("searching for devices that are measured", (parts[0] + parts[1]) / 2);
@@ -132,7 +134,7 @@ std::array<RobustSearch::Found, 2> RobustSearch::searched_in(const ChosenFrom& w
 }
 
 RaceResult RobustSearch::searched_at_pace(const RobustCost& cost, const RaceAims& aims, std::size_t family, RaceOptions options) {
-  constexpr long shorter = 3;  // divisor of the number of closings: a search with calibration takes a third of those without
+  constexpr long shorter = 3;  // a search with calibration gets a third of the closings of one without
   RobustAim aim = tail_aim_;
   aim.free = free_;
   for (const Condition& one : aims.tail.conditions) {
@@ -145,7 +147,7 @@ RaceResult RobustSearch::searched_at_pace(const RobustCost& cost, const RaceAims
   return all;
 }
 
-// True if the impacts under the waveforms are harder than under the plain step, on the devices of a search with calibration.
+// True if impacts under the waveforms are harder than under the plain step, on the devices of `cost`.
 bool RobustSearch::is_harder_than_step(const RobustCost& cost, const DriveWaveforms& waveforms) const {
   const std::vector<DeviceOutcome> outcomes = cost.close(first().drives(waveforms), 0, cost.devices(), 1);
   return !hold(at_most_step_, outcomes);
@@ -171,8 +173,9 @@ DevicesRow RobustSearch::row_of(const char* name, const DriveWaveforms& waveform
                                          std::move(outcomes))};
 }
 
-// Computes results on the fresh devices (new to the search) for several measurement errors of Vdp, each for the best of
-// `waveforms` and `in_volts`. The waveform `in_volts` does not depend on Vdp.
+// Computes the performance on the fresh devices (new to the search) for several measurement errors of the dynamic pull-in
+// voltage Vdp: the best of the calibrated `waveforms` and of `in_volts`, the uncalibrated waveforms, which the error does not
+// affect.
 std::vector<CalibrationError> RobustSearch::judged_by_error(const std::vector<DriveWaveforms>& waveforms,
                                                             const DriveWaveforms& in_volts) {
   std::vector<CalibrationError> judged;
@@ -203,8 +206,8 @@ RobustCost RobustSearch::verdict_devices(const MeasuredUnits& known) {
   return {first(), aims_.tail, known_as(calibrated(known.calibration()), known, options_.seed)};
 }
 
-// Returns the fresh devices (new to the search) with their exact measured quantities, which are computed once for all
-// calibrations.
+// Returns the fresh devices (new to the search) with their exact measured quantities, which are computed at the first call and
+// used for all calibrations.
 const CalibratedEnsemble& RobustSearch::calibrated(const Calibration& knowledge) {
   std::optional<CalibratedEnsemble>& all = knowledge.time_error ? calibrated_by_time_ : calibrated_by_pull_in_;
   if (!all)

@@ -21,7 +21,7 @@ namespace softland {
 namespace {
 
 constexpr std::size_t searched_cycles = 4;  // number of cycles that are simulated for a candidate pair of waveforms
-// Error of the piecewise linear waveforms in a scene file, as a share of the peak voltage.
+// Largest error of the piecewise linear approximation of a waveform in a scene file, as a share of the peak voltage.
 constexpr double line_tolerance = 1e-5;
 
 class PairSearch {
@@ -76,8 +76,8 @@ class PairSearch {
     return worst;
   }
 
-  /// Returns the vibration of the contact point about its open position before the second cycle begins, as a share of the
-  /// contact gap.
+  /// Returns the residual vibration of the contact point about its open position at the end of the first cycle, as a share of
+  /// the contact gap.
   [[nodiscard]] double unrest(const CycleWaveforms& waveforms) const {
     const Cycles run = CycledSwitch(coarse_, coarse_.model, waveforms).run(times(1), false, {.stop = progress_.stop});
     if (run.cycles.empty()) return std::numeric_limits<double>::infinity();
@@ -93,7 +93,7 @@ class PairSearch {
   }
   [[nodiscard]] double cost_of_cycles(const CycleWaveforms& waveforms) const { return cost(waveforms); }
 
-  /// Improves the waveform parameters with index `first` and above; all other parameters stay as in `from`.
+  /// Minimises the cost `by` over the waveform parameters with index `first` and above; all other parameters stay as in `from`.
   [[nodiscard]] OptimizerResult improve(const char* what, Price by, std::size_t first, const std::vector<double>& from,
                                         std::vector<std::vector<double>> starts) {
     const std::vector<Variable> all = variables();
@@ -131,13 +131,13 @@ class PairSearch {
   CostScale scale_;
 };
 
-// Returns the scene of one cycle with these waveforms: it closes, and opens on command.
+// Returns the scene of one cycle: the switch closes with one of these waveforms, and opens with the other on command.
 SceneFile scene_of_cycle(const PreparedScene& given, const CycleWaveforms& waveforms, const CycleTimes& times) {
   const std::vector<Signal> signals = cycled(waveforms, times);
   const std::vector<std::string> names = given.drive_names();
   DriveWaveforms tables;
   for (std::size_t k = 0; k < names.size(); ++k) {
-    if (names[k] == dispersion_drive) continue;  // the factor of the dispersion force needs no voltage source
+    if (names[k] == dispersion_drive) continue;  // the dispersion force is a drive without a voltage
     Table table;
     const double tolerance = line_tolerance * std::max(signals[k].peak(), 1e-9);
     for (const auto& [time, voltage] : polyline(signals[k], times.period, tolerance, 0)) {
@@ -152,7 +152,7 @@ SceneFile scene_of_cycle(const PreparedScene& given, const CycleWaveforms& wavef
   return file;
 }
 
-// Reads the closing and opening waveforms back from a scene of one cycle, whose text may have rounded them.
+// Reads the closing and opening waveforms from a scene of one cycle, so that they are simulated as rounded in its text.
 CycleWaveforms read_again(const SceneFile& file, const PreparedScene& given, const CycleTimes& times) {
   const PreparedScene read = read_back(file, "best.toml", given);
   CycleWaveforms waveforms{.name = "found", .closing = {}, .opening = {}};
@@ -188,8 +188,8 @@ CycleSearchResult search_cycle(const SceneFile& file, const CycleSearchOptions& 
   require(given.rest().has_value(), "with every drive at 0 V the switch has no stable open state: it cannot be opened");
   PairSearch search(setting, options, progress);
 
-  // Starts of the search are the closing waveform that was searched alone, and the starts of its waveform family, as far as
-  // they fit into a cycle.
+  // Start at the closing waveform that was searched alone, and at the default starts of its waveform family, without starts
+  // whose waveforms are longer than their part of a cycle.
   std::vector<std::vector<double>> closings = setting.space.starts();
   if (alone.best_scene) {
     const DriveWaveforms found = setting.space.searched(alone.best_scene->drives.waveforms());
@@ -200,7 +200,7 @@ CycleSearchResult search_cycle(const SceneFile& file, const CycleSearchOptions& 
     return fmt::format("at {} and a duty of {:g} % no waveform of the family \"{}\" fits into its part of a cycle, or no opening",
                        engineering(options.rate, "Hz", 4), 100 * options.duty, alone.family);
   });
-  // Find the best start of the search in a cycle that begins at rest.
+  // Find the start with the lowest cost of a single cycle, from rest.
   std::vector<double> best = closings.front();
   double least = std::numeric_limits<double>::infinity();
   for (const std::vector<double>& x : closings) {

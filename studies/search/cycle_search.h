@@ -23,22 +23,24 @@
 namespace softland {
 
 struct CycleSearchOptions {
-  double rate = 0;    ///< rate of the cycles [Hz]
+  double rate = 0;    ///< rate at which the switch is cycled [Hz]
   double duty = 0.5;  ///< share of a cycle before the command to open the switch
   Aim target = Target::bounce;
-  Actuator actuator = Actuator::electrostatic;  ///< drives that the closing and the opening waveform may use
-  std::string family = {};                      ///< waveform families of the closing waveform: families_of(); empty: default
-  long max_evaluations = 3000;  ///< number of evaluations: a third each for the closing, the opening, and both together
-  std::size_t cycles = 10;      ///< number of simulated cycles of the best pair of waveforms
+  Actuator actuator = Actuator::electrostatic;  ///< drives whose waveforms are searched
+  std::string family = {};  ///< waveform families of the closing waveform, as for families_of(); empty: default families
+  /// Number of simulated candidates: a third each for the closing, the opening, and both together.
+  long max_evaluations = 3000;
+  std::size_t cycles = 10;      ///< number of cycles over which the best pair of waveforms is simulated
   std::uint64_t seed = 1;
   int jobs = 1;
 };
 
 struct CycleSearchResult {
   PreparedScene given;
-  Cycling cycling;     ///< simulated cycles with the plain pair of waveforms, and with the best pair if there is one
+  /// Simulated cycles with the plain pair (step to close, step to open), and with the best pair if there is one.
+  Cycling cycling;
   std::string family;  ///< waveform family of the closing waveform
-  /// Waveform parameters of the best pair, by closing.drive.name and opening.drive.name.
+  /// Waveform parameters of the best pair, by key: closing.drive.name, opening.drive.name.
   std::map<std::string, double> parameters;
   double cost = std::numeric_limits<double>::quiet_NaN();        ///< cost of the best pair of waveforms
   double plain_cost = std::numeric_limits<double>::quiet_NaN();  ///< cost of the plain pair: a step to close and a step to open

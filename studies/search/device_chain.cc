@@ -56,7 +56,7 @@ ChainEnd search_chain(const StagedCost& cost, const Chain& chain, SearchBudget& 
     if (tried.cost < best.cost) best.x = x, best.cost = tried.cost;
     budget.took(tried.closings);
     if (budget.over() || best.closings >= chain.closings) enough = true;
-    told(x, tried.cost);  // `told` may throw Interrupted
+    told(x, tried.cost);  // call `told` after the budget is updated: `told` may throw Interrupted
     if (budget.interrupted()) enough = true;
     return tried.cost;
   };

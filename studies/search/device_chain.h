@@ -23,8 +23,8 @@ namespace softland {
 /// devices.
 class StagedCost {
  public:
-  /// Keeps references to `setting`, `cost` and `aim`. `memory` may be null; `seed` identifies the devices and the aim in
-  /// `memory`.
+  /// Keeps references to `setting`, `cost` and `aim`. `memory`, which stores costs between runs, may be null; `seed` identifies
+  /// the set of devices and the aim in the memory.
   StagedCost(const SearchSetting& setting, const RobustCost& cost, const RobustAim& aim, EvaluationMemory* memory,
              std::uint64_t seed)
       : setting_(setting), cost_(cost), aim_(aim), memory_(memory), seed_(seed) {}
@@ -34,8 +34,8 @@ class StagedCost {
     double cost = std::numeric_limits<double>::infinity();
     long closings = 0;
   };
-  /// Evaluates the waveform at the point `x` on the first `most` devices, or on fewer if its cost on these already exceeds
-  /// `hopeless`.
+  /// Evaluates the waveform at the point `x` of the search on the first `most` devices. After each number of devices in
+  /// `stages` the candidate is given up if its cost on these devices exceeds `hopeless`.
   [[nodiscard]] Tried tried(const std::vector<double>& x, std::size_t most,
                             double hopeless = std::numeric_limits<double>::infinity(), int jobs = 1) const;
   [[nodiscard]] std::vector<Variable> variables() const { return setting_.space.variables(); }
@@ -48,7 +48,7 @@ class StagedCost {
   std::uint64_t seed_;
 };
 
-/// Numbers of simulated devices after which a bad candidate waveform is given up.
+/// Numbers of devices after which a candidate waveform is given up if its cost is too high.
 inline constexpr std::array<std::size_t, 2> stages{8, 32};
 
 struct Chain {
@@ -66,8 +66,8 @@ struct ChainEnd {
   double cost = std::numeric_limits<double>::infinity();
   long closings = 0;
 };
-/// Searches a waveform from one starting point until the search has used its number of closings or the budget is spent. Calls
-/// `told` with every candidate, after the budget has counted the candidate's closings.
+/// Searches a waveform by CMA-ES from one starting point until `chain.closings` closings are simulated or the budget is spent.
+/// Calls `told` with every candidate waveform, after the budget has counted the candidate's closings.
 [[nodiscard]] ChainEnd search_chain(const StagedCost& cost, const Chain& chain, SearchBudget& budget,
                                     const std::function<void(const std::vector<double>& x, double cost)>& told);
 

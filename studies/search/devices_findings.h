@@ -16,66 +16,69 @@
 
 namespace softland {
 
-// Names of rows of results; each row belongs to one waveform and its closings on the devices.
+// Names of rows in the table of results. A row shows how one waveform performs on the devices: the plain step, the waveform of
+// the nominal design, that for varied devices, and that with the electrode's step at t = 0.
 inline constexpr const char *plain_step_row = "plain step", *for_the_drawing = "for the drawing",
                             *for_the_devices = "for the devices", *undelayed_row = "electrode at t = 0";
-/// Name of the choice offered to the user whose waveform is in best.toml.
+/// Name of the choice whose waveform is in best.toml, among the waveforms offered to the user.
 inline constexpr const char* default_choice = "default";
 
-/// 95th percentiles and bounce-free share over the fresh devices (new to the search) under a candidate waveform.
+/// A point of the Pareto front of candidate waveforms in contact time and impact velocity, as evaluated on fresh devices (new
+/// to the search).
 struct FrontPoint {
   /// 95th percentiles of the first contact time [s] and of the impact velocity [m/s].
   double first_touch = Metrics::unset, impact_speed = Metrics::unset;
-  double bounce_free = Metrics::unset;  ///< share of bounce-free devices under the candidate waveform
+  double bounce_free = Metrics::unset;  ///< share of devices that close without a bounce
   std::string candidate;  ///< waveform family, and measure of risk that the search minimised: "bspline:6 by cvar:0.9"
 };
 
-/// Results on fresh devices (new to the search) if the dynamic pull-in voltage Vdp of each device is measured with an error.
-/// Each figure is the best of two: under the waveforms searched with a per-device calibration, and under the best uncalibrated
-/// waveform.
+/// Performance on fresh devices (new to the search) if the dynamic pull-in voltage Vdp of each device is measured with an
+/// error. Each figure is the better of two: under the waveforms searched with a per-device calibration, and under the best
+/// uncalibrated waveform.
 struct CalibrationError {
-  double error = 0;  ///< relative standard deviation of the measurement error of Vdp
+  double error = 0;  ///< relative standard deviation of the error of the measured pull-in voltage
   /// Share of bounce-free devices; 95th percentile of the impact velocity [m/s].
   double bounce_free = Metrics::unset, impact_speed = Metrics::unset;
 };
 
-/// A candidate waveform from which the search over devices chooses the best one.
+/// A candidate waveform among which the search over devices chooses the best one, as shown in reports.
 struct RaceEntry {
-  /// Minimised measure of risk and waveform family: "cvar:0.9", "knots:6"; measure "drawing": from the search on the nominal
-  /// device.
+  /// Measure of risk that the search minimised, and waveform family: "cvar:0.9", "knots:6". The measure is "drawing" for a
+  /// candidate of the search on the nominal device.
   std::string measure, waveform;
   long closings = 0;
-  /// Share of bounce-free devices, and cost of the candidate waveform, on the devices on which the best one is chosen.
+  /// Share of devices that close without a bounce, and cost, on the devices on which the best candidate is chosen.
   double bounce_free = 0, cost = 0;
 };
 
 /// Results of a search over varied devices: the found waveforms on fresh devices (new to the search), and how they were found.
 struct DevicesFindings {
-  /// A rebound height below which a device counts for the yield, and the key of this yield in JSON.
+  /// A permitted rebound height, and its key in JSON: the yield is the share of devices whose rebounds stay below the height.
   struct YieldHeight {
-    double height;  ///< limit of the rebound height [m]
+    double height;  ///< permitted rebound height [m]
     const char* key;
   };
   static constexpr std::array yield_heights{YieldHeight{1e-9, "1e-9"}, YieldHeight{1e-8, "1e-8"}, YieldHeight{1e-7, "1e-7"}};
 
   struct Row {
-    std::string name;  ///< name of the row of results: "plain step", "for the drawing", "Vdp to 1 %"
-    /// Relative errors of the measured Vdp and frequency; NaN: not measured.
+    std::string name;  ///< name in the table of results: "plain step", "for the drawing" (nominal design), "Vdp to 1 %"
+    /// Relative errors of the measured dynamic pull-in voltage and first natural frequency of each device; NaN: not measured.
     double pull_in_error = Metrics::unset, frequency_error = Metrics::unset;
-    double piezo_error = Metrics::unset;  ///< relative error of the measured deflection by the piezo
-    double time_error = Metrics::unset;   ///< standard deviation of the error of a measured closing time [s]
+    double piezo_error = Metrics::unset;  ///< relative error of the measured static deflection of each device by its piezo
+    double time_error = Metrics::unset;   ///< standard deviation of the error of the measured closing time of each device [s]
     bool searched_for_it = true;
     /// Shares of the devices that are bounce-free, that stay open, and that collapse onto the electrode.
     double bounce_free = Metrics::unset, open = Metrics::unset, collapsed = Metrics::unset;
     /// 50th, 95th and 99th percentiles of figures, by key of device_figures; infinite if too many devices do not close.
     std::map<std::string, double> at_50, at_95, at_99;
-    /// Shares of the devices whose highest rebound is within a height of yield_heights, by key.
+    /// Shares of the devices whose highest rebound is below a permitted height, by the keys of yield_heights.
     std::map<std::string, double> yield;
   };
   /// A waveform that is offered to the user; row() returns the name of its row of results.
   struct Choice {
     std::string name, file, waveform;
-    double tau = Metrics::unset;  ///< time until the contact force is steady, divided by that time under the plain step
+    /// 95th percentile of the time until a steady contact force, as a multiple of the plain step's.
+    double tau = Metrics::unset;
     [[nodiscard]] std::string row() const { return name == default_choice ? for_the_devices : name; }
   };
   /// How a drive can move the switch to its contact through stable equilibria.
@@ -83,15 +86,16 @@ struct DevicesFindings {
     std::vector<std::string> drives;  ///< names of the drives; the drive that moves the switch to its contact comes first
     /// Share of the devices with a stable path to the contact within the limits of the voltage sources.
     double share = Metrics::unset;
-    double reaches = Metrics::unset;  ///< voltage of the first drive at which the nominal design touches its contact [V]
+    double reaches = Metrics::unset;  ///< voltage of the first drive at which the nominal design makes contact [V]
     double limit = Metrics::unset;    ///< limit of the first drive's voltage towards the contact [V]
-    /// Width of the range of positions in which 90 % of the devices touch: StableApproach::touch_places() [m].
+    /// Width of the range of the contact point's positions in which the central 90 % of the devices make contact without
+    /// vibration: StableApproach::touch_places() [m].
     double touch_places = Metrics::unset;
-    double rise = Metrics::unset;  ///< least time before the first device touches its contact under a slow waveform [s]
+    double rise = Metrics::unset;  ///< least duration of the slow approach before the first device makes contact [s]
   };
   /// Contact gaps of devices over time, under the plain step and under the waveform of best.toml, at equal time steps.
   struct Courses {
-    double end = Metrics::unset;              ///< last instant of the contact gaps over time [s]
+    double end = Metrics::unset;              ///< time of the last gap in `step` and `own`; the first is at t = 0 [s]
     double unit = Metrics::unset;             ///< unit of the gaps in `step` and `own` [m]
     std::vector<std::vector<int>> step, own;  ///< contact gaps by device, then by instant [`unit`]
   };
@@ -103,27 +107,30 @@ struct DevicesFindings {
   std::string measure, waveform;
   bool better_than_plain_step = false;
   std::vector<std::string>
-      worse_in;  ///< figures in which the best candidate waveform is worse than the plain step, if the plain step is best
+      /// If the plain step is best: figures of merit in which the best candidate waveform is worse than the plain step.
+      worse_in;
   std::vector<Row> rows;
   /// Waveforms offered to the user, that with the earliest steady contact first; empty if the plain step is best.
   std::vector<Choice> choices;
   std::optional<StablePath> stable_path;
-  /// True if the 95th percentile of the rebound height under the waveform of best.toml is not significant.
+  /// True if the 95th percentile of the rebound height under the waveform of best.toml is below a significant rebound.
   std::optional<bool> goal_met;
-  double missed_by = Metrics::unset;   ///< excess of the 95th percentile of the rebound height over the goal [m]; 0: goal met
-  double step_delay = Metrics::unset;  ///< delay of the electrode's plain step, if its instant was searched [s]
+  /// Excess of the 95th percentile of the rebound height over a significant rebound [m]; 0: none.
+  double missed_by = Metrics::unset;
+  double step_delay = Metrics::unset;  ///< time of the electrode's plain step after t = 0, if the search may delay it [s]
   std::optional<Courses> courses;      ///< contact gaps of devices over time; none if the plain step is best
-  std::vector<FrontPoint> front;       ///< performance of candidate waveforms, sorted by time of first contact
-  /// Results by error of the measured Vdp, the least error first; none if Vdp is not measured.
+  std::vector<FrontPoint> front;       ///< the Pareto front of candidate waveforms, sorted by time of first contact
+  /// Performance by error of the measured dynamic pull-in voltage, the least error first; empty if devices are not calibrated.
   std::vector<CalibrationError> by_error;
-  HoldWindows windows;          ///< hold voltages between which devices stay closed, by electrode
-  std::vector<RaceEntry> race;  ///< candidates for the best waveform, the best first, on the devices on which it is chosen
+  HoldWindows windows;          ///< range of the hold voltage in which devices stay closed, by electrode
+  /// Candidates for the best waveform, the best first, with their results on the devices on which it is chosen.
+  std::vector<RaceEntry> race;
   /// Conditions of the search on figures, and the share of devices that fulfil them under the best waveform.
   std::vector<FulfilledCondition> conditions;
-  FigureValues drawing;  ///< figures of merit of the nominal design's waveform on the nominal device
+  FigureValues drawing;  ///< figures of merit of the closing of the nominal device under its own best waveform
   std::string drawing_status;
   bool drawing_goal_met = false;
-  std::string measured;  ///< name of the row of results for the waveform in calibrated.toml; empty without this file
+  std::string measured;  ///< name in the table of results of the waveform in calibrated.toml; empty without this file
   std::string next_command;
 
   /// Returns the row of results with this name; null if no row has this name.

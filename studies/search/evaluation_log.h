@@ -19,7 +19,8 @@ namespace softland {
 /// Collects the evaluations of a search. Several threads may call the log; callbacks are called one at a time.
 class EvaluationLog {
  public:
-  /// Returns the scene with an evaluation's waveforms, or none if the improvement is not to be reported.
+  /// A function that returns the scene with the waveforms of an improving evaluation; none if the improvement is not to be
+  /// reported.
   using SceneOf = std::function<std::optional<SceneFile>(const Evaluation&)>;
   /// Keeps references to `options` and `budget`, whose number of evaluations is reported. `step_cost` is the cost of the plain
   /// step.
@@ -27,14 +28,15 @@ class EvaluationLog {
 
   /// Adds an evaluation to the log. Call note() after the budget has counted the evaluation.
   void note(const Evaluation& evaluation);
-  /// Reports `given`, a waveform from outside the search, if it is the best so far. The log does not store it.
+  /// Reports `given`, a user's starting waveform, as an improvement if it is the best so far. The log does not store the
+  /// waveform.
   void begin_with(const Evaluation& given, const std::optional<SceneFile>& scene);
-  /// Reports the progress of the search without a new evaluation.
+  /// Reports the current number of evaluations by OptimizeOptions::on_progress, when no evaluation was added to the log.
   void tell();
 
   /// Returns the evaluations of the search by their index.
   [[nodiscard]] const std::map<long, Evaluation>& evaluations() const { return evaluations_; }
-  /// Returns the evaluations whose Evaluation::problem is `problem`, by their index.
+  /// Returns the evaluations of the waveform family with the number `problem`, by their index.
   [[nodiscard]] std::map<long, Evaluation> evaluations(std::size_t problem) const;
   /// Returns one more than the largest index of the evaluations; 0 without evaluations.
   [[nodiscard]] long next_index() const { return evaluations_.empty() ? 0 : evaluations_.rbegin()->first + 1; }

@@ -1,6 +1,6 @@
-// The evaluations of a search, stored by an owner that outlives the search. A search is a function of its scene and options:
-// run again, it evaluates the same candidate waveforms in the same order. If some evaluations come from this memory, the search
-// ends with the same bits, and simulates only the missing candidates.
+// Interface to a memory of evaluations that outlives a search, such as a database file. A search is a function of its scene and
+// options: run again, it evaluates the same candidate waveforms in the same order. If some evaluations come from the memory,
+// the result is the same to the last bit, and only the missing candidates are simulated.
 #pragma once
 
 #include <cstddef>
@@ -22,23 +22,22 @@ struct EvaluationKey {
   std::size_t family = 0;     ///< number of the waveform family among those that share the memory
   std::vector<double> x;      ///< searched waveform parameters of the candidate
   std::uint64_t devices = 0;  ///< number of varied devices in the evaluation; 0: the nominal device alone
-  std::uint64_t seed = 0;     ///< seed of the random devices in the evaluation
-  /// Cost limit of the evaluation: a candidate waveform whose cost on the first devices exceeds this value is not simulated on
-  /// the rest.
+  std::uint64_t seed = 0;     ///< number that stands for the random devices and the aim of the search
+  /// A candidate whose cost on the first devices exceeds this value is not simulated on the others.
   double hopeless = std::numeric_limits<double>::infinity();
 };
 
 struct EvaluationValues {
   /// Cost of the candidate by the target of the search; infinite if the waveform is infeasible.
   double cost = std::numeric_limits<double>::infinity();
-  /// Cost of the candidate waveform in the first stage of a search; see GuidedSearch.
+  /// Guide cost of the candidate, which the first stage of a search minimises: see GuidedSearch.
   double guide = std::numeric_limits<double>::infinity();
   bool lands = false;  ///< true if the switch closes without a significant rebound
   long closings = 1;   ///< number of simulated closings of the evaluation
 };
 
-/// Interface of a memory of a search's evaluations, called from any thread. Neither function throws: the owner reports failures
-/// of storage.
+/// Interface of a memory of a search's evaluations, called from any thread. recall() and note() throw no exception; the class
+/// that implements them reports failures of storage.
 class EvaluationMemory {
  public:
   virtual ~EvaluationMemory() = default;
@@ -46,7 +45,7 @@ class EvaluationMemory {
   virtual void note(const EvaluationKey& key, const EvaluationValues& values) noexcept = 0;
 };
 
-/// The parameters of the waveform families that share a memory or a log, as columns of a table.
+/// The parameters of several waveform families that share a memory or a log, as columns of one table.
 struct FamilyColumns {
   std::vector<std::vector<std::string>> families;  ///< names of the waveform parameters, by waveform family
 

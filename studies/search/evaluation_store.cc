@@ -26,8 +26,8 @@ std::vector<StoredColumn> columns_for(const std::vector<std::string>& variables)
   return columns;
 }
 
-// Returns the key under which an evaluation is stored: evaluations with equal keys have equal results. `row` has the columns of
-// all waveform families, for files of earlier versions.
+// Returns the key under which the database file stores an evaluation: evaluations with equal keys have equal results. `row` has
+// the columns of all waveform families, as in the keys of files from earlier versions.
 ContentKey content_of(const EvaluationKey& key, const std::vector<double>& row) {
   std::string text = fmt::format("{} {} {:016x}", key.devices, key.seed, std::bit_cast<std::uint64_t>(key.hopeless));
   for (const double x : row) text += fmt::format(" {:016x}", std::bit_cast<std::uint64_t>(x));

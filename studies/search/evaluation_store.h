@@ -18,12 +18,12 @@ namespace softland {
 /// Name of the database file in the folder of a search.
 inline constexpr const char* evaluations_file = "evaluations.sqlite";
 
-/// A database file with one row per simulated candidate waveform, in the order in which the simulations ended. On request the
-/// file takes over rows of a search in the same file that differs only in its budget.
+/// A database file with one row per simulated candidate waveform, in the order in which the simulations ended. A search with a
+/// larger or smaller budget than the one before takes over the rows of the earlier search from the same file.
 class EvaluationStore : public EvaluationMemory {
  public:
   /// `columns` are the parameters of all waveform families. `points` is the largest number of evaluations that the search
-  /// `plan` makes; later evaluations are not stored. Throws the exceptions of the constructor of StudyStore.
+  /// `plan` makes; further evaluations are not stored. Throws the exceptions of the constructor of StudyStore.
   EvaluationStore(const std::filesystem::path& file, const nlohmann::json& plan, std::int64_t points, std::uint64_t seed,
                   FamilyColumns columns, const StoredOrigin& origin);
 
@@ -45,7 +45,7 @@ class EvaluationStore : public EvaluationMemory {
   StudyStore store_;
   std::int64_t points_;
   mutable std::mutex mutex_;
-  // Evaluations of the same search that the database file contained at the beginning.
+  // Results of the evaluations that the database file held for the same search when it was opened, by their key.
   std::map<ContentKey, EvaluationValues> known_;
   std::int64_t next_ = 0, computed_ = 0, recalled_ = 0;
   std::exception_ptr failure_;

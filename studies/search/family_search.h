@@ -24,8 +24,8 @@ class FamilySearch {
   FamilySearch(const SearchSetting& setting, const OptimizeOptions& options,
                std::function<void(const Evaluation&)> on_evaluation);
 
-  /// Adds a starting point before the waveform family's own: the given waveforms, or the most similar waveforms of the family.
-  /// Waveforms from which a search cannot begin are skipped.
+  /// Adds a starting point before the starts of the waveform family: the point of the given waveforms, or of the most similar
+  /// waveforms of the family. Waveforms with which no search can begin, for example with another hold level, are skipped.
   void begin_at(const DriveWaveforms& waveforms);
   /// Adds a starting point of the search before all others: the point `x` of the waveform family's parameters.
   void begin_at_point(const std::vector<double>& x);
@@ -43,8 +43,8 @@ class FamilySearch {
   [[nodiscard]] PreparedScene prepared(const Evaluation& e) const { return setting_.prepared(waveforms(e)); }
   /// Returns the waveform parameters of an evaluation, by drive.name.
   [[nodiscard]] std::map<std::string, double> named(const Evaluation& e) const;
-  /// Returns the evaluation that GuidedSearch::surest_below() finds; `others` may contain evaluations of other waveform
-  /// families.
+  /// Returns the most reliable of the evaluations with a target cost below `own`: see GuidedSearch::surest_below(). `others`
+  /// are evaluations that must not be returned, also of other waveform families.
   [[nodiscard]] std::optional<Evaluation> surest_below(double own, const std::vector<Evaluation>& others) const;
 
  private:

@@ -89,7 +89,7 @@ void FirstTouchProblem::add_free(const PreparedScene& prepared, const std::strin
     pull = up ? bound.upper : bound.lower;
     release = up ? bound.lower : bound.upper;
   } else {
-    // Voltages count from the voltage at which the electrode does not pull (neutral voltage); with a slew limit, from 0 V.
+    // Count voltages from the voltage without pull (neutral voltage); with a slew limit, from 0 V.
     const double neutral = ramps_ ? 0 : model_.neutral_voltage(drive);
     f.sign = std::abs(low - neutral) > std::abs(high - neutral) ? -1 : 1;
     const double most = f.sign > 0 ? std::min(high, peak) - neutral : neutral - std::max(low, -peak);
@@ -123,7 +123,8 @@ std::vector<double> FirstTouchProblem::strengths(const VectorXd& c) const {
   return all;
 }
 
-// Converts a voltage to a control, the dimensionless strength of a drive, which may be outside its bounds.
+// Returns the control of a drive at a voltage: its strength (or, with a slew limit, its voltage) over the largest one. The
+// control may be outside its bounds.
 double FirstTouchProblem::control(const Free& f, double volts) const {
   const bool squared = !ramps_ && model_.drive_kind(f.drive) == DriveKind::electrode;
   return (squared ? model_.strength(f.drive, volts) : f.sign * volts) / f.largest;
@@ -192,15 +193,15 @@ std::map<std::string, double> FirstTouchProblem::volts(const VectorXd& c) const 
   return all;
 }
 
-// Returns the hold levels of all drives [V]; those of the controlled drives are multiplied by `share_of_free`.
+// Returns the hold levels of all drives [V]; the levels of the controlled drives are multiplied by `share_of_free`.
 std::vector<double> FirstTouchProblem::held_levels(double share_of_free) const {
   std::vector<double> all = hold_;
   for (const Free& f : free_) all[f.drive] *= share_of_free;
   return all;
 }
 
-// Returns the least share of the controlled drives' hold levels that keeps the switch closed. Below this share, the closed
-// equilibrium does not exist. Share 1 must keep the switch closed.
+// Returns the least factor on the controlled drives' hold levels at which a closed equilibrium exists. The factor 1 must keep
+// the switch closed.
 double FirstTouchProblem::least_closing_share() const {
   constexpr double precision = 1e-9;
   const auto closes = [&](double share) { return keeps_closed(model_, closed_equilibrium(model_, held_levels(share))); };
@@ -218,8 +219,8 @@ std::optional<FirstTouchProblem::Landing> FirstTouchProblem::landing() const {
   const std::vector<double> levels = held_levels(ramps_ ? least_closing_share() : 1);
   const std::optional<ClosedEquilibrium> closed = closed_equilibrium(model_, levels);
   if (!keeps_closed(model_, closed)) return std::nullopt;
-  // Treat the contact as rigid: shift the contact point from its depth in the contact back to the plane of first contact, by
-  // the static deflection under a force on the contact point.
+  // Treat the contact as rigid: a force on the contact point shifts it from its depth in the elastic contact back to the plane
+  // of first contact; the other coordinates follow statically.
   std::vector<double> drives;
   for (std::size_t k = 0; k < levels.size(); ++k) drives.push_back(strength(k, levels[k]));
   Switch::Workspace work = model_.workspace();
@@ -261,7 +262,7 @@ std::optional<ControlledCourse> FirstTouchProblem::swing(double longest) const {
 
 std::optional<ControlledCourse> FirstTouchProblem::flown(std::span<const Signal> signals, int intervals, double longest) const {
   constexpr double tolerance = 1e-6;
-  constexpr int looks = 16;  // number of samples of a signal per interval of the controls
+  constexpr int looks = 16;  // samples per interval of the controls, over which a signal is averaged
   std::vector<double> times{0};
   std::vector<VectorXd> states{start_};
   ClosingOptions options{.duration = longest, .tolerance = tolerance, .after_contact = 0};

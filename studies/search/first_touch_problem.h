@@ -28,9 +28,9 @@ namespace softland {
 
 class FirstTouchProblem final : public ControlledSystem {
  public:
-  /// Keeps a reference to `prepared`. Controlled are the drives whose waveforms the actuator may vary, within their limits and,
-  /// for electrodes, up to `peak` [V]. The other drives stay at their values in the plain step. Throws InvalidInput for a scene
-  /// that lacks the drive or its limits, whose gas film is compressible, or whose open switch does not rest above its contact.
+  /// Keeps a reference to `prepared`. The controlled drives are those of the actuator, within their limits and, for electrodes,
+  /// up to `peak` [V]. The other drives stay at their values in the plain step. Throws InvalidInput for a scene that lacks the
+  /// drive or its limits, whose gas film is compressible, or whose open switch does not rest above its contact.
   FirstTouchProblem(const PreparedScene& prepared, Actuator actuator, double peak = std::numeric_limits<double>::infinity());
 
   [[nodiscard]] Eigen::Index states() const override { return 2 * modes_; }
@@ -54,15 +54,15 @@ class FirstTouchProblem final : public ControlledSystem {
   };
   /// Returns the beam at rest on the contact plane under the hold levels of all drives; none if the contact force would have to
   /// be tensile. If the slew is limited, the controlled drives have the smallest share of their hold levels that keeps the
-  /// switch closed: with a larger share the contact point would have to come to rest from behind the contact plane.
+  /// switch closed: with a larger share, the pull would leave no motion that comes to rest on the contact plane from the open
+  /// side.
   [[nodiscard]] std::optional<Landing> landing() const;
 
   /// Returns the quickest single swing to the contact: full pull, then full release, so that the contact point turns back as it
-  /// arrives. None if full pull does not reach the contact within `longest` [s].
+  /// arrives. Nothing if full pull does not reach the contact within `longest` [s].
   [[nodiscard]] std::optional<ControlledCourse> swing(double longest) const;
-  /// Returns the motion until first contact under signals of all drives, with the controls in `intervals` intervals. The
-  /// controls are the signals of the controlled drives, clamped to their bounds. None if the switch does not touch its contact
-  /// within `longest` [s].
+  /// Simulates the motion until first contact under signals of all drives, and returns it with the controls averaged over
+  /// `intervals` equal intervals and clamped to their bounds. Nothing if the switch does not make contact within `longest` [s].
   [[nodiscard]] std::optional<ControlledCourse> flown(std::span<const Signal> signals, int intervals, double longest) const;
   /// Returns the voltages of the controlled drives at the values `c` of the controls, by drive [V].
   [[nodiscard]] std::map<std::string, double> volts(const Eigen::VectorXd& c) const;
@@ -75,8 +75,8 @@ class FirstTouchProblem final : public ControlledSystem {
   struct Free {
     std::size_t drive;
     std::string name;
-    double largest;   ///< largest strength of the controlled drive, or its largest voltage if the slew is limited
-    double sign;      ///< sign of the voltage that an electrode gets; its pull does not depend on the sign
+    double largest;   ///< largest strength of the drive, or its largest voltage if the slew is limited: the unit of its control
+    double sign;      ///< sign of the electrode's voltages, -1 if its limits allow more voltage below 0 V
     double max_slew;  ///< slew limit of the drive's voltage source [V/s]
   };
   [[nodiscard]] double strength(std::size_t drive, double value) const;
@@ -91,7 +91,7 @@ class FirstTouchProblem final : public ControlledSystem {
   Eigen::Index modes_;
   double gap_;
   Eigen::VectorXd omega_, per_q_, per_v_, per_acceleration_, tip_, tip_speed_, start_, pull_, release_;
-  std::vector<double> held_;  ///< constant strengths of all drives; the entries of controlled drives are not used
+  std::vector<double> held_;  ///< strengths of the drives that are not controlled; other entries have no meaning
   std::vector<double> hold_;  ///< voltages of all drives after first contact [V]
   std::vector<Free> free_;
   std::vector<ControlBound> bounds_;

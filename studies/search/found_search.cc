@@ -34,7 +34,7 @@ OptimizeResult& FoundSearch::best() {
 
 bool FoundSearch::is_success() const {
   const auto* devices = std::get_if<RobustSearchResult>(&result);
-  // If the plain step is the result, the search succeeds only if the plain step is bounce-free.
+  // If the plain step is the result, it counts as a success only if it closes without a bounce.
   const bool has_answer = devices == nullptr || !devices->best.plain_step_wins || devices->plain_step_lands();
   return best().is_success() && has_answer;
 }

@@ -13,7 +13,7 @@ namespace softland {
 namespace {
 
 constexpr std::size_t starts_of_the_second = 8;
-// Least distance of two starts of the search's second stage, as a share of a variable's range.
+// Two starts of the second stage of a search differ in a variable by at least this share of its range.
 constexpr double separation = 0.05;
 
 }  // namespace
@@ -45,7 +45,7 @@ OptimizerResult GuidedSearch::stage(Problem problem, OptimizerOptions options, b
       const std::scoped_lock lock(mutex_);
       const auto found = known_.find(e.x);
       own.value = found == known_.end() ? std::numeric_limits<double>::quiet_NaN()
-                                        : found->second.target;  // there are no costs if the evaluation threw an exception
+                                        : found->second.target;  // NaN if the evaluation threw an exception and has no costs
     }
     on_evaluation_(own);
     log_.emplace(own.index, std::move(own));
@@ -129,7 +129,7 @@ OptimizerResult GuidedSearch::run(Problem problem, OptimizerOptions options, Cos
   OptimizerResult result = stage(problem, first, costs == Costs::both || costs == Costs::guide);
   const bool goes_on = result.termination != Termination::interrupted && result.termination != Termination::failure;
   OptimizerOptions second = options;
-  second.seed = ~options.seed;  // second stage of the search: use other random points than in the first stage
+  second.seed = ~options.seed;  // random numbers other than in the first stage
   second.goes_on = options.goes_on || costs == Costs::both;
   second.smooth = costs == Costs::both;
   second.max_evaluations -= result.evaluations;

@@ -21,21 +21,22 @@ struct SearchCosts {
   double guide = std::numeric_limits<double>::infinity();
   double target = std::numeric_limits<double>::infinity();
   bool lands = false;  ///< true if the switch closes without a significant rebound
-  /// Costs of a point without the penalty of broken conditions, and, apart from them, each excess g of Conditions.
+  /// Costs of a point without the penalty for violated conditions, and the excess g of each condition, which is fulfilled if g
+  /// <= 0. Optimizers with constraints use these.
   struct Apart {
     double guide, target;
     std::vector<double> excess;
   };
-  /// Costs apart from the conditions; none without conditions, and if the costs come from an EvaluationMemory.
+  /// Costs without the penalty for conditions; empty without conditions, and if the costs come from an EvaluationMemory.
   std::optional<Apart> apart = {};
 };
 
-/// Functions for the gradients of the guide cost and the target cost, as Problem::gradient; may be null. Under conditions they
-/// return what Conditions::gradients returns.
+/// Functions for the gradients of the guide cost and the target cost, as Problem::gradient; may be null. If the search has
+/// conditions, the functions also return their gradients, as Conditions::gradients.
 struct CostGradients {
   std::function<std::vector<double>(std::span<const double>)> guide, target;
   std::size_t conditions = 0;
-  /// Computes the costs of a point again, apart from the conditions, even if the memory has them.
+  /// Computes the costs of a point without the penalty for conditions, by a new simulation.
   std::function<SearchCosts::Apart(std::span<const double>)> apart = {};
 };
 
@@ -43,7 +44,7 @@ struct CostGradients {
 /// thirds of the budget, then the target cost.
 enum class Costs { same, guide, target, both };
 
-/// Divisor of the budget: one part in this number is spent on the target cost, if it differs from the guide cost.
+/// A third (1 / target_share) of the budget is spent on the target cost, if it differs from the guide cost.
 inline constexpr long target_share = 3;
 
 class GuidedSearch {
@@ -57,20 +58,20 @@ class GuidedSearch {
   /// Minimises over the variables of `problem` from its starts. The objective of `problem` and the callbacks of `options` are
   /// not used. Throws the exceptions of minimize(). Result, improvements and indices are those of one search by the target
   /// cost; the first index is `first_index`. If both costs are the same and no point closes without a bounce, a second stage of
-  /// `more` evaluations continues from the best points. A further call of run() begins at these points, and at starts that were
-  /// not tried; its result covers all calls.
+  /// `more` evaluations continues from the best points. A further call of run() begins at the best points of earlier calls and
+  /// at new starts; its result covers all calls.
   [[nodiscard]] OptimizerResult run(Problem problem, OptimizerOptions options, Costs costs, long more = 0, long first_index = 0);
   struct Best {
     Evaluation evaluation;  ///< best evaluation, with the target cost as value
     double cost = 0;        ///< guide cost or target cost of the evaluation, as requested
   };
-  /// Returns the evaluation with the lowest guide cost for `Costs::guide`, with the lowest target cost otherwise. Nothing if no
+  /// Returns the evaluation with the lowest guide cost for `Costs::guide`, with the lowest target cost otherwise. Empty if no
   /// evaluation is feasible.
   [[nodiscard]] std::optional<Best> best(Costs costs) const;
   /// Returns all evaluations of the search, by index, with the target cost as value.
   [[nodiscard]] const std::map<long, Evaluation>& log() const { return log_; }
-  /// Returns the evaluation with the least guide cost among evaluations whose target cost is below `own` and whose points
-  /// differ from `others`.
+  /// Returns the evaluation that most reliably closes without a bounce: the one with the least guide cost, among evaluations
+  /// whose target cost is below `own` and whose points are not among `others`.
   [[nodiscard]] std::optional<Evaluation> surest_below(double own, const std::vector<std::vector<double>>& others) const;
 
  private:

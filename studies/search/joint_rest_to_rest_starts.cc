@@ -12,9 +12,9 @@
 namespace softland {
 namespace {
 
-// Used shares of the voltage ranges, for drives other than the pulling electrode.
+// Shares of their voltage ranges that drives other than the pulling electrode use in a starting waveform.
 constexpr std::array shares = {0.15, 0.4, 1.0};
-constexpr double edge_of_period = 0.005;  // shortest edge of the waveform families, in periods of the first mode
+constexpr double edge_of_period = 0.005;  // shortest edge of a waveform, in periods of the first mode
 constexpr double longest = 3;             // longest swing (pull, then release) to the contact, in periods of the first mode
 
 struct Levels {

@@ -25,23 +25,24 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr int first_knots = 48;       // number of intervals of the controls before their refinement
+constexpr int first_knots = 48;       // number of equal intervals of the controls at first; some are then divided
 constexpr double piece_angle = 0.75;  // phase angle by which the fastest mode turns in one interval of the time mesh [rad]
-// Permitted difference between optimal control and simulation: relative in the time of first contact, or in contact gaps if
-// only one of the two motions touches.
+// Permitted difference of the time of first contact between optimal control and simulation: relative, or, multiplied by the
+// impact velocity, in contact gaps.
 constexpr double agreement = 1e-4;
 constexpr double longest_swing = 3;  // longest time of a swing to the contact, in periods of the first mode
-// Relative excess over the permitted impact velocity that a simulation of the waveforms may have.
+// Excess of the simulated impact velocity over that of the optimal control at which the two still agree, as a share of the
+// permitted impact velocity.
 constexpr double softness = 0.2;
-// Relative tolerance of the integrator for comparing catches (pulls after first contact).
+// Relative tolerance of the integrator for comparing catches, pulls after first contact that keep the switch closed.
 constexpr double catch_tolerance = 1e-6;
-constexpr int refinements = 3;  // number of refinements of the controls' time points: each halves the shortest interval
+constexpr int refinements = 3;  // halvings of the controls' time intervals that are permitted
 constexpr int most_meshes = 3;  // number of meshes of the optimal control problem, each with half the width of its predecessor
 
-// Permitted differences of modal coordinates from the closed equilibrium, in contact gaps, for successive solutions of the
-// optimal control problem.
+// Permitted distances of the modal coordinates at first contact from the closed equilibrium, in contact gaps. The optimal
+// control problem is solved for each, starting from the solution before.
 constexpr std::array rest_distances = {0.1, 0.03, 0.01, 0.003, 0.001, 0.0003};
-// Largest number of Ipopt iterations per permitted distance from the equilibrium; about thirty if a solution exists.
+// Largest number of Ipopt iterations for each but the first of rest_distances; about 30 suffice if a solution exists.
 constexpr long nearing_iterations = 100;
 
 std::vector<double> uniform_knots(int intervals) {
@@ -61,7 +62,7 @@ Arrival arrival(const PreparedScene& prepared, const DriveWaveforms& searched, A
   return {m.initial_contact_time, m.impact_velocity};
 }
 
-// One search for the least time of a first contact: the optimal control problem, its best solution so far, and its progress.
+// One search for the least time of a first contact: the optimal control problem and its best solution so far.
 class LeastTimeSearch {
  public:
   LeastTimeSearch(const PreparedScene& prepared, const LeastTimeOptions& options)
@@ -78,8 +79,8 @@ class LeastTimeSearch {
     return from(std::move(*swing), longest_time());
   }
 
-  // Returns waveforms of solutions whose modes end closer and closer to rest on the contact, on the initial intervals and mesh.
-  // After first contact the drives are as in `plain`.
+  // Returns waveforms under which the modes come to rest at first contact ever more closely (rest_distances), on the initial
+  // intervals and mesh. After first contact the drives are as in `plain`.
   std::vector<DriveWaveforms> ways_to_rest(const DriveWaveforms& plain) {
     std::vector<DriveWaveforms> all;
     std::optional<ControlledCourse> swing = first_touch_.swing(longest_time());
@@ -143,12 +144,12 @@ class LeastTimeSearch {
                 .knots = uniform_knots(first_knots),
                 .longest_piece = piece_angle / (fastest * course_.time),
                 .stop = options_.progress.stop};
-    // A beam stays at rest on the contact only if the drives end at the levels of its equilibrium.
+    // A beam stays at rest on the contact only if the drives end at the hold levels of its closed equilibrium.
     for (Index k = 0; landing && first_touch_.ramps() && k < first_touch_.controls(); ++k)
       problem_.bounds[static_cast<std::size_t>(k)].after = landing->controls[k];
   }
 
-  // Solves the optimal control problem again from the last solution, which remains if the solver fails.
+  // Solves the optimal control problem with the last solution as the guess. If the solver fails, the last solution remains.
   Status improve() {
     ControlledCourse course = solve(problem_, course_);
     result_.message = course.message;
@@ -168,8 +169,8 @@ class LeastTimeSearch {
     }
   }
 
-  // Brings the modes to rest in several solutions, since Ipopt cannot do so in one solution. Calls `nearer` after each
-  // solution.
+  // Requires that the modes end ever closer to rest (rest_distances), by one solution for each distance, since Ipopt does not
+  // find a motion that ends at rest at once. Calls `nearer` after each solution.
   Status come_to_rest(const VectorXd& landed, const std::function<void()>& nearer = {}) {
     const Index n = first_touch_.states();
     for (Index r = 0; r < n; ++r) problem_.at_the_end.push_back({.row = VectorXd::Unit(n, r)});
@@ -213,7 +214,8 @@ class LeastTimeSearch {
       const double missed = apart * std::max(touch.velocity, result_.impact_velocity);
       bool near = apart <= agreement * result_.time || missed <= agreement * prepared_.scene.device.contact_gap();
       const bool as_soft = touch.velocity <= result_.impact_velocity + softness * options_.impact_velocity;
-      // In the simulation a contact point that comes to rest near the contact plane may touch earlier than in the optimum.
+      // A contact point that comes to rest near the contact plane may cross this plane earlier in the simulation than in the
+      // optimum.
       near = near || (options_.at_rest && as_soft && touch.time < result_.time);
       if ((near && as_soft) || (near && mesh == most_meshes)) return ended(Status::done, {});
       if (mesh == most_meshes) return ended(Status::numerical_failure, "a simulation of the waveform touches at another time");
@@ -246,7 +248,7 @@ LeastTime least_time(const PreparedScene& prepared, const LeastTimeOptions& opti
 std::vector<DriveWaveforms> rest_to_rest_starts(const PreparedScene& prepared, Actuator actuator, double impact_velocity,
                                                 const Progress& progress) {
   constexpr int most_modes_followed = 4;
-  // Time in which a drive's voltage goes from one end of its range to the other, in periods of the first mode.
+  // Times in which a drive's voltage may go from one end of its range to the other, in periods of the first mode.
   constexpr std::array ramps = {1.0 / 9, 1.0 / 18};
   const double period = 2 * pi / prepared.model.basis().angular_frequencies()[0];
   std::vector<DriveWaveforms> found;
@@ -274,8 +276,8 @@ std::vector<DriveWaveforms> rest_to_rest_starts(const PreparedScene& prepared, A
 
 namespace {
 
-// Delays of the catch (the pull after first contact), as shares of the time of first contact. Without delay, the drives would
-// pull while the modes still swing back from the contact.
+// Delays between first contact and the pull that then keeps the switch closed (catch), as shares of the time of first contact.
+// Without a delay, the drives would pull while the modes still swing back from the contact.
 constexpr std::array catch_delays = {0.0, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04};
 
 // The catches (pulls after first contact) that can follow the waveforms of `path`, which end at first contact, and their
@@ -291,10 +293,10 @@ class AfterTouch {
     until_touch_.waveforms = tables_of(first_touch_, path.course);
   }
 
-  // Returns the catch (pull after first contact) whose closing rebounds least, among catches that begin after `delay` and last
-  // at most `longest`.
+  // Returns the catch (pull after first contact) under which the switch rebounds least, among catches that begin `delay` after
+  // first contact. `delay` and the durations are multiples of the time of first contact.
   [[nodiscard]] Catch best_catch(double delay, const Progress& progress) const {
-    // Longest catch, and step between two lengths of a catch, as multiples of the time of first contact.
+    // Longest catch, and difference between two tried durations of a catch, as multiples of the time of first contact.
     constexpr double longest = 3, step = 0.1;
     const double period = 2 * pi / prepared_.model.basis().angular_frequencies()[0];
     Catch best;
@@ -332,7 +334,7 @@ class AfterTouch {
   FirstTouchProblem first_touch_;
   DriveWaveforms plain_;
   const LeastTime& path_;
-  LeastTime until_touch_;  // least time with its waveforms, which end at first contact
+  LeastTime until_touch_;  // the least time `path_`, with waveforms that end at first contact
 };
 
 bool goes_before(const LimitLanding& a, const std::optional<LimitLanding>& b) {
@@ -377,7 +379,8 @@ class LimitStudy {
   }
 
  private:
-  // Multiples of the permitted impact velocity at which quicker closings are tried.
+  // Multiples of the permitted impact velocity at which least times are computed, too, since a harder first contact may allow a
+  // quicker bounce-free closing.
   static constexpr std::array quicker = {10.0, 3.0};
   static constexpr std::array speeds = {0.3, 1.0, 3.0, 10.0, 30.0, 100.0};
   static constexpr std::array peaks = {0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95};
@@ -399,8 +402,8 @@ class LimitStudy {
     return known_.emplace(share, least_time(result_.given, other)).first->second;
   }
 
-  // Simulates closings with the waveforms `path` of a least time, with several catches (pulls after first contact) if
-  // `catches`, until a closing is bounce-free; stores the best one in the result.
+  // Simulates closings with the waveforms of the least time `path`. If `catches`, pulls after first contact (catches) are tried
+  // with several delays until a closing is bounce-free. Stores the best closing in the result.
   void land(const LeastTime& path, bool catches) {
     if (path.status != Status::done) return;
     const AfterTouch after(result_.given, path, result_.options.actuator);
@@ -427,7 +430,7 @@ class LimitStudy {
   const Progress& progress_;
   LeastTimeOptions usual_;
   double parts_, done_ = 0;
-  std::map<double, LeastTime> known_;  // least times by the ratio of their impact velocity to the permitted impact velocity
+  std::map<double, LeastTime> known_;  // least times by permitted impact velocity, as a multiple of the default
 };
 
 }  // namespace
@@ -467,7 +470,7 @@ Limit limit(const SceneFile& file, const LimitOptions& options, const Progress& 
   progress.throw_if_stopped();
   if (!prepared.scene.spread.empty()) result.approach = stable_approach(prepared, options.actuator);
   if (result.approach) result.quasi_static = quasi_static_speed(*result.approach, prepared, result.step.steady_force_time);
-  constexpr double soft = 0.01;  // permitted impact velocity as a share of that under the plain step
+  constexpr double soft = 0.01;  // default permitted impact velocity, as a share of the plain step's
   require_request(options.impact_velocity || std::isfinite(result.step.impact_velocity),
                   [] { return "the plain step does not touch: give " + requested("impact-velocity"); });
   result.impact_velocity = options.impact_velocity.value_or(soft * result.step.impact_velocity);

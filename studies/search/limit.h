@@ -40,16 +40,16 @@ struct LeastTimeOptions {
 };
 
 struct LeastTime {
-  /// Outcome of the search for the least time. `done`; `no_contact`: the drives cannot bring the switch to its contact in one
-  /// swing; `numerical_failure`: the optimum was not found, or a simulation of its waveforms gives another result;
+  /// Outcome of the search for the least time. `done`: found; `no_contact`: the drives cannot bring the switch to its contact
+  /// in one swing; `numerical_failure`: the optimum was not found, or a simulation of its waveforms gives another result;
   /// `interrupted`.
   Status status = Status::not_run;
   std::string message = {};
   bool from_start = false;                                 ///< true if the optimum was found from LeastTimeOptions::start
   double time = std::numeric_limits<double>::quiet_NaN();  ///< least time until the first contact [s]
   double impact_velocity = std::numeric_limits<double>::quiet_NaN();  ///< speed of the contact point at the first contact [m/s]
-  /// For a first contact at rest: largest difference of a modal coordinate from its value in the closed equilibrium, in contact
-  /// gaps.
+  /// If all modes must end at rest: largest permitted difference of a modal coordinate at first contact from its value in the
+  /// closed equilibrium, in contact gaps.
   double distance = std::numeric_limits<double>::quiet_NaN();
   /// Largest permitted speed of the contact point at the first contact [m/s].
   double permitted = std::numeric_limits<double>::quiet_NaN();
@@ -91,7 +91,7 @@ struct LimitOptions {
   std::optional<double> impact_velocity = {};
   DriveWaveforms start = {};                  ///< waveforms from which the optimum is also sought: see LeastTimeOptions::start
   std::map<std::string, double> before = {};  ///< voltages of the drives of `start` before t = 0, if not 0 [V]
-  bool curves = true;  ///< true: also compute least times as functions of peak voltage and of permitted impact velocity
+  bool curves = true;  ///< true: also compute least times for several peak voltages and permitted impact velocities
 };
 
 struct Limit {
@@ -101,16 +101,16 @@ struct Limit {
   ClosedState closed_state = {};                                      ///< state of the closed switch under the hold levels
   std::string hold_warning = {};  ///< warning if the hold levels do not keep the switch closed
   Metrics step;                   ///< figures of merit of the closing under the plain step
-  /// How a drive can move the switch to its contact through stable equilibria on the devices of [spread]; none if no drive can,
-  /// or without [spread].
+  /// Slow approach by which a drive can move the switch to its contact through stable equilibria; none if no drive can, or if
+  /// the scene has no [spread].
   std::optional<StableApproach> approach = {};
-  /// Impact velocity of a slow stable approach that takes as long as the plain step until its force is steady:
-  /// quasi_static_speed() [m/s].
+  /// Impact velocity of a slow approach through stable equilibria in the time in which the contact force of the plain step gets
+  /// steady: quasi_static_speed() [m/s].
   double quasi_static = std::numeric_limits<double>::quiet_NaN();
   LeastTime touch;                      ///< least time of a first contact at the permitted impact velocity
   LeastTime rest;                       ///< least time of a first contact with every mode at rest
-  std::optional<LimitLanding> landing;  ///< the quickest bounce-free closing; if there is none, the closing with the
-                                        ///< lowest rebound
+  /// The quickest bounce-free closing; if no closing is bounce-free, that with the lowest rebound.
+  std::optional<LimitLanding> landing;
   std::vector<LeastTime> over_peak, over_velocity;
   bool interrupted = false;
 };

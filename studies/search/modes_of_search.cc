@@ -11,7 +11,8 @@
 namespace softland {
 namespace {
 
-// Limits the slew of the searched drives, so that their edges are slow, and returns true if a limit changes.
+// Limits the slew of searched drives without max_slew to their range per period of the highest mode. Returns true if a limit
+// changes.
 bool make_gentle(SearchSetting& setting) {
   const double shortest_period = 2 * pi / setting.given.model.basis().angular_frequencies().maxCoeff();
   bool changes = false;

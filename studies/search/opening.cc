@@ -29,17 +29,19 @@
 namespace softland {
 namespace {
 
-// Weight in the cost of the opening time in periods of the first mode; vibration in contact gaps has weight 1.
+// Weight, in the cost of an opening, of its settling time in periods of the first mode. The residual vibration in contact gaps
+// has the weight 1.
 constexpr double time_share = 0.3;
-constexpr double outside_share = 5;         // extra weight in the cost of the vibration beyond the band about the open position
+// Additional weight, in the cost, of the part of the vibration beyond the band about the open position.
+constexpr double outside_share = 5;
 constexpr double stays_closed = 10;         // cost of an opening waveform under which the switch stays closed
-constexpr double touched_again = 0.5;       // additional cost of every contact after the switch has opened
+constexpr double touched_again = 0.5;       // cost of every contact after the first opening
 constexpr double opening_tolerance = 1e-5;  // relative tolerance of the integrator in simulated openings
-// Number of periods with all drives at 0 V over which a candidate waveform's vibration is measured.
+// Number of periods of the first mode, after all drives are at 0 V, over which a candidate's vibration is measured.
 constexpr double seen_for = 1;
-constexpr double watched_for = 3;  // least number of periods over which the best waveform's vibration is measured
+constexpr double watched_for = 3;  // the same number for the best waveform, at least
 
-// Time for which voltage sources stay at their hold levels before the command to open, in time constants of the sources.
+// Time in which a voltage source settles at its hold level before the command to open, in time constants of the source.
 constexpr double settled_after = 50;
 
 class ReleaseSearch {
@@ -56,14 +58,14 @@ class ReleaseSearch {
   [[nodiscard]] const std::vector<Signal>& plain() const { return plain_; }
   [[nodiscard]] std::vector<Signal> signals(std::span<const double> x) const { return applied(pulses_.commanded(x)); }
 
-  /// Returns the scene with the commanded voltages of all drives at the point `x` of the search, from the hold levels on; if
-  /// `x` is empty, with those of the plain opening.
+  /// Returns the scene with the commanded voltages of all drives at the point `x` of the search, which begin at the hold
+  /// levels. An empty `x` gives the plain opening.
   [[nodiscard]] SceneFile scene(std::span<const double> x) const {
     const std::vector<Corners> commanded = x.empty() ? pulses_.plain() : pulses_.commanded(x);
     const std::vector<std::string> names = given_.drive_names();
     DriveWaveforms waveforms;
     for (std::size_t k = 0; k < names.size(); ++k) {
-      if (names[k] == dispersion_drive) continue;  // the factor of the dispersion force needs no voltage source
+      if (names[k] == dispersion_drive) continue;  // the dispersion force is a drive without a voltage
       Table table;
       for (const auto& [time, voltage] : commanded[k]) {
         table.time.push_back(time);
@@ -80,7 +82,7 @@ class ReleaseSearch {
     return file;
   }
 
-  /// Simulates an opening of the switch `model`: that of the scene, or the same switch with more modes.
+  /// Simulates an opening of the switch `model`, which may have more modes than the scene's.
   [[nodiscard]] Opening open(const Switch& model, std::span<const double> closed, std::vector<Signal> signals, double tolerance,
                              double window, const std::atomic<bool>* stop = nullptr) const {
     Opening o{.signals = std::move(signals), .voltages_end = 0, .trajectory = {}, .figures = {}};
@@ -126,8 +128,8 @@ class ReleaseSearch {
     return all;
   }
 
-  // Returns the applied voltage of drive k for the commanded voltages `points`, if the voltage source was at the first voltage
-  // long enough to settle.
+  // Returns the voltage that the source of drive k applies when the commanded voltage follows `points`. Before, the source has
+  // settled at the first voltage.
   [[nodiscard]] Signal applied(std::size_t k, Corners points) const {
     const DriverModel& source = given_.drives[k].source;
     const SourceErrors& errors = given_.drives[k].errors;
@@ -152,7 +154,8 @@ bool is_open_with_drives(const OpeningFigures& f, double band) {
   return f.status == Status::done && f.residual_vibration <= band;
 }
 
-// True if the opening `a` comes to stay open earlier than `b`; with equal times, or none, if `a` leaves less vibration.
+// True if the opening `a` is better than `b`: it comes to stay near the open position earlier, or, if neither does, it leaves
+// less vibration.
 bool better(const OpeningFigures& a, const OpeningFigures& b) {
   if (!std::isfinite(a.release_time)) return false;
   if (!std::isfinite(b.release_time)) return true;

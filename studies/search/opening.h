@@ -40,14 +40,14 @@ struct OpeningOptions {
 /// A simulated opening, under one signal per drive of the switch.
 struct Opening {
   std::vector<Signal> signals = {};
-  /// Time from which on all drives are at 0 V in the opening [s].
+  /// Time of the last change of a drive, from which on all drives are at 0 V [s].
   double voltages_end = std::numeric_limits<double>::quiet_NaN();
   Trajectory trajectory;
   OpeningFigures figures;
 };
 
 struct ConfirmingOpening {
-  std::string name;  ///< changed setting of the confirming simulation: "tolerance 1e-9", "6 modes"
+  std::string name;  ///< changed setting in a simulation that confirms the best opening: "tolerance 1e-9", "6 modes"
   OpeningFigures figures;
 };
 
@@ -55,8 +55,8 @@ struct ConfirmingOpening {
 /// the voltage sources. All devices get the voltages of the nominal device. The figures of a device that does not stay open are
 /// infinite.
 struct DeviceOpenings {
-  double open = 0;     ///< share of devices that are open and stay open at the end of the simulated time
-  double in_band = 0;  ///< share of devices within the band about the open position as soon as all drives are at 0 V
+  double open = 0;     ///< share of devices that open, and stay near the open position until the end
+  double in_band = 0;  ///< share of devices that stay within the band about the open position from when all drives are at 0 V
   /// 95th percentiles of settling time [s], residual vibration [m] and overshoot [m].
   double settling_time = 0, residual_vibration = 0, overshoot = 0;
 };
@@ -71,7 +71,7 @@ struct OpeningResult {
   PreparedScene given;
   OpeningOptions options;
   double open_position = 0;  ///< position of the contact point with all drives at 0 V [m]
-  /// Largest distance from the open position of the band about the open position in which the switch counts as at rest [m].
+  /// Half width of the band about the open position in which the switch counts as at rest [m].
   double band = 0;
   double contact_force = 0;   ///< contact force that holds the switch closed before t = 0 [N]
   double window = 0;          ///< simulated time after the command to open [s]
@@ -86,8 +86,10 @@ struct OpeningResult {
   /// Figures of the openings of varied devices; none if not requested, or if no waveform opens the switch.
   std::optional<OpeningsOnDevices> on_devices;
   OptimizerResult search;
-  bool better = false;     ///< true if the best opening comes to stay open earlier than the plain opening, or else vibrates less
-  bool goal_met = false;   ///< true if the switch is within the band about its open position as soon as all drives are at 0 V
+  /// True if the best opening settles earlier than the plain opening, or, if neither settles, vibrates less.
+  bool better = false;
+  /// True if the best opening stays within the band about the open position from when all drives are at 0 V.
+  bool goal_met = false;
   bool confirmed = false;  ///< true if the simulations `checks` confirm the best opening
   bool interrupted = false;
 };
