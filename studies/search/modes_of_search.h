@@ -10,8 +10,8 @@
 namespace softland {
 
 /// Returns the settings of a search with slower voltage edges: searched drives need at least one period of the highest mode of
-/// the model from one end of their range to the other. Empty if no edge changes: for a plate, which has one mode, and if a
-/// family's voltage sources all have their own max_slew. Waveform families that cannot have such slow edges keep their limits.
+/// the model from one end of their range to the other. Empty if no edge changes: for a plate, which has one mode, and if all
+/// searched voltage sources have their own max_slew. Waveform families that cannot have such slow edges keep their limits.
 [[nodiscard]] std::vector<SearchSetting> with_gentle_edges(const std::vector<SearchSetting>& settings, Actuator actuator,
                                                            const std::string& families, const OwnWaveforms& own = {});
 /// True if the search may use slower voltage edges from its start: it varies a piezo, whose edges excite every mode, and no

@@ -23,35 +23,36 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t most_candidates = 8;  // largest number of candidate waveforms that are verified
-// Number of further candidates of each waveform family that are verified, by the target's separate cost.
+constexpr std::size_t most_candidates = 8;  // most candidate waveforms that are verified at first
+// For a target with a separate cost: number of candidates of each waveform family that are verified in addition, those most
+// likely to close without a bounce.
 constexpr std::size_t most_sure = 4;
-// Number of candidates of each waveform family that are verified if no candidate was confirmed.
+// Number of candidates of each waveform family that are verified in addition if the first ones were not confirmed.
 constexpr std::size_t most_of_family = 4;
-// Budget in evaluations from which on starting waveforms that reach the contact at rest are computed.
+// Least budget in evaluations for which starting waveforms that reach the contact at rest are computed: they take long.
 constexpr long fewest_for_landings = 1000;
-// Time budget from which on starting waveforms that reach the contact at rest are computed [s].
+// Least time budget for which starting waveforms that reach the contact at rest are computed [s].
 constexpr double least_for_landings = 60;
-// Ends of the search, of the search with slower voltage edges, and of the search with several numbers of modes, as shares of a
-// time budget. The rest is for verifying the best waveform.
+// Shares of a time budget at which three parts of a search end: the search, its continuation with slower voltage edges, and its
+// continuation by the worst cost over several numbers of modes. The rest is for verifying the best waveform.
 constexpr double end_of_search = 0.6, end_of_gentle = 0.75, end_of_worst = 0.85;
-// Impact velocity of starting waveforms that reach the contact at rest, as a share of the plain step's.
+// Impact velocity of starting waveforms that reach the contact at rest, as a share of that under the plain step.
 constexpr double soft_touch = 0.01;
-constexpr double distinct = 1.01;  // least ratio between the costs of two candidate waveforms that are both verified
-// Number of waveform families in which the search with several numbers of modes is run.
+constexpr double distinct = 1.01;  // of two verified candidates the cost differs by at least this factor
+// Number of waveform families that are searched on by the worst cost over the scene's number of modes and more modes.
 constexpr std::size_t families_sifted = 2;
-// Divisor of the budget that gives the evaluations of the search with several numbers of modes.
+// The search by the worst cost over several numbers of modes gets this part of the evaluations: one in 50.
 constexpr long evaluations_of_the_worst = 50;
-constexpr long shortest_half = 100;  // number of evaluations below which a budget is not divided into halves
-// Share of the budget that is divided between all waveform families; the best family gets the rest.
+constexpr long shortest_half = 100;  // fewest evaluations of each half of a divided budget
+// Share of the budget that all waveform families get in equal parts first; the best family then gets the rest.
 constexpr double opening = 0.6;
 
-// Numbers of candidate waveforms in OptimizeResult::tried: the best, those evenly spaced by rank, and those of every waveform
-// family.
+// Numbers of candidate waveforms that are kept in OptimizeResult::tried: of the best, of those evenly spaced by rank, and of
+// the best of every waveform family.
 constexpr std::size_t kept_best = 100, kept_of_ladder = 150, kept_of_family = 15;
 
-// Returns the evaluations that improved the best cost of a search, the best first, each distinctly worse than the one before:
-// similar waveforms would fail for the same reason.
+// Returns the evaluations that improved the best cost of a search, the best first. Each cost is distinctly above the one
+// before, since similar waveforms would fail for the same reason.
 std::vector<Evaluation> candidates(const std::vector<Evaluation>& improvements) {
   std::vector<Evaluation> chosen;
   for (auto e = improvements.rbegin(); e != improvements.rend() && chosen.size() < most_candidates; ++e) {
@@ -61,10 +62,11 @@ std::vector<Evaluation> candidates(const std::vector<Evaluation>& improvements) 
   return chosen;
 }
 
-// One search: its waveform families, its log and its reports.
+// The search on the nominal device in all its waveform families, with its log of evaluations.
 class RunningSearch {
  public:
-  /// The index of each setting is the number of its waveform family. The search may use `seconds` [s] of the budget `whole`.
+  /// Setting k is that of the waveform family with the number k. The search may use `seconds` [s] of the time of the budget
+  /// `whole`.
   RunningSearch(const std::vector<SearchSetting>& settings, const OptimizeOptions& options, SearchBudget& whole, double seconds)
       : settings_(settings),
         options_(options),
@@ -80,8 +82,8 @@ class RunningSearch {
     }
   }
 
-  // Adds the waveforms of the scene and of other searches as first candidates. The search starts at these waveforms, or at the
-  // nearest waveforms of its waveform families.
+  // Adds the scene's own waveforms and those of OptimizeOptions::starts as first candidates, and as starts of every waveform
+  // family, at the nearest point of the family.
   void begin() {
     const SearchSetting& setting = settings_.front();
     if (!setting.starts_as_step())
@@ -105,10 +107,11 @@ class RunningSearch {
     }
   }
 
-  // Adds the starting point `x` to a search in one waveform family.
+  // Adds the starting point `x` to the first waveform family.
   void begin_at_point(const std::vector<double>& x) { families_.front().begin_at_point(x); }
 
-  // Finds starting waveforms that reach the contact with all modes at rest, for a piezo and for several drives.
+  // Returns starting waveforms that reach the contact with all modes at rest, for a piezo or several drives and a large enough
+  // budget; otherwise none.
   [[nodiscard]] std::vector<DriveWaveforms> rest_to_rest_starts() const {
     const SearchSetting& setting = settings_.front();
     const std::vector<DriveSearch>& shaped = setting.space.drives();
@@ -124,7 +127,7 @@ class RunningSearch {
     return all_;
   }
 
-  // Verifies the given waveforms and the best candidates of the search.
+  // Verifies the user's waveforms and the best candidates of the search, until no further candidate can be better.
   void check(Verification& all) const {
     for (const FoundWaveform& given : landings_) all.add(given);
     std::vector<Evaluation> tried;
@@ -136,7 +139,8 @@ class RunningSearch {
       add(e);
       if (all.decided(e.value)) break;
     }
-    // Verify candidates of other waveform families, since all candidates of one family excite the same neglected modes.
+    // If no candidate is confirmed, verify candidates of every waveform family: those of one family excite the same modes,
+    // which the scene neglects.
     for (std::size_t k = 0; k < families_.size() && families_.size() > 1 && !all.confirmed(); ++k) {
       std::size_t added = 0;
       for (const Evaluation& e : candidates(improvements_of(log_.evaluations(k)))) {
@@ -147,7 +151,7 @@ class RunningSearch {
       }
     }
     // For a target with a separate cost, verify further candidate waveforms whose target cost is below that of the best
-    // verified candidate, in the order of the guide cost.
+    // verified one, those with the least bounce cost (guide cost) first.
     if (options_.target.has_own_cost()) {
       for (const FamilySearch& family : families_) {
         for (std::size_t k = 0; k < most_sure; ++k) {
@@ -159,15 +163,15 @@ class RunningSearch {
     }
   }
 
-  // Candidate waveforms of one waveform family, the best first.
+  // Candidate waveforms of one waveform family, ranked by a cost: their points, and the least cost.
   struct Promising {
     std::size_t family = 0;
     double least = std::numeric_limits<double>::infinity();
     std::vector<std::vector<double>> points = {};
   };
 
-  // Ranks the candidate waveforms of every waveform family by the cost of `other`; the family with the best candidate comes
-  // first.
+  // Ranks the candidate waveforms of every waveform family by their cost in the setting `other`; the family with the least cost
+  // comes first.
   [[nodiscard]] std::vector<Promising> promising(const SearchSetting& other) const {
     std::vector<Promising> all;
     for (std::size_t k = 0; k < families_.size(); ++k) {
@@ -185,8 +189,8 @@ class RunningSearch {
     return all;
   }
 
-  // Returns some of the candidate waveforms that touch: the best of all, candidates evenly spaced by rank, and the best of
-  // every waveform family.
+  // Returns some of the candidate waveforms that make contact: the best of all, candidates evenly spaced by rank, and the best
+  // of every waveform family.
   [[nodiscard]] std::vector<TriedWaveform> tried() const {
     std::vector<Evaluation> all;
     for (std::size_t k = 0; k < families_.size(); ++k) {
@@ -224,7 +228,8 @@ class RunningSearch {
     return options_.begins_with_half && !std::isfinite(budget_.seconds()) && evaluations >= 2 * shortest_half;
   }
 
-  // Runs the search, with OptimizeOptions::begins_with_half first with half the budget. Returns false if the search must end.
+  // Runs the search. With OptimizeOptions::begins_with_half, runs the search with half the budget first, and then spends the
+  // other half. Returns false if the search was interrupted or failed.
   bool run_halves(long evaluations) {
     if (!is_divided(evaluations)) return run_undivided(evaluations);
     const long half = evaluations / 2;
@@ -239,17 +244,18 @@ class RunningSearch {
     const long before = all_.evaluations;
     if (families_.size() == 1)
       return go_on(0, evaluations, all_seconds, options_.more_evaluations, has_own ? Costs::both : Costs::same, before > 0);
-    // Search for bounce first, as a whole search: its best waveform is then a candidate for the actual target.
+    // Search by the cost of bounce first, in all waveform families: the best waveform is then a candidate for the actual
+    // target.
     const long own = has_own ? evaluations / target_share : 0;
     const double bounce_seconds = all_seconds * (has_own ? 1 - 1.0 / target_share : 1);
     if (!run_families(evaluations - own, bounce_seconds, has_own ? Costs::guide : Costs::same)) return false;
-    // Search by the separate cost of the target next, from the best points of every waveform family. The remaining budget also
-    // counts gradients.
+    // Then search by the separate cost of the target, from the best points of every waveform family. `rest` is the whole
+    // remaining budget.
     const long rest = evaluations - (all_.evaluations - before);
     return !has_own || rest <= 0 || run_families(rest, budget_.seconds_left(), Costs::target);
   }
 
-  // Computes the target cost of an evaluation with the scene's number of modes only.
+  // Computes the target cost of an evaluation by a closing with the scene's number of modes alone.
   [[nodiscard]] double own_cost(std::size_t family, const Evaluation& e) const {
     SearchSetting alone = settings_[family];
     alone.richer.clear();
@@ -267,7 +273,7 @@ class RunningSearch {
 
   // Searches each waveform family with a share of the budget, and the best family with the rest. By the cost of bounce, each
   // family begins at the results of earlier families. By the separate cost of the target, only the best family does so, since
-  // all would end in one minimum. Returns false if the search must end.
+  // all would end in one minimum. Returns false if the search was interrupted or failed.
   bool run_families(long all_evaluations, double all_seconds, Costs costs) {
     const SearchBudget all(budget_, all_evaluations, all_seconds);
     const double share = opening / static_cast<double>(families_.size());
@@ -281,7 +287,8 @@ class RunningSearch {
     return go_on(leader(costs), rest, all.seconds_left(), options_.more_evaluations, costs, true);
   }
 
-  // Adds the given waveforms to a search, as a candidate and as a start. `prepared()` returns the scene with these waveforms.
+  // Adds waveforms of the user as a candidate, and as a start of every waveform family. `prepared()` returns the scene with
+  // these waveforms.
   template <class MakePrepared>
   void refine(const std::vector<Signal>& drives, const DriveWaveforms& waveforms, const MakePrepared& prepared) {
     const double cost = settings_.front().price(drives).target;
@@ -302,7 +309,7 @@ class RunningSearch {
     log_.begin_with(given, can_be_written(waveforms) ? std::optional(landing.scene.scene.file) : std::nullopt);
   }
 
-  // Returns the number of the waveform family with the least cost; of equal families, the first one.
+  // Returns the number of the waveform family with the least cost; of families with the same cost, the first one.
   [[nodiscard]] std::size_t leader(Costs costs) const {
     std::size_t leader = 0;
     double least = std::numeric_limits<double>::infinity();
@@ -319,7 +326,8 @@ class RunningSearch {
     }
   }
 
-  // Runs the search of one waveform family and adds its result to all_. Returns false if the search must end.
+  // Runs the search of one waveform family for further `evaluations`, and adds its result to all_. Returns false if the search
+  // was interrupted or failed, or if no time is left.
   bool go_on(std::size_t family, long evaluations, double time, long more, Costs costs, bool goes_on) {
     if (!(time > 0)) return false;
     const OptimizerResult now =
@@ -340,7 +348,7 @@ class RunningSearch {
     return now.termination != Termination::interrupted && now.termination != Termination::failure;
   }
 
-  // Copies the improving evaluations of all waveform families to all_, in the order of their runs.
+  // Updates the improving evaluations and the best point in all_ from the log of all waveform families.
   void take_improvements() {
     all_.improvements = improvements_of(log_.evaluations());
     if (all_.improvements.empty()) return;
@@ -361,7 +369,7 @@ class RunningSearch {
 };
 
 // Continues a search whose best waveform is bounce-free only with the scene's number of modes: with slower voltage edges, then
-// with the worst cost over several numbers of modes. These evaluations are not in the database file: a continued search makes
+// with the worst cost over several numbers of modes. The database file does not store these evaluations: a resumed search makes
 // them again.
 class SearchBeyondModes {
  public:
@@ -374,7 +382,8 @@ class SearchBeyondModes {
     own_.on_improvement = {};
   }
 
-  /// Continues a search with the slower voltage edges of `gentle`, then by sift(). Returns the number of evaluations.
+  /// Continues a search with the settings `gentle`, whose voltage edges are slower, and then by sift(). Returns the number of
+  /// evaluations.
   long go_on(const RunningSearch& search, const std::vector<SearchSetting>& settings, const std::vector<SearchSetting>& gentle) {
     if (!verified_.belongs_to_modes()) return 0;
     if (gentle.empty()) return sift(search, settings);
@@ -386,8 +395,8 @@ class SearchBeyondModes {
     return sift(other, gentle);
   }
 
-  /// Continues a search with the worst cost over several numbers of modes, in its best waveform families. Returns the number of
-  /// evaluations.
+  /// Searches on by the worst cost over the scene's number of modes and more modes, in the best waveform families of `search`.
+  /// Returns the number of evaluations.
   long sift(const RunningSearch& search, const std::vector<SearchSetting>& settings) {
     if (!verified_.belongs_to_modes() && !verified_.confirmed()) return evaluations_;
     const std::vector<RunningSearch::Promising> all = search.promising(by_the_worst_of_modes(settings.front()));
@@ -396,7 +405,7 @@ class SearchBeyondModes {
       if (!begin("searching on by the worst of more modes", options_.max_evaluations / evaluations_of_the_worst, end_of_worst))
         break;
       std::vector<SearchSetting> worst{by_the_worst_of_modes(settings[k])};
-      worst.front().family = 0;  // the search by the worst cost has a single waveform family, whose index is 0
+      worst.front().family = 0;  // this search has one waveform family, with the number 0
       own_.family = families_of(options_.family)[k];
       RunningSearch other(worst, own_, budget_, own_.max_seconds);
       for (const std::vector<double>& point : points) other.begin_at_point(point);
@@ -407,7 +416,7 @@ class SearchBeyondModes {
   }
 
  private:
-  // Prepares the options of a further search. Returns false if no time is left.
+  // Sets the options of a further search that ends at the share `end` of the time budget. Returns false if no time is left.
   bool begin(std::string what, long evaluations, double end) {
     own_.max_evaluations = std::max(evaluations, 1L);
     own_.max_seconds = budget_.seconds_left(end);
@@ -478,7 +487,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& asked) {
   search.check(verified);
   result.families = search.families();
   if (options.keep_tried) result.tried = search.tried();
-  result.family = result.families.front().family;  // the waveform family to report if there is no best waveform
+  result.family = result.families.front().family;  // overwritten by move_to() if there is a best waveform
   result.variables = setting.space.variables();
   SearchBeyondModes beyond(options, budget, verified);
   result.evaluations_of_modes = is_gentle ? beyond.sift(search, gentle) : beyond.go_on(search, settings, gentle);

@@ -31,7 +31,8 @@ struct OptimizeProgress {
   /// Least cost in the search so far; NaN before a waveform was feasible.
   double best_cost = std::numeric_limits<double>::quiet_NaN();
   double baseline_cost = std::numeric_limits<double>::quiet_NaN();
-  long planned = 0;  ///< planned evaluations of the whole search, if OptimizeOptions::counts_work; 0: max_evaluations
+  /// Evaluations of the whole search, reduced for slow closings (OptimizeOptions::counts_work); 0: max_evaluations.
+  long planned = 0;
 };
 
 /// The estimated work of a search.
@@ -43,11 +44,12 @@ struct SearchEstimate {
   double seconds = 0;      ///< estimated processor time of the whole search [s]
 };
 
-/// Default number of evaluations: as many as found bounce-free waveforms from every seed tried, on the shipped scenes and their
-/// variants. A search of a piezo needs more. A target with a separate cost gets 1.5 times as many evaluations as `bounce`.
+/// Returns the default number of evaluations. With this number the searches from every tried seed found a bounce-free waveform,
+/// for the shipped scenes and their variants. A piezo needs more evaluations than an electrode; a target with a separate cost
+/// gets 1.5 times as many as `bounce`.
 [[nodiscard]] long default_budget(const Aim& target, Shaped drives);
 
-/// Value of Evaluation::index for the scene's own waveform, and for the given starts.
+/// Evaluation::index of waveforms that the user gave: the scene's own waveform and OptimizeOptions::starts.
 inline constexpr long given_index = -1;
 
 struct OptimizeOptions {
@@ -60,15 +62,14 @@ struct OptimizeOptions {
   /// Waveforms from the user's code that `family` may name. They have no gradients, and no scene file can contain them.
   OwnWaveforms own_waveforms = {};
   std::string optimizer = "auto";
-  long max_evaluations = 2500;  ///< budget of the search in evaluations, see default_budget()
-  /// Further evaluations from the best points, if max_evaluations found no closing without a significant rebound.
+  long max_evaluations = 2500;  ///< number of evaluations of candidate waveforms, see default_budget()
+  /// Number of further evaluations near the best points, if no closing without a significant rebound was found.
   long more_evaluations = 0;
-  /// true: max_evaluations counts closings of usual computing time; the search makes fewer if closings are slow
-  /// (search_work.h).
+  /// true: max_evaluations is meant for closings of average computing time; the search makes fewer evaluations if its closings
+  /// are slow (search_work.h).
   bool counts_work = false;
-  /// true: the search first repeats the search with half the budget, to the bit, and continues from its result, so that a
-  /// larger budget is never worse. Use this to compare budgets; an undivided search finds more. The budget must be in
-  /// evaluations, not in seconds.
+  /// true: the search begins exactly as with half the budget, and continues from that result, so that twice the budget is never
+  /// worse. Use this to compare budgets; an undivided search finds more. The budget must be in evaluations, not in seconds.
   bool begins_with_half = false;
   double max_seconds = std::numeric_limits<double>::infinity();  ///< time budget of the whole search [s]
   std::uint64_t seed = 1;
@@ -76,8 +77,8 @@ struct OptimizeOptions {
   /// Waveforms of the searched drives, for example from other searches. The waveforms are candidates, and the search starts at
   /// the nearest point of each waveform family.
   std::vector<StartingWaveforms> starts = {};
-  /// true: OptimizeResult::tried gets some of the candidate waveforms that touch, of every waveform family: the best, and a
-  /// selection with higher costs.
+  /// true: some of the candidate waveforms that make contact are kept in OptimizeResult::tried: the best, and a selection with
+  /// higher costs, of every waveform family.
   bool keep_tried = false;
   /// Gives the costs of candidate waveforms that were simulated before, and stores the costs of new candidates; may be null.
   EvaluationMemory* memory = nullptr;
@@ -95,12 +96,13 @@ struct OptimizeOptions {
   std::function<void(const SearchEstimate&)> on_estimate = {};
   /// Function that is called under a lock after every evaluation of a candidate waveform.
   std::function<void(const Evaluation&, const OptimizeProgress&)> on_evaluation = {};
-  /// Function that is called under the lock of on_evaluation after an evaluation on some of the devices, which on_evaluation
-  /// does not report.
+  /// Function that is called under the lock of on_evaluation after an evaluation on only some of the varied devices, for which
+  /// on_evaluation is not called.
   std::function<void(const OptimizeProgress&)> on_progress = {};
-  /// Function that is called under the lock of on_evaluation at every improvement that touches, with a scene of the improved
-  /// waveform. The first may be the scene's own waveform or one of `starts`, with the index given_index and, if the waveform
-  /// family cannot describe that waveform, an empty x. Not called for own_waveforms, which no scene file can contain.
+  /// Function that is called under the lock of on_evaluation at every improvement under which the switch makes contact, with a
+  /// scene of the improving waveform. The first may be the scene's own waveform or one of `starts`, with the index given_index
+  /// and, if the waveform family cannot describe that waveform, an empty x. Not called for own_waveforms, which no scene file
+  /// can contain.
   std::function<void(const Evaluation&, const SceneFile&)> on_improvement = {};
 };
 
@@ -113,7 +115,7 @@ struct OptimizeOptions {
 struct SearchedFamilyResult {
   std::string family;
   long evaluations = 0;
-  /// Least cost of the waveform family's waveforms; NaN if no waveform was feasible.
+  /// Least target cost found in the waveform family; NaN if no waveform was feasible.
   double cost = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -134,30 +136,31 @@ struct OptimizeResult {
   std::vector<CheckingRun> checks;
   std::vector<SearchedFamilyResult> families = {};  ///< results of the searched waveform families
   std::string family;                               ///< waveform family of the best waveform
-  std::string prefix;  ///< prefix of the best waveform's parameters among those of all waveform families: prefix_of()
+  std::string prefix;  ///< prefix of the waveform family in the names of searched_columns(): see prefix_of()
   std::map<std::string, double> parameters;  ///< waveform parameters of the best waveform, by drive.name
-  std::vector<Variable> variables;           ///< variables (parameters with bounds) of the best waveform's waveform family
+  std::vector<Variable> variables;           ///< variables (parameters with bounds) of the waveform family `family`
   double best_cost = std::numeric_limits<double>::quiet_NaN();
   double baseline_cost = std::numeric_limits<double>::quiet_NaN();
   /// Evaluations of the search; their points are parameters of the waveform family with the index Evaluation::problem.
   OptimizerResult search;
   bool goal_met = false;
   bool confirmed = false;  ///< true if the best waveform also meets the goal with a tighter integrator and with more modes
-  /// Further evaluations, each with several numbers of modes, if the found waveforms were bounce-free only with the scene's
-  /// number of modes.
+  /// Number of evaluations of the search's continuations with slower edges and with several numbers of modes: they follow if
+  /// the found waveforms were bounce-free only with the scene's number of modes.
   long evaluations_of_modes = 0;
   bool better_than_baseline = false;
-  /// True if the plain step is the result: it is bounce-free, and all other candidate waveforms are harder or no better.
+  /// True if the plain step is the result: it closes without a bounce, and all other candidates close harder or no better.
   bool plain_step_wins = false;
-  /// Excess by which the closing of the best waveform is harder than that of the plain step, see hardness_beyond_step().
+  /// Largest relative excess of the best closing's impact velocity, peak force or impact energy over the plain step's: see
+  /// hardness_beyond_step().
   double harder_than_step = 0;
   /// True if the best waveform meets the goal or is better than the plain step.
   [[nodiscard]] bool is_success() const { return best && !best->is_pulled_through && (goal_met || better_than_baseline); }
   std::vector<std::string> broken_conditions = {};  ///< texts of the conditions that the best waveform does not fulfil
   std::vector<TriedWaveform> tried = {};            ///< candidate waveforms that were simulated, see OptimizeOptions::keep_tried
 
-  /// Returns the best waveform's value of the parameter `name`, one of searched_columns(); NaN if its family lacks the
-  /// parameter, or if there is no best waveform.
+  /// Returns the best waveform's value of the parameter `name`, one of searched_columns(); NaN if the best waveform's family
+  /// lacks the parameter, or if there is no best waveform.
   [[nodiscard]] double parameter(std::string_view name) const;
 };
 
@@ -166,7 +169,7 @@ struct OptimizeResult {
 [[nodiscard]] OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options);
 
 /// Goal of the target `settling`: largest ratio of the contact's settling time to the time of first contact under the plain
-/// step. On the shipped gold cantilevers the goal is about 1.1 times the best settling time known for pulses.
+/// step. On the shipped gold cantilevers the goal is about 1.1 times the best ratio that pulse waveforms have reached.
 inline constexpr double settling_goal = 1.3;
 
 /// Returns the largest relative excess of a closing over the plain step, in impact velocity, peak contact force or impact energy;

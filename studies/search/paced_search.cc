@@ -11,25 +11,26 @@
 namespace softland {
 namespace {
 
-// Rounds (stages) of the search for slow waveforms. The numbers of closings are for waveforms that last as long as the plain
-// step bounces.
+// Rounds (stages) of the search for slow waveforms, with the number of closings of each. Waveforms that last longer than the
+// bounces under the plain step get fewer closings.
 constexpr std::array pace_rounds{
     Round{.devices = 64, .closings = 10'000, .step = 0.15}, Round{.devices = 128, .closings = 10'000, .step = 0.1},
     Round{.devices = 256, .closings = 10'000, .step = 0.08}, Round{.devices = 256, .closings = 10'000, .step = 0.04}};
 
-// Share of the permitted time until a steady force that is used, since other devices take a little longer.
+// Share of the permitted time until a steady force that the search uses: on devices that it has not used, the force may be
+// steady a little later.
 constexpr double of_the_time = 0.995;
 using Point = std::vector<double>;
-// Offset of the random streams, beyond those that the tournament of waveform families uses.
+// First number of the random streams of these searches; the tournament of waveform families uses smaller numbers.
 constexpr std::uint64_t first_of_paces = 1'000'000;
 
 bool has_pace(const RobustAim& aim) { return aim.free.until > 0 && std::isfinite(aim.free.until); }
 
-// Returns the time until a steady contact force that a pace permits [s].
+// Returns the largest time until a steady contact force at a pace [s].
 double allowed(const Pace& pace, const RobustAim& aim) { return of_the_time * pace.of_step * aim.free.until; }
 
-// Returns the duration of the first starting waveform divided by FreeTime::until. The computing time of a closing is
-// proportional to this duration.
+// Returns the duration of a start waveform in units of FreeTime::until, about which the plain step bounces. The computing time
+// of a closing is proportional to this duration.
 double relative_duration(const SearchSetting& setting, const RobustAim& aim) {
   if (!has_pace(aim)) return 1;
   const DriveWaveforms first = setting.space.waveforms(setting.space.starts().front());

@@ -9,16 +9,17 @@
 
 namespace softland {
 
-/// The pace of a quasi-static approach (the time that the slow closing may take), and the waveform family that is searched.
+/// The pace of a quasi-static approach, which is the time that the slow closing may take, and the number of its waveform
+/// family.
 struct Pace {
-  double of_step = 1;      ///< time until devices have to carry a steady force, as a multiple of that time under the plain step
+  double of_step = 1;      ///< permitted time until a steady contact force, as a multiple of that time under the plain step
   std::size_t family = 0;  ///< index of the waveform family among the settings of the search
 };
 
 /// Searches the waveforms of a quasi-static approach at a pace. `setting` is that of a quasi-static waveform family; `aim` is
-/// the aim of the whole search, with the plain step's time as FreeTime. None if no waveform of this pace is within the limits,
-/// or if the budget ends before a waveform was tried. RaceOptions::closings scales the number of closings of this search, as in
-/// race().
+/// the aim of the whole search; its FreeTime holds the time until a steady force under the plain step. Nothing if no waveform
+/// of this pace is within the limits, or if the budget ends before a waveform was tried. RaceOptions::closings scales the
+/// number of closings of this search, as in race().
 [[nodiscard]] std::optional<Contender> search_at_pace(const SearchSetting& setting, const Pace& pace, const RobustCost& cost,
                                                       const RobustAim& aim, SearchBudget& budget, const RaceOptions& options);
 

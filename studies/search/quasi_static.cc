@@ -19,7 +19,7 @@ struct Ramp {
   }
 };
 
-// Returns the weights of the impulses of an input shaper: binomial coefficients divided by their sum.
+// Returns the weights of the impulses of an input shaper: binomial coefficients, scaled to the sum 1.
 std::vector<double> shaper(std::size_t impulses) {
   std::vector<double> weights{1};
   for (std::size_t n = 1; n < impulses; ++n) {
@@ -57,7 +57,7 @@ class BrokenLine {
     for (const Ramp& r : ramps_) sum += r.at(time);
     return sum;
   }
-  /// Returns the corners of the signal as (time, value). A corner less than `apart` after the corner before it is left out.
+  /// Returns the corners of the signal as (time, value), without corners that follow another one within `apart` in time.
   [[nodiscard]] std::vector<std::pair<double, double>> points(double apart) const {
     std::vector<double> times{0};
     for (const Ramp& r : ramps_) times.insert(times.end(), {r.begin, r.end});
@@ -92,8 +92,8 @@ Waveform slewed(const std::vector<std::pair<double, double>>& points, double bef
   return table;
 }
 
-// Returns pairs for the stable approach: the square of the level of the electrode that holds the closed switch, from 0 to
-// `most`, and the voltage of the carrying drive at which the nominal design then touches.
+// Returns pairs (square of the level of the holding electrode, voltage of the carrying drive at which the nominal design then
+// makes contact). The levels are spaced evenly in their square, up to `most` [V].
 std::vector<std::pair<double, double>> touching_by_level(const PreparedScene& prepared, const StableApproach& approach,
                                                          double most) {
   constexpr int levels = 6;
@@ -108,20 +108,24 @@ std::vector<std::pair<double, double>> touching_by_level(const PreparedScene& pr
   return all;
 }
 
-// Ends of the rise and of the line through the touching voltages, in standard deviations of the touching voltage over devices.
+// Starts of a search: the rise ends below the voltage at which the nominal design makes contact (by slow_before if the shaper
+// has more than two impulses, else by fast_before), and the line ends above this voltage. Unit: standard deviation of this
+// voltage over devices.
 constexpr double slow_before = 3.5, fast_before = 1.5, beyond = 2;
-// Least standard deviation of the touching voltage over devices, as a share of this voltage.
+// Least standard deviation over devices of the voltage at which contact is made, as a share of this voltage.
 constexpr double least_deviation = 0.005;
 constexpr double nearest_points = 1e-6;  // least distance in time of two corners of a waveform, in periods of the first mode
-// `holder_after_line`: delay of the holding electrode after the line through the touching voltages, in periods of the first
-// mode.
+// Wait between the end of the line and the rise of the holding electrode, if this rise is a plain step, and if its waveform is
+// searched; in periods of the first mode.
 constexpr double step_after_line = 1.2, holder_after_line = 0.8;
-constexpr double settle = 0.5;  // rise time of a searched waveform of the holding electrode, in periods of the first mode
-// Levels of the holding electrode before contact, as shares of its hold level.
+constexpr double settle = 0.5;  // duration of an edge to the hold level, in periods of the first mode
+// Levels of the holding electrode before contact, as shares of its hold level: least level at contact in a start, and upper
+// bound in the search.
 constexpr double least_contact_level = 0.16, most_low = 0.5;
-// Levels of the holding electrode in further starts, as shares of its hold level.
+// Levels of the holding electrode before contact in further starts, as shares of its hold level.
 constexpr std::array lower_levels{0.03, 0.12};
-// Duration of a piezo's return to its hold level, and the wait before it, in periods of the first mode.
+// Duration of the carrying drive's return to its hold level, if the waveform of the holding electrode is searched, and if this
+// is a plain step; wait before the return in the latter case. Unit: periods of the first mode.
 constexpr double back = 1, back_of_step = 5.7, back_after = 2;
 
 }  // namespace
@@ -144,7 +148,7 @@ QuasiStatic::QuasiStatic(const PreparedScene& prepared, Actuator actuator, Stabl
   reaches_.emplace_back(0, approach_.reaches);
   if (holding_ == Holding::shaped) reaches_ = touching_by_level(prepared, approach_, most_low * holder_hold_);
   approach_.deviation = std::max(approach_.deviation, least_deviation * std::abs(approach_.reaches));
-  // Time until the contact force is steady, as a multiple of the plain step's time of first contact.
+  // Default time until the contact force is steady, as a multiple of the time of first contact under the plain step.
   constexpr double usual = 20;
   for (const double times : {usual, usual / 2, 2 * usual}) starts_.push_back(closed_form(times * first_touch, approach_.low));
   bound(starts_.front(), false);
@@ -181,7 +185,7 @@ double QuasiStatic::share(double deviations) const {
 // Returns the waveform parameters by closed formulas, for devices that carry a steady contact force from `steady` on [s].
 std::vector<double> QuasiStatic::closed_form(double steady, double low) const {
   const double rise = share(impulses_ > 2 ? -slow_before : -fast_before), end = share(beyond);
-  // End of the rise to the first touching voltage, in periods of the first mode.
+  // Begin of the line, in periods of the first mode: the end of the rise, or half a period earlier if the line is shaped, too.
   const double risen = static_cast<double>(impulses_ + 1) / 2 - (impulses_ > 2 ? 0.5 : 0);
   const double after = holding_ == Holding::by_step  ? step_after_line
                        : holding_ == Holding::shaped ? holder_after_line + settle
@@ -206,7 +210,8 @@ void QuasiStatic::bound(const std::vector<double>& start, bool is_paced) {
     variables_.push_back({std::move(name), lower, upper});
   };
   const double line = start[1];
-  // Bounds of the rise and of the end, in standard deviations of the touching voltage over devices.
+  // Search bounds of the voltages at the end of the rise and at the end of the line: distance from the voltage at which contact
+  // is made, in standard deviations of this voltage over devices.
   constexpr double earliest = 9, latest = 6;
   between(carrier + "rise", std::max(0.3, share(-earliest)), share(1));
   is_paced ? between(carrier + "line_s", std::max(0.2 * period_, line - 2 * period_), line + 2 * period_)
@@ -241,8 +246,8 @@ QuasiStatic QuasiStatic::paced(double steady) const {
   return own;
 }
 
-// Returns the waveform of the drive that carries the switch to its contact. Ramps of an electrode are linear in its squared
-// voltage, and approximated by chords.
+// Returns the waveform of the drive that carries the switch to its contact. `points` are volts of a piezo, or squares of an
+// electrode's volts [V^2], whose linear ramps are approximated by chords.
 Waveform QuasiStatic::carrying(Points points) const {
   if (!is_electrode_) return slewed(points, before_, limits_);
   constexpr int chords = 5;
@@ -269,7 +274,7 @@ DriveWaveforms QuasiStatic::waveforms(std::span<const double> x) const {
   const double touching = reaches(holding_ == Holding::shaped ? x[3] : holder_before_), line = x[1];
   const auto within = [&](double voltage) { return std::clamp(voltage, limits_.min_voltage, limits_.max_voltage); };
   const double rise_voltage = within(x[0] * touching), end_voltage = within(x[2] * touching);
-  // Number of impulses that shape the ends of the second ramp, through the touching voltages; 1: no filter.
+  // Number of impulses of the input shaper that filters the second ramp, the line; 1: no filter.
   const std::size_t of_line = impulses_ > 2 ? impulses_ : 1;
   const double risen = static_cast<double>(impulses_ + 1) / 2 * period_;
   const double begin = impulses_ > 2 ? risen - period_ / 2 : risen, end = begin + line;

@@ -51,9 +51,9 @@ class QuasiStatic {
   [[nodiscard]] const std::vector<Variable>& variables() const { return variables_; }
   [[nodiscard]] const std::vector<std::vector<double>>& starts() const { return starts_; }
   [[nodiscard]] DriveWaveforms waveforms(std::span<const double> x) const;
-  /// Returns the quasi-static approach with bounds about its closed-form waveforms for devices that carry a steady contact
-  /// force from `steady` on [s]. The search starts at the closed form, and, if the holder is varied, also at lower levels of
-  /// the holder.
+  /// Returns the quasi-static approach with bounds about its closed-form waveforms, under which devices carry a steady contact
+  /// force from `steady` on [s]. The search starts at the closed form, and, if the waveform of the holding electrode is
+  /// searched, also at lower levels of this electrode.
   [[nodiscard]] QuasiStatic paced(double steady) const;
 
  private:
@@ -65,15 +65,16 @@ class QuasiStatic {
   };
   using Points = std::vector<std::pair<double, double>>;  // corners of a waveform: time [s] and voltage [V]
 
-  // `low` is the level before contact of the electrode that holds the closed switch [V].
+  // Returns the waveform parameters as for paced(). `low` is the level before contact of the holding electrode [V].
   [[nodiscard]] std::vector<double> closed_form(double steady, double low) const;
   void clamp_starts();
   void bound(const std::vector<double>& start, bool is_paced);
   [[nodiscard]] Waveform carrying(Points points) const;
-  /// Returns the voltage of the carrying drive at which the nominal design touches while the holding electrode is at `low` [V].
+  /// Returns the voltage of the carrying drive at which the nominal design makes contact while the holding electrode is at
+  /// `low` [V].
   [[nodiscard]] double reaches(double low) const;
-  /// Returns the voltage that is `deviations` standard deviations beyond the touching voltage, as a share of the touching
-  /// voltage, within the limit of the voltage source.
+  /// Returns the voltage of the carrying drive that is `deviations` standard deviations over devices above the voltage at which
+  /// contact is made, as a share of the latter, within the limit of the voltage source.
   [[nodiscard]] double share(double deviations) const;
 
   StableApproach approach_;
@@ -82,7 +83,7 @@ class QuasiStatic {
   double period_ = 0;          // period of the first mode [s]
   bool is_electrode_ = false;  // true if the drive that carries the switch to its contact is an electrode
   double neutral_ = 0;         // voltage at which the carrying drive exerts no force [V], see Switch::neutral_voltage()
-  // Touching voltages [V] by the square of the holding electrode's level [V^2].
+  // Pairs: square of the holding electrode's level [V^2], and voltage of the carrying drive at which contact is then made [V].
   std::vector<std::pair<double, double>> reaches_;
   // Hold level and level before t = 0, of the carrying drive and of the holding electrode [V].
   double hold_ = 0, before_ = 0, holder_hold_ = 0, holder_before_ = 0;

@@ -18,24 +18,24 @@ namespace {
 
 using Point = std::vector<double>;
 
-// Rounds (stages) of a tournament of searches, with the number of closings that each search makes in a tournament of default
-// length. The last two rounds continue the search with the best result.
+// Rounds (stages) of a tournament of searches. The numbers of closings are those of each search in a tournament of default
+// length. The last two rounds continue only the best search.
 constexpr std::array race_rounds{Round{.devices = 32, .closings = 2000, .step = 0.15},
                                  Round{.devices = 64, .closings = 6000, .step = 0.08},
                                  Round{.contenders = 3, .devices = 128, .closings = 10'000, .step = 0.03},
                                  Round{.contenders = 1, .devices = 128, .closings = 8000, .step = 0.03},
                                  Round{.contenders = 1, .devices = 128, .closings = 8000, .step = 0.03}};
 constexpr std::size_t usual_rounds = 3;
-// Shares of bounce-free devices from which on searches are ranked by this share, or continued.
+// Shares of bounce-free devices from which on searches are ranked by this share: after the first round, and after the others.
+// The second share is also needed to continue the best search.
 constexpr double enough_land = 0.25, many_land = 0.4;
-// Least gain in the bounce-free share of devices for which another round of the search is worthwhile.
+// Increase of the bounce-free share in a round for which the best search is continued once more.
 constexpr double worth_going_on = 0.01;
 constexpr double population_by_share = 2, longer_where_many_land = 1.7;
 constexpr std::size_t first_devices = 16;  // number of devices on which starting points are tried
 constexpr std::uint64_t box_points = 32;
 
-// Returns the number of closings that each search makes in the rounds (stages) `first` to `last` - 1, in a tournament of
-// default length.
+// Returns the number of closings of one search in the rounds (stages) `first` to `last` - 1 of a tournament of default length.
 double closings_of_rounds(std::size_t first, std::size_t last) {
   double all = 0;
   for (std::size_t k = first; k < last; ++k) all += race_rounds[k].closings;
@@ -48,8 +48,8 @@ class Race {
        const RaceOptions& options)
       : settings_(settings), cost_(cost), aims_(aims), options_(options), budget_(budget, options.closings) {}
 
-  /// Runs a tournament between the searches `contenders`, or, if `alone`, a single search through all rounds. `begun` are
-  /// further starting waveforms.
+  /// Runs a tournament between the searches `contenders`, or, if `alone`, the three usual rounds of a single search. The
+  /// searches may also begin at the waveforms `begun`.
   RaceResult run(std::vector<Contender> contenders, const std::vector<DriveWaveforms>& begun, bool alone) {
     alone_ = alone;
     length_ = static_cast<double>(options_.closings) / static_cast<double>(race_closings);
@@ -76,7 +76,7 @@ class Race {
  private:
   [[nodiscard]] const SearchSetting& setting(const Contender& r) const { return settings_[r.family]; }
   [[nodiscard]] const RobustAim& aim(const Contender& r) const { return r.by_share ? aims_.share : aims_.tail; }
-  // Returns the number that identifies the devices and the aim of a search in the memory of evaluations.
+  // Returns the number that stands for the random devices and the aim of a search in the keys of the memory of evaluations.
   [[nodiscard]] std::uint64_t identity(const Contender& r) const {
     return random_bits(options_.seed, Stream::race, r.by_share ? 1 : 0);
   }
@@ -85,7 +85,7 @@ class Race {
     if (options_.progress) options_.progress(budget_.share_taken());
   }
 
-  // Sets the starting point of every search to the best of many starts, by the measure that the search minimises.
+  // Sets the starting point of every search to the best of many starts, by the measure of risk that this search minimises.
   void begin(std::vector<Contender>& contenders, const std::vector<DriveWaveforms>& begun) {
     std::map<std::size_t, std::vector<Point>> starts;  // starting points of each waveform family
     for (const Contender& r : contenders) {
@@ -111,7 +111,8 @@ class Race {
     }
   }
 
-  // Returns the outcomes of the first `devices` devices; empty if the waveform exceeds a limit of a voltage source.
+  // Simulates the first `devices` devices at the point `x`. Returns no outcomes if the waveform exceeds a limit of a voltage
+  // source.
   std::vector<DeviceOutcome> closed(const SearchSetting& own, const Point& x, std::size_t devices, int jobs) {
     const DriveWaveforms searched = own.space.waveforms(x);
     if (!own.is_allowed(searched)) return {};
@@ -128,7 +129,7 @@ class Race {
     r.closings += improve(r.x, staged, chain, part, [this] { tell(); }).searched;
   }
 
-  // Compares the searches after round `k` of the tournament, and returns the searches of the next round.
+  // Compares the searches after round `k` of the tournament, and returns the searches that continue in the next round.
   std::vector<Contender> select(std::vector<Contender> contenders, std::size_t k) {
     const double before = contenders.front().bounce_free;
     judge(contenders, race_rounds[std::min(k + 1, race_rounds.size() - 1)].devices);
@@ -150,15 +151,15 @@ class Race {
     return contenders;
   }
 
-  // Sets the budget of closings for rounds (stages of the tournament) that are longer than usual since many devices are
-  // bounce-free, and for the rounds that continue the search with the best result.
+  // Extends the budget of closings after a first round with many bounce-free devices: the next rounds are longer, and the best
+  // search is then continued.
   void plan_longer() {
     const double again = alone_ ? 0 : closings_of_rounds(usual_rounds, race_rounds.size());
     const double left = longer_ / length_ * static_cast<double>(budget_.left()) + longer_ * again;
     budget_.allow(budget_.taken() + std::lround(left));
   }
 
-  // Computes the costs and the bounce-free share of every search on the first `devices` devices.
+  // Computes both costs and the bounce-free share of the best point of every search, on the first `devices` devices.
   void judge(std::vector<Contender>& contenders, std::size_t devices) {
     run_tasks(
         contenders.size(), options_.jobs,
@@ -173,10 +174,11 @@ class Race {
         budget_.stop());
   }
 
-  // Returns the member (cost by share or by tail) by which searches are ranked.
+  // Returns the cost by which searches are ranked: by the share of bounce-free devices, or by the tail of the cost.
   static double Contender::*rank_by(bool share) { return share ? &Contender::share : &Contender::tail; }
 
-  // Returns the best search of every waveform family, and the best of the remaining searches by the other measure of risk.
+  // Returns the best search of every waveform family by the present ranking, and, of the other searches, the best one by the
+  // other of the two costs.
   [[nodiscard]] std::vector<Contender> survivors(std::vector<Contender> contenders) const {
     std::ranges::stable_sort(contenders, {}, rank_by(many_));
     std::vector<Contender> kept, others;
@@ -203,10 +205,10 @@ class Race {
   const RaceAims& aims_;
   const RaceOptions& options_;
   SearchBudget budget_;  // budget of closings that the tournament may simulate
-  // Length of the tournament relative to the default; this length if many devices are bounce-free.
+  // Length of the tournament relative to the default, in general and if many devices are bounce-free.
   double length_ = 1, longer_ = 1;
   bool alone_ = false;  // true: a single search, not a tournament
-  bool many_ = false;   // true: many devices are bounce-free after the first round
+  bool many_ = false;   // true: many devices are bounce-free after the last round, so that searches are ranked by this share
   RaceResult result_;
 };
 

@@ -36,7 +36,8 @@ inline constexpr std::string_view raced_families = "knots:6+catch+dual-pulse+bsp
 inline constexpr long race_closings = 86'000;
 /// Shortest race, as a share of race_closings: shorter tournaments end too early to be meaningful.
 inline constexpr double least_length_of_race = 0.25;
-/// Largest number of devices that a race (a tournament of searches) simulates.
+/// Number of varied devices of a race (a tournament of searches). Each search tries its waveforms on the first of these
+/// devices, as many as its round has.
 inline constexpr std::uint64_t raced_devices = 256;
 
 /// The two measures of cost that the searches of a race (a tournament) minimise.
@@ -54,7 +55,7 @@ struct Contender {
   DriveWaveforms waveforms = {};  ///< best waveforms of this search for the searched drives [V]
   long closings = 0;              ///< number of simulated closings of this search in all rounds
   double bounce_free = 0;         ///< share of bounce-free devices in the last round of the search
-  /// Costs by the measures RaceAims::tail and RaceAims::share in the last round of the search.
+  /// Costs by the measures RaceAims::tail and RaceAims::share, on the devices of the comparison after the last round.
   double tail = std::numeric_limits<double>::infinity(), share = std::numeric_limits<double>::infinity();
 };
 
@@ -63,7 +64,7 @@ struct RaceOptions {
   bool are_a_budget = false;      ///< true: `closings` is a limit even if many devices close without a rebound
   std::uint64_t seed = 1;
   int jobs = 1;  ///< number of threads; does not change the result
-  /// Memory of evaluations; may be null; its keys contain SearchSetting::family, which must differ between settings.
+  /// Memory of evaluations; may be null. Its keys contain SearchSetting::family, which must therefore differ between settings.
   EvaluationMemory* memory = nullptr;
   std::function<void(double)> progress = {};  ///< called with the share of the tournament that is done, from any thread
   /// Function that is called with the best search at the end of every round (stage) except the last; may be null.
@@ -71,7 +72,7 @@ struct RaceOptions {
 };
 
 struct RaceResult {
-  std::vector<Contender> contenders;  ///< the best searches of all rounds of the tournament, those of the last round first
+  std::vector<Contender> contenders;  ///< best searches of all rounds but the first, those of the last round first
   long closings = 0;
 };
 
@@ -81,8 +82,8 @@ struct RaceResult {
 [[nodiscard]] RaceResult race(const std::vector<SearchSetting>& settings, const RobustCost& cost, const RaceAims& aims,
                               SearchBudget& budget, const RaceOptions& options, const std::vector<DriveWaveforms>& begun = {});
 
-/// Runs a single search, of one waveform family by one measure of risk, through all rounds of a tournament. `begun` are further
-/// waveforms from which the search begins.
+/// Runs a single search, of one waveform family by one measure of risk, through the first three rounds of a tournament. The
+/// search may also begin at the waveforms `begun`.
 [[nodiscard]] RaceResult race_single_search(const SearchSetting& setting, std::size_t family, const RobustCost& cost,
                                             const RaceAims& aims, bool by_share, const std::vector<DriveWaveforms>& begun,
                                             SearchBudget& budget, const RaceOptions& options);
